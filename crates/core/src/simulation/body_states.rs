@@ -1,4 +1,4 @@
-//! Converts between the states of systems in base axes and the blocks of bodies in `W` that effects work on.
+//! Converts between the states of systems in base axes and the blocks of body states in W on which effects operate.
 
 use crate::dynamics::{BodyData, Data, base_rotation};
 use crate::environment::{Bodies, BodyMotion, BodyState, Wrenches, on_lanes};
@@ -6,15 +6,15 @@ use crate::model::{Model, Node};
 use crate::spatial::{Force, Mat3, Motion, Real, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// A system whose bodies receive wrenches, with the kinematics of its state in `data`.
+/// Parts of a system that loads read and write, with the kinematics of its configuration in `data`.
 pub(super) struct LoadedSystem<'a, S> {
     pub(super) data: &'a mut Data<S>,
     pub(super) q: &'a [S],
-    /// Velocity of the frame in which `data` has its velocities, W axes, m/s.
+    /// Velocity of the frame relative to which `data` holds velocities, W axes, m/s.
     pub(super) frame_velocity: Vec3<S>,
 }
 
-/// Returns the bodies of systems at rest with all origins at the origin of `W`.
+/// Returns the bodies of the systems, all at rest and with their origins at the origin of W.
 pub(super) fn bodies_of(models: &[&Model]) -> Bodies {
     let at_rest = |node: &Node| BodyState {
         mass: node.mass,
@@ -72,7 +72,7 @@ impl<S: Scalar> LoadedSystem<'_, S> {
         );
     }
 
-    /// Writes the wrenches on system number `system` to `data`: base axes, about the origins of the bodies.
+    /// Writes the wrenches on system number `system` to `data`, in base axes and about the origins of the bodies.
     pub(super) fn scatter_wrenches(&mut self, system: usize, wrenches: &Wrenches) {
         on_lanes!(self.data.bodies.len(), L => self.scatter_lanes::<L>(system, wrenches));
     }
@@ -101,7 +101,7 @@ impl<S: Scalar> LoadedSystem<'_, S> {
         );
     }
 
-    /// Returns the rotation from the base to `W`.
+    /// Returns the rotation from base axes to W axes.
     #[inline(always)]
     fn rot_wb<L: Real>(&self) -> Mat3<L> {
         base_rotation(self.q).map(|x| L::of(x.value()))
@@ -114,14 +114,14 @@ fn broadcast<S: Scalar, L: Real>(v: &Vec3<S>) -> Vec3<L> {
     v.map(|x| L::of(x.value()))
 }
 
-/// Returns body `first + i` for lane `i`; lanes past the end repeat the last body.
+/// Returns a function that maps lane `i` to body `first + i`; lanes past the end repeat the last body.
 #[inline(always)]
 fn bodies_from<'a, S>(data: &'a Data<S>, first: usize) -> impl Fn(usize) -> &'a BodyData<S> {
     let bodies = &data.bodies[first..];
     move |i| &bodies[i.min(bodies.len() - 1)]
 }
 
-/// Gathers one vector per lane.
+/// Gathers one vector per lane into a vector of lanes.
 #[inline(always)]
 fn gather<'a, S: Scalar, L: Real>(of: impl Fn(usize) -> &'a Vec3<S>) -> Vec3<L> {
     Vec3::from_lanes(|i| of(i).map(|x| x.value()))

@@ -1,4 +1,4 @@
-//! The controls of one system of a run, and the desired pose of its tool.
+//! Controllers of one system of a run, and the desired pose of its tool.
 
 use super::error::SimulationError;
 use super::schedule::SAME_INSTANT;
@@ -9,12 +9,12 @@ use crate::model::Model;
 use crate::reference::{TaskReference, TaskSample};
 use crate::spatial::Scalar;
 
-/// The controls of one system, its tool, and the reference of the tool that no control tracks.
+/// Controllers of one system, its tool, and a reference of the tool that is recorded without being tracked.
 pub(super) struct Controllers<'a, S> {
     pub(super) set: ControllerSet<'a, S>,
     tool: Option<usize>,
     reference: Option<&'a TaskReference>,
-    /// Sample of `reference` at the last instant asked for.
+    /// Sample of `reference` at the last time at which it was evaluated.
     sample: Option<TaskSample<f64>>,
 }
 
@@ -29,8 +29,8 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         Ok(Self { set, tool, reference, sample: None })
     }
 
-    /// Returns the desired pose of the tool at `t`, and whether it is relative to the base. Needs the kinematics of
-    /// `state` in `system`.
+    /// Returns the desired pose of the tool at `t`, s, and true if it is relative to the base; `None` if no reference
+    /// is active. Expects the kinematics of `state` in `system`.
     pub(super) fn desired(
         &mut self,
         t: f64,
@@ -49,8 +49,8 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         }))
     }
 
-    /// Sets the torques of the system, whose kinematics are those of `state`; leaves them as they are without
-    /// controls.
+    /// Updates the controllers at `t`, s, and sets the torques of the system; without controls the torques are not
+    /// changed. Expects the kinematics of `state` in `system`.
     pub(super) fn update(
         &mut self,
         t: f64,

@@ -1,4 +1,4 @@
-//! Computes the wrenches of the environment's effects on the bodies of all systems.
+//! Computes the wrenches of the environment effects on the bodies of all systems.
 
 use super::body_states::{LoadedSystem, bodies_of};
 use super::error::SimulationError;
@@ -19,27 +19,28 @@ use nalgebra::Vector3;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Effects of the environment on all systems of a run, their reference orbit, and the workspace to evaluate them.
+/// Environment effects on all systems of a run, the reference orbit, and the workspace to evaluate the effects.
 #[derive(Debug)]
 pub(super) struct EnvironmentLoads {
     effects: Vec<Arc<dyn Effect>>,
     reads_velocities: bool,
     /// Orbit on which the origin of W moves.
     reference: Option<Arc<dyn Orbit>>,
-    /// Freely falling reference that replaces `reference` once the robot has drifted far from it.
+    /// Reference orbit in free fall that replaces `reference` once the robot has drifted far from it.
     local_reference: Option<LocalReference>,
-    /// States of the orbit about which the robot is integrated: `reference` or the local one.
+    /// States of the current reference orbit, about which the robot is integrated: `reference` or the local reference
+    /// orbit.
     cache: ReferenceCache,
     gravity: Option<Arc<Gravity>>,
-    /// True if that orbit obeys exactly the gravity of the run.
+    /// True if the current reference orbit is integrated in exactly the gravity field of the run.
     in_free_fall: bool,
     earth: Option<Arc<Earth>>,
     gravity_mode: GravityMode,
-    /// Step being integrated, s.
+    /// Start and end of the current step, s.
     interval: (f64, f64),
     bodies: Bodies,
     wrenches: Wrenches,
-    /// Wrenches of the effects that the motion of the reference already includes; only in `Carried` mode.
+    /// Wrenches of the effects that also act on the reference orbit; used only in `Carried` mode.
     common: Wrenches,
 }
 
@@ -70,12 +71,12 @@ impl EnvironmentLoads {
         }
     }
 
-    /// Returns the local reference about which the robot is integrated, if there is one.
+    /// Returns the local reference orbit about which the robot is integrated; `None` if there is none.
     pub(super) fn local_reference(&self) -> Option<&LocalReference> {
         self.local_reference.as_ref()
     }
 
-    /// Integrates the robot about `local`, an orbit in free fall, from now on.
+    /// Changes the current reference orbit to `local`, an orbit in free fall.
     pub(super) fn set_local_reference(&mut self, local: LocalReference) -> Result<(), SimulationError> {
         let (Some(gravity), Some(&time)) = (&self.gravity, local.times.last()) else { return Ok(()) };
         let orbit = Numerical::new(local.position.into(), local.velocity.into(), time, Arc::clone(gravity));
@@ -86,7 +87,8 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Returns the shift at `t` from the local reference to W, if the robot has a local reference.
+    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W; `None` without a local
+    /// reference orbit.
     pub(super) fn shift(&mut self, t: f64, mass: f64) -> Result<Option<Shift>, SimulationError> {
         if self.local_reference.is_none() {
             return Ok(None);
@@ -99,18 +101,20 @@ impl EnvironmentLoads {
         Ok(Some(Shift::between(local, &state, &reference, rate, mass)))
     }
 
-    /// Returns the state of the current reference at `t` with the time derivative of its position as velocity.
+    /// Returns the state of the current reference orbit at `t`, s, with the time derivative of its position as
+    /// velocity; `None` without an orbit.
     pub(super) fn origin_state(&self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
         let found = self.cache.orbit().map(|orbit| state_and_rate(orbit, t)).transpose()?;
         Ok(found.map(|(state, velocity)| OrbitState { velocity, ..state }))
     }
 
-    /// Returns the state of the current reference at `t`, if the run has an orbit.
+    /// Returns the state of the current reference orbit at `t`, s; `None` without an orbit.
     pub(super) fn reference_state(&mut self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
         Ok(self.cache.at(t, self.interval.1)?.state)
     }
 
-    /// Returns `g(r_ref) - r̈_ref` at `t`, m/s²; `None` where there is no planet.
+    /// Returns the gravity that the reference orbit does not follow, `g(r_ref) - r̈_ref` at `t`, m/s²; `None` without
+    /// a planet.
     pub(super) fn reference_residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
         let Some(state) = self.reference_state(t)? else { return Ok(None) };
         let in_free_fall = self.in_free_fall;
@@ -119,7 +123,8 @@ impl EnvironmentLoads {
             .map_err(|source| SimulationError::Environment { time: t, source })
     }
 
-    /// Sums the wrenches of `effects` at `t` on `self.bodies` into `self.wrenches`.
+    /// Writes the sum of the wrenches of the effects with these indices on `self.bodies` at `t`, s, to
+    /// `self.wrenches`.
     fn sum_effects(&mut self, t: f64, effects: Range<usize>) -> Result<(), SimulationError> {
         let is_carried = self.gravity_mode == GravityMode::Carried;
         self.wrenches.clear();
@@ -131,7 +136,7 @@ impl EnvironmentLoads {
         let gravity = self.gravity.as_deref();
         let reference = state.map(|state| Reference { state, gravity, in_free_fall });
         let mut scene = Scene::new(self.interval, t, &self.bodies, ephemeris);
-        (scene.reference, scene.earth) = (reference, self.earth.as_deref()); // in place: it is large
+        (scene.reference, scene.earth) = (reference, self.earth.as_deref()); // assigned in place because the scene is large
         for effect in &self.effects[effects] {
             let is_common = is_carried && effect.acts_on_reference();
             let wrenches = if is_common { &mut self.common } else { &mut self.wrenches };
@@ -146,7 +151,7 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Adds the common wrenches without the acceleration they give to the whole robot.
+    /// Adds the common wrenches minus the part that accelerates the robot as a whole.
     fn add_relative_to_reference(&mut self) -> Result<(), EnvironmentError> {
         let total: Vector3<f64> = self.common.iter().map(|wrench| wrench.force).sum();
         let acceleration = total / self.bodies.iter().map(|(_, body)| body.mass).sum::<f64>();
@@ -158,26 +163,27 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Returns the wrench of one effect on each body at `t`, for the body states gathered last.
+    /// Returns the wrench of one effect on each body at `t`, s, for the body states gathered last.
     pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&Wrenches, SimulationError> {
         self.sum_effects(t, effect..effect + 1)?;
         Ok(&self.wrenches)
     }
 }
 
-/// Returns true if an orbit obeys exactly this gravity.
+/// Returns true if an orbit is integrated in exactly this gravity field.
 fn obeys(orbit: &dyn Orbit, gravity: Option<&Arc<Gravity>>) -> bool {
     orbit.gravity().zip(gravity).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
 }
 
-/// Returns the state of an orbit, and the time derivative of its position, from which its velocity may differ.
+/// Returns the state of an orbit at `t`, s, and the time derivative of its position, m/s, which may differ from the
+/// velocity in the state.
 fn state_and_rate(orbit: &dyn Orbit, t: f64) -> Result<(OrbitState, Vector3<f64>), SimulationError> {
     let with_rate = |state| orbit.rate_of_position(t, &state).map(|rate| (state, rate));
     orbit.state(t).and_then(with_rate).map_err(|source| SimulationError::Orbit { time: t, source })
 }
 
 impl EnvironmentLoads {
-    /// Computes the wrenches on the bodies of one system alone, which is the only one of these loads.
+    /// Computes the wrenches on the bodies of `system`, which must be the only system of these loads.
     pub(super) fn apply_to_one<S: Scalar>(
         &mut self,
         mut system: LoadedSystem<'_, S>,

@@ -1,4 +1,4 @@
-//! Environment of a run at any state of the robot, for external engines.
+//! Evaluates the environment of a run at any state of the robot, for external engines.
 
 use super::body_states::LoadedSystem;
 use super::environment_loads::EnvironmentLoads;
@@ -18,7 +18,7 @@ pub struct EnvironmentQuery {
 }
 
 impl Simulation {
-    /// Returns the environment of the run, for an [`Engine`](super::Engine).
+    /// Returns a query of the environment of the run, for an [`Engine`](super::Engine).
     pub fn outside(&self) -> EnvironmentQuery {
         let model = Arc::clone(&self.model);
         EnvironmentQuery { data: Data::new(&model), loads: self.environment_loads(), model }
@@ -26,8 +26,8 @@ impl Simulation {
 }
 
 impl EnvironmentQuery {
-    /// Writes the wrench on each body at a state within the step `interval`, `(bodies, 6)`: force, N, through its centre
-    /// of mass and torque, N m, about it, W axes.
+    /// Writes to `out`, `(bodies, 6)`, the wrench on each body at time `t`, s, and state `(q, v)` within the step
+    /// `interval`, s: the force, N, through the centre of mass of the body and the torque, N m, about it, W axes.
     ///
     /// # Errors
     /// Errors of the orbit and of the effects.

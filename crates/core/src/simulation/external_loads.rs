@@ -1,4 +1,4 @@
-//! Loads that act on systems from outside: the interface between equations of motion and environment.
+//! External loads on the systems: the interface between the equations of motion and the environment.
 
 use super::error::SimulationError;
 use super::state::State;
@@ -6,8 +6,8 @@ use super::system::System;
 
 /// External wrenches on the bodies of all systems of a run.
 pub(crate) trait ExternalLoads<S> {
-    /// Writes the external wrench on each body to the data of `systems`, which have the kinematics of `state`, at `t`
-    /// in a step over `interval`, s.
+    /// Writes the external wrench on each body at time `t`, s, in a step over `interval`, s, to the data of
+    /// `systems`. Expects the kinematics of `state` in the systems.
     fn apply(
         &mut self,
         systems: &mut [System<'_, S>],
@@ -16,7 +16,7 @@ pub(crate) trait ExternalLoads<S> {
         interval: (f64, f64),
     ) -> Result<(), SimulationError>;
 
-    /// Returns false if there are no loads, so that the wrenches on the bodies stay zero.
+    /// Returns true if there are loads; otherwise the wrenches on all bodies stay zero.
     fn is_active(&self) -> bool;
 }
 

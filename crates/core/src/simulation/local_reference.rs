@@ -1,9 +1,9 @@
 //! Local reference orbit of a robot that drifts far from the reference orbit of the run.
 //!
-//! The frame `W'` has the axes of W, and its origin follows an orbit in free fall that starts at the robot's
-//! centre of mass, so that the integrated coordinates are small again. With `s = R' − R` from the origin of W
-//! to that of `W'`, `p = p' + s`, `ṗ = ṗ' + ṡ`, and in W an additional force `m s̈` acts on every body. The
-//! rows of the trace stay in W.
+//! The frame `W'` has the axes of W, and its origin follows an orbit in free fall that starts at the robot's centre
+//! of mass, so that the integrated coordinates become small. With the vector `s = R' − R` from the origin of W to
+//! that of `W'`, `p = p' + s` and `ṗ = ṗ' + ṡ`, and in W an additional force `m s̈` acts on every body. The rows of
+//! the trace remain relative to W.
 
 use super::trace::Trace;
 use crate::dynamics::base_rotation;
@@ -12,22 +12,23 @@ use crate::orbit::OrbitState;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// A local reference orbit, with the quantities that transform rows from `W'` to W.
+/// Local reference orbit, with the quantities that transform rows from `W'` to W.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LocalReference {
-    /// Position and velocity of the robot's centre of mass at the change, axes of I, m and m/s.
+    /// Position of the robot's centre of mass at the change, axes of I, m.
     pub(super) position: [f64; 3],
+    /// Velocity of the robot's centre of mass at the change, axes of I, m/s.
     pub(super) velocity: [f64; 3],
-    /// Linear momentum removed by changes of frame, kg m/s.
+    /// Linear momentum removed by the changes of reference so far, kg m/s.
     pub(super) momentum_taken: [f64; 3],
-    /// Work in W minus that in `W'`, apart from the energy due to the velocity of the frame, J.
+    /// Work in W minus work in `W'`, without the energy due to the velocity of the frame, J.
     pub(super) work_ahead: f64,
-    /// Times of this change and of those before it, s.
+    /// Times of this change and of all changes before it, s.
     pub(super) times: Vec<f64>,
 }
 
-/// Transformation of a row from `W'` to W at one instant: `s`, its rate and its acceleration, and the robot's
-/// mass.
+/// Transformation of a row from `W'` to W at one instant: the vector `s` (m) with its first and second time
+/// derivatives, and the mass of the robot (kg).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shift {
     /// State of the reference orbit of W.
@@ -41,8 +42,8 @@ pub(super) struct Shift {
 }
 
 impl Shift {
-    /// Returns the shift between the states of the local reference and of the reference orbit of W, whose
-    /// position has the given rate.
+    /// Returns the transformation for the states `state` of the local reference orbit and `reference` of the
+    /// reference orbit of W; `rate` is the time derivative of the position of the latter, m/s.
     pub(super) fn between(
         local: &LocalReference,
         state: &OrbitState,
@@ -66,7 +67,7 @@ impl Shift {
         let (nq, nv) = (model.nq(), model.nv());
         let Self { position, velocity, mass, momentum_taken, work_ahead, .. } = self;
         let momentum = Vector3::from_column_slice(last(&mut trace.momentum, 6, 3));
-        // T = T' + P'·ṡ + m ṡ²/2, and so the work
+        // T = T' + P'·ṡ + m ṡ²/2, and likewise for the work
         let energy = momentum.dot(velocity) + 0.5 * mass * velocity.norm_squared();
         last(&mut trace.kinetic_energy, 1, 1)[0] += energy;
         last(&mut trace.work, 1, 1)[0] += energy + work_ahead;
@@ -93,7 +94,7 @@ impl Shift {
         add(&mut v[..3], &(rot_bw * self.velocity));
     }
 
-    /// Transforms the acceleration of the last row to W: `a = a' + Rᵀ s̈ − ω × Rᵀ ṡ`.
+    /// Transforms the acceleration of the last row from `W'` to W: `a = a' + Rᵀ s̈ − ω × Rᵀ ṡ`.
     pub(super) fn transform_acceleration(&self, trace: &mut Trace, model: &Model) {
         let (nq, nv) = (model.nq(), model.nv());
         let rot_bw = last_attitude(trace, nq).transpose();
@@ -102,13 +103,13 @@ impl Shift {
         add(last(&mut trace.acceleration, nv, 3), &change);
     }
 
-    /// Returns the additional force in W on a body of this mass, N.
+    /// Returns the additional force in W on a body of mass `mass` (kg), N.
     pub(super) fn inertial_force(&self, mass: f64) -> Vector3<f64> {
         self.acceleration * mass
     }
 }
 
-/// Returns the first `count` numbers of the last row of a column.
+/// Returns the first `count` values of the last row of a column with `width` values per row.
 fn last(column: &mut [f64], width: usize, count: usize) -> &mut [f64] {
     let start = column.len() - width;
     &mut column[start..start + count]
@@ -118,7 +119,7 @@ fn add(to: &mut [f64], v: &Vector3<f64>) {
     to.iter_mut().zip(v.iter()).for_each(|(to, v)| *to += v);
 }
 
-/// Returns `R_wb` of the last row.
+/// Returns the rotation `R_wb` from base axes to W axes of the last row.
 fn last_attitude(trace: &mut Trace, nq: usize) -> Matrix3<f64> {
     base_rotation::<f64>(last(&mut trace.q, nq, nq)).to_nalgebra()
 }

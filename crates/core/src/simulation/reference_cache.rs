@@ -1,20 +1,21 @@
-//! States of the reference orbit at the instants that were evaluated last.
+//! Cache of the states of the reference orbit at the most recently used instants.
 
 use super::error::SimulationError;
 use crate::environment::Ephemeris;
 use crate::orbit::{Orbit, OrbitState};
 use std::sync::Arc;
 
-/// The orbit about which a robot is integrated, with its states at the last five instants.
+/// Reference orbit about which a robot is integrated, with its states at the last five instants.
 ///
-/// The stages of a step, and neighbouring steps, share their instants. Without an orbit, states are `None`.
+/// Stages of the same step and of neighbouring steps are often at the same instant. Without an orbit, the states are
+/// `None`.
 #[derive(Debug)]
 pub(super) struct ReferenceCache {
     orbit: Option<Arc<dyn Orbit>>,
     instants: [Box<Instant>; 5],
 }
 
-/// State of the reference and positions of Sun and Moon at one instant.
+/// State of the reference orbit and positions of Sun and Moon at one instant.
 #[derive(Clone, Debug)]
 pub(super) struct Instant {
     time: f64,
@@ -32,7 +33,7 @@ impl ReferenceCache {
         self.orbit.as_deref()
     }
 
-    /// Returns the instant `t` of a step that ends at `end`.
+    /// Returns the state and the ephemeris at `t`, s, in a step that ends at `end`, s.
     pub(super) fn at(&mut self, t: f64, end: f64) -> Result<&Instant, SimulationError> {
         if let Some(found) = self.instants.iter().position(|instant| instant.time == t) {
             self.instants[..=found].rotate_right(1);
@@ -49,7 +50,7 @@ impl ReferenceCache {
         Ok(self.store(t, Some(state)))
     }
 
-    /// Replaces the instant that was used least recently.
+    /// Stores an instant in place of the least recently used one.
     fn store(&mut self, t: f64, state: Option<OrbitState>) -> &Instant {
         self.instants.rotate_right(1);
         let instant = &mut self.instants[0];

@@ -1,15 +1,16 @@
-//! Range of the initial state.
+//! Checks the range of the initial state.
 
 use super::error::SimulationError;
 use crate::model::{Axis, BASE_NV, Model, QUATERNION};
 
-/// Largest deviation of a given quaternion from unit norm.
+/// Largest accepted deviation of the norm of an initial quaternion from 1.
 pub(super) const UNIT_NORM: f64 = 1e-6;
-/// Largest distance from the reference, m, a tenth of a light year, and largest angle of a joint, rad.
+/// Upper bound of the distance from the reference orbit, m (a tenth of a light year), and of joint positions, rad or
+/// m.
 const FARTHEST: f64 = 1e15;
-/// Speed of light, m/s; the mechanics is Newtonian.
+/// Speed of light, m/s: an upper bound of speeds, because the mechanics is Newtonian.
 const LIGHT: f64 = 299_792_458.0;
-/// Largest angular velocity and joint rate, rad/s; squares of larger ones may overflow.
+/// Upper bound of angular velocities and joint rates, rad/s; products of larger values may overflow.
 const FASTEST: f64 = 1e9;
 
 /// Rejects positions and rates whose products would overflow in the first step.
@@ -30,7 +31,7 @@ pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), Sim
             return Err(SimulationError::OutOfRange { name: "v", index, what, value, unit, limit });
         }
     }
-    // behind the quaternion, q[7] is the joint of v[6]
+    // q has one more entry than v, the fourth one of the quaternion: q[7] belongs to the joint of v[6]
     for (index, &value) in q.iter().enumerate().filter(|(index, _)| !QUATERNION.contains(index)) {
         if value.abs() >= FARTHEST {
             let same = if index < 3 { index } else { index - 1 };

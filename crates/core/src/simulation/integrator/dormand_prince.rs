@@ -1,4 +1,4 @@
-//! Dormand and Prince's pair 5(4) on the group, with steps as long as the tolerance allows.
+//! Dormand and Prince's embedded pair 5(4) on SO(3) × ℝⁿ, with step-size control.
 
 use super::stages::{Stages, combine};
 use super::tableau::{A, C, dense};
@@ -12,21 +12,21 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::system_state::SystemState;
 use crate::spatial::{Real, Vec3, dexp_inv_exact};
 
-/// Factors by which the step may change at once.
+/// Smallest and largest factor by which the step size may change from one step to the next.
 const CHANGE: (f64, f64) = (0.2, 5.0);
 
-/// Later stages of a step, and the control of its length.
+/// Stages of a step and the control of its size.
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince<S> {
     k: Vec<Rate<S>>,
     tolerance: Tolerance,
     pub(super) control: StepControl,
-    /// Interval of the last step.
+    /// Start and end of the last step, s.
     span: (f64, f64),
 }
 
 impl<S: Real> DormandPrince<S> {
-    /// For runs of `duration` s; `epsilon` is the error tolerance.
+    /// Returns the method for runs of `duration`, s, with the error tolerance `epsilon`.
     pub(super) fn new(rate: &Rate<S>, epsilon: f64, duration: f64) -> Self {
         let tolerance = Tolerance::new(epsilon, duration);
         let control = StepControl::new(rate.systems.len());
@@ -63,12 +63,12 @@ impl<S: Real> DormandPrince<S> {
                 );
             }
         }
-        state.copy_from(trial); // the seventh stage is at the end
+        state.copy_from(trial); // the seventh stage is evaluated at the end of the step
         Ok(())
     }
 
-    /// Takes a step from the start of `interval`, at most to its end, that keeps the tolerance; returns the time
-    /// reached. Expects kinematics and loads at the start in `equations`.
+    /// Takes a step whose error is within the tolerance, from the start of `interval` at most to its end, and returns
+    /// the time reached, s. Expects kinematics and loads at the start in `equations`.
     ///
     /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04`.
     ///
@@ -85,7 +85,7 @@ impl<S: Real> DormandPrince<S> {
         let mut h = self.initial_step(stages, equations).min(longest_step(stages)).min(whole);
         let mut was_rejected = false;
         loop {
-            // two halves rather than a sliver at the end
+            // two equal steps instead of a very short last one
             let end = match whole - h {
                 rest if rest <= 1e-9 * whole => interval.1,
                 rest if rest < h => start + 0.5 * whole,
@@ -111,13 +111,14 @@ impl<S: Real> DormandPrince<S> {
             was_rejected = true;
             h *= if error.is_finite() { (0.9 * error.powf(-0.2)).max(CHANGE.0) } else { CHANGE.0 };
             if h <= 64.0 * f64::EPSILON * interval.1.abs() {
-                // the error of the step itself says more, if there is one
+                // an error raised in the step is more specific than StepTooSmall
                 return Err(taken.err().unwrap_or(SimulationError::StepTooSmall { time: start, step: h }));
             }
         }
     }
 
-    /// Returns the step to try first: the one that step control proposed, or `ε^⅕ / (ω + √ω̇)`.
+    /// Returns the first step size to try, s: the one that step control proposed or, in the first step, `ε^⅕ / (ω +
+    /// √ω̇)`.
     fn initial_step(
         &mut self,
         stages: &Stages<S>,
@@ -143,7 +144,7 @@ impl<S: Real> DormandPrince<S> {
         combine(sum, &self.k, &dense((t - self.span.0) / h));
         state.move_from(start, sum, S::of(h));
         for ((state, start), first) in state.systems.iter_mut().zip(&start.systems).zip(first) {
-            // back to W: v = v' + Rᵀ u
+            // velocity relative to W: v = v' + Rᵀ u
             let frame_velocity = base_rotation(&start.q) * first.frame_velocity_b;
             let velocity = Vec3::from_slice(&state.v) + base_rotation(&state.q).transpose_mul(frame_velocity);
             velocity.write(&mut state.v);
@@ -158,7 +159,7 @@ fn fastest<S: Real>(v: &[S], size: f64) -> f64 {
     v[BASE_NV..].iter().map(|x| x.lane(0).abs()).fold(linear.max(angular), f64::max)
 }
 
-/// Returns the longest step for which the rotation vectors of all bases stay short of a whole turn.
+/// Returns the longest step, s, for which the rotation vectors of all bases stay well below a full turn.
 fn longest_step<S: Real>(stages: &Stages<S>) -> f64 {
     let longest = |start: &SystemState<S>| LARGEST_ROTATION / Vec3::from_slice(&start.v[3..]).norm().lane(0);
     stages.start.systems.iter().map(longest).fold(f64::INFINITY, f64::min)
@@ -176,7 +177,8 @@ mod tests {
     use crate::simulation::state::State;
     use nalgebra::{Matrix3, Vector3};
 
-    /// Attitude of a tumbling spacecraft after 8 s, with this weight of attitude and angular rate in the error.
+    /// Returns the configuration of a tumbling spacecraft after 8 s; `weight` is that of attitude and angular rate in
+    /// the error.
     fn tumble(tolerance: f64, weight: f64) -> Vec<f64> {
         let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
         let model = Model::rigid_body(10.0, inertia).unwrap();
@@ -194,7 +196,7 @@ mod tests {
         only(&state.systems).q.clone()
     }
 
-    /// Negative control: errors of positions and joints alone do not show a rotation.
+    /// Negative control: the errors of positions and joints alone do not reveal the error of a rotation.
     #[test]
     fn without_the_attitude_in_its_error_the_tolerance_is_missed() {
         let exact = tumble(1e-12, 1.0);

@@ -1,11 +1,12 @@
-//! Integrators: from the state at the start of a step to the state at its end.
+//! Integrators: compute the state at the end of a step from the state at its start.
 //!
-//! 1. The step is taken in a frame that moves with the base's origin as it does at the step's start, so that
-//!    everything integrated is robot-sized ([`stages`]).
+//! 1. The step is taken in a frame that moves at the velocity that the base's origin has at the start of the step, so
+//!    that the integrated velocities are small ([`stages`]).
 //! 2. The attitude is the exponential of a rotation vector `θ` since the start, `θ̇ = dexp⁻¹(θ) ω` (Munthe-Kaas);
-//!    joints and velocities add.
-//! 3. The base's origin follows its acceleration, with Nyström's weights where the method is RK4 ([`rk4`]).
-//! 4. Momentum, work and loss are integrated beside the state, from the external wrenches alone.
+//!    increments of joint positions and velocities are added.
+//! 3. With RK4, the position of the base's origin is integrated from its acceleration with Nyström weights ([`rk4`]).
+//! 4. Momentum, work and dissipated energy are integrated along with the state; the momentum depends on the external
+//!    wrenches alone.
 //! 5. After the step the base twist is projected onto that momentum
 //!    ([`System::project_momentum`](super::system::System::project_momentum)).
 

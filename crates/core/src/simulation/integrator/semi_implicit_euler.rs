@@ -7,8 +7,8 @@ use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::State;
 use crate::spatial::{Real, Vec3};
 
-/// Takes a step: `v' = v + h a(q, v)`, `q' = q ⊕ h v'`, each system in the frame of its step. Expects the first stage in
-/// `stages`.
+/// Takes a step: `v' = v + h a(q, v)`, `q' = q ⊕ h v'`, for each system in the frame of its step. Expects the first
+/// stage in `stages`.
 pub(super) fn semi_implicit_euler<S: Real>(
     stages: &mut Stages<S>,
     equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,

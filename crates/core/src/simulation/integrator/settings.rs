@@ -3,13 +3,13 @@
 /// Integration method of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// Classical fourth-order Runge-Kutta, the attitude on its group (Runge-Kutta-Munthe-Kaas).
+    /// Classical fourth-order Runge-Kutta, with the attitude integrated on SO(3) (Runge-Kutta-Munthe-Kaas).
     #[default]
     Rk4,
-    /// Semi-implicit Euler, first order: velocities first, then positions with the new ones.
+    /// Semi-implicit Euler, first order: updates the velocities, then the positions with the new velocities.
     SemiImplicitEuler,
-    /// Dormand and Prince's embedded pair 5(4), the attitude on its group. The tolerance determines the length of
-    /// each step; rows within a step come from dense output of fourth order.
+    /// Dormand and Prince's embedded pair 5(4), with the attitude integrated on SO(3). The tolerance determines the
+    /// length of each step; rows within a step come from dense output of fourth order.
     DormandPrince,
 }
 
@@ -19,8 +19,8 @@ pub(crate) struct StepSettings {
     pub(crate) integrator: Integrator,
     /// Error tolerance of the adaptive integrator.
     pub(crate) tolerance: f64,
-    /// Regular step, s.
+    /// Length of a regular step, s.
     pub(crate) time_step: f64,
-    /// Duration of the run, s.
+    /// Planned duration of the run, s.
     pub(crate) duration: f64,
 }

@@ -9,7 +9,7 @@ use crate::spatial::{Real, Vec3};
 
 /// States and rates of the stages of a step, allocated once.
 pub(crate) struct Stages<S> {
-    /// State at the start of the step, its velocities relative to the frames of the step.
+    /// State at the start of the step, with velocities relative to the frames of the step.
     pub(crate) start: State<S>,
     /// State at which the last stage was evaluated.
     pub(super) trial: State<S>,
@@ -21,19 +21,20 @@ pub(crate) struct Stages<S> {
     pub(crate) first: Vec<FirstStage<S>>,
 }
 
-/// First stage of one system, seen from W.
+/// First stage of one system, relative to W.
 pub(crate) struct FirstStage<S> {
     /// Acceleration at the start of the step, `(nv,)`.
     pub(crate) acceleration: Vec<S>,
     /// Sum of the external forces at the start of the step, W axes, N.
     pub(crate) force: Vec3<S>,
-    /// Velocity of the base's origin at the start of the step, base axes: that of the frame of the step.
+    /// Velocity of the base's origin at the start of the step, which is that of the frame of the step, base axes,
+    /// m/s.
     pub(super) frame_velocity_b: Vec3<S>,
 }
 
 /// Both ends of the last step of one system.
 pub(crate) struct StepEnds<'a, S> {
-    /// State at the start, its velocity relative to the frame of the step.
+    /// State at the start, with its velocity relative to the frame of the step.
     pub(crate) start: &'a SystemState<S>,
     pub(crate) first: &'a FirstStage<S>,
     /// Rates of the last stage.
@@ -77,7 +78,7 @@ impl<S: Real> Stages<S> {
         }
     }
 
-    /// Returns `state` from the frames of the step to W: `v = v' + Rᵀ u`.
+    /// Transforms the velocities of `state` from the frames of the step to W: `v = v' + Rᵀ u`.
     pub(super) fn leave_step_frame(
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
         state: &mut State<S>,
@@ -99,7 +100,7 @@ impl<S: Real> Stages<S> {
         parts.map(|((start, first), last)| StepEnds { start, first, last })
     }
 
-    /// Returns `q` and `v` of a system at the start of the last step (of the first lane).
+    /// Returns `q` and `v` of a system at the start of the last step, of the first lane.
     pub(crate) fn start_state(&self, number: usize) -> [Vec<f64>; 2] {
         let start = &self.start.systems[number];
         let mut v = start.v.clone();
@@ -114,11 +115,11 @@ impl<S: Real> Stages<S> {
 }
 
 impl<S: Real> FirstStage<S> {
-    /// Takes the acceleration and the external force at the start of the step, where the velocity is `v`.
+    /// Stores the acceleration and the external force at the start of the step, where the velocity is `v`.
     fn take(&mut self, rate: &SystemRate<S>, v: &[S]) {
         self.force = rate.wrench.linear;
         self.acceleration.copy_from_slice(&rate.a);
-        // seen from W the velocity u of the frame of the step turns in base axes: a = a' − (ω × u, 0)
+        // in base axes, the constant velocity u of the frame of the step rotates: a = a' − (ω × u, 0)
         S::enter(
             #[inline(always)]
             || {
@@ -130,7 +131,7 @@ impl<S: Real> FirstStage<S> {
     }
 }
 
-/// Computes `Σ w_i k_i`.
+/// Computes the weighted sum of stages, `Σ w_i k_i`.
 pub(super) fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
     sum.clear();
     for (k, &weight) in stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {

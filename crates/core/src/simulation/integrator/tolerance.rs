@@ -12,16 +12,16 @@ use crate::simulation::system_state::{SystemRate, SystemState};
 use crate::spatial::{Real, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Largest rotation of the base in a step, rad: its rotation vector must stay short of a whole turn.
+/// Largest rotation of the base in a step, rad: the rotation vector must stay well below a full turn.
 pub(super) const LARGEST_ROTATION: f64 = 2.0;
 
-/// Fraction of the fastest rate of the run below which errors of rates need not become smaller.
+/// Fraction of the largest rate of the run that the scale of rate errors does not fall below.
 const SLOW: f64 = 1e-3;
 
-/// State of the step control. A run resumes from it with the same bits.
+/// State of the step-size control. A run that resumes from it gives bit-identical results.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepControl {
-    /// Step to try next, s; zero before the first.
+    /// Step size to try next, s; zero before the first step.
     pub(crate) step: f64,
     /// Error of the last accepted step, relative to the tolerance.
     pub(crate) error: f64,
@@ -32,21 +32,21 @@ pub(crate) struct StepControl {
 /// Scales to which the errors of a system are relative, and the errors of its attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct SystemControl {
-    /// Fastest rate so far, rad/s, and speed, m/s.
+    /// Largest rate, rad/s, and largest speed, m/s, so far.
     pub(crate) fastest: [f64; 2],
-    /// Sum of the estimated errors of the attitude, rad.
+    /// Sum of the estimated attitude errors of all steps, rad.
     pub(crate) rotation_error: f64,
     /// Radius of gyration of the system at the start of the run, m: the scale of lengths.
     pub(crate) size: f64,
 }
 
 impl StepControl {
-    /// Returns the control before the first step of as many systems.
+    /// Returns the control of `systems` systems before the first step.
     pub(super) fn new(systems: usize) -> Self {
         Self { step: 0.0, error: 0.0, systems: vec![SystemControl::default(); systems] }
     }
 
-    /// Computes the sizes of the systems, once. Expects kinematics in `equations`.
+    /// Computes the sizes of the systems at the first call. Expects kinematics in `equations`.
     pub(super) fn measure_sizes<S: Real>(
         &mut self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -61,7 +61,7 @@ impl StepControl {
         }
     }
 
-    /// Adds the errors of the attitudes in a step of length `h` whose rates have the errors `errors`.
+    /// Adds the attitude errors of a step of length `h`, s; `errors` holds the error estimates of the rates.
     pub(super) fn add_rotation_errors<S: Real>(&mut self, errors: &Rate<S>, h: f64) {
         for (control, error) in self.systems.iter_mut().zip(&errors.systems) {
             control.rotation_error += h * norm(error.rotation_rate);
@@ -69,10 +69,10 @@ impl StepControl {
     }
 }
 
-/// Error that a step may make.
+/// Largest permitted error of a step.
 #[derive(Clone, Debug)]
 pub(super) struct Tolerance {
-    /// `ε`.
+    /// Relative tolerance `ε`.
     pub(super) epsilon: f64,
     /// Duration of the run, s.
     horizon: f64,
@@ -85,10 +85,11 @@ impl Tolerance {
         Self { epsilon, horizon, attitude_weight: 1.0 }
     }
 
-    /// Returns the error of the last step relative to the tolerance, the largest over the systems.
+    /// Returns the largest error of any system in the last step, relative to the tolerance; NaN if the step must be
+    /// rejected.
     ///
-    /// The tolerance is `ε` of a radian in attitude and joints, of the system's radius of gyration (or of the
-    /// distance from W's origin) in lengths, and of the magnitude of rates.
+    /// The tolerance is `ε` times a scale: 1 rad for attitude and revolute joints, the radius of gyration of the
+    /// system or, if larger, its distance from the origin of W for lengths, and the magnitude of the rates for rates.
     pub(super) fn error<S: Real>(
         &self,
         stages: &mut Stages<S>,
@@ -109,7 +110,7 @@ impl Tolerance {
         if largest <= 1.0 {
             for (number, (system, control)) in equations.systems.iter().zip(&mut control.systems).enumerate()
             {
-                // rejected steps do not count
+                // rejected steps do not change the scales
                 control.fastest = SystemStep::new(stages, number, system, control, h).fastest;
             }
         }
@@ -119,7 +120,7 @@ impl Tolerance {
     /// Returns the error of one system in a step.
     fn system_error<S: Real>(&self, step: &SystemStep<'_, '_, S>) -> f64 {
         let SystemStep { start, trial, sum, size, spin, speed, h, fastest: [fastest, highest], .. } = *step;
-        // rounding of a robot at rest must not stop the run: a drift of ε/1000 by its end is accepted
+        // the rounding of a robot at rest must not stop the run: a drift of ε/1000 by the end of the run is accepted
         let slow = SLOW * fastest.max(vector(&trial.v) / size).max(1.0 / self.horizon);
         let crawl = SLOW * highest.max(size / self.horizon);
 
@@ -144,19 +145,20 @@ impl Tolerance {
     }
 }
 
-/// A step of one system, whose error is measured.
+/// Step of one system whose error is measured.
 struct SystemStep<'a, 's, S> {
     system: &'a System<'s, S>,
     start: &'a SystemState<S>,
     trial: &'a SystemState<S>,
-    /// Fifth less fourth order.
+    /// Error estimate: fifth-order minus fourth-order solution.
     sum: &'a SystemRate<S>,
     h: f64,
     size: f64,
-    /// Angular velocity, rad/s, and speed of the base, m/s: the larger of both ends.
+    /// Angular velocity of the base, rad/s: the larger value of both ends of the step.
     spin: f64,
+    /// Speed of the base, m/s: the larger value of both ends of the step.
     speed: f64,
-    /// Fastest rate so far and in this step, rad/s, and speed, m/s.
+    /// Largest rate, rad/s, and largest speed, m/s, so far, including this step.
     fastest: [f64; 2],
 }
 
@@ -184,19 +186,19 @@ impl<'a, 's, S: Real> SystemStep<'a, 's, S> {
         self.system.model.nodes()[j + 1].axis == Axis::Prismatic
     }
 
-    /// Returns the larger rate of a joint at both ends, rad/s (m/s).
+    /// Returns the magnitude of the rate of a joint, the larger value of both ends of the step, rad/s (m/s).
     fn rate(&self, j: usize) -> f64 {
         let rate = |state: &SystemState<S>| state.v[BASE_NV + j].lane(0).abs();
         rate(self.start).max(rate(self.trial))
     }
 }
 
-/// Returns the norm (of the first lane).
+/// Returns the norm of the first lane.
 fn norm<S: Real>(v: Vec3<S>) -> f64 {
     v.norm().lane(0)
 }
 
-/// Returns the norm of the first three numbers.
+/// Returns the norm of the first three entries, in the first lane.
 fn vector<S: Real>(x: &[S]) -> f64 {
     norm(Vec3::from_slice(x))
 }

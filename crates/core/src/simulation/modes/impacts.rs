@@ -15,12 +15,12 @@ impl<S: Real> System<'_, S> {
         })
     }
 
-    /// Applies the impulses of all joints that move into their stops. Needs kinematics, and leaves those after the
-    /// impacts, without loads.
+    /// Applies the impulses of all joints that move into their stops. Expects the kinematics of `state` in `data`,
+    /// which afterwards holds the kinematics after the impacts, without loads.
     ///
-    /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj`: the momentum does not change, and the energy lost is
-    /// `−½ (1 − e) λ q̇_j`. Joints that rest at their stops take part as long as these push; friction has no
-    /// impulse.
+    /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj`: the momentum does not change, and the dissipated energy is
+    /// `−½ (1 − e) λ q̇_j`. Joints that rest at their stops stay locked as long as their stops push against them.
+    /// Friction exerts no impulse.
     pub(crate) fn resolve_impacts(&mut self, state: &mut SystemState<S>, restitution: f64) {
         let n = self.model.joint_count();
         for round in 0..4 * n + 4 {
@@ -48,7 +48,7 @@ impl<S: Real> System<'_, S> {
             (body.velocity, body.external) = (Motion::zero(), Force::zero());
         }
         let mut a = std::mem::take(&mut self.scratch);
-        let at_rest = vec![S::of(0.0); BASE_NV + n]; // impacts are rare: they may allocate
+        let at_rest = vec![S::of(0.0); BASE_NV + n]; // impacts are rare, so an allocation is acceptable
         let mut impulse = at_rest.clone();
         impulse[BASE_NV + j] = S::of(sign);
         let stop = |i: usize| self.modes.stop(i, state.q[BASE_NQ + i].lane(0));
@@ -56,7 +56,7 @@ impl<S: Real> System<'_, S> {
             (0..n).map(|i| i != j && stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0).collect();
         for _ in 0..=n {
             locked_dynamics_recursion(self.model, &mut self.data, &at_rest, &impulse, &locked, &mut a);
-            // a stop can only push: one that would have to pull is released
+            // a stop can only push: a joint that the stop would have to pull is released
             let pulls =
                 |i: &usize| locked[*i] && self.data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;
             let Some(i) = (0..n).find(pulls) else { break };

@@ -1,20 +1,23 @@
-//! Which joints with static friction slip and which stick.
+//! Determines which joints with static friction slip and which stick.
 
 use crate::dynamics::locked_dynamics_recursion;
 use crate::model::{Axis, BASE_NQ, BASE_NV};
 use crate::simulation::system::System;
 use crate::spatial::{Force, Motion, Real};
 
-/// Fraction of the torques at a joint within which it still sticks: rounding must not release it.
+/// Fraction of the torques at a joint by which the holding torque may exceed its bounds, so that rounding does not
+/// release the joint.
 const ROUNDING: f64 = 1e-10;
 
 impl<S: Real> System<'_, S> {
-    /// Determines the modes of the joints for the step that starts here. Needs kinematics and loads.
+    /// Determines the modes of the joints for the step that starts at `q` and `v`. Expects kinematics and loads in
+    /// `data`.
     ///
-    /// Joints at rest are locked first. One that would need more torque than friction and stop provide slips in the
-    /// direction of that torque; one that would then move the other way sticks after all. With bounded torques and
-    /// a positive definite inertia there is one solution. All joints change at once in each pass; if that cycles,
-    /// only the first of them does (Murty's rule).
+    /// All joints at rest are locked at first. A locked joint slips if holding it requires more torque than friction
+    /// and stop provide, and a slipping joint that would accelerate against its direction of slip is locked again.
+    /// With bounded torques and a positive definite inertia the solution is unique. In each pass all inconsistent
+    /// joints change their modes; after more than `n` passes, only the first of them does, which prevents cycles
+    /// (Murty's rule).
     ///
     /// Source: Murty, Linear Algebra and its Applications 7(1), 1974.
     pub(crate) fn solve_modes(&mut self, q: &[S], v: &[S]) {
@@ -48,8 +51,8 @@ impl<S: Real> System<'_, S> {
         self.scratch = a;
     }
 
-    /// Returns the direction in which a joint at rest should slip instead, or 0 if it should stick; `None` if its mode
-    /// is consistent.
+    /// Returns the new mode of a joint at rest: its direction of slip, or 0 if it should stick; `None` if its current
+    /// mode is consistent.
     fn mode_change(&self, j: usize, q: &[S], v: &[S], a: &[S]) -> Option<f64> {
         if v[BASE_NV + j].lane(0) != 0.0 {
             return None;
@@ -62,8 +65,8 @@ impl<S: Real> System<'_, S> {
         (a[BASE_NV + j].lane(0) * direction < 0.0).then_some(0.0)
     }
 
-    /// Returns the torque that a locked joint can still take before it slips, relative to the torques that act on it,
-    /// and the direction in which it would slip. Needs the torques of a recursion.
+    /// Returns the additional torque that a locked joint can hold before it slips, relative to the torques that act
+    /// on it, and the direction in which it would slip. Expects the holding torques of a recursion in `data`.
     fn stick_margin(&self, j: usize, q: &[S]) -> (f64, f64) {
         let body = &self.data.bodies[j + 1];
         let (lowest, highest) = self.modes.torque_bounds(j, q[BASE_NQ + j].lane(0));
@@ -82,8 +85,8 @@ impl<S: Real> System<'_, S> {
         if down < up { (down, -1.0) } else { (up, 1.0) }
     }
 
-    /// Returns the smallest stick margin of the locked joints; negative if one should slip. Needs kinematics and
-    /// loads.
+    /// Returns the smallest stick margin of the locked joints; negative if a joint should slip. Expects kinematics
+    /// and loads in `data`.
     pub(super) fn least_stick_margin(&mut self, q: &[S], v: &[S]) -> f64 {
         self.update_joint_forces(v);
         let mut a = std::mem::take(&mut self.scratch);

@@ -1,39 +1,42 @@
-//! Modes of the joints during a step, from Coulomb friction and the stops at position limits.
+//! Modes of the joints during a step, which result from Coulomb friction and the stops at position limits.
 
 use crate::model::{BASE_NQ, BASE_NV, JointProperties, Model};
 use crate::spatial::Real;
 use serde::{Deserialize, Serialize};
 
-/// Distance beyond a limit at which a joint still counts as at it, rad (m).
+/// Distance by which a joint may exceed a limit and still count as being at the limit, rad (m).
 pub(in crate::simulation) const AT_LIMIT: f64 = 1e-12;
 
-/// Rate within which the compensation for an external engine changes its direction, rad/s (m/s).
+/// Magnitude of the rate below which the friction compensation for an external engine changes its direction, rad/s
+/// (m/s).
 const TURN: f64 = 1e-2;
 
-/// Acceleration above which that compensation expects a joint at rest to move, rad/s² (m/s²).
+/// Magnitude of the requested acceleration above which the friction compensation for an external engine expects a
+/// joint at rest to move, rad/s² (m/s²).
 const START: f64 = 1e-2;
 
 /// Modes of the joints during a step. They follow from the state at its start and from the accelerations that the
 /// control laws request.
 ///
 /// A joint is at rest if its rate is exactly zero. With static friction `fs`, or at a stop, it is locked while the
-/// torque `λ` that this takes lies within [`JointModes::torque_bounds`]; kinetic friction opposes its motion.
+/// torque `λ` required to hold it lies within [`JointModes::torque_bounds`]. Kinetic friction opposes the motion of a
+/// joint.
 ///
 /// A law that compensates Coulomb friction gives the acceleration it requests for each of its joints. The motor of
 /// the joint then adds the torque of the friction itself: while the joint moves, the kinetic friction in the
 /// direction of its rate, which changes sign at the instant at which the rate does; at rest, if the law requests an
-/// acceleration, the static friction in the direction of the law's torque. Friction then has no effect on the
-/// motion, and holds the joints that the law leaves at rest.
+/// acceleration, the static friction in the direction of the law's torque. Friction then has no effect on moving
+/// joints, and it holds the joints that the law keeps at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct JointModes {
     /// Kinetic friction, N m (N).
     friction: Vec<f64>,
     /// Static friction, N m (N), at least the kinetic one.
     static_friction: Vec<f64>,
-    /// Acceleration that a law requests, rad/s² (m/s²), of the joints whose friction it compensates; zero where a
-    /// joint at rest is to stay at rest.
+    /// Accelerations that a law requests for the joints whose friction it compensates, rad/s² (m/s²); zero if a joint
+    /// at rest is to stay at rest.
     requested: Vec<Option<f64>>,
-    /// Positions that the stops allow, rad (m); infinite without stops.
+    /// Lower and upper position limit of each joint, rad (m); infinite without stops.
     limits: Vec<(f64, f64)>,
     /// Coefficient of restitution of the stops.
     pub(super) restitution: f64,
@@ -83,7 +86,7 @@ impl JointModes {
         SavedModes { locked: self.locked.clone(), direction: self.direction.clone() }
     }
 
-    /// Restores what [`JointModes::save`] returned.
+    /// Restores the modes that [`JointModes::save`] returned.
     pub(in crate::simulation) fn restore(&mut self, saved: &SavedModes) {
         self.locked.copy_from_slice(&saved.locked);
         self.direction.copy_from_slice(&saved.direction);
@@ -95,7 +98,7 @@ impl JointModes {
         self.is_active
     }
 
-    /// Returns which joints are locked, `(n,)`, if any is.
+    /// Returns which joints are locked, `(n,)`; `None` if no joint is locked.
     pub(in crate::simulation) fn locked(&self) -> Option<&[bool]> {
         self.any_locked.then_some(&self.locked[..])
     }
@@ -109,36 +112,37 @@ impl JointModes {
         self.locked[j]
     }
 
-    /// Lets a joint slip in a direction, −1 or 1, or locks it (0).
+    /// Sets the direction in which a joint slips, −1 or 1, or locks the joint (0).
     pub(super) fn set_slip(&mut self, j: usize, direction: f64) {
         (self.locked[j], self.direction[j]) = (direction == 0.0, direction);
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Kinetic friction during the step, against the slip, N m (N).
+    /// Returns the kinetic friction in the direction of slip, which is subtracted from the joint torque, N m (N).
     fn drag(&self, j: usize) -> f64 {
         self.friction[j] * self.direction[j]
     }
 
-    /// Returns the torques that the motors add to those of the law during the step, `(n,)`, N m (N); `None` for a joint
-    /// whose friction no law compensates.
+    /// Returns the torques that the motors add to those of the law during the step, `(n,)`, N m (N); `None` for
+    /// joints whose friction is not compensated.
     pub(in crate::simulation) fn compensations(&self) -> impl Iterator<Item = Option<f64>> {
         let drag =
             self.friction.iter().zip(&self.direction).map(|(friction, direction)| friction * direction);
         self.requested.iter().zip(drag).map(|(requested, drag)| requested.map(|_| drag))
     }
 
-    /// Kinetic friction less its compensation, N m (N): zero where a law compensates it.
+    /// Returns the kinetic friction minus its compensation, N m (N); zero if a law compensates it.
     pub(in crate::simulation) fn remaining_drag(&self, j: usize) -> f64 {
         if self.requested[j].is_some() { 0.0 } else { self.drag(j) }
     }
 
-    /// Accelerations requested for the joints whose friction a control law compensates, `(n,)`.
+    /// Returns the accelerations requested for the joints whose friction a control law compensates, `(n,)`, rad/s²
+    /// (m/s²).
     pub(crate) fn requested(&self) -> &[Option<f64>] {
         &self.requested
     }
 
-    /// As [`JointModes::requested`], to be written by the law.
+    /// Returns [`JointModes::requested`] for modification by the law.
     pub(crate) fn requested_mut(&mut self) -> &mut [Option<f64>] {
         &mut self.requested
     }
@@ -148,7 +152,8 @@ impl JointModes {
         self.static_friction[j] > 0.0
     }
 
-    /// Largest torque with which friction holds a joint at rest, N m (N); zero where the motor overcomes it.
+    /// Returns the largest torque with which friction holds a joint at rest, N m (N); zero if the motor compensates
+    /// it.
     pub(super) fn holding_friction(&self, j: usize) -> f64 {
         if self.requested[j].is_some_and(|a| a != 0.0) { 0.0 } else { self.static_friction[j] }
     }
@@ -175,7 +180,8 @@ impl JointModes {
         (lowest, highest)
     }
 
-    /// Locks the joints at rest that friction or a stop can hold, and lets the others slip: the first guess of the modes.
+    /// Computes the initial guess of the modes: joints at rest that friction or a stop can hold are locked, all
+    /// others slip.
     pub(super) fn lock_joints_at_rest<S: Real>(&mut self, q: &[S], v: &[S]) {
         for j in 0..self.locked.len() {
             let (q, rate) = (q[BASE_NQ + j].lane(0), v[BASE_NV + j].lane(0));
@@ -186,11 +192,12 @@ impl JointModes {
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Sets the compensation for an external engine that has its own friction and holds torques over its steps.
+    /// Sets the friction compensation for an external engine that has its own friction model and holds torques
+    /// constant over its steps.
     ///
-    /// Such friction creeps instead of sticking, and the sign of a small rate is arbitrary: within ±[`TURN`] the
-    /// compensation changes continuously from one direction to the other, shifted by the acceleration that the law
-    /// requests of a joint at rest (in full from [`START`] on).
+    /// With such friction joints creep instead of sticking, and the sign of a small rate is arbitrary. Within
+    /// ±[`TURN`] the compensation therefore changes continuously from one direction to the other, shifted in the
+    /// direction of the acceleration that the law requests (fully from [`START`] on).
     pub(in crate::simulation) fn compensate_by_rate<S: Real>(&mut self, v: &[S]) {
         for (j, requested) in self.requested.iter().enumerate() {
             let start = requested.map_or(0.0, |a| (a / START).clamp(-1.0, 1.0));

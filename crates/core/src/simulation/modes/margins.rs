@@ -1,4 +1,4 @@
-//! Distances of the joints of a system from the next change of their modes, and what happens at the change.
+//! Margins of the joints of a system to the next change of their modes, and corrections of the state at the change.
 
 use super::joint_modes::AT_LIMIT;
 use crate::model::{BASE_NQ, BASE_NV};
@@ -11,7 +11,7 @@ pub(super) struct ModesOfStep<'a, 's, S> {
     pub(super) system: &'a System<'s, S>,
     pub(super) start: &'a SystemState<S>,
     pub(super) end: &'a SystemState<S>,
-    /// True if the directions of slip may change within the step without ending it.
+    /// True if a change of the direction of slip does not end the step.
     pub(super) ignores_slip: bool,
 }
 
@@ -20,13 +20,13 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         0..self.system.model.joint_count()
     }
 
-    /// Returns the least margin of the moving joints.
+    /// Returns the smallest margin of the joints that are not locked.
     pub(super) fn least_margin(&self) -> f64 {
         let margin = |j| self.slip_margin(j).min(self.limit_margin(j));
         self.joints().map(margin).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the rate of a slipping joint in its direction of slip, relative to the rates of the step.
+    /// Returns the rate of a slipping joint in its direction of slip, relative to its rates at both ends of the step.
     fn slip_margin(&self, j: usize) -> f64 {
         let modes = &self.system.modes;
         let direction = modes.direction(j);
@@ -37,7 +37,7 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         direction * last / (first.abs() + last.abs()).max(f64::MIN_POSITIVE)
     }
 
-    /// Returns the distance of a joint from the nearer limit, relative to that at the start of the step.
+    /// Returns the distance of a joint from the nearer limit, relative to the distance at the start of the step.
     fn limit_margin(&self, j: usize) -> f64 {
         let modes = &self.system.modes;
         let (lower, upper) = modes.limits(j);
@@ -49,13 +49,14 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         (distance(last) + AT_LIMIT) / (distance(first).abs() + AT_LIMIT)
     }
 
-    /// Returns the first joint that would leave rest only to slip back at once.
+    /// Returns the first joint that would start to slip and at once reverse its direction.
     pub(super) fn first_that_slips_back(&self) -> Option<usize> {
         let slips_back = |j: &usize| self.start.v[BASE_NV + j].lane(0) == 0.0 && self.slip_margin(*j) <= 0.0;
         self.joints().find(slips_back)
     }
 
-    /// Returns the larger rate at both ends of the first joint that came to rest or to its stop, rad/s (m/s).
+    /// Returns the rate of the first joint that came to rest or reached its stop, the larger magnitude of both ends
+    /// of the step, rad/s (m/s).
     pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
         let rate = |state: &SystemState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
         let came_to_rest = |j: &usize| rate(self.end, *j) == 0.0 && rate(self.start, *j) > 0.0;
@@ -65,7 +66,8 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
 }
 
 impl<S: Real> System<'_, S> {
-    /// Removes rounding at an event: joints that came to rest get a rate of zero, those past a limit its position.
+    /// Removes rounding at an event: sets the rates of joints that came to rest to zero, and moves joints past a
+    /// limit to the limit.
     pub(super) fn snap_to_event(&self, start: &SystemState<S>, state: &mut SystemState<S>) {
         let modes = &self.modes;
         for j in 0..self.model.joint_count() {

@@ -1,4 +1,4 @@
-//! A step that ends early where a joint stops, starts to slip or reaches a limit.
+//! Takes steps that end early when a joint stops, starts to slip or reaches a limit.
 
 use super::margins::ModesOfStep;
 use crate::simulation::equations::EquationsOfMotion;
@@ -8,12 +8,12 @@ use crate::simulation::integrator::{Integration, StepSettings};
 use crate::simulation::state::State;
 use crate::spatial::Real;
 
-/// Idle steps in a row after which friction stops joints at the ends of steps and restitution is zero, so that an
-/// infinite sequence of bounces ends.
+/// Number of consecutive idle steps after which friction stops joints only at the ends of steps and restitution is
+/// zero, so that infinite sequences of bounces end.
 const MOST_IDLE_STEPS: usize = 32;
-/// A step cut short is idle if it is shorter than this fraction of a regular step,
+/// Fraction of a regular step: a shorter step is idle if no joint came to rest or reached its stop in it.
 const IDLE: f64 = 1e-6;
-/// or if the joint that comes to rest or to its stop moved by less than this since the last cut, rad or m.
+/// A step in which a joint came to rest or reached its stop is idle if the joint moved by less than this, rad or m.
 const STILL: f64 = 1e-9;
 /// Resolution of the instant of an event, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
@@ -23,9 +23,9 @@ pub(crate) struct StepMethod<S> {
     pub(crate) integration: Integration<S>,
     start: State<S>,
     settled: State<S>,
-    /// True if directions of slip may change within a step without ending it.
+    /// True if a change of the direction of slip does not end a step.
     ignores_slip: bool,
-    /// Idle steps in a row.
+    /// Number of consecutive idle steps.
     pub(crate) idle_steps: usize,
     time_step: f64,
 }
@@ -42,13 +42,13 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Prepares for another run.
+    /// Resets the method at the start of another run.
     pub(crate) fn reset(&mut self) {
         self.idle_steps = 0;
     }
 
-    /// Applies the impacts of a state on the momentum. Needs kinematics, and leaves those after the impacts; the
-    /// loads are to be computed next.
+    /// Applies the impacts at `state`. Expects its kinematics, with projected base twists, in `equations`, which
+    /// afterwards hold the kinematics after the impacts. The loads must be computed again.
     pub(crate) fn resolve_impacts(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -63,8 +63,8 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Moves `state` from the start of `interval` towards its end and returns the time reached. Expects a state on
-    /// the momentum, with kinematics, loads and modes of its joints in `equations`.
+    /// Moves `state` from the start of `interval` towards its end and returns the time reached, s. Expects projected
+    /// base twists, and kinematics, loads and joint modes in `equations`.
     pub(crate) fn advance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -89,7 +89,7 @@ impl<S: Real> StepMethod<S> {
         Ok(reached)
     }
 
-    /// Returns true if the step of length `h` that ended in `state` made no progress.
+    /// Returns true if the step of length `h`, s, that ended at `state` is idle, that is, made almost no progress.
     fn is_idle(
         &self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -113,7 +113,7 @@ impl<S: Real> StepMethod<S> {
         parts.map(move |((system, start), end)| ModesOfStep { system, start, end, ignores_slip })
     }
 
-    /// Returns the fraction of the step after which a mode changes, with `state` moved there; 1 if none does.
+    /// Returns the fraction of the step after which a mode changes, and moves `state` there; 1 if no mode changes.
     ///
     /// Regula falsi (Illinois) on the length of the step, so that the state at the event has the order of the
     /// integrator.
@@ -129,7 +129,8 @@ impl<S: Real> StepMethod<S> {
         }
         state.copy_from(&self.start);
         let (mut low, mut before) = (0.0, self.least_margin(equations, state));
-        // a joint that starts to slip has no margin at first: it gains one soon, or sticks during this step
+        // the margin of a joint that starts to slip is zero at first: either it soon becomes positive, or the joint
+        // is locked for this step
         let mut fraction = 1.0;
         for _ in 0..10 {
             if before > 0.0 {
@@ -167,7 +168,7 @@ impl<S: Real> StepMethod<S> {
         Ok(high)
     }
 
-    /// Repeats the step over a fraction of its length; returns the margin at its end.
+    /// Repeats the step over a fraction of its length and returns the margin at the end.
     fn repeat_step(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -183,7 +184,8 @@ impl<S: Real> StepMethod<S> {
         self.margin(equations, state, (whole.0, end))
     }
 
-    /// Returns the relative distance to the next change of a joint's mode; negative if one was missed.
+    /// Returns the relative margin to the next change of a joint's mode; negative if a mode should already have
+    /// changed.
     fn margin(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -202,7 +204,7 @@ impl<S: Real> StepMethod<S> {
         Ok(least)
     }
 
-    /// Returns the least margin of the moving joints of all systems.
+    /// Returns the smallest margin of the joints of all systems that are not locked.
     fn least_margin(
         &self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -211,7 +213,8 @@ impl<S: Real> StepMethod<S> {
         self.modes_of(equations, state).map(|step| step.least_margin()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Locks a joint that would leave rest only to slip back at once; returns true if there was one.
+    /// Locks the first joint that would start to slip and at once reverse its direction; returns true if there is
+    /// such a joint.
     fn keep_stuck(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
