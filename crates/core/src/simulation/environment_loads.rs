@@ -136,7 +136,8 @@ impl EnvironmentLoads {
         let gravity = self.gravity.as_deref();
         let reference = state.map(|state| Reference { state, gravity, in_free_fall });
         let mut scene = Scene::new(self.interval, t, &self.bodies, ephemeris);
-        (scene.reference, scene.earth) = (reference, self.earth.as_deref()); // assigned in place because the scene is large
+        // assigned in place because the scene is large
+        (scene.reference, scene.earth) = (reference, self.earth.as_deref());
         for effect in &self.effects[effects] {
             let is_common = is_carried && effect.acts_on_reference();
             let wrenches = if is_common { &mut self.common } else { &mut self.wrenches };

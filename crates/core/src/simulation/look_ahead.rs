@@ -59,9 +59,9 @@ impl<S: Scalar> RunState<'_, S> {
         })
     }
 
-    /// Calls `work` and then returns to the present state. While `work` runs, only rows before the time
-    /// `records_before` are recorded. The state of the controllers, which may be user-defined, is not restored: if `work`
-    /// has updated them at the current cut, they are not updated there again.
+    /// Calls `work` and then returns to the current state. While `work` runs, only rows before the time
+    /// `records_before` are recorded. The state of the controllers, which may be user-defined, is not restored: if
+    /// `work` has updated them at the current cut, they are not updated there again.
     fn peek<R>(
         &mut self,
         records_before: f64,

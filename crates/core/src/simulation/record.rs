@@ -120,7 +120,8 @@ fn add_rows<S: Scalar>(
     Ok(())
 }
 
-/// Completes the last rows with the accelerations at `state`, whose kinematics and loads are in the equations of motion.
+/// Completes the last rows with the accelerations at `state`. Expects its kinematics and loads in the equations of
+/// motion.
 fn add_accelerations<S: Scalar>(
     systems: &mut [RunSystem<'_, S>],
     equations: &mut EquationsOfMotion<'_, S, EnvironmentLoads>,

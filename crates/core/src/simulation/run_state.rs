@@ -19,8 +19,8 @@ use crate::earth::Earth;
 use crate::spatial::Scalar;
 use std::sync::Arc;
 
-/// A run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at times within a
-/// step in `look_ahead.rs`.
+/// State of a run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at
+/// times within a step in `look_ahead.rs`.
 pub(super) struct RunState<'a, S> {
     /// Names of the systems and of their joints; all lists with one entry per system have this order.
     pub(super) layout: Layout,

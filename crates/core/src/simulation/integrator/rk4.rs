@@ -40,8 +40,8 @@ impl<S: Real> BaseStages<S> {
 /// Takes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude. Expects the first
 /// stage in `stages`.
 ///
-/// The position of the base's origin is integrated from its acceleration with Nyström weights instead, which reduces the
-/// error of the position far from the reference orbit, where differential gravity is strong.
+/// The position of the base's origin is integrated from its acceleration with Nyström weights instead, which reduces
+/// the error of the position far from the reference orbit, where differential gravity is strong.
 pub(super) fn rk4<S: Real>(
     stages: &mut Stages<S>,
     bases: &mut [BaseStages<S>],
