@@ -2,7 +2,6 @@
 
 use super::control::{Begin, Control};
 use super::error::ControlError;
-
 use crate::model::Model;
 
 /// Checks that each control applies to the robot, and that no two of them conflict.
@@ -19,8 +18,8 @@ pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), Control
         control.law.check(&control.name, &control.joints, model)?;
         check_goal(control)?;
         check_window(i, controls)?;
-        for other in &controls[..i] {
-            check_pair(other, control, controls, model)?;
+        for earlier in 0..i {
+            check_pair(earlier, i, controls, model)?;
         }
     }
     Ok(())
@@ -44,15 +43,12 @@ fn check_group(control: &Control, model: &Model) -> Result<(), ControlError> {
 }
 
 fn check_goal(control: &Control) -> Result<(), ControlError> {
-    if control.starts_at_present && control.width() == 0 {
+    let width = control.width();
+    if width == 0 && (control.starts_at_present || control.goal.is_some()) {
         return Err(ControlError::NothingTracked { control: control.name.clone() });
     }
-    let Some(goal) = &control.goal else { return Ok(()) };
-    match control.width() {
-        0 => Err(ControlError::NothingTracked { control: control.name.clone() }),
-        _ if control.law.task().is_some() => goal.check(2),
-        width => goal.check(width),
-    }
+    let components = if control.law.task().is_some() { 2 } else { width };
+    control.goal.as_ref().map_or(Ok(()), |goal| goal.check(components))
 }
 
 fn check_window(i: usize, controls: &[Control]) -> Result<(), ControlError> {
@@ -89,30 +85,26 @@ fn check_window(i: usize, controls: &[Control]) -> Result<(), ControlError> {
     }
 }
 
-fn check_pair(a: &Control, b: &Control, controls: &[Control], model: &Model) -> Result<(), ControlError> {
+fn check_pair(i: usize, k: usize, controls: &[Control], model: &Model) -> Result<(), ControlError> {
+    let (a, b) = (&controls[i], &controls[k]);
     if let (Some(one), Some(other)) =
         (a.law.control_law().compensates_environment(), b.law.control_law().compensates_environment())
         && one != other
     {
         return Err(ControlError::MixedCompensation { first: a.name.clone(), second: b.name.clone() });
     }
-    // activation times of a control that waits for another are known only during the run
+    // times at which a control starts after another one, or is stopped by it, are known only during the run
+    let has_successor = |index| controls.iter().any(|other| other.begin == Begin::After(index));
     if let (Begin::At(start_a), Begin::At(start_b)) = (a.begin, b.begin) {
         let time = start_a.max(start_b).max(0.0);
-        if time < a.end.min(b.end) && !(stops_before(a, controls) || stops_before(b, controls)) {
+        if time < a.end.min(b.end) && !(has_successor(i) || has_successor(k)) {
             check_disjoint(a, b, model, time)?;
         }
     }
     Ok(())
 }
 
-/// Returns true if a successor may stop the control at a time that is known only during the run.
-fn stops_before(control: &Control, controls: &[Control]) -> bool {
-    let is_it = |index: usize| controls.get(index).is_some_and(|other| std::ptr::eq(other, control));
-    controls.iter().any(|other| matches!(other.begin, Begin::After(index) if is_it(index)))
-}
-
-/// Returns an error for two controls with a joint in common.
+/// Checks that two controls that are active at `time`, s, have no joint in common.
 pub(super) fn check_disjoint(a: &Control, b: &Control, model: &Model, time: f64) -> Result<(), ControlError> {
     match a.joints.iter().find(|joint| b.joints.contains(joint)) {
         Some(&joint) => Err(ControlError::Overlap {

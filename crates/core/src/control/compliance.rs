@@ -23,11 +23,11 @@ use crate::spatial::Motion;
 pub struct Compliance {
     /// Index of the frame on which the spring acts.
     pub frame: usize,
-    /// `K`, row major `(6, 6)`, N/m and N m/rad.
+    /// Stiffness `K` of the spring, row major `(6, 6)`, N/m and N m/rad.
     pub stiffness: [f64; 36],
-    /// `D`, row major `(6, 6)`, N s/m and N m s/rad.
+    /// Damping `D`, row major `(6, 6)`, N s/m and N m s/rad.
     pub damping: [f64; 36],
-    /// `k`, damping of joint motion that does not move the tool, N m s/rad.
+    /// Damping `k` of joint motion that does not move the tool, N m s/rad.
     pub null_space_damping: f64,
 }
 
@@ -40,32 +40,6 @@ impl Compliance {
         check_matrix("stiffness", &self.stiffness)?;
         check_matrix("damping", &self.damping)?;
         check_numbers("null_space_damping", &[self.null_space_damping])
-    }
-
-    /// Computes the torques of a group with the Jacobian `(6, k)` and the rates `(k,)`.
-    fn torques(
-        &self,
-        jacobian: &[f64],
-        (error, velocity_error): (Motion<f64>, Motion<f64>),
-        rates: &[f64],
-        work: EffortWork<'_>,
-        tau: &mut [f64],
-    ) {
-        let (k, mut wrench) = (tau.len(), [0.0; 6]);
-        (gain(&self.stiffness, error) + gain(&self.damping, velocity_error)).write(&mut wrench);
-        // τ = Jgᵀ (K e + D ė)
-        for (j, tau) in tau.iter_mut().enumerate() {
-            *tau = (0..6).map(|i| jacobian[i * k + j] * wrench[i]).sum();
-        }
-        // − k N q̇
-        if self.null_space_damping > 0.0 {
-            let null_space_rates = &mut work.scratch[..k];
-            work.inverse.factor(jacobian, k, &[0.0]);
-            work.inverse.free(jacobian, rates, null_space_rates);
-            for (tau, rate) in tau.iter_mut().zip(null_space_rates) {
-                *tau -= self.null_space_damping * *rate;
-            }
-        }
     }
 }
 
@@ -88,8 +62,23 @@ impl ControlLaw for Compliance {
         work: EffortWork<'_>,
         tau: &mut [f64],
     ) -> Result<(), ControlError> {
-        let error = (Motion::from_slice(input.error.0), input.error.1);
-        self.torques(input.jacobian, error, input.rates, work, tau);
+        let &EffortInput { error: (error, velocity_error), jacobian, rates, .. } = input;
+        let (k, mut wrench) = (tau.len(), [0.0; 6]);
+        let spring = gain(&self.stiffness, Motion::from_slice(error));
+        (spring + gain(&self.damping, velocity_error)).write(&mut wrench);
+        // τ = Jgᵀ (K e + D ė)
+        for (j, tau) in tau.iter_mut().enumerate() {
+            *tau = (0..6).map(|i| jacobian[i * k + j] * wrench[i]).sum();
+        }
+        // − k N q̇
+        if self.null_space_damping > 0.0 {
+            let null_space_rates = &mut work.scratch[..k];
+            work.inverse.factor(jacobian, k, &[0.0]);
+            work.inverse.free(jacobian, rates, null_space_rates);
+            for (tau, rate) in tau.iter_mut().zip(null_space_rates) {
+                *tau -= self.null_space_damping * *rate;
+            }
+        }
         Ok(())
     }
 }

@@ -13,7 +13,7 @@ use crate::model::{BASE_NV, Frame, Model};
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
-/// Gains and options of task-space computed torque,
+/// Task-space computed torque with its gains and options:
 ///
 /// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + f`,
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
@@ -28,13 +28,13 @@ use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 pub struct ComputedTorque {
     /// Index of the tracked frame.
     pub frame: usize,
-    /// `Kp`, row major `(6, 6)`, 1/s².
+    /// Gain `Kp` of the pose error, row major `(6, 6)`, 1/s².
     pub kp: [f64; 36],
-    /// `Kd`, row major `(6, 6)`, 1/s.
+    /// Gain `Kd` of the velocity error, row major `(6, 6)`, 1/s.
     pub kd: [f64; 36],
-    /// `λ₀`, the singular value of `Jg` below which the pseudo-inverse is damped.
+    /// Singular value `λ₀` of `Jg` below which the pseudo-inverse is damped.
     pub damping: f64,
-    /// `k`, damping of self-motion, 1/s.
+    /// Damping `k` of self-motion, 1/s.
     pub null_space_damping: f64,
     /// True if the external wrenches are compensated.
     pub compensate_environment: bool,

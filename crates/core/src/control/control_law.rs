@@ -101,13 +101,13 @@ pub(super) trait ControlLaw {
 /// Command of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum JointCommand {
-    /// Given effort.
+    /// The effort is given.
     Effort,
-    /// No motion: friction holds the joint at rest.
+    /// Friction holds the joint at rest.
     Held,
-    /// Given acceleration.
+    /// The acceleration is given.
     Acceleration,
-    /// Acceleration determined by the tasks.
+    /// The tasks determine the acceleration.
     Task,
 }
 
@@ -126,11 +126,11 @@ pub enum Interface {
 /// Damping of the joint accelerations that realise a task.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TaskDamping {
-    /// `λ₀`, the singular value of the Jacobian below which its pseudo-inverse is damped.
+    /// Singular value `λ₀` of the Jacobian below which its pseudo-inverse is damped.
     pub(super) pseudo_inverse: f64,
-    /// `k`, damping of the self-motion, 1/s.
+    /// Damping `k` of the self-motion, 1/s.
     pub(super) null_space: f64,
-    /// `κ`, damping of the joint rates `D q̇` that the damping of the pseudo-inverse suppresses, 1/s.
+    /// Damping `κ` of the joint rates `D q̇` that the damping of the pseudo-inverse suppresses, 1/s.
     pub(super) suppressed: f64,
 }
 

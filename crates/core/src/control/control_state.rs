@@ -44,18 +44,18 @@ pub(super) struct ControlState {
     pub(super) memory: ControlMemory,
     /// True if the error is used at every control tick.
     pub(super) needs_error: bool,
-    /// Frame of the task's reference, as a reference at rest at its origin.
+    /// Reference at rest at the origin of the frame of the task's reference; `None` without a task.
     frame: Option<TaskReference>,
     pub(super) desired: JointSample,
     pub(super) desired_pose: Option<TaskSample<f64>>,
-    /// Pose of the tracked frame, in W or relative to the base as its reference is.
+    /// Pose of the tracked frame, relative to the base if its reference is, otherwise in W.
     pub(super) pose: (Mat3<f64>, Vec3<f64>),
     /// Tracking error, desired minus actual, `(width,)`.
     pub(super) error: Vec<f64>,
 }
 
 impl ControlState {
-    /// `needs_error`: true if the law uses the error.
+    /// Returns the state of a control before its start; `needs_error` is true if its law uses the error.
     pub(super) fn new(control: &Control, needs_error: bool) -> Self {
         let k = control.joints.len();
         let task = control.law.task();

@@ -60,9 +60,6 @@ impl From<f64> for PerJoint {
 
 /// Checks that the numbers are finite and not negative.
 pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
-    if let Some(&value) = numbers.iter().find(|x| !x.is_finite()) {
-        return Err(ControlError::NotFinite { name, value });
-    }
     check_size(name, numbers)?;
     match numbers.iter().find(|x| **x < 0.0) {
         Some(&value) => Err(ControlError::Negative { name, value }),
@@ -70,10 +67,14 @@ pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), C
     }
 }
 
-/// Largest gain in SI units; robots have 1e-3 to 1e6.
+/// Largest accepted gain, SI units; typical gains of robots are 1e-3 to 1e6.
 const LARGEST: f64 = 1e20;
 
+/// Checks that the numbers are finite and not beyond [`LARGEST`].
 fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
+    if let Some(&value) = numbers.iter().find(|x| !x.is_finite()) {
+        return Err(ControlError::NotFinite { name, value });
+    }
     match numbers.iter().find(|x| x.abs() > LARGEST) {
         Some(&value) => Err(ControlError::TooLarge { name, value, most: LARGEST }),
         None => Ok(()),
@@ -82,9 +83,6 @@ fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
 
 /// Checks that a `(6, 6)` gain is finite and its diagonal not negative.
 pub(super) fn check_matrix(name: &'static str, gains: &[f64; 36]) -> Result<(), ControlError> {
-    if let Some(&value) = gains.iter().find(|x| !x.is_finite()) {
-        return Err(ControlError::NotFinite { name, value });
-    }
     check_size(name, gains)?;
     check_numbers(name, &[0, 1, 2, 3, 4, 5].map(|i| gains[7 * i]))
 }

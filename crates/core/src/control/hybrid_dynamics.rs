@@ -7,34 +7,34 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// Solver for the torques that give the joints `A` their commanded accelerations while the efforts of all
 /// other joints `E` are given.
 ///
-/// The reduced model `M* q̈ + l = τ`, `l = c* − Q* + f`, in the two groups: the joints `E` react like a
-/// second base, `q̈_E = y − G q̈_A` with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task
-/// `ẍ = J q̈ + d` depends on `A` alone, `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. In `A`, joint laws give the
-/// accelerations `q̈_J`. The tasks determine the others with one damped pseudo-inverse of all their rows,
-/// `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each arm accounts for the reaction
-/// to the other. Joints that friction holds belong to neither group: `q̈ = 0`. For a single task on all
-/// joints this equals [`computed_torque`](super::computed_torque).
+/// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`. The joints `E` react like a second base,
+/// `q̈_E = y − G q̈_A` with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d`
+/// depends on `A` alone: `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. The set `A` consists of the joints `J`, whose
+/// accelerations joint laws command, and the joints `T`, which the tasks drive with one damped pseudo-inverse
+/// of all task rows, `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each arm accounts for
+/// the reaction to the other. Joints that friction holds belong to neither set; their acceleration is zero. For
+/// a single task on all joints the solution equals that of [`computed_torque`](super::computed_torque).
 ///
 /// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
 pub(super) struct HybridDynamics {
     n: usize,
-    /// `M*`, `(n, n)`.
+    /// Reduced inertia matrix `M*`, row major `(n, n)`.
     pub(super) inertia: Vec<f64>,
-    /// `l`, `(n,)`.
+    /// Load `l` of the joints, `(n,)`, N m (N).
     pub(super) load: Vec<f64>,
-    /// `q̈`, `(n,)`; that of `J` is given.
+    /// Joint accelerations `q̈`, `(n,)`, rad/s² (m/s²); the caller sets those of the joints `J`.
     pub(super) acceleration: Vec<f64>,
-    /// `k` and `κ` of each joint of `T`, 1/s.
+    /// Damping `k` and `κ` of each joint of `T`, 1/s.
     pub(super) null_damping: Vec<[f64; 2]>,
     tasks: Vec<usize>,
     fixed: Vec<usize>,
     given: Vec<usize>,
     factor: Vec<f64>,
-    /// `G`, a row of `E`'s length per joint of `A`, at the joint's index.
+    /// `Gᵀ`: row `j` belongs to joint `j` of `A` and begins with one number per joint of `E`.
     gain: Vec<f64>,
     y: Vec<f64>,
     jacobian: Vec<f64>,
-    /// `p̈r − d − J_E y − J_J q̈_J` of all tasks.
+    /// Task accelerations that the joints `T` must produce, `p̈r − d − J_E y − J_J q̈_J`, of all tasks.
     task_accelerations: Vec<f64>,
     damping: Vec<f64>,
     inverse: PseudoInverse<f64>,

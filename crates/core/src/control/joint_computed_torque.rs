@@ -15,9 +15,9 @@ use crate::reference::JointSample;
 /// error is 2π.
 #[derive(Clone, Debug)]
 pub struct JointComputedTorque {
-    /// `kp`, 1/s².
+    /// Gain `kp` of the position error, 1/s².
     pub kp: PerJoint,
-    /// `kd`, 1/s.
+    /// Gain `kd` of the rate error, 1/s.
     pub kd: PerJoint,
     /// True if the wrenches of the environment are compensated.
     pub compensate_environment: bool,
@@ -40,19 +40,6 @@ impl JointComputedTorque {
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         self.kp.check("kp", count)?;
         self.kd.check("kd", count)
-    }
-
-    /// Returns `q̈` of the joint at `place` in the group, with position error `error`.
-    #[inline(always)]
-    pub(super) fn reference_acceleration(
-        &self,
-        place: usize,
-        error: f64,
-        rate: f64,
-        desired: &JointSample,
-    ) -> f64 {
-        let rate_error = desired.v[place] - rate;
-        desired.a[place] + self.kd.at(place) * rate_error + self.kp.at(place) * error
     }
 }
 
@@ -78,7 +65,8 @@ impl ControlLaw for JointComputedTorque {
     }
 
     fn joint_acceleration(&self, place: usize, error: f64, rate: f64, desired: &JointSample) -> f64 {
-        self.reference_acceleration(place, error, rate, desired)
+        let rate_error = desired.v[place] - rate;
+        desired.a[place] + self.kd.at(place) * rate_error + self.kp.at(place) * error
     }
 
     fn desired_acceleration(&self, place: usize, acceleration: f64) -> f64 {

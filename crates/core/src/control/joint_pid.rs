@@ -16,11 +16,11 @@ use crate::reference::JointSample;
 pub struct JointPid {
     /// Quantity that the reference commands.
     pub interface: Interface,
-    /// `p`, N m per rad (rad/s).
+    /// Proportional gain `p`, N m per rad (rad/s).
     pub p: PerJoint,
-    /// `i`, N m per rad s (rad).
+    /// Integral gain `i`, N m per rad s (rad).
     pub i: PerJoint,
-    /// `d`, N m s per rad (rad/s).
+    /// Derivative gain `d`, N m s per rad (rad/s).
     pub d: PerJoint,
     /// Largest effort of the integral term, N m (N); infinity for no limit.
     pub i_limit: PerJoint,

@@ -39,7 +39,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
                     before.phase == Phase::Over || before.outcome.is_decided()
                 }
             };
-            if states[i].memory.phase == Phase::Waiting && is_due {
+            if states[i].is_waiting() && is_due {
                 if let Begin::After(before) = controls[i].begin {
                     states[before].memory.phase = Phase::Over;
                 }

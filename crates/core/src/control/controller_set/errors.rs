@@ -1,7 +1,6 @@
 //! Desired motions and tracking errors of the controls.
 
 use super::ControllerSet;
-use super::values::{matrix, vector};
 use crate::control::control_state::Phase;
 use crate::control::error::ControlError;
 use crate::dynamics::{Data, base_rotation, frame_pose};
@@ -39,7 +38,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
             }
             if let Some((frame, reference)) = control.law.task().filter(|_| state.needs_error) {
                 let pose = frame_pose(model, data, q, frame);
-                let (rot, pos) = (matrix(&pose.rot_wf), vector(pose.pos_w));
+                let (rot, pos) = (pose.rot_wf.map(|x| x.value()), pose.pos_w.map(|x| x.value()));
                 state.pose = if reference.is_relative_to_base() {
                     let rot_wb = base_rotation(&self.q);
                     (rot_wb.transpose() * rot, rot_wb.transpose_mul(pos - Vec3::from_slice(&self.q)))

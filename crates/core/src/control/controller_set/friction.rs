@@ -5,7 +5,7 @@ use crate::control::control_law::JointCommand;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Scalar;
 
-/// Range of rates, rad/s (m/s), in which the friction of an engine without static friction changes sign.
+/// Rate, rad/s (m/s), at which the friction of an engine without static friction reaches its full value.
 const CREEP: f64 = 1e-2;
 
 impl<S: Scalar> ControllerSet<'_, S> {

@@ -4,7 +4,6 @@ mod activation;
 mod errors;
 mod friction;
 mod torques;
-mod values;
 
 use crate::control::check::check_controls;
 use crate::control::computed_torque::{ComputedTorque, ComputedTorqueWork, computed_torque};
@@ -25,7 +24,8 @@ use crate::spatial::Scalar;
 pub struct ControllerSet<'a, S> {
     controls: &'a mut [Control],
     states: Vec<ControlState>,
-    /// Instant at which desired motions and errors were last evaluated, for the state `q`, `v`, s.
+    /// Time, s, at which desired motions and errors were last evaluated, at the state `q`, `v`; NaN if they are
+    /// outdated.
     evaluated_at: f64,
     /// Difference, s, below which two instants are treated as the same.
     same_instant: f64,
@@ -44,7 +44,7 @@ pub struct ControllerSet<'a, S> {
     compensates_environment: bool,
     /// True if a joint has Coulomb friction.
     has_friction: bool,
-    /// True if friction changes sign continuously at rest, without static friction.
+    /// True if the engine has no static friction: friction is proportional to the rate near rest.
     friction_creeps: bool,
     q: Vec<f64>,
     v: Vec<f64>,
@@ -147,8 +147,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         }
     }
 
-    /// Returns the desired pose and motion of a control at the last instant evaluated, in W or relative to
-    /// the base as its reference is; `None` while the control is not active.
+    /// Returns the desired pose and motion of a control at the last instant evaluated, relative to the base
+    /// if its reference is, otherwise in W; `None` while the control is not active.
     pub fn desired(&self, control: usize) -> Option<&TaskSample<f64>> {
         let state = &self.states[control];
         state.desired_pose.as_ref().filter(|_| state.is_running())
@@ -241,8 +241,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         tau: &mut [S],
     ) -> bool {
         let Some(work) = &mut self.whole_robot else { return false };
-        let active = self.controls.iter().zip(&self.states).find(|(_, state)| state.is_running());
-        let Some((control, state)) = active else { return false };
+        let Some((control, state)) = running(self.controls, &self.states).next() else { return false };
         let Some((law, reference)) = task_on_all_joints(control, tau.len()) else { return false };
         let Some(desired) = &state.desired_pose else { return false };
         let is_relative = reference.is_relative_to_base();
@@ -266,10 +265,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.tau.iter_mut().zip(&self.commanded).for_each(|(tau, held)| *tau = held.unwrap_or(0.0));
         self.commands.fill(JointCommand::Effort);
         self.desired_accelerations.fill(None);
-        let laws = || {
-            let controls = self.controls.iter().zip(&self.states);
-            controls.filter(|(_, state)| state.is_running()).map(|(control, _)| control.law.control_law())
-        };
+        let laws = || running(self.controls, &self.states).map(|(control, _)| control.law.control_law());
         let has_accelerations = laws().any(|law| law.joint_command() != JointCommand::Effort);
         if has_accelerations || laws().any(ControlLaw::needs_jacobian) {
             free_floating_recursion(model, data, q, v, 0, &mut self.reduced);
@@ -280,6 +276,14 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         }
         Ok(())
     }
+}
+
+/// Returns the active controls with their states.
+fn running<'c>(
+    controls: &'c [Control],
+    states: &'c [ControlState],
+) -> impl Iterator<Item = (&'c Control, &'c ControlState)> {
+    controls.iter().zip(states).filter(|(_, state)| state.is_running())
 }
 
 /// Returns the law and the reference of a control that tracks a frame by computed torque with all `n` joints.

@@ -1,7 +1,6 @@
 //! Torques of the active laws.
 
-use super::ControllerSet;
-use super::values::motion;
+use super::{ControllerSet, running};
 use crate::control::control_law::{EffortInput, EffortWork, JointCommand};
 use crate::control::control_state::ControlState;
 use crate::control::error::ControlError;
@@ -66,7 +65,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         while self.release_joint(model) {
             self.solve_dynamics(model, data, q, v);
         }
-        for (control, _) in self.controls.iter().zip(&self.states).filter(|(_, state)| state.is_running()) {
+        for (control, _) in running(self.controls, &self.states) {
             let law = control.law.control_law();
             if law.compensates_friction() {
                 for (place, &j) in control.joints.iter().enumerate() {
@@ -87,8 +86,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
             *load = (reduced.bias[j] - reduced.external[j]).value();
         }
         let mut compensates_friction = false;
-        for (control, state) in self.controls.iter().zip(&self.states).filter(|(_, state)| state.is_running())
-        {
+        for (control, state) in running(self.controls, &self.states) {
             let law = control.law.control_law();
             let (command, damping) = (law.joint_command(), law.task_damping());
             let is_compensated = law.compensates_friction();
@@ -116,8 +114,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
     fn solve_dynamics(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
         let Self { dynamics, reduced, tau, .. } = self;
         dynamics.eliminate(&self.commands, tau);
-        for (control, state) in self.controls.iter().zip(&self.states).filter(|(_, state)| state.is_running())
-        {
+        for (control, state) in running(self.controls, &self.states) {
             let law = control.law.control_law();
             let Some((frame, reference)) = control.law.task() else { continue };
             if law.joint_command() != JointCommand::Task {
@@ -161,4 +158,9 @@ fn reduce_to_frame<S: Scalar>(
     } else {
         free_floating_frame(model, data, q, v, frame, out);
     }
+}
+
+/// Returns a motion in `f64`.
+fn motion<S: Scalar>(m: Motion<S>) -> Motion<f64> {
+    Motion::new(m.linear.map(|x| x.value()), m.angular.map(|x| x.value()))
 }
