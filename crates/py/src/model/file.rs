@@ -38,20 +38,6 @@ pub(super) fn read_file<'py>(
     Ok((model, keywords))
 }
 
-/// Returns the robot of a URDF or xacro file.
-pub(super) fn from_urdf(
-    py: Python<'_>,
-    path: &Path,
-    package_paths: Option<Vec<PathBuf>>,
-    xacro_arguments: Option<&Bound<'_, PyDict>>,
-    xacro: bool,
-    links: Option<&Bound<'_, PyDict>>,
-) -> PyResult<PyModel> {
-    let (model, keywords) = read_file(py, path, package_paths, xacro_arguments, xacro, links, false)?;
-    let call = ConstructorCall::with_keywords("Model.from_urdf", &keywords)?;
-    PyModel::wrap(py, model, Some(call), &[])
-}
-
 /// Returns the robot of a URDF text.
 pub(super) fn from_urdf_string(
     py: Python<'_>,

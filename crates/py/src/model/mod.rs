@@ -17,6 +17,7 @@ use crate::dynamics::{
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
 use description::{PyBody, PyFrame, PyJoint, PyVisual};
+use file::read_file;
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel};
 use onorbit_core::model::{Model, ModelWarning, neutral};
@@ -127,7 +128,9 @@ impl PyModel {
         xacro: bool,
         links: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        file::from_urdf(py, &path, package_paths, xacro_arguments, xacro, links)
+        let (model, keywords) = read_file(py, &path, package_paths, xacro_arguments, xacro, links, false)?;
+        let call = ConstructorCall::with_keywords("Model.from_urdf", &keywords)?;
+        Self::wrap(py, model, Some(call), &[])
     }
 
     /// Load a robot from the text of a URDF.
