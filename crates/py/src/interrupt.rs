@@ -1,7 +1,8 @@
 //! Ctrl-C during long calls: Python's signal handlers run at regular intervals of wall-clock time.
 
-use crate::errors::IntoPython;
+use crate::errors::{IntoPython, fields, raise};
 use onorbit_core::batch::Threads;
+use onorbit_core::number_text::short;
 use onorbit_core::orbit::Orbit;
 use pyo3::prelude::*;
 use std::ops::Range;
@@ -17,6 +18,14 @@ pub(crate) const LONG_BATCH: usize = 1 << 16;
 
 /// Steps of an integrated orbit between two checks for signals.
 const STEPS: usize = 16;
+
+/// Returns an interval of wall-clock time, given in s; `name` is that of the argument in messages.
+pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Duration> {
+    Duration::try_from_secs_f64(seconds).map_err(|_| {
+        let message = format!("{name} is {} s; it must be finite, zero or positive", short(seconds));
+        raise(py, "InputError", &message, &fields!(py, "name": name, "got": seconds))
+    })
+}
 
 /// Runs a batch without the GIL; Ctrl-C interrupts it if `is_long` is true.
 pub(crate) fn batch<R: Send>(

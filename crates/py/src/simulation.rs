@@ -8,7 +8,7 @@ use crate::engine::PythonEngine;
 use crate::environment::effects;
 use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
 use crate::gravity::gravity_of;
-use crate::interrupt::prepare;
+use crate::interrupt::{period, prepare};
 use crate::model::PyModel;
 use crate::orbit::PyOrbit;
 use crate::reference;
@@ -17,12 +17,10 @@ use crate::stepper::PyStepper;
 use crate::trace::PyTrace;
 use onorbit_core::environment::GravityMode;
 use onorbit_core::model::Model;
-use onorbit_core::number_text::short;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::simulation::{Integrator, Simulation, SimulationError};
 use pyo3::prelude::*;
 use std::sync::Arc;
-use std::time::Duration;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
@@ -271,14 +269,6 @@ impl PySimulation {
         let number = self.run.start(py, duration, from, wall_s)?;
         Ok(PyStepper::new(self.run.clone(), number, Arc::clone(&self.model)))
     }
-}
-
-/// Checks an interval of wall-clock time, s.
-pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Duration> {
-    Duration::try_from_secs_f64(seconds).map_err(|_| {
-        let message = format!("{name} is {} s; it must be finite, zero or positive", short(seconds));
-        raise(py, "InputError", &message, &fields!(py, "name": name, "got": seconds))
-    })
 }
 
 /// Sets the effects on the robot and the gravity field; orbit and Earth must have been set before.

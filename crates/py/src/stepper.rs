@@ -3,10 +3,9 @@
 use crate::arrays::{Input, array_of, first_row, wrong_shape};
 use crate::checkpoint::{PyCheckpoint, checkpoint_of, columns_since};
 use crate::errors::{SimulationErrorExt, fields, plain, raise};
-use crate::interrupt::PACE;
+use crate::interrupt::{PACE, period};
 use crate::run_failure::{interrupted, run_failure};
 use crate::shared_run::{Runs, SharedRun};
-use crate::simulation::period;
 use crate::trace::PyTrace;
 use numpy::{PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
