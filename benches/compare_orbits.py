@@ -152,16 +152,21 @@ def kepler(rounds: int) -> None:
             compare(f"Kepler, a million pairs, e below {most}, {name}", peer, many, rounds)
 
 
+def gravity(r: Any, mu: Any, radius: Any, j2: Any) -> Any:
+    """Returns the acceleration of an oblate planet at a position, m/s², in the precision of the arguments."""
+    r2 = r @ r
+    z2, k = 5 * r[2] ** 2 / r2, 1.5 * j2 * radius**2 / r2
+    factor = np.array([1 - k * (z2 - 1), 1 - k * (z2 - 1), 1 - k * (z2 - 3)])
+    return -mu / (r2 * np.sqrt(r2)) * r * factor
+
+
 def extended_day(r: Any, v: Any, mu: float, radius: float, j2: float) -> Any:
     """Returns the final state in numpy's longdouble by extrapolation of Stoermer's rule, 1 min steps."""
     wide = np.longdouble
     mu, radius, j2 = wide(mu), wide(radius), wide(j2)
 
     def field(r: Any) -> Any:
-        r2 = r @ r
-        z2, k = 5 * r[2] ** 2 / r2, wide(1.5) * j2 * radius**2 / r2
-        factor = np.array([1 - k * (z2 - 1), 1 - k * (z2 - 1), 1 - k * (z2 - 3)])
-        return -mu / (r2 * np.sqrt(r2)) * r * factor
+        return gravity(r, mu, radius, j2)
 
     r, v = np.array(r, wide), np.array(v, wide)
     big = wide(DAY) / 1440
@@ -199,11 +204,7 @@ def day(rounds: int) -> None:
     from scipy.integrate import solve_ivp
 
     def slope(_: float, y: Any) -> Any:
-        r = y[:3]
-        r2 = r @ r
-        z2, k = 5 * r[2] ** 2 / r2, 1.5 * J2 * RADIUS**2 / r2
-        g = -MU / (r2 * np.sqrt(r2)) * r * np.array([1 - k * (z2 - 1), 1 - k * (z2 - 1), 1 - k * (z2 - 3)])
-        return np.concatenate([y[3:], g])
+        return np.concatenate([y[3:], gravity(y[:3], MU, RADIUS, J2)])
 
     start = np.concatenate([r0, v0])
 
