@@ -68,7 +68,6 @@ Flux = Annotated[float, _reader(units.FLUX)]
 Force = Annotated[float, _reader(units.FORCE)]
 Torque = Annotated[float, _reader(units.TORQUE)]
 Inertia = Annotated[float, _reader(units.INERTIA)]
-Stiffness = Annotated[float, _reader(units.STIFFNESS)]
 
 
 def _whole(value: object) -> object:
