@@ -48,10 +48,6 @@ impl ControlLaw for Compliance {
         self.check()
     }
 
-    fn uses_error(&self) -> bool {
-        true
-    }
-
     fn needs_jacobian(&self) -> bool {
         true
     }

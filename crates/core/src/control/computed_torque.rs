@@ -120,10 +120,6 @@ impl ControlLaw for ComputedTorque {
         JointCommand::Task
     }
 
-    fn uses_error(&self) -> bool {
-        true
-    }
-
     fn compensates_environment(&self) -> Option<bool> {
         Some(self.compensate_environment)
     }

@@ -24,9 +24,10 @@ pub(super) trait ControlLaw {
         Interface::Position
     }
 
-    /// Returns true if the law uses the tracking error of its control.
+    /// Returns true if the law uses the tracking error of its control: laws that command accelerations, and
+    /// those that move a frame by efforts.
     fn uses_error(&self) -> bool {
-        false
+        self.joint_command() != JointCommand::Effort || self.needs_jacobian()
     }
 
     /// Returns true if the law requires the Jacobian of its frame to compute efforts.

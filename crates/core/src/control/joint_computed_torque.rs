@@ -52,10 +52,6 @@ impl ControlLaw for JointComputedTorque {
         JointCommand::Acceleration
     }
 
-    fn uses_error(&self) -> bool {
-        true
-    }
-
     fn compensates_environment(&self) -> Option<bool> {
         Some(self.compensate_environment)
     }
