@@ -53,7 +53,7 @@ impl Control {
         }
     }
 
-    /// Returns a control of all joints for the whole run. If it tracks a frame, that is the tool of the run.
+    /// Returns a control of all joints for the whole run. A frame that it tracks is the tool of the run.
     pub fn on_all_joints(model: &Model, law: Law) -> Self {
         let joints = (0..model.joint_count()).collect();
         Self { has_column: false, ..Self::new("control", joints, law) }

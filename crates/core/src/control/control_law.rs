@@ -139,7 +139,7 @@ pub(super) struct TaskDamping {
 pub(super) struct EffortInput<'a> {
     /// Name of the control.
     pub(super) control: &'a str,
-    /// Time, s; state `(nq,)`, `(nv,)`; joints of the group; desired pose of the tracked frame.
+    /// Time, state of the robot, joints of the group and desired pose of the tracked frame.
     pub(super) observation: Observation<'a>,
     /// Time since the last control tick, s.
     pub(super) elapsed: f64,

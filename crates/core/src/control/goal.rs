@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 /// Tolerances of a tracked path, as in the joint trajectory controller of ROS.
 ///
-/// The components are the joints of the group, rad or m; for a task the distance, m, and the angle, rad.
-/// During the path, an error beyond `path` ends the goal, and the control holds the current pose in W (or
-/// relative to the base, if its reference is). After the end of the path, the goal is reached once all errors
-/// are within `tolerance`, and missed after `time`.
+/// The components of the error are those of the joints of the group, rad or m, or, for a task, the distance, m,
+/// and the angle, rad. If an error exceeds `path` before the end of the path, the goal fails and the control holds
+/// the current joint positions, or the current pose in W (relative to the base if its reference is). After the
+/// end of the path, the goal is reached once all errors are within `tolerance`, and fails after `time`.
 #[derive(Clone, Debug)]
 pub struct Goal {
     /// Largest errors during the path; `None` for no limit.

@@ -40,7 +40,7 @@ impl<S: Real> PseudoInverse<S> {
         }
     }
 
-    /// Factors `J Jᵀ` of a row-major `(6 k, n)` Jacobian; `damping` has the `k` numbers `λ₀`.
+    /// Factors `J Jᵀ` of a row-major `(6 k, n)` Jacobian; `damping` contains `λ₀` of each of the `k` tasks.
     #[inline(always)]
     pub(super) fn factor(&mut self, jacobian: &[S], n: usize, damping: &[f64]) {
         self.rows = ROWS * damping.len();

@@ -21,7 +21,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         q: &[S],
         v: &[S],
     ) -> Result<(), ControlError> {
-        // a row is recorded at the instant and the state of the control tick before it
+        // a row is often recorded at the time and state of the last control tick
         let is_same = |last: &[f64], now: &[S]| last.iter().zip(now).all(|(last, now)| *last == now.value());
         if self.evaluated_at == t && (!self.reads_state || is_same(&self.q, q) && is_same(&self.v, v)) {
             return Ok(());

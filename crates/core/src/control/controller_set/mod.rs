@@ -29,8 +29,7 @@ pub struct ControllerSet<'a, S> {
     evaluated_at: f64,
     /// Difference, s, below which two instants are treated as the same.
     same_instant: f64,
-    /// False if all controls are task laws on all joints without an error to evaluate, for which `q` and `v` are not
-    /// needed.
+    /// True if a control needs `q` and `v`; a task law on all joints needs them only if its error is evaluated.
     reads_state: bool,
     /// Workspace of a task law on all joints.
     whole_robot: Option<Box<ComputedTorqueWork<S>>>,
@@ -101,8 +100,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         })
     }
 
-    /// Sets the friction model of engines in which joints do not stick: it changes sign over a range of
-    /// rates.
+    /// Assumes the friction of an engine in which joints do not stick: it is proportional to the rate near rest.
     pub fn assume_creeping_friction(&mut self) {
         self.friction_creeps = true;
     }
