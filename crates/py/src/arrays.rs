@@ -207,6 +207,18 @@ pub(crate) fn finite(py: Python<'_>, name: &str, numbers: &[f64]) -> PyResult<()
     Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)))
 }
 
+/// Returns the times of an argument `t`, s, and its shape: `()` for a number, `(T,)` for an array.
+pub(crate) fn times(t: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
+    if let Ok(one) = t.extract::<f64>() {
+        return Ok((vec![one], Vec::new()));
+    }
+    let input = Input::new(t, "t")?;
+    match input.shape() {
+        [n] => Ok((input.data().to_vec(), vec![*n])),
+        other => Err(wrong_shape(t.py(), "t", "a number or (T,)", other)),
+    }
+}
+
 /// Returns the error for an array of the wrong shape.
 pub(crate) fn wrong_shape(py: Python<'_>, name: &str, expected: &str, got: &[usize]) -> PyErr {
     let message = format!("{name} has shape {}; expected {expected}", shape_text(got));

@@ -2,10 +2,9 @@
 
 mod inputs;
 
-use crate::arrays::{Input, fresh, shape_text, wrong_shape, zeros};
+use crate::arrays::{Input, fresh, shape_text, times, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use crate::interrupt::in_pieces;
-use crate::orbit::times;
 use crate::pickling::{ConstructorCall, Reduced};
 use onorbit_core::earth::{Axes, Earth, EarthError};
 use onorbit_core::orbit::Orbit;

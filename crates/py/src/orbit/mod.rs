@@ -8,7 +8,7 @@ mod reference;
 mod relative;
 mod sgp4;
 
-use crate::arrays::{Input, fixed, fresh, wrong_shape, zeros};
+use crate::arrays::{fixed, fresh, times, zeros};
 use crate::interrupt::{in_pieces, prepare};
 use crate::pickling::{ConstructorCall, Reduced};
 use nalgebra::Vector3;
@@ -175,16 +175,4 @@ impl PyOrbit {
 /// Returns three finite numbers.
 fn vector(value: Any<'_, '_>, name: &str) -> PyResult<Vector3<f64>> {
     Ok(Vector3::from(fixed::<3>(value, name, &[3])?))
-}
-
-/// Returns one time (shape ``()``) or many (shape ``(T,)``) with the shape.
-pub(crate) fn times(t: Any<'_, '_>) -> PyResult<(Vec<f64>, Vec<usize>)> {
-    if let Ok(one) = t.extract::<f64>() {
-        return Ok((vec![one], Vec::new()));
-    }
-    let input = Input::new(t, "t")?;
-    match input.shape() {
-        [n] => Ok((input.data().to_vec(), vec![*n])),
-        other => Err(wrong_shape(t.py(), "t", "a number or (T,)", other)),
-    }
 }

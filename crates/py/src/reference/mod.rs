@@ -9,9 +9,9 @@ mod pose_spline;
 mod screw;
 mod timing;
 
-use crate::arrays::{Input, fixed, fresh, type_name, wrong_shape, zeros};
+use crate::arrays::{Input, fixed, fresh, times, type_name, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
-use crate::orbit::{PyOrbit, times};
+use crate::orbit::PyOrbit;
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use onorbit_core::orbit::Orbit;

@@ -1,10 +1,9 @@
 //! Linear relative motion near a circular orbit.
 
 use super::Any;
-use crate::arrays::{array_of, fixed, fresh, zeros};
+use crate::arrays::{array_of, fixed, fresh, times, zeros};
 use crate::errors::IntoPython;
 use crate::interrupt::in_pieces;
-use crate::orbit::times;
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use onorbit_core::orbit::relative;

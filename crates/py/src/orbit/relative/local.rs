@@ -1,10 +1,10 @@
 //! Relative states in the rotating local frame of an orbit.
 
 use super::{Any, Pair, with_shape};
-use crate::arrays::{fresh, zeros};
+use crate::arrays::{fresh, times, zeros};
 use crate::errors::{fields, raise};
 use crate::interrupt::{in_pieces, prepare};
-use crate::orbit::{PyOrbit, times};
+use crate::orbit::PyOrbit;
 use onorbit_core::orbit::relative::{self, LocalFrame};
 use onorbit_core::orbit::{Orbit, OrbitError};
 use pyo3::prelude::*;
