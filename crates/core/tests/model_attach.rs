@@ -105,11 +105,6 @@ fn a_frame_on_the_base_of_the_other_is_put_on_the_mount() {
     let by_flange = bus.attach("tip", &arm, &mount("flange", pose)).unwrap();
     let by_root = bus.attach("tip", &arm, &mount("base", pose * flange.inverse())).unwrap();
     assert!(difference(&by_flange, &by_root) < 1e-14);
-    let refused = bus.attach("tip", &arm, &mount("l0", pose)).unwrap_err();
-    assert_eq!(
-        refused.to_string(),
-        "the frame 'l0' is moved by joints; attach a robot by a frame that is fixed to its base: base, flange"
-    );
     let refused = bus.attach("tip", &arm, &mount("flnge", pose)).unwrap_err();
     assert!(refused.to_string().ends_with("did you mean 'flange'?"), "{refused}");
 }

@@ -18,6 +18,7 @@ mod momentum;
 mod passes;
 mod rnea;
 mod subspace;
+mod transfer;
 
 pub(crate) use aba::locked_dynamics_recursion;
 pub use aba::{forward_dynamics, forward_dynamics_recursion};
@@ -35,3 +36,4 @@ pub use momentum::{
 };
 pub(crate) use momentum::{center_of_mass_b, momentum_energy_com};
 pub use rnea::{bias_forces, inverse_dynamics, inverse_dynamics_recursion};
+pub use transfer::transfer_state;

@@ -19,6 +19,17 @@ struct Placed {
     pos: Vector3<f64>,
 }
 
+impl Placed {
+    /// Returns the place of a frame with this pose in the axes of the link.
+    fn moved(&self, pose: &Isometry3<f64>) -> Self {
+        if *pose == Isometry3::identity() {
+            return self.clone(); // without rounding errors
+        }
+        let rot = self.rot * pose.rotation.to_rotation_matrix().matrix();
+        Self { body: self.body, rot, pos: self.rot * pose.translation.vector + self.pos }
+    }
+}
+
 pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> Result<Model, ModelError> {
     let children = children(&description);
     let mut model = Model {
@@ -110,7 +121,7 @@ fn place_link(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
     let rot = parent.rot * origin.rotation.to_rotation_matrix().matrix();
     let pos = parent.rot * origin.translation.vector + parent.pos;
     let (kind, axis) = match &joint.kind {
-        JointKind::Fixed => return Placed { body: parent.body, rot, pos },
+        JointKind::Fixed => return Placed { body: parent.body, rot, pos }.moved(&joint.child_pose),
         JointKind::Revolute(axis) => (Axis::Revolute, axis),
         JointKind::Prismatic(axis) => (Axis::Prismatic, axis),
     };
@@ -138,9 +149,11 @@ fn place_link(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
         friction: joint.friction,
         static_friction: joint.static_friction.unwrap_or(joint.friction),
         limits: joint.limits,
-        axis: axis.normalize().into(),
+        axis: (joint.child_pose.rotation.inverse() * axis.normalize()).into(),
     });
-    Placed { body: model.nodes.len() - 1, rot: rot_link_body.transpose(), pos: Vector3::zeros() }
+    let joint_frame =
+        Placed { body: model.nodes.len() - 1, rot: rot_link_body.transpose(), pos: Vector3::zeros() };
+    joint_frame.moved(&joint.child_pose)
 }
 
 fn empty_node() -> Node {

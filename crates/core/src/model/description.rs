@@ -109,8 +109,11 @@ pub struct Joint {
     pub name: String,
     /// Kind of motion.
     pub kind: JointKind,
-    /// Pose of the child's frame in the frame of the parent link, at position zero.
+    /// Pose of the joint's frame in the frame of the parent link, at position zero.
     pub origin: Isometry3<f64>,
+    /// Pose of the child's frame in the joint's frame, which moves with the child: the identity, unless the joint is
+    /// traversed from its declared child to its declared parent ([`Model::rerooted`](super::Model::rerooted)).
+    pub child_pose: Isometry3<f64>,
     /// Limits of position, velocity and effort.
     pub limits: Limits,
     /// Viscous friction, N m s/rad (N s/m).
@@ -130,6 +133,7 @@ impl Joint {
             name: name.to_owned(),
             kind,
             origin,
+            child_pose: Isometry3::identity(),
             limits: Limits::default(),
             damping: 0.0,
             friction: 0.0,
@@ -139,7 +143,7 @@ impl Joint {
     }
 }
 
-/// Kind of motion of a joint. Axes are in the child's frame, of any length but zero.
+/// Kind of motion of a joint. Axes are in the joint's frame, of any length but zero.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JointKind {
     /// No motion.

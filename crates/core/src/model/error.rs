@@ -47,11 +47,6 @@ pub enum ModelError {
     NameOfBoth { what: &'static str, name: String },
     #[error("with the prefix '{prefix}', both robots have a {what} '{name}'; choose a different prefix")]
     PrefixTaken { what: &'static str, name: String, prefix: String },
-    #[error(
-        "the frame '{name}' is moved by joints; attach a robot by a frame that is fixed to its base: {}",
-        .candidates.join(", ")
-    )]
-    FrameMoves { name: String, candidates: Vec<String> },
     #[error("link '{link}' has no mass; give it a mass together with its centre of mass or inertia")]
     ChangeWithoutMass { link: String },
     #[error("a {what} has an empty name; give it a name")]

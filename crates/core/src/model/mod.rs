@@ -12,6 +12,7 @@ mod inertia_check;
 mod link_change;
 mod load_ratio;
 mod lookup;
+mod reroot;
 mod tree;
 pub mod urdf;
 mod well_posed;

@@ -1,0 +1,85 @@
+//! Another root for a robot: the joints between the old root and the new one are traversed backwards.
+
+use super::builder::ModelBuilder;
+use super::description::{Description, Joint, JointKind};
+use super::error::ModelError;
+use super::tree::Model;
+
+impl Model {
+    /// Returns this robot with the link `link` as its floating base.
+    ///
+    /// Links, frames and joints keep their names, and joints the signs of their positions, rates and torques. Bodies
+    /// and joints are numbered depth first from the new base.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownName`].
+    pub fn rerooted(&self, link: &str) -> Result<Self, ModelError> {
+        let mut builder = ModelBuilder::from_description(self.description().rerooted(link)?)?;
+        builder.keep_notes(self);
+        builder.build()
+    }
+}
+
+impl Description {
+    /// Returns the description of the same robot with the link `name` as its root.
+    pub(super) fn rerooted(&self, name: &str) -> Result<Self, ModelError> {
+        let root = self.links.iter().position(|link| link.name == name);
+        let root = root.ok_or_else(|| ModelError::UnknownName {
+            what: "link",
+            name: name.to_owned(),
+            candidates: self.links.iter().map(|link| link.name.clone()).collect(),
+        })?;
+        if root == 0 {
+            return Ok(self.clone());
+        }
+        let (mut order, mut joints) = (Vec::new(), Vec::new());
+        let mut stack = vec![(root, None)];
+        while let Some((link, joint)) = stack.pop() {
+            let place = order.len();
+            order.push(link);
+            let parent: Option<usize> = joint.map(|(parent, joint)| {
+                joints.push((parent, joint));
+                order[parent]
+            });
+            let next = self.neighbours(link).filter(|(neighbour, _)| Some(*neighbour) != parent);
+            let next: Vec<_> = next.map(|(neighbour, joint)| (neighbour, Some((place, joint)))).collect();
+            stack.extend(next.into_iter().rev());
+        }
+        let place = |link: usize| order.iter().position(|placed| *placed == link).unwrap_or(0);
+        Ok(Self {
+            name: self.name.clone(),
+            links: order.iter().map(|&link| self.links[link].clone()).collect(),
+            frames: self
+                .frames
+                .iter()
+                .map(|(name, link, pose)| (name.clone(), place(*link), *pose))
+                .collect(),
+            joints,
+        })
+    }
+
+    /// Returns the links that joints connect to `link`, in the order of their declaration, each with its joint as
+    /// traversed from `link`.
+    fn neighbours(&self, link: usize) -> impl Iterator<Item = (usize, Joint)> {
+        self.joints.iter().enumerate().filter_map(move |(j, (parent, joint))| match (*parent, j + 1) {
+            (parent, child) if parent == link => Some((child, joint.clone())),
+            (parent, child) if child == link => Some((parent, joint.reversed())),
+            _ => None,
+        })
+    }
+}
+
+impl Joint {
+    /// Returns the joint as traversed from its child to its parent.
+    ///
+    /// `X_pc(q) = X₀ R(a, q) X₁`, so `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹`: the axis is negated, so that the joint keeps the
+    /// sign of its position. Everything that depends on `q` and `q̇` alone (friction, limits, rotor inertia) stays.
+    fn reversed(&self) -> Self {
+        let kind = match self.kind {
+            JointKind::Fixed => JointKind::Fixed,
+            JointKind::Revolute(axis) => JointKind::Revolute(-axis),
+            JointKind::Prismatic(axis) => JointKind::Prismatic(-axis),
+        };
+        Self { kind, origin: self.child_pose.inverse(), child_pose: self.origin.inverse(), ..self.clone() }
+    }
+}
