@@ -273,9 +273,6 @@ def test_warnings_are_issued_once(files: Path) -> None:
          "robot.arms[1]: both robots have a link or frame 'base'; give the attached one a prefix"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "a_"}] * 2},
          "robot.arms[1]: with the prefix 'a_', both robots have a link or frame 'a_base'"),
-        ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "frame": "tool"}]},
-         "robot.arms[0]: the frame 'tool' is moved by joints; attach a robot by a frame that is fixed to its "
-         "base: base"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "amr.urdf", "at": "plate"}]},
          "amr.urdf: there is no such file"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf"}]}, "robot.arms[0].at: is missing"),

@@ -117,7 +117,7 @@ def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, en
     body.pos, body.quat = pose[:3, 3], quat
     kinds = mujoco.mjtJoint
     moving = body.add_joint()
-    moving.name, moving.axis = joint.name, np.array(joint.axis)
+    moving.name, moving.axis, moving.pos = joint.name, np.array(joint.axis), np.array(joint.anchor)
     moving.type = kinds.mjJNT_HINGE if joint.kind == "revolute" else kinds.mjJNT_SLIDE
     if joint.static_friction > joint.friction:
         raise ModelError(

@@ -34,7 +34,8 @@ def describe(model: Model) -> dict[str, Any]:
         "joints": [
             {
                 "name": joint.name, "kind": joint.kind, "parent": joint.parent, "child": joint.child,
-                "axis": list(joint.axis), "pose": joint.pose, "lower": joint.lower, "upper": joint.upper,
+                "axis": list(joint.axis), "anchor": list(joint.anchor), "pose": joint.pose,
+                "lower": joint.lower, "upper": joint.upper,
                 "velocity": joint.velocity, "effort": joint.effort, "damping": joint.damping,
                 "friction": joint.friction, "static_friction": joint.static_friction,
                 "rotor_inertia": joint.rotor_inertia,

@@ -34,7 +34,8 @@ def fingerprint(model: Model) -> str:
             (joint.name, joint.kind, joint.parent, joint.child, _rounded(joint.pose), _rounded(joint.axis),
              *map(_exact, (joint.lower, joint.upper, joint.velocity, joint.effort, joint.damping,
                            joint.friction, joint.rotor_inertia)),
-             *([_exact(joint.static_friction)] if joint.static_friction != joint.friction else []))
+             *([_exact(joint.static_friction)] if joint.static_friction != joint.friction else []),
+             *([_rounded(joint.anchor)] if any(joint.anchor) else []))
             for joint in model.joints
         ],
         "frames": sorted((frame.name, frame.body, _rounded(frame.pose)) for frame in model.frames),

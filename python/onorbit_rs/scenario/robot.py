@@ -165,7 +165,7 @@ class Arm(PlainRobot):
     at: Name
     """Link or frame of the bus to attach to."""
     frame: Name | None = None
-    """Mounting frame of the arm, fixed to its base. Default: its root link."""
+    """Mounting frame of the arm. Default: its root link."""
     pose: Pose | None = None
     """Pose of the mounting frame in ``at``."""
     prefix: Name = ""

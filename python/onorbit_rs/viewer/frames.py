@@ -13,7 +13,7 @@ import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
 import rerun as rr
 
 from onorbit_rs.common.coordinates import JOINTS_Q, POSITION, QUATERNION
-from onorbit_rs.common.rotations import conjugate, product, quaternion_from_matrix
+from onorbit_rs.common.rotations import conjugate, matrix_from_quaternion, product, quaternion_from_matrix
 from onorbit_rs.viewer.font import shown
 
 if TYPE_CHECKING:
@@ -113,4 +113,9 @@ def _joint_transform(joint: Joint, values: Floats) -> tuple[Floats, Floats]:
         return pose[:3, 3] + np.outer(values, pose[:3, :3] @ axis), quat
     # the rotation is cos(θ/2) + axis sin(θ/2)
     half = np.stack([np.cos(values / 2.0), np.sin(values / 2.0)], axis=-1)
-    return pose[:3, 3], half @ np.stack([quat, product(quat, np.append(axis, 0.0))])
+    turned = half @ np.stack([quat, product(quat, np.append(axis, 0.0))])
+    anchor = np.array(joint.anchor)
+    if not anchor.any():
+        return pose[:3, 3], turned
+    # the anchor, which lies on the axis, stays where it is
+    return pose[:3, 3] + pose[:3, :3] @ anchor - matrix_from_quaternion(turned) @ anchor, turned

@@ -150,6 +150,7 @@ fn place_link(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
         static_friction: joint.static_friction.unwrap_or(joint.friction),
         limits: joint.limits,
         axis: (joint.child_pose.rotation.inverse() * axis.normalize()).into(),
+        anchor: joint.child_pose.inverse().translation.vector.into(),
     });
     let joint_frame =
         Placed { body: model.nodes.len() - 1, rot: rot_link_body.transpose(), pos: Vector3::zeros() };

@@ -69,8 +69,10 @@ pub struct JointProperties {
     pub static_friction: f64,
     /// Position, velocity and effort limits, which are enforced only on request.
     pub limits: Limits,
-    /// Unit axis in the link's axes, for display.
+    /// Unit axis in the child link's axes.
     pub axis: Vec3<f64>,
+    /// Point on the axis in the child link's axes, m: its origin, unless the joint is traversed backwards.
+    pub anchor: Vec3<f64>,
 }
 
 /// Model of a robot with a free base: joint `j` moves body `j + 1`, parents come before children.

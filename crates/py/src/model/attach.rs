@@ -28,7 +28,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// other : Model or path
 ///     The robot to attach, such as an arm. If it is a URDF or xacro file, its base may be massless.
 /// other_frame : str, optional
-///     Mounting frame of ``other``. It must be fixed to the base of ``other``. Defaults to its root link.
+///     Mounting frame of ``other``. Defaults to its root link. If joints move it, ``other`` is attached by the link
+///     of this frame, as :meth:`Model.rerooted` at that link.
 /// pose : (4, 4) array, optional
 ///     Homogeneous transform of the mounting frame in ``frame``, m. Defaults to the identity.
 /// prefix : str, optional
@@ -43,7 +44,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// FrameError
 ///     If a frame does not exist.
 /// ModelError
-///     If both robots have a link, joint or frame of the same name, or if joints move ``other_frame``.
+///     If both robots have a link, joint or frame of the same name.
 #[pyfunction]
 #[pyo3(signature = (model, frame, other, other_frame=None, *, pose=None, prefix=""))]
 pub(super) fn attach(

@@ -22,6 +22,8 @@ pub(super) struct PyJoint {
     pose: Matrix4,
     /// Unit vector of the axis in the child link: (3,).
     axis: [f64; 3],
+    /// Point on the axis in the child link, m: (3,). Zero unless ``Model.rerooted`` reversed the joint.
+    anchor: [f64; 3],
     /// Lower position limit, rad or m, or None.
     lower: Option<f64>,
     /// Upper position limit, rad or m, or None.
@@ -131,6 +133,7 @@ pub(super) fn joints(model: &Model) -> Vec<PyJoint> {
             child: body(j + 1),
             pose: pose(&rot, pos),
             axis: joint.axis.to_nalgebra().into(),
+            anchor: joint.anchor.to_nalgebra().into(),
             lower: limits.position.and_then(|(lower, _)| bound(lower)),
             upper: limits.position.and_then(|(_, upper)| bound(upper)),
             velocity: limits.velocity,

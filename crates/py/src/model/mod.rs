@@ -7,6 +7,7 @@ mod description;
 mod file;
 mod link_change;
 mod part;
+mod reroot;
 mod xacro;
 
 use crate::arrays::{Threads, array_of, type_name};
@@ -209,6 +210,58 @@ impl PyModel {
         inertia: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         link_change::with_link(slf, name, mass, com, inertia)
+    }
+
+    /// Return the same robot with another link as its floating base.
+    ///
+    /// Links, frames and joints keep their names, and joints the signs of their positions, rates and torques. Bodies
+    /// and joints are numbered depth first from the new base.
+    ///
+    /// Parameters
+    /// ----------
+    /// link : str
+    ///     Name of the link that becomes the base.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If no link has this name.
+    fn rerooted(slf: &Bound<'_, Self>, link: &str) -> PyResult<Self> {
+        reroot::rerooted(slf, link)
+    }
+
+    /// Return the state of another model of the same links, such as a :meth:`rerooted` one.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : (nq,) array
+    ///     Configuration of this model.
+    /// v : (nv,) array
+    ///     Velocity of this model.
+    /// to : Model
+    ///     Other model. This model has its joints and the link of its base.
+    ///
+    /// Returns
+    /// -------
+    /// (nq,) array, (nv,) array
+    ///     Configuration and velocity of ``to`` that place and move its links as ``q`` and ``v`` do those of this model.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If a joint or the base of ``to`` is not in this model.
+    fn transfer_state<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, '_>,
+        v: Any<'_, '_>,
+        to: &Self,
+    ) -> PyResult<(Array<'py>, Array<'py>)> {
+        reroot::transfer_state(py, &self.model, (q, v), &to.model)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
