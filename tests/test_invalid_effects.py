@@ -108,7 +108,9 @@ def test_missing_tables_are_reported_without_the_message_of_the_system(tmp_path:
 def test_messages_name_the_file(tmp_path: Path) -> None:
     weather, eop = tmp_path / "sw.csv", tmp_path / "eop.csv"
     weather.write_text("DATE,AP_AVG,F10.7_OBS,F10.7_OBS_CENTER81\n2024-02-29,12,150,139\n2024-03-01,12,1\n")
-    with pytest.raises(EffectError, match=r"sw\.csv: space weather, line 3: the row has 3 fields, but the header"):
+    with pytest.raises(
+        EffectError, match=r"sw\.csv: space weather, line 3: the row has 3 fields, but the header"
+    ):
         oo.Nrlmsise00(table=weather)
     weather.write_text(weather.read_text().replace("12,1\n", "12,151,140\n"))
     with pytest.raises(EffectError, match=r"2024-03-02 is outside the table .*sw\.csv, which"):

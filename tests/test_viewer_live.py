@@ -183,6 +183,22 @@ def test_a_watched_run_that_is_interrupted_reports_a_checkpoint_that_cannot_be_w
     assert eye.ended == [None]
 
 
+def test_ctrl_c_while_the_viewer_is_updated_keeps_the_rows_and_a_checkpoint(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    class Impatient(Eye):
+        def take(self, columns: Any) -> None:
+            raise KeyboardInterrupt
+
+    kept: list[oo.Checkpoint] = []
+    monkeypatch.setattr(live, "open_live", lambda *_: Impatient())
+    monkeypatch.setattr(live, "UPDATE_EVERY_S", 0.0)
+    with pytest.raises(oo.exceptions.RunInterrupted) as caught:
+        watched(built_reach(duration=80.0), None, kept.append, checkpoint_every=1e3)  # type: ignore[arg-type]
+    assert 0.0 < caught.value.time < 80.0 and len(caught.value.trace) > 1 and len(kept) == 1
+    assert type(caught.value.__cause__) is KeyboardInterrupt
+
+
 @pytest.mark.parametrize("accepts", [True, False])
 def test_a_watched_run_writes_every_row_and_state(accepts: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     eye, given = Eye(), []

@@ -59,23 +59,34 @@ def _advance(
     from onorbit_rs.viewer.live import UPDATE_EVERY_S
 
     shown, last = 0, time.monotonic()
-    while stepper.time < duration:
-        try:
+    try:
+        while stepper.time < duration:
             stepper.advance_to(duration, wall_s=_SLICE_S)
-        except RunInterrupted as stop:
-            try:
-                saver.save(stepper)
-            except Exception as error:
-                stop.add_note(f"the last checkpoint could not be written: {error}")
+            if progress is not None:
+                progress(stepper.time, duration)
+            if time.monotonic() - last >= UPDATE_EVERY_S:
+                last = time.monotonic()
+                columns = stepper.columns(shown)
+                shown += len(columns.get("time", ()))
+                live.take(columns)
+            saver.save_if_due(stepper)
+    except KeyboardInterrupt as signal:
+        stop = _interrupted(stepper, signal)
+        try:
+            saver.save(stepper)
+        except Exception as error:
+            stop.add_note(f"the last checkpoint could not be written: {error}")
+        if stop is signal:
             raise
-        if progress is not None:
-            progress(stepper.time, duration)
-        if time.monotonic() - last >= UPDATE_EVERY_S:
-            last = time.monotonic()
-            columns = stepper.columns(shown)
-            shown += len(columns.get("time", ()))
-            live.take(columns)
-        saver.save_if_due(stepper)
+        raise stop from signal
+
+
+def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
+    """Return the signal as the error that carries the rows so far; the stepper converts it within a step."""
+    if isinstance(signal, RunInterrupted):
+        return signal
+    message = f"the run was interrupted at t = {stepper.time:g} s"
+    return RunInterrupted(message, time=stepper.time, trace=stepper.trace())
 
 
 class _Saver:
