@@ -85,7 +85,7 @@ def test_arguments_that_must_be_lists_are_named() -> None:
         oo.propagate([ORBIT, "j2"], [0.0])  # type: ignore[list-item]
     with pytest.raises(DtypeError, match="environment is of type str; expected a list of effects"):
         oo.Simulation(robot, robot.neutral(), np.zeros(6), environment="j2", time_step=1.0)  # type: ignore[arg-type]
-    with pytest.raises(DtypeError, match="environment is GravityGradient"):
+    with pytest.raises(DtypeError, match="environment is of type GravityGradient"):
         oo.Numerical([7e6, 0, 0], [0, 7.5e3, 0], environment=oo.GravityGradient())  # type: ignore[arg-type]
     out = (np.zeros((1, 1, 3)),) * 3
     with pytest.raises(InputError, match="out is not a pair"):

@@ -72,7 +72,7 @@ def test_a_message_is_the_same_orbit_as_its_tle(message: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        ({"BSTAR": None}, "has no BSTAR"),
+        ({"BSTAR": None}, "has no entry BSTAR"),
         ({"EPOCH": "yesterday"}, "EPOCH is"),
         ({"EPOCH": "00-06-27T18:50:19.733568"}, "EPOCH is"),
         ({"MEAN_MOTION": "fast"}, "MEAN_MOTION is"),

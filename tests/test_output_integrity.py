@@ -56,13 +56,12 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Returns the folder of a stopped run with its checkpoint."""
     out = tmp_path_factory.mktemp("flips") / "out"
     data = tumbling()
-    data["simulation"]["duration"] = 40.0
-    patch = pytest.MonkeyPatch()
-    patch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
-    patch.setattr("onorbit_rs.simulation.run.progress_bar", _progress(_StopsAt(out)))
-    with pytest.raises(RunInterrupted, match="continue with: onorbit resume"):
-        oo.run(data, out, quiet=True, checkpoint_every=0.0)
-    patch.undo()
+    data["simulation"] |= {"duration": 400.0, "record_every": 10}  # several checkpoints on any machine
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
+        patch.setattr("onorbit_rs.simulation.run.progress_bar", _progress(_StopsAt(out)))
+        with pytest.raises(RunInterrupted, match="continue with: onorbit resume"):
+            oo.run(data, out, quiet=True, checkpoint_every=0.0)
     return out
 
 
