@@ -184,7 +184,7 @@ fn invalid_surfaces_are_refused() {
     ));
     assert!(matches!(Optics::new(0.7, 0.4), Err(SurfaceError::Reflection { .. })));
     assert!(matches!(Optics::new(-0.1, 0.4), Err(SurfaceError::Value { name: "specular", .. })));
-    assert!(matches!(plates(&[1.0], &[[0.0; 3]], &[[0.0; 3]]), Err(SurfaceError::Normal { plate: 0 })));
+    assert!(matches!(plates(&[1.0], &[[0.0; 3]], &[[0.0; 3]]), Err(SurfaceError::Normal { plate: 0, .. })));
     assert!(matches!(plates(&[1.0], &[], &[[0.0; 3]]), Err(SurfaceError::WrongLength { normals: 0, .. })));
     assert!(matches!(
         plates(&[-1.0], &[[1.0; 3]], &[[0.0; 3]]),

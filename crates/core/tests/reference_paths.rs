@@ -287,7 +287,8 @@ fn joints_respect_their_limits_and_arrive_together() {
         path.sample(end, &mut now);
         assert_eq!((&now.q[..], &now.v[..]), (&points[6..], &[0.0; 3][..]));
     }
-    assert!((joint_start_offset(&JointHold::new(vec![1.0, 2.0]).unwrap(), &[1.1, 1.5]) - 0.5).abs() < 1e-15);
+    let (joint, offset) = joint_start_offset(&JointHold::new(vec![1.0, 2.0]).unwrap(), &[1.1, 1.5]);
+    assert!(joint == 1 && (offset - 0.5).abs() < 1e-15);
 }
 
 #[test]
@@ -360,20 +361,24 @@ fn invalid_references_are_refused() {
     assert_eq!(Line::within(start.clone(), &start, &LIMITS), Err(ReferenceError::NoLimit));
     let negative = TaskLimits { linear: RateLimit { rate: -1.0, ..RateLimit::NONE }, ..LIMITS };
     let error = Line::within(start.clone(), &poses()[1], &negative).unwrap_err();
-    assert_eq!(error, ReferenceError::LimitNotPositive { value: -1.0 });
+    assert_eq!(error, ReferenceError::LimitNotPositive { name: "speed".to_owned(), value: -1.0 });
     assert_eq!(TimeLaw::quintic(0.0), Err(ReferenceError::DurationNotPositive { value: 0.0 }));
-    assert_eq!(TimeLaw::quintic(f64::NAN), Err(ReferenceError::NotFinite { name: "duration" }));
+    let is_nan = |error: &ReferenceError, of: &str| match error {
+        ReferenceError::NotFinite { name, value } => *name == of && value.is_nan(),
+        _ => false,
+    };
+    assert!(is_nan(&TimeLaw::quintic(f64::NAN).unwrap_err(), "duration"));
     assert_eq!(TimeLaw::ramped(1.0, 0.6), Err(ReferenceError::Ramp { value: 0.6 }));
     let law = TimeLaw::quintic(1.0).unwrap();
     let screw = |axis| Screw::new(start.clone(), Vector3::zeros(), axis, 1.0, 0.0, true, law).unwrap_err();
     assert_eq!(screw(Vector3::zeros()), ReferenceError::NoAxis { length: 0.0 });
-    assert_eq!(screw(Vector3::x() * f64::NAN), ReferenceError::NotFinite { name: "axis" });
+    assert!(is_nan(&screw(Vector3::x() * f64::NAN), "axis"));
     let mirror = Hold::new(-Matrix3::identity(), Vector3::zeros()).unwrap_err();
     assert_eq!(mirror, ReferenceError::NotARotation { error: 2.0 });
     let target =
         |v: Vector3<f64>| Target::new(Matrix3::identity(), v * 0.0 + Vector3::x(), v, Vector3::zeros());
     assert!(matches!(target(Vector3::new(f64::NAN, 0.0, 0.0)), Err(ReferenceError::NotFinite { .. })));
-    assert_eq!(JointHold::new(vec![f64::NAN]), Err(ReferenceError::NotFinite { name: "q" }));
+    assert!(is_nan(&JointHold::new(vec![f64::NAN]).unwrap_err(), "q"));
     let limits =
         JointSpline::waypoints(2, &[0.0; 4], &Timing::Limits(vec![RateLimit::NONE]), true).unwrap_err();
     assert_eq!(limits, ReferenceError::WrongLength { name: "limits", expected: 2, got: 1 });

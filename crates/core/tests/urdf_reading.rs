@@ -248,7 +248,7 @@ fn incomplete_inertials_give_a_warning() {
     assert!(notes(&none)[0].contains("link 'b' has no <mass>"), "{:?}", notes(&none));
     let no_products =
         with("<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixz='0'/></inertial>");
-    let warnings = ["the <inertia> of link 'b' has no ixy, iyz, which is read as 0"];
+    let warnings = ["the <inertia> of link 'b' has no ixy, iyz, which are read as 0"];
     assert_eq!(
         (notes(&no_products), moments(&no_products, 0)),
         (warnings.map(str::to_owned).to_vec(), [2.0; 3])

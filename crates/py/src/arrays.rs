@@ -24,7 +24,7 @@ pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
             let (limit, got) = (i64::MAX, value.str());
             let got =
                 got.map_or_else(|_| "an integer with thousands of digits".to_owned(), |got| got.to_string());
-            let message = format!("{name} is {got}; it must be at most {limit}");
+            let message = format!("{name} is {got}; its magnitude must be at most {limit}");
             Err(raise(
                 py,
                 "InputError",
@@ -135,8 +135,7 @@ impl<'py> Input<'py> {
         if numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()? {
             let message = format!(
                 "{name} is a masked array with masked entries; replace them by {name}.filled(x), or remove \
-                 them by \
-                 {name}.compressed()"
+                 them by {name}.compressed()"
             );
             let fields = fields!(py, "name": name, "got": "masked entries", "expected": "float64");
             return Err(raise(py, "DtypeError", &message, &fields));

@@ -30,7 +30,11 @@ pub enum ControlError {
         time = short(*time), value = short(*value)
     )]
     UserTorque { control: String, joint: String, time: f64, value: f64 },
-    #[error("the torque of joint {joint} is {value} at t = {time} s; it must be finite", time = short(*time), value = short(*value))]
+    #[error(
+        "the torque of joint {joint} is {value} at t = {time} s; it must be finite; check the gains and the \
+         reference of its control",
+        time = short(*time), value = short(*value)
+    )]
     Overflow { joint: usize, time: f64, value: f64 },
     #[error("control '{control}' drives no joint; name at least one")]
     EmptyGroup { control: String },
@@ -38,7 +42,7 @@ pub enum ControlError {
     NoSuchJoint { control: String, joint: usize, count: usize },
     #[error("a control tracks frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     NoSuchFrame { frame: usize, count: usize },
-    #[error("control '{control}' names joint '{joint}' twice")]
+    #[error("control '{control}' names joint '{joint}' twice; name each joint once")]
     RepeatedJoint { control: String, joint: String },
     #[error(
         "controls '{first}' and '{second}' both drive joint '{joint}' at t = {time} s; give them groups \
@@ -48,11 +52,14 @@ pub enum ControlError {
     Overlap { first: String, second: String, joint: String, time: f64 },
     #[error("two controls are named '{name}'; give each a different name")]
     RepeatedName { name: String },
-    #[error("control '{control}' starts after '{after}', which is not a control of this run")]
+    #[error(
+        "control '{control}' starts after '{after}', which is not a control of this run; give the name of one \
+         that is"
+    )]
     NoSuchControl { control: String, after: String },
     #[error(
-        "control '{control}' follows itself: no control of its chain of 'after' can start; remove one \
-    'after'"
+        "control '{control}' follows itself through 'after', so it can never start; remove an 'after' from this \
+         chain"
     )]
     AfterItself { control: String },
     #[error(

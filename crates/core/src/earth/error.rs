@@ -28,7 +28,11 @@ pub enum EarthError {
         what: &'static str,
     },
     /// An instant is outside the span in which a quantity is known.
-    #[error("{what} is available only from {from} to {to}, but is requested {time} s after the epoch {epoch}", time = short(*time))]
+    #[error(
+        "{what} is available only from {from} to {to}, but is requested {time} s after the epoch {epoch}; \
+         choose an epoch for which the whole run lies in this span",
+        time = short(*time)
+    )]
     OutsideSpan {
         /// Name of the quantity.
         what: &'static str,

@@ -129,12 +129,16 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
         }
     }
     if radius < 1e5 {
-        let expected = "at least 1e5 m, as for planets";
+        let expected = "at least 1e5 m, as for planets".to_owned();
         return Err(GravityError::Units { name: "radius", value: radius, expected });
     }
     // μ/R³ = 4π/3 G ρ
     if !(1e-8..=1e-5).contains(&(mu / radius.powi(3))) {
-        let expected = "a value that gives a planet of this radius a density of 40 to 40 000 kg/m³";
+        let [least, most] = [1e-8, 1e-5].map(|ratio| short(ratio * radius.powi(3)));
+        let radius = short(radius);
+        let expected = format!(
+            "{least} to {most} m³/s² for a radius of {radius} m, a density of about 40 to 40 000 kg/m³"
+        );
         return Err(GravityError::Units { name: "mu", value: mu, expected });
     }
     Ok(())

@@ -36,10 +36,10 @@ pub enum GravityError {
     )]
     NotNormalised { model: String, found: String },
     #[error(
-        "{name} is {value}; expected {expected}, in m and m³/s² (are these kilometres?)",
+        "{name} is {value}; expected {expected} (are mu in m³/s² and radius in m, not in kilometres?)",
         value = short(*value)
     )]
-    Units { name: &'static str, value: f64, expected: &'static str },
+    Units { name: &'static str, value: f64, expected: String },
     #[error(
         "{model}: the coefficients of degree {degree}, order {order} reach {value}, but those of planets stay below \
          {limit} (is a row truncated, or is the origin not the centre of mass?)",
@@ -54,27 +54,29 @@ pub enum GravityError {
     NoSuchTerm { name: &'static str, degree: usize, order: usize, value: f64 },
     #[error("{file}: there is no such file")]
     NotFound { file: String },
-    #[error("{file}: cannot be read: {reason}")]
+    #[error("{file} cannot be read: {reason}")]
     Unreadable { file: String, reason: String },
     #[error("{file}: {key} is {got}; expected {expected}")]
     Header { file: String, key: &'static str, got: String, expected: &'static str },
     #[error("{file}:{line}: the row is '{got}'; expected 'gfc degree order C S'")]
     Row { file: String, line: usize, got: String },
     #[error(
-        "{file}:{line}: the file ends within '{got}', whose last number may be truncated; download the file \
-         again, or end the line if it is complete"
+        "{file}:{line}: the file ends without a line break after '{got}', so the last number may be truncated; \
+         download the file again, or add a line break if the row is complete"
     )]
     CutRow { file: String, line: usize, got: String },
     #[error("{file}:{line}: degree {degree}, order {order} is given twice; remove one of the rows")]
     Twice { file: String, line: usize, degree: usize, order: usize },
     #[error(
         "{file}:{line}: '{key}' makes the field vary with time; evaluate the model at your epoch and write it \
-         with rows 'gfc', or request a lower degree"
+         with rows 'gfc'{lower}",
+        lower = lower_degree(*degree)
     )]
-    VariesWithTime { file: String, line: usize, key: String },
+    VariesWithTime { file: String, line: usize, key: String, degree: usize },
     #[error(
-        "{file} has no coefficients of degree {degree}, order {order}: the file is truncated; download it \
-         again or request a degree below {degree}"
+        "{file} has no coefficients of degree {degree}, order {order}; the file may be truncated; download it \
+         again{lower}",
+        lower = lower_degree(*degree)
     )]
     Truncated { file: String, degree: usize, order: usize },
     #[error(
@@ -103,4 +105,9 @@ pub enum GravityError {
     BodyTwice { name: &'static str },
     #[error(transparent)]
     Earth(#[from] EarthError),
+}
+
+/// Returns the advice to request a degree below `degree`, or nothing if no such degree exists.
+fn lower_degree(degree: usize) -> String {
+    if degree > 2 { format!(", or request a degree below {degree}") } else { String::new() }
 }

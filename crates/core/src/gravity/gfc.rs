@@ -32,7 +32,7 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
             _ if n > degree => continue,
             "gfct" | "trnd" | "dot" | "acos" | "asin" => {
                 let key = words[0].to_owned();
-                return Err(GravityError::VariesWithTime { file: file.to_owned(), line, key });
+                return Err(GravityError::VariesWithTime { file: file.to_owned(), line, key, degree: n });
             }
             _ => return Err(invalid()),
         }

@@ -11,7 +11,8 @@ pub enum ModelError {
     #[error("link '{link}' has a mass of {mass} kg; it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
     #[error(
-        "the inertia of link '{link}' is not positive definite: its principal moments are {moments} kg m2",
+        "the inertia of link '{link}' is not positive definite; its principal moments are {moments} kg m2, but \
+         none may be negative",
         moments = list(moments)
     )]
     IndefiniteInertia { link: String, moments: [f64; 3] },
@@ -30,16 +31,15 @@ pub enum ModelError {
     )]
     TooManyJoints { most: usize },
     #[error(
-        "the robot has no mass: a floating base requires mass; give a link an inertial, or a mass with 'links'"
+        "the robot has no mass, but a floating base requires mass; give a link an inertial, or a mass with 'links'"
     )]
     NoMass,
     #[error(
         "nothing resists the motion of joint '{joint}': link '{link}' and its descendants have no inertia \
-         about \
-         its axis; give one of them an inertial, or make the joint fixed"
+         about its axis; give one of them an inertial, or make the joint fixed"
     )]
     MasslessSubtree { joint: String, link: String },
-    #[error("nothing resists the motion of the base '{link}': {}", base_advice(.joints))]
+    #[error("nothing resists the motion of the base '{link}'; {}", base_advice(.joints))]
     SingularBase { link: String, joints: Vec<String> },
     #[error("the {what} name '{name}' is used twice; give each {what} a different name")]
     DuplicateName { what: &'static str, name: String },
@@ -162,10 +162,15 @@ fn base_advice(joints: &[String]) -> String {
         0 => "the robot's inertia is singular about some axis; give the base an inertial, or make its \
         joints fixed"
             .to_owned(),
-        1 => format!("give it an inertial, or remove the joint {}: the base floats anyway", names[0]),
-        _ => {
-            format!("give it an inertial, or remove the joints {}: the base floats anyway", names.join(", "))
-        }
+        1 => format!(
+            "give it an inertial, or remove both it and the joint {}; the robot floats without them",
+            names[0]
+        ),
+        _ => format!(
+            "give it an inertial, or remove the joints {} and the massless links above them; the robot floats \
+             without them",
+            names.join(", ")
+        ),
     }
 }
 

@@ -9,10 +9,10 @@ use crate::spatial::SplineError;
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ReferenceError {
     #[error(
-        "{name} of the reference is not finite or exceeds 1e60 in SI units; check the values and their \
-    units"
+        "{name} of the reference holds {value}; expected finite numbers between -1e60 and 1e60 (SI units)",
+        value = short(*value)
     )]
-    NotFinite { name: &'static str },
+    NotFinite { name: &'static str, value: f64 },
     #[error("{name} of the reference has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
@@ -27,11 +27,14 @@ pub enum ReferenceError {
     )]
     Ramp { value: f64 },
     #[error(
-        "a limit of the reference is {value}; it must be positive, or be omitted for no limit",
+        "the limit {name} of the reference is {value}; it must be positive, or be omitted for no limit",
         value = short(*value)
     )]
-    LimitNotPositive { value: f64 },
-    #[error("the duration of the reference is undetermined; give times, or limit a rate or an acceleration")]
+    LimitNotPositive { name: String, value: f64 },
+    #[error(
+        "no limit applies to the motion of the reference, so its duration is undetermined; give a duration or \
+         times, as a reference that does not move requires, or limit a rate or an acceleration of its motion"
+    )]
     NoLimit,
     #[error(
         "points {point} and {next} of the reference coincide, so limits do not determine the time between \
@@ -57,9 +60,18 @@ pub enum ReferenceError {
     Orbit(#[from] OrbitError),
 }
 
-/// Returns true if a number is finite and so small that products of several such numbers are finite.
-pub(super) fn is_number(x: &f64) -> bool {
-    x.abs() <= 1e60
+/// Checks that numbers are finite and so small that products of several such numbers are finite.
+///
+/// # Errors
+/// [`ReferenceError::NotFinite`].
+pub(super) fn check_numbers<'a>(
+    name: &'static str,
+    numbers: impl IntoIterator<Item = &'a f64>,
+) -> Result<(), ReferenceError> {
+    match numbers.into_iter().find(|x| x.is_nan() || x.abs() > 1e60) {
+        Some(&value) => Err(ReferenceError::NotFinite { name, value }),
+        None => Ok(()),
+    }
 }
 
 /// Shortest duration of a motion, s; rates overflow for shorter ones.

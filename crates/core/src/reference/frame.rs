@@ -1,6 +1,6 @@
 //! Frames in which references are given.
 
-use super::error::is_number;
+use super::error::check_numbers;
 use super::{Hold, ReferenceError, TaskSample};
 use crate::orbit::Orbit;
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
@@ -48,11 +48,8 @@ impl Target {
     /// # Errors
     /// [`ReferenceError::NotFinite`].
     pub fn at(start: Hold, velocity: Vector3<f64>, spin: Vector3<f64>) -> Result<Self, ReferenceError> {
-        for (name, v) in [("velocity", &velocity), ("spin", &spin)] {
-            if !v.iter().all(is_number) {
-                return Err(ReferenceError::NotFinite { name });
-            }
-        }
+        check_numbers("velocity", &velocity)?;
+        check_numbers("spin", &spin)?;
         let velocity = Motion::new(velocity.into(), spin.into());
         Ok(Self { start, velocity })
     }

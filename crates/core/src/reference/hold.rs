@@ -1,6 +1,6 @@
 //! Constant pose.
 
-use super::error::is_number;
+use super::error::check_numbers;
 use super::{ReferenceError, TaskPath, TaskSample};
 use crate::spatial::{Mat3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
@@ -18,9 +18,7 @@ impl Hold {
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::NotARotation`].
     pub fn new(rot_fd: Matrix3<f64>, pos_f: Vector3<f64>) -> Result<Self, ReferenceError> {
-        if !rot_fd.iter().chain(pos_f.iter()).all(is_number) {
-            return Err(ReferenceError::NotFinite { name: "pose" });
-        }
+        check_numbers("pose", rot_fd.iter().chain(&pos_f))?;
         let error = (rot_fd.transpose() * rot_fd - Matrix3::identity()).amax();
         if error > 1e-6 || rot_fd.determinant() < 0.0 {
             return Err(ReferenceError::NotARotation {

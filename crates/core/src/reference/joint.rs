@@ -1,7 +1,7 @@
 //! Reference motions of joints.
 
 use super::ReferenceError;
-use super::error::is_number;
+use super::error::check_numbers;
 use std::fmt::Debug;
 use std::sync::Arc;
 
@@ -40,11 +40,13 @@ pub trait JointPath: Send + Sync + Debug {
 /// Shared joint path.
 pub type JointReference = Arc<dyn JointPath>;
 
-/// Returns the largest difference, rad or m, between the joint positions `q` and the start of `path`.
-pub fn joint_start_offset(path: &dyn JointPath, q: &[f64]) -> f64 {
+/// Returns the joint, as an index into `q`, whose position differs most from the start of `path`, and this
+/// difference, rad or m.
+pub fn joint_start_offset(path: &dyn JointPath, q: &[f64]) -> (usize, f64) {
     let mut first = JointSample::new(path.count());
     path.sample(0.0, &mut first);
-    first.q.iter().zip(q).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    let offsets = first.q.iter().zip(q).map(|(a, b)| (a - b).abs()).enumerate();
+    offsets.fold((0, 0.0), |largest, next| if next.1 > largest.1 { next } else { largest })
 }
 
 /// Constant joint positions.
@@ -59,10 +61,8 @@ impl JointHold {
     /// # Errors
     /// [`ReferenceError::NotFinite`].
     pub fn new(q: Vec<f64>) -> Result<Self, ReferenceError> {
-        match q.iter().all(is_number) {
-            true => Ok(Self { q }),
-            false => Err(ReferenceError::NotFinite { name: "q" }),
-        }
+        check_numbers("q", &q)?;
+        Ok(Self { q })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Splines through joint positions.
 
-use super::limits::joint_stretch;
+use super::limits::{check_joint_limits, joint_stretch};
 use super::pose_spline::rest_times;
 use super::{JointPath, JointSample, RateLimit, ReferenceError, Timing};
 use crate::spatial::{Ends, Spline};
@@ -43,7 +43,7 @@ impl JointSpline {
                     let (name, got) = ("limits", limits.len());
                     return Err(ReferenceError::WrongLength { name, expected: count, got });
                 }
-                limits.iter().try_for_each(RateLimit::check)?;
+                check_joint_limits(limits)?;
                 let rows: Vec<&[f64]> = points.chunks_exact(count.max(1)).collect();
                 let mut times = rest_times(&rows, |a, b| {
                     let joints = a.iter().zip(*b).zip(limits);

@@ -31,13 +31,14 @@ impl RateLimit {
         (PEAK_RATE * distance / self.rate).max((PEAK_ACCELERATION * distance / self.acceleration).sqrt())
     }
 
-    /// Checks that both limits are positive.
+    /// Checks that both limits are positive; `names` are those of the rate and the acceleration in messages.
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`].
-    pub(super) fn check(&self) -> Result<(), ReferenceError> {
-        match [self.rate, self.acceleration].into_iter().find(|x| x.is_nan() || *x <= 0.0) {
-            Some(value) => Err(ReferenceError::LimitNotPositive { value }),
+    fn check(&self, names: [&str; 2]) -> Result<(), ReferenceError> {
+        let mut limits = names.into_iter().zip([self.rate, self.acceleration]);
+        match limits.find(|(_, x)| x.is_nan() || *x <= 0.0) {
+            Some((name, value)) => Err(ReferenceError::LimitNotPositive { name: name.to_owned(), value }),
             None => Ok(()),
         }
     }
@@ -64,8 +65,8 @@ impl TaskLimits {
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`].
     pub(super) fn check(&self) -> Result<(), ReferenceError> {
-        self.linear.check()?;
-        self.angular.check()
+        self.linear.check(["speed", "acceleration"])?;
+        self.angular.check(["angular_speed", "angular_acceleration"])
     }
 
     /// Returns the factor by which the duration of `path`, smooth between neighbouring `times`, must grow to
@@ -78,6 +79,17 @@ impl TaskLimits {
         });
         peak * (1.0 + MARGIN)
     }
+}
+
+/// Checks that the limits of all joints are positive.
+///
+/// # Errors
+/// [`ReferenceError::LimitNotPositive`].
+pub(super) fn check_joint_limits(limits: &[RateLimit]) -> Result<(), ReferenceError> {
+    let check = |(j, limit): (usize, &RateLimit)| {
+        limit.check([format!("speed[{j}]").as_str(), format!("acceleration[{j}]").as_str()])
+    };
+    limits.iter().enumerate().try_for_each(check)
 }
 
 /// Returns the factor by which the duration of `path`, smooth between neighbouring `times`, must grow for all

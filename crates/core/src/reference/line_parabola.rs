@@ -1,6 +1,6 @@
 //! Line with a lateral parabola, the trajectory of the OnOrbitROS paper.
 
-use super::error::is_number;
+use super::error::check_numbers;
 use super::{Hold, ReferenceError, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Motion, Vec3};
 use nalgebra::{Matrix3, Vector3};
@@ -45,11 +45,8 @@ impl LineParabola {
         height: Vector3<f64>,
         duration: f64,
     ) -> Result<Self, ReferenceError> {
-        for (name, v) in [("displacement", &displacement), ("height", &height)] {
-            if !v.iter().all(is_number) {
-                return Err(ReferenceError::NotFinite { name });
-            }
-        }
+        check_numbers("displacement", &displacement)?;
+        check_numbers("height", &height)?;
         let law = TimeLaw::quintic(duration)?;
         Ok(Self { start, displacement: displacement.into(), height: height.into(), law })
     }

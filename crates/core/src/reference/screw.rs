@@ -1,6 +1,6 @@
 //! Circles and screw motions.
 
-use super::error::is_number;
+use super::error::check_numbers;
 use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw, Timing};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::Vector3;
@@ -35,13 +35,10 @@ impl Screw {
         turns: bool,
         law: TimeLaw,
     ) -> Result<Self, ReferenceError> {
-        for (name, v) in
-            [("center", &center), ("axis", &axis), ("angle, advance", &Vector3::new(angle, advance, 0.0))]
-        {
-            if !v.iter().all(is_number) {
-                return Err(ReferenceError::NotFinite { name });
-            }
-        }
+        check_numbers("center", &center)?;
+        check_numbers("axis", &axis)?;
+        check_numbers("angle", [&angle])?;
+        check_numbers("advance", [&advance])?;
         let length = axis.norm();
         if length < 1e-9 {
             return Err(ReferenceError::NoAxis { length });

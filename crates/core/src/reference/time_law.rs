@@ -1,6 +1,6 @@
 //! Time laws: progress along a path as a function of time.
 
-use super::error::{SHORTEST, is_number};
+use super::error::{SHORTEST, check_numbers};
 use super::{ReferenceError, TaskLimits, TaskPath};
 
 /// Time law `s(t)` from 0 to 1 with zero rate and acceleration at both ends; `s` is 0 before the start and 1 after the
@@ -18,9 +18,7 @@ impl TimeLaw {
     /// # Errors
     /// [`ReferenceError::NotFinite`], [`ReferenceError::DurationNotPositive`].
     pub fn quintic(duration: f64) -> Result<Self, ReferenceError> {
-        if !is_number(&duration) {
-            return Err(ReferenceError::NotFinite { name: "duration" });
-        }
+        check_numbers("duration", [&duration])?;
         if duration < SHORTEST {
             return Err(ReferenceError::DurationNotPositive { value: duration });
         }

@@ -48,10 +48,11 @@ pub(super) fn check_control_references(
             control.law.joint_reference().filter(|_| control.law.interface() == Interface::Position)
         {
             let here: Vec<f64> = control.joints.iter().map(|&j| q[BASE_NQ + j]).collect();
-            let offset = joint_start_offset(&**path, &here);
+            let (joint, offset) = joint_start_offset(&**path, &here);
             if offset > tolerance[1] {
+                let joint = model.joints()[control.joints[joint]].name.clone();
                 let (control, tolerance) = (control.name.clone(), tolerance[1]);
-                return Err(SimulationError::JointsStartAway { control, offset, tolerance });
+                return Err(SimulationError::JointsStartAway { control, joint, offset, tolerance });
             }
         }
     }

@@ -161,7 +161,8 @@ impl Checkpoint {
         self.check_state()?;
         if !self.schedule.has_cuts_of(schedule) {
             let (duration, step) = (self.schedule.duration(), self.schedule.time_step());
-            return Err(CheckpointError::OtherSchedule { duration, step });
+            let what = self.schedule.differences(schedule);
+            return Err(CheckpointError::OtherSchedule { duration, step, what });
         }
         let mut there = schedule.clone();
         there.set_cursor(self.progress.cursor);
@@ -181,12 +182,16 @@ impl Checkpoint {
         let has_step = step_control.as_ref().is_none_or(|control| {
             is_step(control.step) && control.systems.iter().all(|system| system.size >= 0.0)
         });
-        if state.is_finite() && state.systems.iter().all(has_unit_attitude) && has_step {
+        let reason = if !state.is_finite() {
+            "its state is not finite"
+        } else if !state.systems.iter().all(has_unit_attitude) {
+            "an attitude is not a unit quaternion"
+        } else if !has_step {
+            "its step size is not a positive number"
+        } else {
             return Ok(());
-        }
-        let reason =
-            "its state or step size is not finite, or its attitude is not a unit quaternion".to_owned();
-        Err(CheckpointError::Unreadable { reason })
+        };
+        Err(CheckpointError::Unreadable { reason: reason.to_owned() })
     }
 
     fn check_sizes(&self, layout: &Layout) -> Result<(), CheckpointError> {

@@ -24,14 +24,15 @@ pub enum CheckpointError {
     )]
     MissingRows { got: usize, expected: usize },
     #[error(
-        "the checkpoint has {got} {name}, but the simulation has {expected}: it belongs to another scenario"
+        "the checkpoint has {got} {name}, but the simulation has {expected}: it belongs to another scenario; resume \
+         with the original one"
     )]
     OtherSize { name: &'static str, got: usize, expected: usize },
     #[error(
-        "the checkpoint is of a run {duration} with steps of {step} s; duration, steps, control period or events of this \
-         run differ: it belongs to another scenario",
+        "the checkpoint is of a run {duration} with steps of {step} s, but this run differs in {what}: the checkpoint \
+         belongs to another scenario; resume with the original one",
         duration = duration.map_or("without a planned end".to_owned(), |end| format!("of {} s", short(end))),
         step = short(*step)
     )]
-    OtherSchedule { duration: Option<f64>, step: f64 },
+    OtherSchedule { duration: Option<f64>, step: f64, what: String },
 }

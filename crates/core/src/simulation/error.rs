@@ -83,17 +83,16 @@ pub enum SimulationError {
     )]
     ReferenceStartsAway { position: f64, angle: f64, tolerance: [f64; 2] },
     #[error(
-        "the reference of control '{control}' starts {offset} rad (m) from the joint positions; it must \
-         start within {tolerance} of them; start it there (starts_at_present), or increase reference_start_tolerance",
+        "the reference of control '{control}' starts {offset} rad (m) from the position of joint '{joint}'; it must \
+         start within {tolerance} rad (m); start it there (starts_at_present), or increase reference_start_tolerance",
         offset = unlike(*offset, &[*tolerance]), tolerance = short(*tolerance)
     )]
-    JointsStartAway { control: String, offset: f64, tolerance: f64 },
+    JointsStartAway { control: String, joint: String, offset: f64, tolerance: f64 },
     #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
     TooManyRows { rows: usize },
     #[error(
         "the run diverged at t = {time} s: the state is not finite; reduce time_step, initial rates, gains or joint \
-         damping \
-         (the last finite state is in the error's q and v)",
+         damping (the last finite state is in the error's q and v)",
         time = short(*time)
     )]
     Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },

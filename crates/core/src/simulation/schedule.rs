@@ -109,6 +109,20 @@ impl Schedule {
         *self == Self { at: self.at, ..other.clone() }
     }
 
+    /// Returns the names of the settings, joined by "and", in which two schedules differ.
+    pub(super) fn differences(&self, other: &Self) -> String {
+        let names = [
+            ("duration", self.duration != other.duration),
+            ("time_step", self.time_step != other.time_step),
+            ("control_period", self.control_period != other.control_period),
+            ("the events", self.events != other.events && self.switches == other.switches),
+            ("the times of the controls", self.switches != other.switches),
+            ("the integrators", self.cuts_at_grid != other.cuts_at_grid),
+        ];
+        let names: Vec<_> = names.into_iter().filter(|(_, differ)| *differ).map(|(name, _)| name).collect();
+        names.join(" and ")
+    }
+
     /// Returns the number of grid steps of a run with a planned end; the last step may be shorter.
     pub(super) fn grid_steps(&self) -> Option<usize> {
         self.duration.map(|duration| (duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize)

@@ -20,8 +20,8 @@ pub(crate) struct System<'a, S> {
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
-    /// Velocity of the frame relative to which `data` holds velocities, W axes, m/s: during a step that of the base's
-    /// origin at the start of the step, otherwise zero.
+    /// Velocity of the frame relative to which the velocities in `data` are expressed, W axes, m/s. During a step, it
+    /// is the velocity of the base's origin at the start of the step; otherwise it is zero.
     frame_velocity: Vec3<S>,
     mass: S,
     /// Which joints stick or rest at a stop.

@@ -41,7 +41,9 @@ pub(super) fn one_count(py: Python<'_>, gains: &[&(PerJoint, usize)]) -> PyResul
         [] => Ok(1),
         [n] => Ok(n),
         _ => {
-            let message = format!("gains have {counts:?} entries; all must have one entry per joint");
+            let message = format!(
+                "the arrays of gains have the lengths {counts:?}; each must have one entry per joint"
+            );
             Err(raise(py, "ShapeError", &message, &fields!(py, "name": "gains", "got": counts)))
         }
     }

@@ -16,8 +16,8 @@ impl IntoPython for ReferenceError {
             Self::Ramp { value } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": "ramp", "got": value))
             }
-            Self::LimitNotPositive { value } => {
-                raise(py, "ControlError", &message, &fields!(py, "name": "limit", "got": value))
+            Self::LimitNotPositive { name, value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": name, "got": value))
             }
             Self::LastRow { row } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": "pose", "got": row.to_vec()))

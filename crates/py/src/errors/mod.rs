@@ -64,7 +64,7 @@ pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &TextFi
     let file = path.display();
     let (class, message) = match error {
         TextFileError::NotFound => ("NotFoundError", format!("{file}: there is no such {what}")),
-        error => ("ReadError", format!("{file}: the {what} cannot be read: {error}")),
+        error => ("ReadError", format!("the {what} {file} cannot be read: {error}")),
     };
     raise(py, class, &message, &fields!(py, "path": file.to_string(), "kind": what))
 }

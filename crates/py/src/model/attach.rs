@@ -7,6 +7,7 @@ use crate::errors::{IntoPython, fields, plain, raise};
 use crate::pickling::{ConstructorCall, deep_copy};
 use nalgebra::Isometry3;
 use onorbit_core::model::Mount;
+use onorbit_core::number_text::short;
 use onorbit_core::reference::Hold;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -93,8 +94,11 @@ fn model_or_part<'py>(other: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
 fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
     let refuse = |message: &str| plain(pose.py(), "ModelError", message);
     let rows = fixed::<16>(pose, "pose", &[4, 4])?;
-    if !rows.iter().all(|entry| entry.abs() <= 1e12) {
-        return Err(refuse("the position of the pose exceeds 1e12 m; check the units"));
+    if let Some(entry) = rows.iter().find(|entry| entry.abs() > 1e12) {
+        return Err(refuse(&format!(
+            "the pose holds {}, which exceeds 1e12 m; check the units",
+            short(*entry)
+        )));
     }
     let poses = Hold::from_rows(&[rows]).map_err(|error| refuse(&error.to_string()))?;
     Ok(poses[0].isometry())

@@ -90,8 +90,11 @@ fn change_from_dict(link: &str, values: &Bound<'_, PyAny>) -> PyResult<LinkChang
     }
     let value = |key| Ok::<_, PyErr>(values.get_item(key)?.filter(|value| !value.is_none()));
     let mass = value("mass")?;
-    let Ok(mass) = mass.map(|mass| mass.extract::<f64>()).transpose() else {
-        return refuse(&format!("the mass in links[{link:?}] is not a number; expected a mass in kg"));
+    let Ok(mass) = mass.as_ref().map(|mass| mass.extract::<f64>()).transpose() else {
+        let got = mass.as_ref().map_or_else(String::new, type_name);
+        return refuse(&format!(
+            "the mass in links[{link:?}] is not a number but of type {got}; expected a mass in kg"
+        ));
     };
     link_change(link, mass, value("com")?.as_ref(), value("inertia")?.as_ref())
 }

@@ -81,7 +81,7 @@ impl PyModel {
         let py = name.py();
         let Ok(text) = name.cast::<PyString>() else {
             let got = type_name(name);
-            let message = format!("frame is of type {got}; expected a name");
+            let message = format!("frame is of type {got}; expected the name of a frame (str)");
             let fields = fields!(py, "name": "frame", "expected": "str", "got": got);
             return Err(raise(py, "DtypeError", &message, &fields));
         };

@@ -121,14 +121,27 @@ impl PyKepler {
         let size = match (semi_major_axis, semi_latus_rectum) {
             (Some(a), None) => Size::SemiMajorAxis(a),
             (None, Some(p)) => Size::SemiLatusRectum(p),
-            _ => return Err(refuse("give exactly one of semi_major_axis and semi_latus_rectum (m)")),
+            (None, None) => {
+                return Err(refuse(
+                    "the size of the orbit is missing; give semi_major_axis or semi_latus_rectum (m)",
+                ));
+            }
+            (Some(_), Some(_)) => {
+                return Err(refuse(
+                    "semi_major_axis and semi_latus_rectum are both given; give exactly one of them",
+                ));
+            }
         };
         let phase = match (mean_anomaly, true_anomaly, periapsis_time) {
             (Some(m), None, None) => Phase::MeanAnomaly(m),
             (None, Some(nu), None) => Phase::TrueAnomaly(nu),
             (None, None, Some(t)) => Phase::PeriapsisTime(t),
             (None, None, None) => Phase::TrueAnomaly(0.0),
-            _ => return Err(refuse("give at most one of mean_anomaly, true_anomaly and periapsis_time")),
+            _ => {
+                return Err(refuse(
+                    "more than one of mean_anomaly, true_anomaly and periapsis_time is given; give at most one",
+                ));
+            }
         };
         let elements =
             Elements { size, eccentricity, inclination, raan, argument_of_periapsis, phase, mu, epoch };

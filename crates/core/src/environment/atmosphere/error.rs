@@ -74,7 +74,8 @@ pub enum AtmosphereError {
     },
     /// A day is outside the table of space weather.
     #[error(
-        "space weather: {date} is outside {table}, which covers {first} to {last}; give constants for this date"
+        "space weather: {date} is outside {table}, which covers {first} to {last}; give a table that \
+         includes this date, or constants"
     )]
     OutsideTable {
         /// Name of the table.

@@ -57,8 +57,8 @@ impl SpaceWeatherTable {
                 return Err(wrong(
                     line,
                     format!(
-                        "the row has {has} fields, but the header has {needed}: the file is truncated; download it \
-                         again"
+                        "the row has {has} fields, but the header has {needed}; add the missing ones, or download the \
+                         file again if it is truncated"
                     ),
                 ));
             }

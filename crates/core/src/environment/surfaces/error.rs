@@ -1,7 +1,7 @@
 //! Errors of surfaces.
 
 use crate::environment::body_index::BodyIndex;
-use crate::number_text::short;
+use crate::number_text::{list, short};
 
 /// Errors of surfaces; each holds the offending value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -42,10 +42,12 @@ pub enum SurfaceError {
     )]
     NoPlates,
     /// The normal of a plate is zero or not finite.
-    #[error("the normal of plate {plate} is zero or not finite; give it a direction")]
+    #[error("the normal of plate {plate} is {normal}; its length must be positive and finite", normal = list(normal))]
     Normal {
         /// Index of the plate.
         plate: usize,
+        /// Given normal.
+        normal: [f64; 3],
     },
     /// The numbers of areas, normals and centroids differ.
     #[error(

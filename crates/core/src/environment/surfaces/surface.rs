@@ -83,7 +83,7 @@ impl Surface {
             let normal = Vec3::from(Vector3::from(normals[plate]));
             let length = normal.norm();
             if !(length > 0.0 && length.is_finite()) {
-                return Err(SurfaceError::Normal { plate });
+                return Err(SurfaceError::Normal { plate, normal: normals[plate] });
             }
             let centroid = Vec3::from(Vector3::from(centroids[plate]));
             not_negative("distance of a centroid", centroid.norm())?;

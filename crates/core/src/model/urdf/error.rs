@@ -62,7 +62,7 @@ pub enum UrdfProblem {
     NotFound,
     #[error("the path is a directory; expected a URDF file")]
     IsFolder,
-    #[error("cannot be read: {reason}")]
+    #[error("cannot be read ({reason})")]
     Unreadable { reason: String },
     #[error("the file is empty")]
     Empty,
@@ -74,7 +74,7 @@ pub enum UrdfProblem {
     TooManyAttributes { limit: usize },
     #[error("the file is not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
-    #[error("not XML: {reason}")]
+    #[error("not XML ({reason})")]
     NotXml { reason: String },
     #[error(
         "entity '&{name};' is not supported; replace it by the text that the document type (<!DOCTYPE>) defines for it"

@@ -99,7 +99,7 @@ fn limits(
     let mut largest = |what: &str, value: f64| {
         // Gazebo writes -1 for no limit
         if value.is_finite() && value < 0.0 {
-            note(format!("its {what} limit is negative and is ignored"));
+            note(format!("its {what} limit is negative and is ignored ({})", short(value)));
         }
         (value.is_finite() && value >= 0.0).then_some(value)
     };

@@ -68,7 +68,11 @@ fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<
             let is_missing = |product: &&str| inertia.text(product).is_none();
             let missing: Vec<&str> = ["ixy", "ixz", "iyz"].into_iter().filter(is_missing).collect();
             if !missing.is_empty() {
-                note(format!("the <inertia> of {owner} has no {}, which is read as 0", missing.join(", ")));
+                let verb = if missing.len() == 1 { "is" } else { "are" };
+                note(format!(
+                    "the <inertia> of {owner} has no {}, which {verb} read as 0",
+                    missing.join(", ")
+                ));
             }
         }
     }

@@ -89,7 +89,7 @@ pub enum Sgp4Error {
     /// Error 1: the mean eccentricity with drag and secular perturbations is out of range.
     #[error(
         "SGP4 error 1 at t = {time} s: the mean eccentricity is {eccentricity}; it must lie in [-0.001, 1); \
-         give elements with an epoch nearer to this time",
+         check the elements, or give elements with an epoch nearer to this time",
         time = short(*time), eccentricity = short(*eccentricity)
     )]
     MeanEccentricity {
@@ -100,7 +100,8 @@ pub enum Sgp4Error {
     },
     /// Error 2: the mean motion is not positive.
     #[error(
-        "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day; it must be positive; give elements with an epoch nearer to this time",
+        "SGP4 error 2 at t = {time} s: the mean motion is {mean_motion} rev/day; it must be positive; \
+         check the elements, or give elements with an epoch nearer to this time",
         time = short(*time), mean_motion = short(*mean_motion)
     )]
     MeanMotion {
@@ -112,7 +113,7 @@ pub enum Sgp4Error {
     /// Error 3: the eccentricity with the perturbations by Sun and Moon is out of range.
     #[error(
         "SGP4 error 3 at t = {time} s: the eccentricity perturbed by Sun and Moon is {eccentricity}; it \
-         must lie in [0, 1]; give elements with an epoch nearer to this time",
+         must lie in [0, 1]; check the elements, or give elements with an epoch nearer to this time",
         time = short(*time), eccentricity = short(*eccentricity)
     )]
     PerturbedEccentricity {
@@ -124,7 +125,7 @@ pub enum Sgp4Error {
     /// Error 4: the semi-latus rectum is negative.
     #[error(
         "SGP4 error 4 at t = {time} s: the semi-latus rectum is {semi_latus_rectum} m; it must not be \
-         negative; give elements with an epoch nearer to this time",
+         negative; check the elements, or give elements with an epoch nearer to this time",
         time = short(*time), semi_latus_rectum = short(*semi_latus_rectum)
     )]
     SemiLatusRectum {
@@ -135,7 +136,7 @@ pub enum Sgp4Error {
     },
     /// Error 6: the position is below the surface.
     #[error(
-        "SGP4 error 6 at t = {time} s: the satellite has decayed: it is {distance} m from the Earth's \
+        "SGP4 error 6 at t = {time} s: the satellite has decayed and is {distance} m from the Earth's \
          centre; expected at least {radius} m; end the run earlier",
         time = short(*time), distance = unlike(*distance, &[*radius]), radius = short(*radius)
     )]
@@ -148,7 +149,11 @@ pub enum Sgp4Error {
         radius: f64,
     },
     /// An error reported by the reference implementation.
-    #[error("SGP4 error {code} of the reference implementation at t = {time} s: {}", reason(*.code), time = short(*time))]
+    #[error(
+        "SGP4 error {code} of the reference implementation at t = {time} s: {}; check the elements, or give \
+         elements with an epoch nearer to this time",
+        reason(*.code), time = short(*time)
+    )]
     External {
         /// Time since the epoch, s.
         time: f64,
