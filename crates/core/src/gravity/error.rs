@@ -21,7 +21,7 @@ pub enum GravityError {
     OrderAboveDegree { degree: usize, order: usize },
     #[error(
         "degree {degree} and order {order} are requested, but {model} ends at degree {highest}; request \
-         less, or read a larger model from a .gfc file"
+         at most this, or read a larger model from a .gfc file"
     )]
     BeyondModel { model: String, degree: usize, order: usize, highest: usize },
     #[error("degree is {degree}; it must be from 2 to 2700")]
