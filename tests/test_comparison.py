@@ -313,7 +313,7 @@ def test_lengths_are_those_of_numpy_and_do_not_overflow() -> None:
 def test_an_argument_that_is_not_a_run_is_rejected_with_its_type() -> None:
     trace = oo.run(spin(0.1)).trace
     for kind, source in (("Trace", trace), ("int", 3), ("list", [])):
-        with pytest.raises(DtypeError, match=f"a {kind} cannot be compared; give the folder of a run"):
+        with pytest.raises(DtypeError, match=f"a value of type {kind} cannot be compared; give the folder"):
             oo.compare(source)  # type: ignore[arg-type]
 
 

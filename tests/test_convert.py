@@ -330,7 +330,7 @@ def test_files_that_do_not_fit_together_are_rejected(tmp_path: Path) -> None:
     for files, word in (([orbit, pose], "two files"), ([control], "requires a robot")):
         with pytest.raises(oo.exceptions.ScenarioError, match=word):
             convert(files)
-    with pytest.raises(oo.exceptions.InputError, match="two robots"):
+    with pytest.raises(oo.exceptions.InputError, match="2 robots are given"):
         convert([ROBOT, ROBOT])
     with pytest.raises(oo.exceptions.InputError, match="no file"):
         convert([])

@@ -208,7 +208,7 @@ def test_unsuitable_kernels_are_rejected(tmp_path: Path, monkeypatch: pytest.Mon
     with pytest.raises(NotFoundError, match=r"none\.bsp"):
         oo.Earth(NOON, ephemeris=tmp_path / "none.bsp")
     (tmp_path / "text.bsp").write_text("no kernel")
-    with pytest.raises(ReadError, match="not a SPICE kernel"):
+    with pytest.raises(ReadError, match="cannot be read as a SPICE kernel"):
         oo.Earth(NOON, ephemeris=tmp_path / "text.bsp")
     monkeypatch.setitem(sys.modules, "jplephem.spk", None)
     with pytest.raises(EarthError, match=r"pip install 'onorbit-rs\[spice\]'"):

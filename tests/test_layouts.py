@@ -126,7 +126,9 @@ BAD: dict[str, Bad] = {
     "a joint missing": Bad(
         lambda: there("rbdl", Q[0], V[0], NAMES[1:]), "InputError", ("does not contain", NAMES[0])
     ),
-    "a joint twice": Bad(lambda: there("rbdl", Q[0], V[0], [*NAMES, NAMES[0]]), "InputError", ("twice",)),
+    "a joint twice": Bad(
+        lambda: there("rbdl", Q[0], V[0], [*NAMES, NAMES[0]]), "InputError", ("more than once",)
+    ),
     "names as text": Bad(lambda: there("rbdl", Q[0], V[0], "joint"), "DtypeError", ("list",)),
     "unbounded names an unknown joint": Bad(
         lambda: there("pinocchio", Q[0], V[0], unbounded=["x"]), "InputError", ("unbounded", "'x'")

@@ -71,7 +71,7 @@ def test_one_of_several_sets_is_chosen_by_name_or_number(satellite: Any, tmp_pat
     for other, says in [("VANGARD", "did you mean 'VANGUARD 1'"), (None, "by 'satellite'")]:
         with pytest.raises(ElementSetError, match=says):
             orbit_of(written(tmp_path, {"kind": "sgp4", "tle_file": "all.tle", "satellite": other}))
-    with pytest.raises(ElementSetError, match="contains 2 sets"):
+    with pytest.raises(ElementSetError, match="contains 2 element sets"):
         orbit_of(scenario({"kind": "sgp4", "tle": text * 2, "satellite": satellite}))
 
 
@@ -152,7 +152,7 @@ def test_an_invalid_point_file_is_reported_with_its_line(
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "propagator": "own"}, ScenarioError, "reference"),
         ({"kind": "sgp44"}, ScenarioError, "did you mean 'sgp4'"),
         ({"kind": "custom_path", "times": [0, 1]}, ScenarioError, "'times' and 'positions'"),
-        ({"kind": "custom_path", "file": "a.csv", "times": [0]}, ScenarioError, "not both"),
+        ({"kind": "custom_path", "file": "a.csv", "times": [0]}, ScenarioError, "omit it or 'times'"),
         ({"kind": "custom_path", "times": [0, 0], "positions": [[0, 0, 0]] * 2}, PathError, "increase"),
         ({"kind": "custom_path", "times": [0, "1 m"], "positions": [[0, 0, 0]] * 2}, ScenarioError, "a time"),
         ({"kind": "fixed_frame", "gravity_mode": "free"}, ScenarioError, "'carried'"),

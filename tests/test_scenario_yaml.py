@@ -82,7 +82,11 @@ def test_a_wrong_entry_is_named_with_its_line(
         ("6778 km", "-6778 km", "contradicts eccentricity"),
         ("eccentricity: 0.0005", "eccentricity: 1.5", "contradicts eccentricity"),
         ("eccentricity: 0.0005", "eccentricity: 1", "semi_latus_rectum"),
-        ("  mean_anomaly: 0 deg", "  mean_anomaly: 0\n  true_anomaly: 0", "give one of 'mean_anomaly'"),
+        (
+            "  mean_anomaly: 0 deg",
+            "  mean_anomaly: 0\n  true_anomaly: 0",
+            "give at most one of 'mean_anomaly'",
+        ),
         ("  semi_major_axis: 6778 km", "", "exactly one of 'semi_major_axis'"),
         ("  mean_anomaly: 0 deg", "  velocity: [0, 1, 0]", "both 'position' and 'velocity'"),
         ("orbit:   ", "no: 1\norbit: ", "unknown key"),

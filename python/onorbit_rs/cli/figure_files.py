@@ -1,4 +1,4 @@
-"""Checks and saves the figures of commands."""
+"""Checks the files in which commands are to save figures, and saves the figure of a robot."""
 
 from __future__ import annotations
 

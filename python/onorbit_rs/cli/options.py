@@ -78,9 +78,8 @@ def reading_options(
         )  # fmt: skip
     if (packages or arguments or xacro) and not robots.is_file(robot):
         raise InputError(
-            f"--package-path, --arg and --xacro apply only to robot files, but {robot!r} is a bundled "
-            "name; omit "
-            "them or give a path",
+            f"--package-path, --arg and --xacro apply only to robot files, but {robot!r} is not a path that "
+            "contains a folder or ends in .urdf, .xml or .xacro; omit them or give such a path",
             name="robot", got=robot,
         )  # fmt: skip
     for folder in packages or ():
@@ -107,7 +106,7 @@ def as_arguments(robot: str, packages: list[Path] | None, arguments: list[str] |
 def xacro_arguments(arguments: list[str] | None) -> dict[str, str] | None:
     """Return xacro arguments, written ``name=value`` or ``name:=value``, as a mapping."""
     pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]
-    for name, equals, _ in pairs:
+    for argument, (name, equals, _) in zip(arguments or [], pairs, strict=True):
         if not equals or not name:
-            raise typer.BadParameter(f"write a xacro argument as name=value, not {name!r}")
+            raise typer.BadParameter(f"write a xacro argument as name=value, not {argument!r}")
     return {name: value for name, _, value in pairs} or None

@@ -99,9 +99,10 @@ def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
     """Return the principal moments of inertia and the quaternion (wxyz) of their axes."""
     moments, axes = np.linalg.eigh(np.array(body.inertia))
     if body.mass <= 0.0 or moments[0] <= 0.0:
+        what = "no mass" if body.mass <= 0.0 else f"a principal moment of inertia of {moments[0]:g} kg m²"
         raise ModelError(
-            f"link '{body.name}' has no mass or no inertia, which MuJoCo does not support; give "
-            "it a small mass and inertia (planar and ball joints have such links), or use engine: native",
+            f"link '{body.name}' has {what}, which MuJoCo does not support; give it a small mass and "
+            "inertia (planar and ball joints have such links), or use engine: native",
             link=body.name,
         )
     quat = np.empty(4)
@@ -120,10 +121,11 @@ def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, en
     moving.name, moving.axis, moving.pos = joint.name, np.array(joint.axis), np.array(joint.anchor)
     moving.type = kinds.mjJNT_HINGE if joint.kind == "revolute" else kinds.mjJNT_SLIDE
     if joint.static_friction > joint.friction:
+        unit = "N m" if joint.kind == "revolute" else "N"
         raise ModelError(
-            f"joint '{joint.name}' has a static friction of {joint.static_friction:g} above its kinetic "
-            f"friction of {joint.friction:g}: MuJoCo has one friction for both; make them equal, or use "
-            "engine: native",
+            f"joint '{joint.name}' has a static friction of {joint.static_friction:g} {unit}, above its "
+            f"kinetic friction of {joint.friction:g} {unit}, but MuJoCo has one friction for both; make them "
+            "equal, or use engine: native",
             joint=joint.name,
         )
     moving.armature, moving.frictionloss = joint.rotor_inertia, joint.friction

@@ -36,9 +36,11 @@ def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -
             f"{where} contains no element set of {satellite!r}{hint}", name="satellite", got=satellite
         )
     if len(found) > 1:
-        sets_found = count(len(found), "set", "sets")
+        sets_found = count(len(found), "element set", "element sets")
+        numbers = {_word(number) for _, number, _ in sets if number}
+        fix = "keep one of them" if wanted in numbers else "keep one of them, or give the catalogue number"
         raise ElementSetError(
-            f"{where} contains {sets_found} of {satellite!r}; keep one, or give the catalogue number",
+            f"{where} contains {sets_found} of {satellite!r}; {fix}",
             name="satellite", got=satellite,
         )  # fmt: skip
     return found[0]

@@ -31,6 +31,8 @@ def entries(text: str, satellite: str | None = None) -> dict[str, Any]:
         return select_set(named, satellite, "the OMM")
     if len(messages) != 1:
         found = count(len(messages), "message", "messages")
+        if not messages:
+            raise ElementSetError("the text contains no OMM; give a single message")
         raise ElementSetError(
             f"the text contains {found}; give a single message, or select one in a scenario with 'satellite'"
         )
@@ -54,7 +56,9 @@ def _from_json(text: str) -> list[dict[str, Any]]:
         raise ElementSetError(f"the OMM is not valid JSON: {reason}") from None
     messages = data if isinstance(data, list) else [data]
     if not all(isinstance(message, Mapping) for message in messages):
-        raise ElementSetError("the OMM in JSON must be a mapping of keywords to values")
+        raise ElementSetError(
+            "the OMM in JSON must be a mapping of keywords to values, or a list of such mappings"
+        )
     return messages
 
 
@@ -66,7 +70,7 @@ def _from_xml(text: str) -> list[dict[str, Any]]:
     try:
         messages = list(omm.parse_xml(io.StringIO(text)))
     except (ParseError, LookupError, ValueError) as error:  # LookupError: unknown encoding
-        raise ElementSetError(f"the OMM is not valid XML: {error}") from None
+        raise ElementSetError(f"the OMM cannot be read as XML: {error}") from None
     except (AttributeError, TypeError):  # sgp4 got None for a missing element
         raise ElementSetError(
             "the OMM's XML lacks metadata, meanElements or tleParameters in a segment"
@@ -94,7 +98,9 @@ def _from_kvn(text: str) -> dict[str, Any]:
             continue
         if key.strip() in found:
             raise ElementSetError(
-                f"the OMM contains {key.strip()} twice; give a single message", name=key.strip()
+                f"the OMM contains {key.strip()} more than once; give a single message, with each "
+                "keyword once",
+                name=key.strip(),
             )
         found[key.strip()] = value.split("[")[0].strip()
     if not found:

@@ -76,8 +76,8 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
         if all(getattr(elements, constant) == getattr(known, constant) for constant in _CONSTANTS):
             return elements, name
     raise ElementSetError(
-        f"the Satrec's gravity constants (mu {elements.mu} km³/s², radius {elements.radiusearthkm} km) are"
-        f" of an unknown model; initialize it with {', '.join(MODELS)}",
+        f"the Satrec's gravity constants (mu {elements.mu} km³/s², radius {elements.radiusearthkm} km, ...)"
+        f" are not those of a known model; initialize it with one of {', '.join(MODELS)}",
         name="gravity",
     )  # fmt: skip
 

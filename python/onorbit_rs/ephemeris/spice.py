@@ -47,7 +47,9 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
         kernel = SPK.open(path)
     except Exception as error:  # jplephem raises many kinds of errors for a damaged file
         raise ReadError(
-            f"{path} is not a SPICE kernel: {error}", path=str(path), kind="SPICE kernel"
+            f"{path} cannot be read as a SPICE kernel of positions (SPK, .bsp): {error}",
+            path=str(path),
+            kind="SPICE kernel",
         ) from None
     try:
         sun, moon, earth = (_chain(kernel, name, path) for name in ("sun", "moon", "earth"))
@@ -67,7 +69,7 @@ def _check_records(path: str | Path) -> None:
         seen: set[int] = set()
         for number, _, _ in DAF(stream).summary_records():
             if number in seen:
-                raise ValueError(f"its record {number} is its own successor")
+                raise ValueError(f"its summary records form a cycle at record {number}")
             seen.add(number)
 
 

@@ -124,8 +124,13 @@ def from_spart(
     )  # fmt: skip
     off = np.abs(np.swapaxes(rot, -1, -2) @ rot - np.eye(3)).max(initial=0.0)
     if off > NORM_TOLERANCE or (np.linalg.det(rot) < 0.0).any():
+        why = (
+            f"R0ᵀ R0 differs from the identity by {off:.3g}, more than {NORM_TOLERANCE:g}"
+            if off > NORM_TOLERANCE
+            else "its determinant is -1, so it contains a reflection"
+        )
         raise InputError(
-            f"R0 is not a rotation matrix: R0ᵀ R0 differs from the identity by {off:.3g}, or det R0 < 0",
+            f"R0 is not a rotation matrix: {why}",
             name="R0",
             got=float(off),
             expected="orthonormal",

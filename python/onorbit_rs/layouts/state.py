@@ -106,7 +106,11 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
             )  # fmt: skip
     missing = [name for name in known if name not in given]
     if missing or len(given) != len(known):
-        what = f"does not contain {', '.join(map(repr, missing))}" if missing else "contains a joint twice"
+        if missing:
+            what = f"does not contain {', '.join(map(repr, missing))}"
+        else:
+            twice = [name for name in known if given.count(name) > 1]
+            what = f"contains {', '.join(map(repr, twice))} more than once"
         raise InputError(
             f"joints {what}; it must contain every moving joint once",
             name="joints",

@@ -146,15 +146,17 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
             file = path / _file_name(name)
             columns[name], digests[name] = _column(file, rows, int(width))
             if digests[name].hexdigest() != record["digests"][name]:
-                raise ValueError("its rows do not match their checksum: they were changed or damaged")
+                raise ValueError("its rows do not match their checksum, so they were changed or damaged")
         state = json.dumps(record["engine"])
         return SavedCheckpoint(_core.Checkpoint(state, columns, wall_s=wall), rows, digests)
     except CheckpointError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, MemoryError) as error:
-        reason = getattr(error, "strerror", None) or error
+        reason = (
+            f"it lacks {error}" if isinstance(error, KeyError) else getattr(error, "strerror", 0) or error
+        )
         raise _refused(
-            f"the checkpoint is damaged: {file}: {reason}; run the scenario again", file
+            f"the checkpoint is damaged or cannot be read: {file} ({reason}); run the scenario again", file
         ) from error
 
 

@@ -163,7 +163,7 @@ class OutputFolder:
         parent = file.parent
         if exists(parent) and not is_real_folder(parent) and parent != self.path:
             raise OutputFolderError(
-                f"cannot write {file}: {parent} is a link or a file, not a folder", path=str(file)
+                f"cannot write {file}: {parent} is {file_kind(parent)}, but must be a folder", path=str(file)
             )
         listed = {} if self.manifest is None else self.manifest.files
         if exists(file) and not (name in listed and is_regular(file)):
@@ -189,7 +189,7 @@ class OutputFolder:
         if not exists(folder):
             folder.mkdir()
         elif not is_real_folder(folder):
-            raise OSError(f"{folder} is a link or a file, but must be a folder")
+            raise OSError(f"{folder} is {file_kind(folder)}, but must be a folder")
         if not set(names) <= set(manifest.checkpoint):
             self.write_manifest(Manifest(manifest.files, names))
             sync_folder(self.path)

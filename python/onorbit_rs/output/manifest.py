@@ -96,13 +96,17 @@ def read_manifest(folder: Path) -> Manifest | None:
             raise ValueError(f"its format is {record['format']!r}, expected {_FORMAT}")
         files = {name: _entry(name, entry) for name, entry in record["files"].items()}
         names = tuple(record["checkpoint"])
-        if not all(isinstance(name, str) and _CHECKPOINT.fullmatch(name) for name in names):
-            raise ValueError("it lists files that are not part of a checkpoint")
+        for name in names:
+            if not (isinstance(name, str) and _CHECKPOINT.fullmatch(name)):
+                raise ValueError(f"it lists {name!r}, which is not part of a checkpoint")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        reason = (
+            f"it lacks {error}" if isinstance(error, KeyError) else getattr(error, "strerror", 0) or error
+        )
         raise ReadError(
-            f"cannot read {file}: {error}; the files of the run cannot be verified: run it "
-            f"again with another folder: onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} "
-            "to read the folder without verification",
+            f"cannot read {file}: {reason}; the files of the run cannot be verified; run it again in another "
+            f"folder with onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} to read the "
+            "folder without verification",
             path=str(file), kind="manifest",
         ) from error  # fmt: skip
     return Manifest(files, names)

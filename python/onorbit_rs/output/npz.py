@@ -43,8 +43,11 @@ def read_arrays(stream: BinaryIO) -> dict[str, Any]:
 def _check_directory(members: list[zipfile.ZipInfo], size: int) -> None:
     """Check that members are uncompressed, have distinct names and are no larger than the file."""
     names = [member.filename for member in members]
-    if len(names) > _MOST_COLUMNS or len(set(names)) < len(names):
-        raise ValueError("it has too many columns or duplicate columns")
+    if len(names) > _MOST_COLUMNS:
+        raise ValueError(f"it has {len(names)} columns; at most {_MOST_COLUMNS} are allowed")
+    if len(set(names)) < len(names):
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"it has duplicate columns ({twice!r})")
     for member in members:
         if not member.filename.endswith(".npy"):
             raise ValueError(f"it contains {member.filename!r}, which is not an array")

@@ -100,7 +100,7 @@ class SavedRun:
             raise _unreadable(file, "summary", error) from error
         except (ValueError, TypeError) as error:
             here = shell_word(self.folder)
-            again = f"run it again: onorbit run {shell_word(self.folder / SCENARIO)} --out {here} --force"
+            again = f"run it again with onorbit run {shell_word(self.folder / SCENARIO)} --out {here} --force"
             raise ReadError(
                 f"cannot read {file}: {error}; {again}", path=str(file), kind="summary"
             ) from error
@@ -154,9 +154,8 @@ class SavedRun:
         if not self._has_warned:
             self._has_warned = True
             warnings.warn(
-                f"{self.folder} has no {MANIFEST}, because it was written by an earlier version; "
-                "changes to its "
-                "files since the run cannot be detected",
+                f"{self.folder} has no {MANIFEST}, because it was removed or an earlier version wrote the "
+                "folder; changes to its files since the run cannot be detected",
                 UserWarning, stacklevel=2,
             )  # fmt: skip
 
@@ -224,8 +223,8 @@ def read_summary(folder: Path) -> dict[str, Any]:
 
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
     "status": (str, "a word"),
-    "certificate_passed": ((bool, type(None)), "true or false"),
-    "simulated_s": ((int, float, type(None)), "a number"),
+    "certificate_passed": ((bool, type(None)), "true, false or null"),
+    "simulated_s": ((int, float, type(None)), "a number or null"),
 }
 """Required types of entries that the output depends on."""
 
@@ -236,7 +235,7 @@ def _checked(summary: Any) -> dict[str, Any]:
     for name, value in summary.items():
         if name in CHECKS or name.startswith(GATE):
             if not isinstance(value, (int, float, type(None))):
-                raise TypeError(f"{name} is {_brief(value)}; expected a number")
+                raise TypeError(f"{name} is {_brief(value)}; expected a number or null")
         elif not isinstance(value, (str, int, float, type(None))):
             raise TypeError(f"{name} is {_brief(value)}; expected a number, text or null")
     for name, (kind, words) in _KINDS.items():

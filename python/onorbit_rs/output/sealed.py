@@ -30,7 +30,7 @@ def unsealed(text: bytes) -> dict[str, Any]:
         if seal is None:
             raise ValueError("it has no checksum")
         if seal != _digest(record):
-            raise ValueError("its checksum does not match its content: it was changed or damaged")
+            raise ValueError("its checksum does not match its content, so it was changed or damaged")
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
     return record

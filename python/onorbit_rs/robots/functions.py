@@ -77,14 +77,15 @@ def safe_power(a: Any, b: Any) -> Any:
 
 def safe_shift(a: Any, b: Any) -> Any:
     """Return ``a << b``; raises ValueError if the result is an integer of more than :data:`MAX_BITS` bits."""
-    _check(not isinstance(b, int) or b <= MAX_BITS, f"a shift by {b} bits", MAX_BITS)
+    _check(not isinstance(b, int) or b <= MAX_BITS, f"a shift by {b} bits", f"{MAX_BITS} bits")
     return operator.lshift(a, b)
 
 
 def remainder_or_text(a: Any, b: Any) -> Any:
     """Return ``a % b``: the remainder, or formatted text of limited width."""
-    if isinstance(a, str) and re.search(r"%[^a-zA-Z%]*(\(|\*|\d{3})", a):
-        raise ValueError(f"{a!r} has a key or a width of 100 or more, which is not allowed")
+    if isinstance(a, str) and (found := re.search(r"%[^a-zA-Z%]*(\(|\*|\d{3})", a)):
+        what = {"(": "a key", "*": "a width or precision of '*'"}.get(found[1], "a number of three digits")
+        raise ValueError(f"the format {a!r} contains {what}, which is not allowed in xacro expressions")
     return operator.mod(a, b)
 
 
@@ -95,7 +96,7 @@ def _range(*ends: int) -> list[int]:
 
 
 def _round(value: Any, digits: int | None = None) -> Any:
-    _check(digits is None or abs(digits) <= 400, f"rounding to {digits} digits", 400)
+    _check(digits is None or abs(digits) <= 400, f"rounding to {digits} digits", "400 digits")
     return round(value, digits)
 
 
@@ -121,7 +122,7 @@ def _tokenize(text: str, separators: str = ",; ", skip_empty: bool = True) -> li
 
 
 def _factorial(n: int) -> int:
-    _check(n <= 170, f"the factorial of {n}", 170)
+    _check(n <= 170, f"the argument {n} of factorial", 170)
     return math.factorial(n)
 
 

@@ -86,7 +86,9 @@ class Files:
         """Return the files that match an include with ``*`` in its last component."""
         folder, last = os.path.split(pattern)
         if any(sign in folder for sign in "*?["):
-            raise ValueError(f"{pattern!r}: '*' is allowed in the names of files only, not of folders")
+            raise ValueError(
+                f"{pattern!r}: *, ? and [ are allowed in the names of files only, not of folders"
+            )
         return [str(found) for found in sorted(Path(folder or ".").glob(last))] if last else []
 
 

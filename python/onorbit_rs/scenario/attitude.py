@@ -35,7 +35,9 @@ class Attitude(Part):
     @classmethod
     def _reject_list(cls, value: Any) -> Any:
         if isinstance(value, list):
-            raise invalid("write either 'quaternion_xyzw: [...]' or 'roll_pitch_yaw: [...]'")
+            raise invalid(
+                "must not be a list; write either 'quaternion_xyzw: [...]' or 'roll_pitch_yaw: [...]'"
+            )
         return value
 
     @model_validator(mode="after")

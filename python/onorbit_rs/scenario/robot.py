@@ -109,8 +109,10 @@ class PlainRobot(Part):
         given = [name for name in self.sources if getattr(self, name) is not None]
         if len(given) != 1:
             raise invalid(f"give exactly one of {self._listed('and')}; given: {', '.join(given) or 'none'}")
-        if self.urdf is None and (self.package_paths or self.xacro_arguments or self.xacro):
-            raise invalid("'package_paths', 'xacro_arguments' and 'xacro' require a 'urdf'")
+        if self.urdf is None:
+            for name in ("package_paths", "xacro_arguments", "xacro"):
+                if getattr(self, name):
+                    raise invalid(f"{name!r} requires a 'urdf'; add one or omit {name!r}")
         if self.rigid_body is not None and self.links:
             raise invalid("'links' applies only to robots from files; give these values in 'rigid_body'")
         return self
@@ -152,7 +154,10 @@ class PlainRobot(Part):
 
 def _printable(value: Any) -> Any:
     if isinstance(value, str) and not value.isprintable():
-        raise invalid(f"{shortened(value)} contains characters that are not allowed in names")
+        raise invalid(
+            f"{shortened(value)} contains characters that are not allowed in names, since "
+            "they cannot be printed"
+        )
     return value
 
 

@@ -67,7 +67,10 @@ class SimulationSettings(Part):
         if self.time_step > self.duration:
             raise invalid(f"time_step {self.time_step:g} s exceeds the duration of {self.duration:g} s")
         if self.duration / self.time_step > MAX_STEPS:
-            raise invalid(f"duration / time_step exceeds {MAX_STEPS:.0e} steps; give a longer 'time_step'")
+            raise invalid(
+                f"a duration of {self.duration:g} s with a time_step of {self.time_step:g} s requires more "
+                f"than {MAX_STEPS:.0e} steps; give a longer 'time_step'"
+            )
         if self.steps / self.record_every > MAX_ROWS:
             raise invalid(
                 f"the trace would have more than {MAX_ROWS} rows; record less often with 'record_every'"

@@ -88,8 +88,8 @@ class _NodeReader:
             raise _at(
                 self.file,
                 line,
-                f"the file has more than {MAX_NODES} entries, including those of aliases; a scenario "
-                "must be smaller",
+                f"the file has more than {MAX_NODES} entries, including those of aliases; remove "
+                "some of them",
             )
         if isinstance(node, yaml.MappingNode):
             return self._mapping(loader, node, at)
@@ -107,7 +107,8 @@ class _NodeReader:
             line = key_node.start_mark.line + 1
             key = loader.construct_object(key_node) if isinstance(key_node, yaml.ScalarNode) else None
             if not isinstance(key, str):
-                what = "a list or mapping" if key is None else f"{key!r}: put it in quotes"
+                is_scalar = isinstance(key_node, yaml.ScalarNode)
+                what = f"{key_node.value or 'null'}; put it in quotes" if is_scalar else "a list or mapping"
                 raise _at(self.file, line, f"a key must be text, not {what}")
             if key == "<<":
                 raise _at(
@@ -127,17 +128,17 @@ class _NodeReader:
 def _read_text(path: Path) -> str:
     raw = read_head(path, MAX_BYTES + 1, "scenario")
     if len(raw) > MAX_BYTES:
-        raise _at(path, None, f"the file is larger than {MAX_BYTES} bytes, the limit for a scenario")
+        raise _at(path, None, f"the file is larger than {MAX_BYTES} bytes, the limit for a YAML file")
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = raw.count(b"\n", 0, error.start) + 1
-        raise _at(path, line, "the file is not UTF-8 text; a scenario must be a YAML file") from None
+        raise _at(path, line, "the file is not UTF-8 text; give a YAML file saved as UTF-8") from None
     if "\0" in text:
         raise _at(
             path,
             text.count("\n", 0, text.index("\0")) + 1,
-            "the file is binary; a scenario must be a YAML file",
+            "the file contains a null character, so it is binary; give a YAML file",
         )
     return text
 

@@ -135,7 +135,7 @@ class LiveView:
         if self._is_lost:
             return
         self._is_lost = True
-        warnings.warn(f"the viewer was closed; the run continues without it: {error}", stacklevel=2)
+        warnings.warn(f"the viewer was closed or failed; the run continues without it: {error}", stacklevel=2)
 
 
 def open_live(setting: Setting, duration_s: float) -> LiveView | None:

@@ -19,7 +19,9 @@ def check_control(scenario: Scenario) -> None:
     """Raise an error for inconsistent controllers; set the default reference, a constant pose or position."""
     if scenario.controllers is not None:
         if scenario.controller is not None:
-            raise inconsistent("controllers", "give either one 'controller' or a list of 'controllers'")
+            raise inconsistent(
+                "controllers", "give either one 'controller' or a list of 'controllers', not both"
+            )
         if scenario.reference is not None:
             raise inconsistent(
                 "reference", "'controllers' each have their own 'reference'; move it into one of them"
@@ -52,7 +54,9 @@ def _check_names(controls: list[Any]) -> None:
             hint = did_you_mean(control.after, others)
             raise inconsistent((*at, "after"), f"no other controller is named {control.after!r}{hint}")
         if control.start != 0.0:
-            raise inconsistent((*at, "start"), "give either 'start' (a time) or 'after' (another controller)")
+            raise inconsistent(
+                (*at, "start"), "give either 'start' (a time) or 'after' (another controller), not both"
+            )
 
 
 def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at: Location) -> Any:

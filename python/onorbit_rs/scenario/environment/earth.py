@@ -43,11 +43,15 @@ class EarthPart(Part):
 
     @model_validator(mode="after")
     def _is_one_rotation(self) -> EarthPart:
-        is_uniform, iau = self.rotation == "about_z", (self.ut1_minus_utc, self.polar_motion, self.eop)
-        if is_uniform and any(given is not None for given in iau):
-            raise invalid("ut1_minus_utc, polar_motion and eop apply only to rotation: iau2006; omit them")
-        if not is_uniform and (self.angle is not None or self.rate is not None):
-            raise invalid("angle and rate apply only to rotation: about_z; omit them")
+        is_uniform = self.rotation == "about_z"
+        other, keys = (
+            ("iau2006", ("ut1_minus_utc", "polar_motion", "eop"))
+            if is_uniform
+            else ("about_z", ("angle", "rate"))
+        )
+        for key in keys:
+            if getattr(self, key) is not None:
+                raise invalid(f"{key} applies only to rotation: {other}; omit {key}, or set that rotation")
         if self.eop is not None and (self.ut1_minus_utc is not None or self.polar_motion is not None):
             raise invalid("give eop, or ut1_minus_utc and polar_motion, not both")
         return self

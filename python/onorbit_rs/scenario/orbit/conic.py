@@ -79,14 +79,16 @@ class ConicOrbit(Part):
             if self.position is None or self.velocity is None:
                 raise invalid("a state requires both 'position' and 'velocity'")
             if others:
-                raise invalid(f"give a state or elements, not both: {', '.join(others)}")
+                raise invalid(
+                    f"'position' and 'velocity' define the orbit; omit {', '.join(map(repr, others))}"
+                )
             return self
         sizes = [name for name in SIZES if name in given]
         if len(sizes) != 1:
             raise invalid(f"give exactly one of {_listed(SIZES)}; given: {', '.join(sizes) or 'none'}")
         phases = [name for name in PHASES if name in given]
         if len(phases) > 1:
-            raise invalid(f"give one of {_listed(PHASES)}; given: {', '.join(phases)}")
+            raise invalid(f"give at most one of {_listed(PHASES)}; given: {', '.join(phases)}")
         self._check_signs()
         self._set_defaults(has_phase=bool(phases))
         return self
@@ -125,8 +127,10 @@ class KeplerOrbit(ConicOrbit):
     def _has_secular_j2(self) -> KeplerOrbit:
         given = [name for name in SECULAR[1:] if getattr(self, name) is not None]
         if given and not self.secular_j2:
+            verb, what = ("has", "it") if len(given) == 1 else ("have", "them")
             raise invalid(
-                f"{_listed(tuple(given))} has no effect without 'secular_j2: true'; add that, or omit it"
+                f"{' and '.join(map(repr, given))} {verb} no effect without 'secular_j2: true'; add that, or "
+                f"omit {what}"
             )
         return self
 

@@ -50,9 +50,11 @@ class Goal(Part):
     @model_validator(mode="after")
     def _is_given_once(self) -> Goal:
         if self.displacement is not None and self.position is not None:
-            raise invalid("give either 'displacement' (from the start) or 'position' (in the frame)")
+            raise invalid(
+                "give either 'displacement' (from the start) or 'position' (in the frame), not both"
+            )
         if self.turn is not None and self.attitude is not None:
-            raise invalid("give either 'turn' (from the start) or 'attitude' (in the frame)")
+            raise invalid("give either 'turn' (from the start) or 'attitude' (in the frame), not both")
         return self
 
     def pose(self, start: Floats) -> Floats:

@@ -84,7 +84,7 @@ def recorded(source: Source) -> Recorded:
     if not isinstance(source, (str, os.PathLike, Mapping, Scenario)):
         kind = type(source).__name__
         raise DtypeError(
-            f"a {kind} cannot be compared; give the folder of a run, a scenario, or a Run",
+            f"a value of type {kind} cannot be compared; give the folder of a run, a scenario, or a Run",
             name="source", got=kind, expected="folder, scenario or Run",
         )  # fmt: skip
     return _of_run(run(source))

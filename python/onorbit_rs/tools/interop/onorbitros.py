@@ -73,7 +73,11 @@ def convert(
     files = [Path(path) for path in paths]
     robots = [file for file in files if file.suffix.lower() in (".urdf", ".xacro")]
     if not files or len(robots) > 1:
-        what = "no file was given" if not files else f"two robots are given: {robots[0]} and {robots[1]}"
+        what = (
+            f"{len(robots)} robots are given ({', '.join(map(str, robots))}); give at most one"
+            if files
+            else "no file is given; give the YAML files of OnOrbitROS"
+        )
         raise InputError(what, name="paths", got=len(files), expected="YAML files and at most one robot")
     notes: list[Note] = []
     scenario: dict[str, Any] = {"robot": dict(PLACEHOLDER)}

@@ -24,10 +24,10 @@ def read_controllers(source: Source, wanted: str | None) -> None:
     parts = {name: part for name, part in source.data.items() if isinstance(part, dict)}
     known = [name for name, part in parts.items() if is_of_task(part) or is_pid(part)]
     if not known:
-        kinds = ", ".join(sorted({str(part.get("type")) for part in parts.values()}))
+        kinds = ", ".join(sorted({str(part["type"]) for part in parts.values() if "type" in part})) or "none"
         raise source.fail(
             next(iter(source.data)), "neither a controller with an end_effector_link nor one of ROS Control "
-            f"that commands efforts with a PID; found {kinds}",
+            f"that commands efforts with a PID (the types found are {kinds})",
         )  # fmt: skip
     if wanted is not None and wanted not in known:
         raise source.fail(known[0], f"no controller is named {wanted!r}{did_you_mean(wanted, known)}")

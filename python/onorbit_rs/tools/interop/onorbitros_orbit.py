@@ -152,7 +152,7 @@ def _date(source: Source, name: str) -> datetime | None:
     values = {}
     for part, value in parts.items():
         if isinstance(value, bool) or not isinstance(value, int) or abs(value) > 10**6:
-            raise source.fail(name, f"{part} must be an integer, not {value!r}")
+            raise source.fail(name, f"{part} must be an integer from -1000000 to 1000000, not {value!r}")
         values[part] = value
     year = values["year"] + (0 if values["year"] >= 1000 else 1900)  # struct tm counts from 1900
     month = year * 12 + values["mon"]
@@ -161,7 +161,8 @@ def _date(source: Source, name: str) -> datetime | None:
         clock = timedelta(hours=values["hour"], minutes=values["min"], seconds=values["sec"])
         return first + timedelta(days=values["mday"] - 1) + clock
     except (ValueError, OverflowError):
-        raise source.fail(name, f"the date does not exist: year {values['year']}") from None
+        given = ", ".join(f"{part} {values[part]}" for part in _DATE_PARTS)
+        raise source.fail(name, f"the date ({given}) is not within the years 1 to 9999") from None
 
 
 def read_fixed_pose(source: Source) -> None:
@@ -174,7 +175,7 @@ def read_fixed_pose(source: Source) -> None:
     quat = [source.number(name, float(name.endswith("w"))) for name in names]
     norm = math.hypot(*quat)
     if abs(norm - 1.0) > 1e-3:
-        raise source.fail("orientation_w", f"the quaternion has norm {norm:.6g}; it must be 1")
+        raise source.fail("orientation_w", f"the quaternion has norm {norm:.6g}; it must be 1 within 1e-3")
     source.put(("orbit", "kind"), "fixed_frame", "kind")
     source.put(("orbit", "position"), position, "pos_x")
     source.put(("orbit", "attitude"), {"quaternion_xyzw": [part / norm for part in quat]}, "orientation_w")

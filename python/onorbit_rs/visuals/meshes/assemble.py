@@ -55,10 +55,9 @@ def make_part(
     else:
         directions = np.asarray(normals, dtype=np.float32).reshape(-1, 3)
     if len(directions) != len(points) or (places is not None and len(places) != len(points)):
-        uv = "no" if places is None else len(places)
+        uv = "" if places is None else f" and {len(places)} texture coordinates"
         raise ValueError(
-            f"it has {len(points)} vertices, but {len(directions)} normals and {uv} texture coordinates; "
-            "the numbers must be equal"
+            f"it has {len(points)} vertices, but {len(directions)} normals{uv}; the numbers must be equal"
         )
     if not np.isfinite(points).all():
         raise ValueError("it has vertices that are not finite; export it again")

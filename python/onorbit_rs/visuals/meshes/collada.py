@@ -38,7 +38,7 @@ def read_collada(content: bytes, companions: Companions) -> list[Part]:
         raise ValueError("it has no <visual_scene>; export it again with its objects")
     known: dict[int, int] = {}
     if sum(_count(node, known) for node in scene.nodes) > MOST_NODES:
-        raise ValueError(f"its scene has more than {MOST_NODES} nodes")
+        raise ValueError(f"its scene has more than {MOST_NODES} nodes; simplify it")
     meter = document.assetInfo.unitmeter or 1.0
     budget, parts = Budget(), []
     for geometry in scene.objects("geometry"):
