@@ -1,8 +1,8 @@
 //! Relative orbital elements of a deputy about a chief.
 //!
-//! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`, `δi = (i_d
-//! - i, (Ω_d - Ω) sin i)` with `u = M + ω`. These elements are regular for circular orbits and singular for an
-//!   equatorial chief.
+//! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`,
+//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`. These elements are regular for circular orbits and singular
+//! for an equatorial chief.
 //!
 //! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, thesis, TU Delft 2010.
 
