@@ -165,7 +165,10 @@ def test_a_full_device_at_stdout_is_reported_in_one_line() -> None:
         done = subprocess.run(
             command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False
         )
-    assert (done.returncode, done.stderr) == (2, "onorbit: cannot write: No space left on device\n")
+    assert (done.returncode, done.stderr) == (
+        2,
+        "onorbit: cannot write the output: No space left on device\n",
+    )
 
 
 def test_invalid_arguments_are_reported_in_one_line(tmp_path: Path) -> None:

@@ -98,7 +98,7 @@ def main(arguments: list[str] | None = None) -> None:
         if error.filename is not None:  # the error of a file
             fail(f"cannot use {error.filename}: {error.strerror or error}", 2)
         discard_stdout()  # the error of stdout, such as a full disk
-        fail(f"cannot write: {error.strerror or error}", 2)
+        fail(f"cannot write the output: {error.strerror or error}", 2)
     except Exception as error:
         if not hasattr(error, "trace"):
             raise

@@ -123,7 +123,7 @@ def _layout(model: Model, joints: Any, unbounded: Sequence[str]) -> tuple[Any, l
     unknown = [name for name in unbounded if name not in names]
     if unknown:
         raise InputError(
-            f"unbounded contains {unknown[0]!r}, which is not a joint of the robot",
+            f"unbounded contains {unknown[0]!r}, which is not a moving joint of the robot",
             name="unbounded",
             got=unknown,
             expected=names,

@@ -41,7 +41,10 @@ def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
         raise ShapeError(message, name=name, expected=shape, got=array.shape)
     if not np.isfinite(array).all():
         raise InputError(
-            f"{name} contains NaN or infinity", name=name, got="not finite", expected="finite numbers"
+            f"{name} contains NaN or infinity; all its numbers must be finite",
+            name=name,
+            got="not finite",
+            expected="finite numbers",
         )
     return array
 

@@ -65,7 +65,10 @@ class SimulationSettings(Part):
     @model_validator(mode="after")
     def _has_valid_steps(self) -> SimulationSettings:
         if self.time_step > self.duration:
-            raise invalid(f"time_step {self.time_step:g} s exceeds the duration of {self.duration:g} s")
+            raise invalid(
+                f"time_step {self.time_step:g} s exceeds the duration of {self.duration:g} s; give a shorter "
+                "'time_step' or a longer 'duration'"
+            )
         if self.duration / self.time_step > MAX_STEPS:
             raise invalid(
                 f"a duration of {self.duration:g} s with a time_step of {self.time_step:g} s requires more "
