@@ -33,8 +33,9 @@ pub enum InputError {
     )]
     QuaternionNorm { state: usize, norm: f64 },
     #[error(
-        "the mass matrix of state {state} is singular: in this configuration a joint moves no inertia; give \
-         the links around it an inertia or the joint a rotor_inertia (or the values of the state are so large that their products overflow)"
+        "the mass matrix of state {state} is singular: in this configuration some motion of the joints moves no \
+         inertia; give the massless links between these joints an inertia, or the joints a rotor_inertia. If the state \
+         contains very large values, their products may have overflowed instead; check their units"
     )]
     Singular { state: usize },
     #[error("the values of state {state} are so large that their products overflow; check their units")]
