@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Number of states per task. It is independent of the number of threads, so that the results are as well.
+/// Number of states per task: a constant, so that the results do not depend on the number of threads.
 const CHUNK: usize = 128;
 
 /// Evaluator of kernels, which keeps the workspace of one model for single states between calls.

@@ -8,7 +8,7 @@ use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 /// Number of states per task.
 const CHUNK: usize = 4096;
 
-/// Computes positions and velocities (N, 3) on Kepler ellipses, m and m/s.
+/// Computes positions (m) and velocities (m/s) on Kepler ellipses, each (N, 3).
 ///
 /// `elements`: semi-major axis (m), eccentricity, inclination, right ascension of the node, argument of periapsis, mean
 /// anomaly at time zero (rad), time (s). Each has one value for all states or one per state.

@@ -74,8 +74,8 @@ impl Kernel {
         }
     }
 
-    /// Returns true if the kernel divides by the inertia at the joints; its first output is then not finite
-    /// for a singular mass matrix.
+    /// Returns true if the kernel divides by the inertia at the joints, so that its first output is not finite when the
+    /// mass matrix is singular.
     pub(super) fn divides(self) -> bool {
         matches!(self, Self::ForwardDynamics | Self::ForwardDynamicsDerivatives)
     }

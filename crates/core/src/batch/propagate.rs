@@ -20,8 +20,8 @@ const INSTANTS: usize = 4096;
 /// Number of integration steps of a numerical orbit between two checks of the stop flag.
 const STEPS: usize = 16;
 
-/// Computes positions and velocities of `orbits`, (N, T, 3), row after row, m and m/s, each in the axes of
-/// its orbit.
+/// Computes positions (m) and velocities (m/s) of `orbits`, each (N, T, 3), row-major. The states of every orbit are in
+/// the axes of that orbit.
 ///
 /// The results are bit-identical for any number of threads.
 ///

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// Control of the joints in a rollout.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum RolloutControl<'a> {
-    /// No torques at the joints.
+    /// No commanded torques; damping and friction of the joints still act.
     #[default]
     Passive,
     /// Given torques, `(B, steps, n)`, N m.

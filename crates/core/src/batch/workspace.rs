@@ -13,8 +13,7 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(super) struct Workspace<S> {
     kernel_data: KernelData<S>,
-    /// Mass, centre of mass and inertia of the base of the robot for which `kernel_data` was allocated, where they are
-    /// stored only once.
+    /// Mass, centre of mass and inertia of the robot's base, which `kernel_data` stores only when it is allocated.
     base: (f64, Vec3<f64>, Sym3<f64>),
     inputs: [Vec<S>; 3],
     outputs: [Vec<S>; OUTPUTS],
@@ -115,8 +114,8 @@ fn is_finite<S: Real>(numbers: &[S]) -> bool {
     is_finite_times(S::of(1.0), numbers)
 }
 
-/// Returns true if all numbers are finite, and clears `cannot_overflow` if one of them is not below 1e58, up to which
-/// no product in a kernel overflows.
+/// Returns true if all numbers are finite. Clears `cannot_overflow` if the magnitude of one exceeds 1.8e58; no product
+/// of smaller numbers in a kernel overflows.
 #[inline(always)]
 fn all_finite<S: Real>(numbers: &[S], cannot_overflow: &mut bool) -> bool {
     let is_small = is_finite_times(S::of(1e250), numbers);

@@ -37,7 +37,7 @@ impl Earth {
         })
     }
 
-    /// Computes the angular velocities of `F` in `I` (T, 3), axes of `I`, rad/s.
+    /// Computes the angular velocities (T, 3) of `F` with respect to `I`, axes of `I`, rad/s.
     ///
     /// # Errors
     /// The errors of [`Earth::covers`].
@@ -70,7 +70,8 @@ impl Earth {
         fill_rows(times, fixed, |k, t| Ok((self.checked_rotation(t)? * row(positions, k)).into()))
     }
 
-    /// Computes latitude, longitude (rad) and altitude (m) on WGS84, (T, 3), of positions (T, 3), m, axes of `I`.
+    /// Computes rows of latitude (rad), longitude (rad) and altitude (m) on WGS84, (T, 3), from positions in `I`,
+    /// (T, 3), m.
     ///
     /// # Errors
     /// The errors of [`Earth::covers`] and [`Geodetic::of`].

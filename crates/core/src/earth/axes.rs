@@ -6,7 +6,8 @@ pub enum Axes {
     /// Geocentric celestial reference frame; for other planets any axes that do not rotate.
     #[default]
     Gcrf,
-    /// True equator, mean equinox of date (TEME), used by SGP4; 0.3° from GCRF in 2024 and growing.
+    /// True equator, mean equinox of date (TEME), used by SGP4; rotated from GCRF by 0.3° in 2024, and further every
+    /// year.
     Teme,
 }
 

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Intervals that are allocated together.
+/// Number of intervals that are allocated together.
 const BLOCK: usize = 32;
 
 type Coefficients<const N: usize> = [Vector3<f64>; N];

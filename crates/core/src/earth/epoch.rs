@@ -4,7 +4,7 @@ use hifitime::{Duration, Epoch as Instant, TimeScale, Unit};
 
 use super::error::EarthError;
 
-/// Seconds of a day.
+/// Length of a day, s.
 pub(super) const DAY: f64 = 86_400.0;
 
 const DAY_NS: i64 = 86_400_000_000_000;
@@ -71,8 +71,8 @@ impl Epoch {
         Self { tai: nanoseconds as i64 } // fits in i64, because years are limited
     }
 
-    /// Returns the epoch `seconds` of UTC after the midnight `day` days from 2000-01-01; leap seconds are counted from
-    /// 1972 on.
+    /// Returns the epoch from UTC, given as days from 2000-01-01 and seconds since midnight; leap seconds are counted
+    /// from 1972 on.
     pub(crate) fn of_utc(day: i64, seconds: f64) -> Self {
         let midnight = Instant::from_gregorian_utc_at_midnight(2000, 1, 1);
         Self::of(midnight + Unit::Day * day + Unit::Second * seconds)

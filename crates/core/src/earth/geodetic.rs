@@ -21,7 +21,7 @@ pub const WGS84: Ellipsoid = Ellipsoid { radius: 6_378_137.0, flattening: 1.0 / 
 /// Latitude, longitude and altitude on an ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geodetic {
-    /// Angle between the ellipsoid's normal and the equator, positive in the north, rad.
+    /// Angle between the ellipsoid's normal and the equatorial plane, positive in the north, rad.
     pub latitude: f64,
     /// Longitude east of the zero meridian, -π to π, rad; zero on the axis.
     pub longitude: f64,
@@ -29,8 +29,8 @@ pub struct Geodetic {
     pub altitude: f64,
 }
 
-/// Smallest distance from the centre, m; closer than `a e²` = 43 km, normals of the ellipsoid intersect and latitudes
-/// are not unique.
+/// Smallest accepted distance from the centre, m: within `a e²` = 43 km, normals of the ellipsoid intersect and
+/// latitudes are not unique.
 const NEAREST: f64 = 50e3;
 
 impl Geodetic {

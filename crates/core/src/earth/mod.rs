@@ -114,7 +114,7 @@ impl Earth {
         }
     }
 
-    /// Returns time zero of the run.
+    /// Returns the epoch, which is time zero of the run; `None` if none was given.
     pub fn epoch(&self) -> Option<Epoch> {
         self.sun_moon.as_ref().map(|sun_moon| sun_moon.epoch)
     }
@@ -163,7 +163,7 @@ impl Earth {
         }
     }
 
-    /// Returns the angular velocity of `F` in `I`, axes of `I`, rad/s.
+    /// Returns the angular velocity of `F` with respect to `I`, axes of `I`, rad/s.
     pub fn angular_velocity(&self, t: f64) -> Vector3<f64> {
         match &self.rotation {
             Rotation::AboutZ { rate, .. } => Vector3::z() * *rate,

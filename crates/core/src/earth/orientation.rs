@@ -78,7 +78,8 @@ impl Orientation {
 
     /// Returns the rotation from `I` to `F` components: `W R₃(θ - s) Mᵀ` from GCRF, `W R₃(θ₈₂)` from TEME.
     ///
-    /// `Mᵀ R₃(s)` are the celestial intermediate axes, with the pole `X, Y`; `θ₈₂` is the mean sidereal time of 1982.
+    /// `W` is the polar motion; the rows of `R₃(-s) Mᵀ` are the celestial intermediate axes, with the pole `X, Y`;
+    /// `θ₈₂` is the mean sidereal time of 1982.
     ///
     /// Source: IERS Conventions (2010), eq. 5.1 and 5.10; Vallado and others, AIAA 2006-6753, for TEME.
     pub(super) fn rot_fi(&self, t: f64) -> Matrix3<f64> {

@@ -134,7 +134,7 @@ impl Parameters {
     }
 }
 
-/// Returns the rows before and after `t` and the fraction of their interval at `t`, clamped to 0 to 1.
+/// Returns the rows before and after `t`, and the position of `t` between them: 0 to 1, clamped.
 fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     let after = rows.partition_point(|row| row.time <= t).clamp(1, rows.len() - 1);
     let (a, b) = (&rows[after - 1], &rows[after]);

@@ -57,7 +57,7 @@ fn nutation(t: f64, arguments: &[f64; 5]) -> [f64; 2] {
 
 /// Returns the coordinates of the celestial intermediate pole in GCRF and the CIO locator: `X, Y, s`.
 ///
-/// `X` and `Y` are the last row of `R₁(-ε_A - Δε) R₃(-ψ̄ - Δψ) R₁(φ̄) R₃(γ̄)`.
+/// `X` and `Y` are the first two elements of the last row of `R₁(-ε_A - Δε) R₃(-ψ̄ - Δψ) R₁(φ̄) R₃(γ̄)`.
 ///
 /// Source: IERS Conventions (2010), section 5.6.4 and table 5.2d; terms of `s` above 10 µas.
 pub(super) fn pole(t: f64) -> Vector3<f64> {

@@ -9,7 +9,7 @@ pub(super) struct Series {
 }
 
 impl Series {
-    /// Returns the sum at `t` centuries for these arguments, rad.
+    /// Returns the sum at `t` centuries, in the unit of the coefficients; `arguments` are in rad.
     pub(super) fn sum(&self, t: f64, arguments: &[f64; 8]) -> f64 {
         // terms with l' decrease with the eccentricity of the Earth's orbit (Meeus, Astronomical Algorithms, ch. 47)
         let decay = 1.0 - 0.002_516 * t;

@@ -4,7 +4,7 @@ use super::{Orbit, OrbitError, PathFrame, StateRows};
 
 /// Computes positions and velocities at many instants, axes of `I`.
 ///
-/// `times` (T,) s; `positions` and `velocities` (T, 3), row-major, m and m/s.
+/// `times` (T,) are in s, `positions` (T, 3) in m and `velocities` (T, 3) in m/s, row-major.
 ///
 /// # Errors
 /// [`OrbitError::WrongLength`] if an output does not hold 3 T numbers; otherwise the first error of
@@ -20,8 +20,8 @@ pub fn states(
 
 /// Computes the local orbital frames (Hill) at many instants.
 ///
-/// `times` (T,) s; `rotations` receives `rot_il` (T, 3, 3), row-major, and `rates` the angular velocity of
-/// the frame in its own axes (T, 3), rad/s.
+/// `times` (T,) are in s; `rotations` receives `rot_il` (T, 3, 3), row-major, and `rates` (T, 3) the angular velocities
+/// of the frame in its own axes, rad/s.
 ///
 /// # Errors
 /// [`OrbitError::WrongLength`]; otherwise the first error of [`Orbit::lvlh`].

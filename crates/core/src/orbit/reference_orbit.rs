@@ -11,8 +11,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the gravitational parameter of the planet, m³/s²; `None` without a planet.
     fn mu(&self) -> Option<f64>;
 
-    /// Returns the gravity field if the orbit is in free fall in this field and no other force; otherwise
-    /// `None`.
+    /// Returns the gravity field if the orbit is free fall under this field alone; otherwise `None`.
     fn gravity(&self) -> Option<&Arc<Gravity>> {
         None
     }
@@ -23,8 +22,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// [`OrbitError`] if the orbit is not defined at `t`, or `t` is not finite.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
 
-    /// Returns the states at two instants if the kind of orbit can compute both at little more than the cost
-    /// of one, with the same bits; otherwise `None`.
+    /// Returns the states at two instants, bit-identical to [`Orbit::state`], if the kind of orbit can compute both at
+    /// little more than the cost of one; otherwise `None`.
     fn two_states(&self, _: [f64; 2]) -> Option<[OrbitState; 2]> {
         None
     }
@@ -71,8 +70,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         "derivative of the position"
     }
 
-    /// Returns the time derivative of the position at `t`, m/s. Equals `state.velocity` unless the orbit
-    /// model reports a velocity that is not its derivative (SGP4).
+    /// Returns the time derivative of the position at `t`, m/s. Equals `state.velocity` unless the velocity reported by
+    /// the orbit model is not the derivative of the position (SGP4).
     ///
     /// # Errors
     /// The errors of [`Orbit::state`].

@@ -30,8 +30,8 @@ fn x_minus_sin<S: Real>(x: S, sin: S) -> S {
     S::select(S::less(x.abs(), S::of(1.0)), cubic_tail(x, 1.0), x - sin)
 }
 
-/// Returns `∛x` to 1e-9 for `x > 0`: starts from a third of the exponent, then Newton steps for `1/∛x`
-/// without division.
+/// Returns `∛x` to 1e-9 for `x > 0`, by Newton steps for `1/∛x` without division; the first guess takes a third of the
+/// exponent.
 #[inline(always)]
 fn cube_root<S: Real>(x: S) -> S {
     const HIGH: u64 = 0x553e_f0ff; // 4/3 of the exponent bias, with the error balanced over three octaves
@@ -162,7 +162,7 @@ fn solve_any_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
 
 /// Solves `M = e sinh H - H` for any `M` and `e > 1`.
 ///
-/// Newton's method from above: `f` is convex for `H > 0`, so the iterates decrease monotonically.
+/// Uses Newton's method from above: `e sinh H - H` is convex for `H > 0`, so the iterates decrease monotonically.
 pub(super) fn solve_hyperbola(e: f64, e_minus_one: f64, mean: f64) -> HalfAnomaly {
     let m = mean.abs();
     // bounds of H: (e - 1) H + e H³/6 ≤ M, and sinh H = (M + H)/e with that bound inserted
@@ -192,7 +192,7 @@ pub(super) fn solve_parabola(b: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the residual divided by the effect of rounding `M` and `E`; 8 are accepted.
+    /// Returns the residual divided by the effect of rounding `M` and `E`; values up to 8 are accepted.
     fn residual_in_roundings(e: f64, one_minus_e: f64, m: f64) -> f64 {
         let half = solve_ellipse(e, one_minus_e, m);
         let eccentric = 2.0 * half.sin.atan2(half.cos);

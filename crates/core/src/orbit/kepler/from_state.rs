@@ -10,7 +10,7 @@ use crate::orbit::error::{finite, positive};
 
 /// Sine of the angle between position and velocity below which the orbital plane is undefined. On ellipses with `1 - e`
 /// above 1e-16 the sine never falls below this limit, because its minimum is `√(1 - e²)`. On a hyperbola it reaches the
-/// limit at a distance of 1e10 `b`.
+/// limit at a distance of 1e10 semi-minor axes.
 const SMALLEST_SINE: f64 = 1e-10;
 
 impl Kepler {

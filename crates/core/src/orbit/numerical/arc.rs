@@ -31,7 +31,7 @@ pub(super) struct Arcs {
 #[derive(Debug)]
 struct Half {
     steps: Vec<Step>,
-    /// Start and length of the next step, s.
+    /// Start of the next step, and its length, s.
     next: (Start, f64),
     /// Error that prevents a further step.
     ended: Option<OrbitError>,

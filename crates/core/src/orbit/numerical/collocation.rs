@@ -9,7 +9,7 @@
 use nalgebra::Vector3;
 use std::sync::LazyLock;
 
-/// Nodes of a step.
+/// Number of nodes of a step.
 pub(super) const NODES: usize = 9;
 
 /// Vectors, one per node or per Legendre polynomial.
@@ -20,7 +20,7 @@ pub(super) struct Rule {
     pub(super) nodes: [f64; NODES],
     /// Double integral, up to node `i`, of the polynomial that is one at node `j` and zero at the others.
     pub(super) twice: [[f64; NODES]; NODES],
-    /// Legendre coefficient `k` of that polynomial.
+    /// Legendre coefficient `k` of the polynomial that is one at node `j` and zero at the others.
     pub(super) spectrum: [[f64; NODES]; NODES],
 }
 

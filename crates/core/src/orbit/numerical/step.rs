@@ -9,7 +9,8 @@ const MOST_SWEEPS: usize = 16;
 /// The iteration has converged when the node positions change by less than this fraction of the distance.
 const SETTLED: f64 = 1e-15;
 
-/// State at the start of a step; each sum is stored with its rounding error (compensated summation).
+/// State at the start of a step: s, m and m/s. Position and velocity are accumulated over the steps by compensated
+/// summation and stored as `[sum, rounding error]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
     pub(super) time: f64,
@@ -31,9 +32,8 @@ impl Start {
         Self { time, position: [position, Vector3::zeros()], velocity: [velocity, Vector3::zeros()] }
     }
 
-    /// Computes the step of `length` s from this state, and the estimated error of its interior, m. Returns
-    /// `None` if the iteration does not converge because the step is too long. `before` is the preceding
-    /// step.
+    /// Computes the step of `length` s from this state, and the estimated error of the positions within it, m. Returns
+    /// `None` if the iteration does not converge because the step is too long. `before` is the preceding step.
     pub(super) fn step(
         &self,
         length: f64,

@@ -11,7 +11,7 @@ use crate::orbit::{Orbit, OrbitError};
 use nalgebra::{Vector3, Vector6};
 use std::f64::consts::{PI, TAU};
 
-/// `sin i` of the chief below which its node is undefined.
+/// `sin i` of the chief below which its node is treated as undefined.
 const EQUATORIAL: f64 = 1e-6;
 
 /// Orbital elements of one satellite that are regular for circular orbits.
@@ -43,8 +43,8 @@ impl Regular {
 }
 
 /// Returns `(δa, δλ, δex, δey, δix, δiy)` of a deputy at `deputy` about a chief at `chief`: positions (m) and
-/// velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad; multiplied by `a` they are lengths
-/// in m.
+/// velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad; multiplied by the chief's `a` they
+/// are lengths in m.
 ///
 /// # Errors
 /// [`OrbitError::NotClosed`], [`OrbitError::Equatorial`], and the errors of [`Kepler::from_state`].
@@ -62,7 +62,7 @@ pub fn relative_elements(
     Ok(Vector6::new((d.a - c.a) / c.a, along, d.e[0] - c.e[0], d.e[1] - c.e[1], d.i - c.i, node * sin))
 }
 
-/// Returns position (m) and velocity (m/s) of a deputy with these relative elements, the inverse of
+/// Returns position (m) and velocity (m/s) in `I` of a deputy with these relative elements: the inverse of
 /// [`relative_elements`].
 ///
 /// # Errors
@@ -92,7 +92,7 @@ pub fn deputy_state(
     Ok([r, v])
 }
 
-/// Computes [`relative_elements`] for many pairs: positions and velocities are (B, 3) each, `out` is (B, 6).
+/// Computes [`relative_elements`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `out` is (B, 6).
 ///
 /// # Errors
 /// The errors of [`relative_elements`]; [`OrbitError::WrongLength`].
@@ -116,7 +116,7 @@ pub fn relative_elements_rows(
     Ok(())
 }
 
-/// Computes [`deputy_state`] for many pairs: positions and velocities are (B, 3) each, `elements` is (B, 6).
+/// Computes [`deputy_state`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `elements` is (B, 6).
 ///
 /// # Errors
 /// The errors of [`deputy_state`]; [`OrbitError::WrongLength`].

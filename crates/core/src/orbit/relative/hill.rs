@@ -33,7 +33,7 @@ pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {
     Ok(transition)
 }
 
-/// Computes the transition matrices for many times: `out` (T, 6, 6), row-major.
+/// Computes the transition matrices for many `times` (T,), s; `out` is (T, 6, 6), row-major.
 ///
 /// # Errors
 /// The errors of [`hill_transition`], and [`OrbitError::WrongLength`].
@@ -54,8 +54,8 @@ const SINGULAR: f64 = 1e-9;
 /// `v = -Φ_rv⁻¹ Φ_rr r`; the second impulse cancels the final velocity, which [`hill_transition`] gives.
 ///
 /// # Errors
-/// The errors of [`hill_transition`]; [`OrbitError::NoIntercept`] at times when x or z return to their initial
-/// values for any velocity, such as half a period.
+/// The errors of [`hill_transition`]; [`OrbitError::NoIntercept`] at times when part of the position does not depend
+/// on the velocity, such as z after half a period.
 pub fn intercept_velocity(n: f64, r: &Vector3<f64>, t: f64) -> Result<Vector3<f64>, OrbitError> {
     r.iter().try_for_each(|&x| finite("position", x).map(drop))?;
     let transition = hill_transition(n, t)?;

@@ -29,7 +29,7 @@ impl LocalFrame {
 
 /// Returns position and velocity relative to `reference`, in its rotating frame: m and m/s, local axes.
 ///
-/// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`; `r` and `v` in `I`.
+/// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`; `r` and `v` in `I`, `R` and `V` of the reference.
 ///
 /// # Errors
 /// [`OrbitError::UndefinedFrame`].
@@ -64,7 +64,7 @@ pub fn from_local(
 type Convert =
     fn(&OrbitState, LocalFrame, &Vector3<f64>, &Vector3<f64>) -> Result<[Vector3<f64>; 2], OrbitError>;
 
-/// Computes [`to_local`] at each of `times` (T,): `given` and `out` are positions and velocities, (T, 3)
+/// Computes [`to_local`] at each of `times` (T,), s: `given` and `out` are positions (m) and velocities (m/s), (T, 3)
 /// each.
 ///
 /// # Errors

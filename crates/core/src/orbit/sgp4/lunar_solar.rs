@@ -38,7 +38,7 @@ struct Ellipse {
 const COS_OBLIQUITY: f64 = 0.917_448_67;
 const SIN_OBLIQUITY: f64 = 0.397_854_16;
 
-/// Returns the perturbations of the orbit `mean` by Sun and Moon, with its epoch `day` in days since 1900-01-00 12:00.
+/// Returns the perturbations of the orbit `mean` by Sun and Moon; `day` is its epoch in days since 1900-01-00 12:00.
 pub(super) fn sun_and_moon(day: f64, mean: &Mean) -> [ThirdBody; 2] {
     let sun = Ellipse {
         g: (0.194_590_5, -0.980_884_58),

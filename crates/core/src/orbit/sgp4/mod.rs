@@ -68,7 +68,7 @@ impl Sgp4 {
         Self { elements, model, propagator, theory: Theory::Native }
     }
 
-    /// Returns the orbit of the same set propagated by the reference implementation, which is much slower.
+    /// Returns the same orbit computed by the reference implementation, which is much slower.
     pub fn with_external(self, code: Arc<dyn ExternalSgp4>) -> Self {
         Self { theory: Theory::External(code), ..self }
     }

@@ -9,7 +9,7 @@ use crate::spatial::Real;
 
 /// Perigee height, km, below which the higher-order drag terms are omitted.
 const FINE_PERIGEE: f64 = 220.0;
-/// Eccentricity below which drag is independent of the position in the orbit.
+/// Eccentricity below which drag is treated as independent of the position in the orbit.
 const NEARLY_CIRCULAR: f64 = 1e-4;
 
 /// Elements at the epoch and their rates.

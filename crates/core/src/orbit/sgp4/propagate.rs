@@ -101,8 +101,9 @@ impl Propagator {
         (0..S::LANES).all(is_regular).then_some(state)
     }
 
-    /// Applies the secular terms to `mean`; returns the semi-major axis, where `a` is that of its mean
-    /// motion.
+    /// Applies the secular effects of drag to `mean` and returns the resulting semi-major axis, Earth radii.
+    ///
+    /// `a` is the semi-major axis before drag, which corresponds to `mean.n` on entry.
     #[inline(always)]
     fn secular<S: Real>(
         &self,

@@ -43,8 +43,8 @@ pub(super) struct Rates {
 }
 
 impl Resonance {
-    /// Returns `None` for orbits that are not resonant: periods other than a day and, for eccentricities of
-    /// 0.5 and more, half a day.
+    /// Returns the resonance of an orbit with a period near one day, or near half a day at eccentricities of 0.5 and
+    /// more; `None` for other orbits.
     pub(super) fn new(mean: &Mean, rates: &Rates, sidereal: f64, earth: &Earth) -> Option<Self> {
         let Mean { n, e, i, node, perigee, anomaly } = *mean;
         let a = (n / earth.ke).powf(2.0 / 3.0); // 1/a

@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 /// Interface of the reference implementation, initialised with an element set by the caller.
 pub trait ExternalSgp4: Send + Sync + std::fmt::Debug {
-    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, even if they are below the surface.
+    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, even if the satellite is below the
+    /// surface.
     ///
     /// # Errors
     /// The error code of the reference implementation, except for code 6 (decayed), for which the state is returned.
