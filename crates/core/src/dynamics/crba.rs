@@ -9,10 +9,9 @@ use crate::spatial::{Real, SpatialInertia};
 
 /// Computes the mass matrix `M(q)`, row major `(nv, nv)`, kg, kg m, kg m².
 ///
-/// `Mbb = I_0^c` with the composite inertia `I_k^c` of the subtree of `k`. The force `I_k^c S_k`, shifted
-/// from origin to origin towards the base, gives `M_jk = S_jᵀ I_k^c S_k` at each ancestor `j` of `k`, and at
-/// the base the column of
-/// `Mbm`.
+/// `Mbb = I_0^c`, where `I_k^c` is the composite inertia of the subtree of `k`. The force `I_k^c S_k` is shifted from
+/// origin to origin towards the base. It gives `M_jk = S_jᵀ I_k^c S_k` at each ancestor `j` of `k`, and column `k` of
+/// `Mbm` at the base.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 6.2.
 pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mut [S]) {

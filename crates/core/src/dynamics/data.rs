@@ -7,7 +7,8 @@ use crate::spatial::{
 
 /// Quantities of one body in base axes B, about the origin of the body, which lies on its joint axis.
 ///
-/// Moments about the origin of the base would lose `(L/l)²` digits for a body of size `l` at a distance `L`.
+/// Moments about the origin of the base would have an error `(L/l)²` times larger for a body of size `l` at a distance
+/// `L`.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyData<S> {
     /// Rotation from body axes to B. Set by [`positions`](super::positions).
@@ -30,7 +31,8 @@ pub struct BodyData<S> {
     pub acceleration: Motion<S>,
     /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for bodies with several children.
     pub delta_acceleration: Motion<S>,
-    /// Force through the joint (RNEA), `I S` (CRBA), or articulated bias force `p` of a locked joint (ABA).
+    /// Force through the joint (RNEA), `I S` (CRBA), or articulated bias force `pA` of a body with a locked joint
+    /// (ABA).
     pub force: Force<S>,
     /// Rigid inertia of the subtree. Set by CRBA and `free_floating`.
     pub composite: SpatialInertia<S>,
@@ -82,8 +84,8 @@ pub struct Data<S> {
     pub bodies: Vec<BodyData<S>>,
     /// Sine and cosine of each joint position. Set by [`positions`](super::positions).
     pub joint_sin_cos: Vec<(S, S)>,
-    /// `L` below the diagonal and `D⁻¹` on it, `M = L D Lᵀ`, `(nv, nv)`. Allocated only for robots solved by
-    /// the mass matrix (`dense.rs`).
+    /// Factors of `M = L D Lᵀ`, `(nv, nv)`: `L` below the diagonal and `D⁻¹` on it. Allocated only for robots whose
+    /// forward dynamics use the mass matrix (`dense.rs`).
     pub(super) factors: Vec<S>,
     /// Generalized forces, `(nv,)`. Allocated like `factors`.
     pub(super) forces: Vec<S>,

@@ -10,8 +10,8 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Solves `M a = τ − c`. Stores the accelerations of all bodies and the holding torques of locked joints in `data`,
-/// as the recursion does.
+/// Solves `M a = τ − c + Σ Jᵀ F`. Stores the accelerations of all bodies and the holding torques of locked joints in
+/// `data`, as the recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
 pub(super) fn solve<S: Real>(

@@ -17,17 +17,17 @@ use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, 
 ///
 /// The equations are exact for any momentum and any external wrench.
 ///
-/// Symbols: `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[c_b; c_m]`, frame Jacobian `[Jb Jm]` and generalized
-/// external forces `Q = [Qb; Qm]`; matrices row major, frame rows in W axes, linear first.
+/// Symbols: `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[c_b; c_m]`, frame Jacobian `[Jb Jm]` and generalized external
+/// forces `Q = [Qb; Qm]`; matrices are row major; the rows of frame Jacobians are in W axes, linear first.
 ///
 /// Source: Umetani and Yoshida, IEEE Trans. Robotics and Automation 5(3), 1989.
 #[derive(Clone, Debug)]
 pub struct FreeFloating<S> {
-    /// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `(n, n)`.
+    /// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `(n, n)`, kg, kg m, kg m².
     pub inertia: Vec<S>,
-    /// `c* = c_m − Mbmᵀ Mbb⁻¹ c_b`, `(n,)`, N m.
+    /// `c* = c_m − Mbmᵀ Mbb⁻¹ c_b`, `(n,)`, N m (N).
     pub bias: Vec<S>,
-    /// `Q* = Qm − Mbmᵀ Mbb⁻¹ Qb`, `(n,)`, N m: generalized external forces at the joints.
+    /// `Q* = Qm − Mbmᵀ Mbb⁻¹ Qb`, `(n,)`, N m (N): generalized external forces at the joints.
     pub external: Vec<S>,
     /// `Jg = Jm − Jb Mbb⁻¹ Mbm`, `(6, n)`.
     pub jacobian: Vec<S>,
@@ -35,7 +35,7 @@ pub struct FreeFloating<S> {
     pub drift: Motion<S>,
     /// Pose of the frame.
     pub pose: FramePose<S>,
-    /// Twist of the frame in W axes at its origin.
+    /// Twist at the origin of the frame in W axes, m/s and rad/s.
     pub velocity: Motion<S>,
     /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal with the
     /// blocks `m 1` and `I_c`.
@@ -68,7 +68,7 @@ impl<S: Real> FreeFloating<S> {
     }
 }
 
-/// Computes [`FreeFloating`] of a frame (index) at `q`: `(nq,)`, `v`: `(nv,)`.
+/// Computes [`FreeFloating`] of a frame (index) at `q`, `(nq,)`, and `v`, `(nv,)`.
 pub fn free_floating<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -210,7 +210,7 @@ fn kernel<S: Real>(
 /// Computes `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base response `−Mbb⁻¹ Mbm` from the forces `f_S = I^c S` of all
 /// joints.
 ///
-/// The entries of `Mmm` are `S_jᵀ f_S` with `f_S` of joint `k`, shifted to the origin of each ancestor `j` of `k`.
+/// Entry `(j, k)` of `Mmm` is `S_jᵀ f_S`, where `f_S` of joint `k` is shifted to the origin of its ancestor `j`.
 #[inline(always)]
 fn reduced_inertia<S: Real>(
     nodes: &[Node],
@@ -260,7 +260,7 @@ accumulated!(SubtreeWrench<S>, Self(Force::zero()), |body| Self(body.subtree_ext
     .subtree_external =
     this.0);
 
-/// Returns inertia, bias force and external wrench of a body plus the sums over its children.
+/// Returns inertia, bias force and external wrench of a subtree: those of its root plus the sums over the children.
 #[inline(always)]
 fn add_body<S: Real>(
     body: &BodyData<S>,

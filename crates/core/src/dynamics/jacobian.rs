@@ -56,9 +56,9 @@ pub(super) fn unit_axes<S: Real>() -> [Vec3<S>; 3] {
     [Vec3::new(l, o, o), Vec3::new(o, l, o), Vec3::new(o, o, l)]
 }
 
-/// Returns the drift `J̇ v` of a frame (index): the classical acceleration of the frame origin in W axes at
-/// constant
-/// `v`, m/s² and rad/s². Requires up-to-date kinematics ([`kinematics`](super::kinematics)) in `data`.
+/// Returns the drift `J̇ v` of a frame (index): the classical acceleration of its origin, m/s², and its angular
+/// acceleration, rad/s², in W axes at constant `v`. Requires up-to-date kinematics ([`kinematics`](super::kinematics))
+/// in `data`.
 pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], frame: usize) -> Motion<S> {
     S::enter(
         #[inline(always)]
@@ -103,8 +103,7 @@ pub(super) fn classical_acceleration<S: Real>(
     Motion::new(rot_wb * acceleration.linear, rot_wb * acceleration.angular)
 }
 
-/// Returns the classical acceleration `a + α × p + ω × (v + ω × p)` and `α` of the point at `p` of a body,
-/// where
+/// Returns the classical acceleration `a + α × p + ω × (v + ω × p)` of the point at `p` of a body, and `α`, where
 /// `spatial = (a, α)` and `velocity = (v, ω)`.
 #[inline(always)]
 pub(super) fn point_acceleration<S: Real>(spatial: Motion<S>, velocity: Motion<S>, p: Vec3<S>) -> Motion<S> {

@@ -70,7 +70,7 @@ pub(super) trait Accumulated<S>: Copy {
     fn store(self, body: &mut BodyData<S>);
 }
 
-/// Implements [`Accumulated`] from the value of zero and the field that stores the value.
+/// Implements [`Accumulated`] from the zero value and the field that stores the value.
 macro_rules! accumulated {
     ($type:ty, $zero:expr, |$from:ident| $stored:expr, |$this:ident, $to:ident| $store:expr) => {
         impl<S: Real> $crate::dynamics::passes::Accumulated<S> for $type {

@@ -5,8 +5,9 @@ use super::kinematics::{frame_pose, frame_velocity, kinematics};
 use crate::model::{BASE_NQ, BASE_NV, Model, ModelError};
 use crate::spatial::{Quat, Vec3};
 
-/// Returns the configuration `(nq,)` and the velocity `(nv,)` of the model `to` that place and move its links as `q` and
-/// `v` do those of `from`: of a robot with another root ([`Model::rerooted`]), or of a part of a robot.
+/// Returns the configuration `(nq,)` and the velocity `(nv,)` with which the links of the model `to` have the same
+/// poses and twists as those of `from` at `q` and `v`. `to` is the same robot with another root ([`Model::rerooted`]),
+/// or a part of it.
 ///
 /// # Errors
 /// [`ModelError::UnknownName`] for a joint or a base of `to` that `from` does not have.

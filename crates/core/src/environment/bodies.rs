@@ -79,13 +79,13 @@ impl Bodies {
         self.layout.bodies().filter_map(|index| self.get(index).map(|body| (index, body)))
     }
 
-    /// Returns the centre of mass of the first base; the origin if there are no bodies.
+    /// Returns the centre of mass of the first base in `W`, m; the origin if there are no bodies.
     pub(super) fn base_com(&self) -> Vector3<f64> {
         let first = |block: &BodyBlock| block.motion.com.map(|column| column.get(0)).to_nalgebra();
         self.blocks.first().map_or_else(Vector3::zeros, first)
     }
 
-    /// Returns the centre of mass in `W`, m.
+    /// Returns the centre of mass of all bodies in `W`, m.
     pub(super) fn center_of_mass(&self) -> Vec3<f64> {
         // c = Σ mₖ cₖ / Σ mₖ
         let (mut moment, mut mass) = (Vec3::zero(), 0.0);

@@ -38,7 +38,7 @@ pub(crate) struct BodyMotion<T> {
 pub(super) struct BodyBlock {
     pub(super) mass: Column8,
     pub(super) inertia: Sym3<Column8>,
-    /// Centres of mass from the origins of the body axes, body axes, m.
+    /// Centres of mass relative to the origins of the body axes, in body axes, m.
     pub(super) com_k: Vec3<Column8>,
     pub(super) motion: BodyMotion<Column8>,
 }
@@ -110,7 +110,7 @@ impl LaneGroup<'_> {
         self.block.inertia.map(self.load())
     }
 
-    /// Returns the centres of mass.
+    /// Returns the centres of mass in `W`, m.
     #[inline(always)]
     pub(super) fn coms<S: Real>(&self) -> Vec3<S> {
         self.block.motion.com.map(self.load())
@@ -121,7 +121,7 @@ impl LaneGroup<'_> {
         self.block.motion.rot_wk.map(self.load())
     }
 
-    /// Returns the velocities of the centres of mass, and the angular velocities.
+    /// Returns the velocities of the centres of mass, m/s, and the angular velocities, rad/s.
     #[inline(always)]
     pub(super) fn velocities<S: Real>(&self) -> [Vec3<S>; 2] {
         let [linear, angular] = &self.block.motion.velocity;

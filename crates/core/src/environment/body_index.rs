@@ -55,7 +55,7 @@ impl BlockLayout {
         self.systems.iter().map(|(_, count)| count).sum()
     }
 
-    /// First row and number of bodies of each system.
+    /// Returns the first row and the number of bodies of each system.
     pub(super) fn systems(&self) -> &[(usize, usize)] {
         &self.systems
     }

@@ -8,8 +8,8 @@ use crate::number_text::short;
 /// Highest degree for which the recursion is stable; no published model exceeds it.
 const HIGHEST: usize = 2700;
 
-/// Largest plausible coefficients of degree 2 and above and of degree 1. Saturn's `C̄20` is 0.0073; the coefficients of
-/// degree 1 give the offset `√3 C̄ R` of the centre of mass.
+/// Largest plausible coefficients: of degree 2 and above, and (below) of degree 1. Saturn's `C̄20` is 0.0073; the
+/// coefficients of degree 1 give the offset `√3 C̄ R` of the centre of mass.
 const LARGEST: f64 = 1e-2;
 const LARGEST_FIRST: f64 = 1e-4;
 
@@ -158,10 +158,10 @@ fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
 /// Detects coefficients without normalisation by their decay: sectoral coefficients (order equal to degree) decay with
 /// the factorial of the degree.
 ///
-/// `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and similarly smaller than `Nn0`.
-/// Normalised coefficients of planets decay as about `n⁻²` (Kaula's rule) and are similar within a degree. The
-/// threshold is the mean of both decays in the logarithm. The test requires degree 8 or more, and the decay must exceed
-/// the threshold both over degrees and over orders.
+/// The normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and similarly
+/// smaller than `Nn0`. Normalised coefficients of planets decay as about `n⁻²` (Kaula's rule) and are similar within a
+/// degree. The threshold is the geometric mean of both decays. The test requires degree 8 or more, and the decay must
+/// exceed the threshold both over degrees and over orders.
 fn unnormalised_decay(series: &Series) -> Option<String> {
     let high = series.degree().min(series.order()).min(16);
     let size = |n: usize, m: usize| -> f64 {

@@ -84,8 +84,8 @@ impl LocalField<'_> {
         Ok(field + third)
     }
 
-    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s². For bodies within the expansion this is `G ρ`, with the gradient `G` at
-    /// the centre of the expansion.
+    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s². For bodies that the expansion covers, this is `G ρ`, with the gradient
+    /// `G` at the centre of the expansion.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`].

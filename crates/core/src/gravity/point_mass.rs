@@ -52,7 +52,7 @@ pub(crate) fn is_earth(mu: f64) -> bool {
     (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/planet.py
 }
 
-/// Smallest distance from a planet's centre as a fraction of its equatorial radius; the Earth's poles are at 0.9966.
+/// Smallest accepted distance from a planet's centre, in equatorial radii; the Earth's poles are at 0.9966.
 pub(crate) const SURFACE: f64 = 0.996;
 
 /// Returns the cube of the smallest possible radius of a planet with this `μ = G m`, m³.

@@ -52,9 +52,9 @@ impl Series {
 
     /// Returns the derivative along an axis, a series of one degree more.
     ///
-    /// `∂z Vnm = -(n-m+1) Vn+1,m`, and with `Z = V + i W` for the others
-    /// `(∂x + i ∂y) Znm = -Zn+1,m+1`, `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; in normalised
-    /// form the factors are square roots of rational numbers.
+    /// With `Z = V + i W`: `∂z Znm = -(n-m+1) Zn+1,m`, `(∂x + i ∂y) Znm = -Zn+1,m+1`,
+    /// `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; in normalised form, the factors are square roots of rational
+    /// numbers.
     ///
     /// Source: Cunningham, Celestial Mechanics 2, 207-216, 1970; Montenbruck and Gill, Satellite Orbits,
     /// Springer 2000, equation 3.33.

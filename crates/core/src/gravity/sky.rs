@@ -1,4 +1,4 @@
-//! Orientation of the planet and third-body field at one instant.
+//! Third-body field, and orientation of the planet, at one instant.
 
 use super::Gravity;
 use super::error::GravityError;
@@ -14,7 +14,7 @@ use std::cell::OnceCell;
 /// grid point, and the errors of the expansion average out between grid points, because `∇²g = 0`.
 const GRID_SPACING: f64 = 32.0;
 
-/// Orientation of the planet and third-body field at one instant.
+/// Third-body field, and orientation of the planet, at one instant.
 #[derive(Clone, Debug)]
 pub(crate) struct Sky {
     pub(super) rot_fi: Mat3<f64>,

@@ -50,7 +50,7 @@ impl Model {
         builder.build()
     }
 
-    /// Returns a description whose root link is fixed to the frame `name`, with the pose of the frame in it.
+    /// Returns a description whose root link is fixed to the frame `name`, with the pose of the frame in that link.
     fn rooted_below(&self, name: &str) -> Result<(Description, Isometry3<f64>), ModelError> {
         let frame = &self.frames[self.frame(name)?];
         let root = &self.body_frame(frame.body).name;

@@ -9,7 +9,8 @@ use super::well_posed::check_well_posed;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
 
-/// Largest number of moving joints: the mass matrix then requires 32 MB, its derivatives three times as much.
+/// Largest number of moving joints: the mass matrix then requires 32 MB, the derivatives of the dynamics three times as
+/// much.
 const MOST_JOINTS: usize = 2000;
 
 /// Builder of a model from links and joints; [`build`](ModelBuilder::build) returns the model.

@@ -65,7 +65,7 @@ pub struct Visual {
     pub pose: Isometry3<f64>,
     /// Geometry of the shape.
     pub geometry: Geometry,
-    /// Color: red, green, blue and opacity, 0 to 1.
+    /// Colour: red, green, blue and opacity, 0 to 1.
     pub rgba: Option<[f64; 4]>,
 }
 

@@ -143,7 +143,7 @@ impl Model {
         &self.frames
     }
 
-    /// Returns the frame of each body's link.
+    /// Returns the frame of a body's link.
     pub fn body_frame(&self, body: usize) -> &Frame {
         &self.frames[self.body_frames[body]]
     }

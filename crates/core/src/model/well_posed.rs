@@ -12,8 +12,8 @@ const ROUNDING_SHARE: f64 = 1e-14;
 
 /// Returns an error if the mass matrix is singular in every configuration.
 ///
-/// Eliminating the joints from the leaves to the root gives as pivots the articulated inertias along each
-/// joint. A pivot that vanishes in three fixed, arbitrary configurations vanishes in all.
+/// Eliminating the joints from the leaves to the root gives as pivots the articulated inertias along each joint. A
+/// pivot that vanishes in three fixed, arbitrary configurations is assumed to vanish in all.
 pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     if model.mass() <= 0.0 {
         return Err(ModelError::NoMass);

@@ -11,10 +11,10 @@ pub struct RateLimit {
     pub acceleration: f64,
 }
 
-/// Largest rate of the quintic, `15/8` divided by the duration; it occurs at half the duration.
+/// Largest rate of the quintic multiplied by the duration, `15/8`; it occurs at half the duration.
 const PEAK_RATE: f64 = 1.875;
 
-/// Largest acceleration of the quintic, `10/√3` divided by the squared duration; it occurs at `u = ½ ± √3/6`.
+/// Largest acceleration of the quintic multiplied by the squared duration, `10/√3`; it occurs at `u = ½ ± √3/6`.
 const PEAK_ACCELERATION: f64 = 5.773_502_691_896_258;
 
 /// Number of instants per piece at which peaks are searched. Peaks between these instants exceed the found ones by a

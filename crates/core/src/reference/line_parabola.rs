@@ -18,7 +18,7 @@ pub struct LineParabola {
 }
 
 impl LineParabola {
-    /// Returns the motion from the pose `(rot_fd, pos_f)` by `displacement` (m), in `duration`, s. `height` (m) is the
+    /// Returns the motion from the pose `(rot_fd, pos_f)` by `displacement` (m) in `duration` (s). `height` (m) is the
     /// coefficient of the parabola, a quarter of which is reached halfway. All vectors are in the axes of the frame of
     /// the reference.
     ///

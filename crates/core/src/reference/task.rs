@@ -46,7 +46,7 @@ impl TaskReference {
         matches!(self.frame, ReferenceFrame::Lvlh(_))
     }
 
-    /// Returns the time after its start, s, at which the path comes to rest in the frame of the reference.
+    /// Returns the time since its start, s, at which the path comes to rest in the frame of the reference.
     pub fn duration(&self) -> f64 {
         self.path.duration()
     }

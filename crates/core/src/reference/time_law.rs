@@ -81,8 +81,8 @@ fn quintic(t: f64, duration: f64) -> (f64, f64, f64) {
     (s, rate, acceleration)
 }
 
-/// Returns the ramped law: `ṡ = c (3u² − 2u³)` with `u = t/r` on a ramp, `ṡ = c = 1/(T − r)` between the
-/// ramps.
+/// Returns the ramped law: `ṡ = c (3u² − 2u³)` with `u = t/r` on a ramp of duration `r`, `ṡ = c = 1/(T − r)` between
+/// the ramps.
 fn ramped(t: f64, duration: f64, ramp: f64) -> (f64, f64, f64) {
     let t = t.clamp(0.0, duration);
     let cruise = 1.0 / (duration - ramp);

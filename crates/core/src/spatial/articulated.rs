@@ -1,4 +1,4 @@
-//! Articulated-body inertia: the inertia of a body together with its subtree.
+//! Articulated-body inertia: the apparent inertia of a body whose subtree can move at its joints.
 
 use super::inertia::SpatialInertia;
 use super::mat3::Mat3;

@@ -7,7 +7,8 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 /// Twist of a body, or spatial acceleration, which is the rate of change of a twist.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<S> {
-    /// Velocity of the body-fixed point at the origin, m/s; in a spatial acceleration its rate of change, m/s².
+    /// Velocity of the body-fixed point at the origin, m/s; in a spatial acceleration, the rate of change of the
+    /// velocity at the origin, m/s².
     pub linear: Vec3<S>,
     /// Angular velocity, rad/s, or angular acceleration, rad/s².
     pub angular: Vec3<S>,
@@ -114,13 +115,15 @@ impl<S: Real> Motion<S> {
         self.linear.dot_add(f.linear, s) + self.angular.dot(f.angular)
     }
 
-    /// Returns `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`: the rate of `m` in a frame that moves with `v`.
+    /// Returns `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`: the rate of a motion `m` fixed in a frame that moves with
+    /// `v`.
     #[inline(always)]
     pub fn cross(self, m: Self) -> Self {
         Self::new(self.angular.cross(m.linear) + self.linear.cross(m.angular), self.angular.cross(m.angular))
     }
 
-    /// Returns `v ×* f = (ω × f_lin, ω × f_ang + v × f_lin)`: the rate of `f` in a frame that moves with `v`.
+    /// Returns `v ×* f = (ω × f_lin, ω × f_ang + v × f_lin)`: the rate of a force `f` fixed in a frame that moves with
+    /// `v`.
     #[inline(always)]
     pub fn cross_force(self, f: Force<S>) -> Force<S> {
         Force::new(self.angular.cross(f.linear), self.angular.cross(f.angular) + self.linear.cross(f.linear))

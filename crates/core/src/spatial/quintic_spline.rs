@@ -1,7 +1,7 @@
 //! Curvatures at the knots of quintic splines with given values and slopes.
 
-/// Returns the curvatures (K, n) for which the third derivative is continuous at all inner knots and the fourth
-/// derivative at the first and last inner knot (not-a-knot). The spline is of order 6. Up to three points define a
+/// Returns the curvatures (K, n) for which the third derivative is continuous at all inner knots, and the fourth
+/// derivative at the first and the last of them (not-a-knot). The spline is of order 6. Up to three points define a
 /// single polynomial.
 pub(super) fn curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; values.len()];

@@ -115,7 +115,7 @@ impl Spline {
         Self::new(times, width, values, slopes, &curvatures(times, width, values, slopes))
     }
 
-    /// Returns the times of the knots, (K,) s.
+    /// Returns the times of the knots, s: (K,).
     pub fn times(&self) -> &[f64] {
         &self.times
     }
@@ -160,8 +160,8 @@ impl KnotInterval {
         Self { segment, length, u: ((t - times[segment]) / length).clamp(0.0, 1.0), is_outside }
     }
 
-    /// Returns value, slope and curvature of the quintic between two knots, each `[value, slope, curvature]`. Outside
-    /// the knots the curve is at rest.
+    /// Returns value, slope and curvature of the quintic between two knots; `start` and `end` hold those of the knots.
+    /// Outside the knots the curve is at rest.
     pub(super) fn interpolate(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
         let (h, u) = (self.length, self.u);
         if self.is_outside {
@@ -226,8 +226,8 @@ pub(super) fn check_rows(
 
 /// Returns the slopes of the C² cubic spline through the points.
 ///
-/// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at each inner point, where `Δ` is the slope of a
-/// chord.
+/// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at each inner point, where `m` is the slope, `h` the interval
+/// and `Δ` the slope of the chord after the point; `₋` and `₊` mark the neighbours.
 ///
 /// Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
 fn cubic_slopes(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Vec<f64> {

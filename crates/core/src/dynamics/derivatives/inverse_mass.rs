@@ -6,11 +6,11 @@ use crate::dynamics::subspace::{add_joint_motion, joint_effort};
 use crate::model::Node;
 use crate::spatial::{Force, Motion, Real};
 
-/// Computes `M⁻¹`, row major `(nv, nv)`: column `j` is the acceleration for a unit of `τ_j`.
+/// Computes `M⁻¹`, row major `(nv, nv)`: column `j` is the acceleration that a unit of `τ_j` causes at rest.
 ///
-/// Bodies numbered higher than `j` are skipped, because `M⁻¹` is symmetric.
+/// Bodies numbered higher than the body of column `j` are skipped, because `M⁻¹` is symmetric.
 ///
-/// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 7.1, at rest.
+/// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 7.1.
 #[inline(always)]
 pub(super) fn inverse_mass<S: Real>(
     nodes: &[Node],

@@ -8,7 +8,8 @@
 //! six columns of derivatives with respect to `q` are zero.
 //!
 //! A change of joint `j` moves its whole subtree `C`. In axes that move with the subtree, only the velocity
-//! `Ψ̇ = v × S` and the acceleration `Ψ̈ = a × S + v × Ψ̇` of the joint axis change the forces:
+//! `Ψ̇ = v × S` and the acceleration `Ψ̈ = a × S + v × Ψ̇` of the joint axis change the forces. With the composite
+//! inertia `I_C`, the Coriolis operator `2B_C` and the force `f_C` through the joint:
 //!
 //! ```text
 //! ∂f_C/∂q_j = 2B_C Ψ̇ + I_C Ψ̈ + S ×* f_C        ∂f_C/∂q̇_j = 2B_C S + 2 I_C Ψ̇

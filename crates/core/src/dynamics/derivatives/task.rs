@@ -13,9 +13,9 @@ use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, 
 /// Computes the derivatives, with respect to `q` and `v`, of the joint torques `τ = M* q̈ + c* − Q*`, of the
 /// acceleration `ẍ = Jg q̈ + d` of a frame and of its twist `ẋ`, at given joint accelerations.
 ///
-/// `acceleration`: `q̈`, `(n,)`; `frame`: an index. Out, row major: `∂τ/∂q`, `∂τ/∂v` `(n, nv)`, `∂ẍ/∂q`, `∂ẍ/∂v`,
-/// `∂ẋ/∂q` `(6, nv)`, rows in W axes, linear first. The other derivatives have names: `∂τ/∂q̈ = M*`, `∂ẍ/∂q̈ = Jg`,
-/// `∂ẋ/∂v = J`. For `q̈ = 0` the results are the derivatives of `c* − Q*` and `d`.
+/// `acceleration`: `q̈`, `(n,)`; `frame`: an index. Out, row major: `∂τ/∂q` and `∂τ/∂v`, `(n, nv)`; `∂ẍ/∂q`, `∂ẍ/∂v`
+/// and `∂ẋ/∂q`, `(6, nv)`, with rows in W axes, linear first. The other derivatives are not computed here:
+/// `∂τ/∂q̈ = M*`, `∂ẍ/∂q̈ = Jg`, `∂ẋ/∂v = J`. For `q̈ = 0` the results are the derivatives of `c* − Q*` and `d`.
 ///
 /// The tangent of `q` and the quantities held constant are defined in [`derivatives`](super).
 pub fn free_floating_derivatives<S: Real>(
@@ -143,7 +143,7 @@ fn cross_both<S: Real>(s: Vec3<S>, m: Motion<S>) -> Motion<S> {
 /// Frame origin with its twist and acceleration, in B axes.
 struct FramePoint<S> {
     rot_wb: Mat3<S>,
-    /// Relative to the base origin, m.
+    /// Position relative to the base origin, m.
     position: Vec3<S>,
     velocity: Motion<S>,
     acceleration: Motion<S>,

@@ -51,7 +51,7 @@ pub enum AtmosphereError {
     LayerOrder {
         /// Index of the layer.
         index: usize,
-        /// Altitude of its base, m.
+        /// Altitude of the base of this layer, m.
         altitude: f64,
         /// Altitude of the base of the previous layer, m.
         previous: f64,

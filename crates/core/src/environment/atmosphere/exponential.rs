@@ -59,7 +59,7 @@ impl ExponentialAtmosphere {
         Self { layers: TABLE.iter().map(layer).collect() }
     }
 
-    /// Returns the density at a geodetic altitude, m, in kg/m³.
+    /// Returns the density, kg/m³, at a geodetic altitude, m.
     pub fn at(&self, altitude: f64) -> f64 {
         let above = self.layers.partition_point(|layer| layer.base <= altitude);
         let layer = &self.layers[above.saturating_sub(1)];

@@ -45,7 +45,7 @@ impl HarrisPriester {
         Ok(Rotation3::from_axis_angle(&axis, self.lag) * sun)
     }
 
-    /// Returns the density at an altitude, m, and `cos ψ` from the bulge, in kg/m³.
+    /// Returns the density, kg/m³, at a geodetic altitude, m, and an angle `ψ` from the bulge.
     ///
     /// # Errors
     /// [`AtmosphereError::OutsideLayers`].

@@ -7,7 +7,7 @@ use crate::earth::Earth;
 use crate::spatial::{Lanes8, Real, Vec3};
 use nalgebra::Vector3;
 
-/// Distance from its centre up to which a local density is used, m.
+/// Distance from the centre of a local atmosphere up to which its density is used, m.
 ///
 /// The horizontal scale length of the density is at least a third of the Earth's radius in every model, so the relative
 /// error is at most 8e-5, or 1e-4 with the vertical change of the scale height. Where the layers of a table are
@@ -53,7 +53,7 @@ impl LocalAtmosphere {
         Ok(Self { time, centre: *centre, up: point.up, density, decay, earth_rate })
     }
 
-    /// Returns the density at positions `r`, axes of `I`, m, kg/m³.
+    /// Returns the density, kg/m³, at positions `r`, axes of `I`, m.
     ///
     /// At positions more than 160 m from the centre, `model` is evaluated instead, except in lanes for which `counts`
     /// returns false.
@@ -76,7 +76,7 @@ impl LocalAtmosphere {
         Ok(self.extrapolate(offset))
     }
 
-    /// Returns the density at `r`, axes of `I`, m, kg/m³; `None` more than 160 m from the centre.
+    /// Returns the density, kg/m³, at `r`, axes of `I`, m; `None` more than 160 m from the centre.
     pub fn density(&self, r: &Vector3<f64>) -> Option<f64> {
         let offset = r - self.centre;
         (offset.norm_squared() <= VALID_RADIUS * VALID_RADIUS).then(|| self.extrapolate(offset.into()))
@@ -94,7 +94,7 @@ impl LocalAtmosphere {
         self.time == time && self.centre == *centre
     }
 
-    /// Returns the latest grid time and the nearest grid point in space, which is at most 111 m away.
+    /// Returns the last grid time up to `time`, s, and the grid point nearest to `r`, m, which is at most 111 m away.
     pub(in crate::environment) fn grid_point(time: f64, r: &Vector3<f64>) -> (f64, Vector3<f64>) {
         let (spacing, tick) = GRID;
         ((time / tick).floor() * tick, r.map(|x| (x / spacing).round() * spacing))

@@ -57,7 +57,8 @@ impl<S: Real> Cylinder<S> {
 
     /// Adds the integral of the pressure on a face over the illuminated half.
     ///
-    /// `n = cos φ ŝ⊥ + sin φ …`, `n·ŝ = σ cos φ`, `dA = r L dφ`, `|φ| < π/2`, where `σ = |s⊥|`.
+    /// `n = cos φ ŝ⊥ + sin φ a × ŝ⊥`, `n·ŝ = σ cos φ`, `dA = r L dφ`, `|φ| < π/2`, where `a` is the axis, `s⊥` the part
+    /// of `ŝ` normal to it, and `σ = |s⊥|`.
     #[inline(always)]
     pub(super) fn add_pressure(&self, to_sun: Vec3<S>, optics: &Optics<S>, sums: &mut PressureSums<S>) {
         let (s, Optics { specular, diffuse }) = (S::of, *optics);

@@ -8,11 +8,11 @@ use crate::spatial::{Real, Sym3, Vec3};
 pub(super) struct DragSums<S> {
     /// Sum `Σ a`, m³/s.
     sum: S,
-    /// First moment `Σ a c`.
+    /// First moment `Σ a c`, m⁴/s.
     first: Vec3<S>,
-    /// Second moment `Σ a c cᵀ`.
+    /// Second moment `Σ a c cᵀ`, m⁵/s.
     second: Sym3<S>,
-    /// Torque of forces that do not act at `c`.
+    /// Torque of forces that do not act at `c`, for `½ ρ C_D = 1`, m⁵/s².
     pub(super) torque: Vec3<S>,
 }
 
@@ -52,11 +52,11 @@ impl<S: Real> DragSums<S> {
 pub(super) struct PressureSums<S> {
     /// Sum `Σ a`, m².
     sum: S,
-    /// First moment `Σ a c`.
+    /// First moment `Σ a c`, m³.
     first: Vec3<S>,
     /// Force against the normals for a pressure of 1, m².
     pub(super) force: Vec3<S>,
-    /// Torque of the forces against the normals and of forces that do not act at `c`.
+    /// Torque of the forces against the normals and of forces that do not act at `c`, for a pressure of 1, m³.
     pub(super) torque: Vec3<S>,
 }
 

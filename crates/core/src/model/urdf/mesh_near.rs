@@ -44,8 +44,8 @@ impl<'a> Near<'a> {
     }
 
     /// Returns the folders that match a tail of `folder`, below the given folders, the folder of the URDF and some of
-    /// its parents. The folder of the URDF and its subfolder `meshes`, in which only the bare file name must match,
-    /// follow.
+    /// its parents. These are followed by the folder of the URDF and its subfolder `meshes`, in which only the bare
+    /// file name must match.
     fn places(&mut self, folder: &Path) -> Rc<[Place]> {
         if let Some(known) = self.places.get(folder) {
             return known.clone();
