@@ -51,7 +51,17 @@ def fail(message: str, code: int) -> NoReturn:
     if message:
         with suppress(OSError):  # the terminal of stderr was closed
             print_failure(message)
+    _discard_unwritable_stderr()
     sys.exit(code)
+
+
+def _discard_unwritable_stderr() -> None:
+    """Redirect a closed stderr to the null device; for what it still buffers, Python would exit with code 120."""
+    try:
+        if sys.stderr is not None:
+            sys.stderr.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
 
 
 def exit_stopped(stop: KeyboardInterrupt) -> NoReturn:
