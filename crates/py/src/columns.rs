@@ -21,7 +21,7 @@ use pyo3::types::{PyDict, PyMappingProxy, PySlice, PyTuple};
 /// meaning : str
 ///     Description of the quantity.
 /// condition : str
-///     Condition under which it is recorded.
+///     Condition under which the quantity is recorded.
 /// parts : mapping of str to tuple of slice and str
 ///     Slice of the last axis and unit of each part; empty for a column without parts.
 #[pyclass(name = "Column", frozen, module = "onorbit_rs")]
@@ -69,7 +69,7 @@ impl PyColumn {
         self.0.meaning
     }
 
-    /// Condition under which it is recorded.
+    /// Condition under which the quantity is recorded.
     #[getter]
     fn condition(&self) -> &'static str {
         self.0.condition.text()

@@ -31,9 +31,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// model : Model
 ///     Robot.
 /// q : (nq,) array
-///     Initial configuration.
+///     Initial configuration, m and rad.
 /// v : (nv,) array
-///     Initial velocity.
+///     Initial velocity, m/s and rad/s.
 /// orbit : Orbit, optional
 ///     Reference orbit, on which the origin of W moves. An orbit around a planet adds gravity on every body.
 /// earth : Earth, optional
@@ -46,8 +46,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// environment : list of Effect, optional
 ///     Effects on the bodies.
 /// controller : control law, object or list of Control, optional
-///     Control law for all joints such as ``ComputedTorque``, an object with ``update(t, state)`` that
-///     returns joint torques (n,), or several controls.
+///     Control law for all joints, such as ``ComputedTorque``; an object with ``update(t, state)`` that
+///     returns joint torques (n,), N m or N; or several controls.
 /// reference : Reference or JointReference, optional
 ///     Reference of the controller.
 /// tool : str, optional
@@ -82,12 +82,12 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Notes
 /// -----
 /// ``engine.step(start, end, q, v, tau, wrenches)`` returns a tuple: ``q`` and ``v`` at ``end``, the
-/// acceleration at ``start`` (nv,), the integral of the external forces and of their moments about the centre
-/// of mass (6,), the work done on the robot less the energy lost in its joints, J, and that loss, J.
-/// ``wrenches(t, q, v)`` (bodies, 6) returns the force of the environment through the centre of mass of each
-/// body and the torque about it, W axes. The object must not keep state between calls. ``integrator``,
-/// ``enforce_limits``, ``restitution`` and ``rereference_beyond`` apply only to the native equations of
-/// motion.
+/// acceleration at ``start`` (nv,), the integral of the external forces and of their moments about the
+/// centre of mass (6,), N s and N m s, the work done on the robot less the energy lost in its joints, J,
+/// and that loss, J. ``wrenches(t, q, v)`` returns the wrenches of the environment, (bodies, 6), W axes:
+/// the force, N, through the centre of mass of each body, and the torque about it, N m. The object must not
+/// keep state between calls. ``integrator``, ``enforce_limits``, ``restitution`` and ``rereference_beyond``
+/// apply only to the native equations of motion.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     run: SharedRun,
@@ -229,7 +229,7 @@ impl PySimulation {
     /// Start a run that is advanced step by step.
     ///
     /// The steps are those of :meth:`run`, whatever the times to which the stepper is advanced. A simulation
-    /// has one run at a time: starting another one ends this one.
+    /// has one run at a time: starting another run ends the current one.
     ///
     /// Parameters
     /// ----------

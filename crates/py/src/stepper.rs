@@ -168,7 +168,7 @@ impl PyStepper {
     /// Returns
     /// -------
     /// dict of array
-    ///     (k, width) for each column of the trace by its name.
+    ///     Rows (k, width) of each column of the trace by its name, in the unit of the column.
     #[pyo3(signature = (since=0))]
     fn columns(
         &self,

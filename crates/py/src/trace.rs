@@ -87,8 +87,8 @@ macro_rules! getters {
             /// Returns
             /// -------
             /// list of tuple
-            ///     ``(name, value, gate, passed)`` for each check that applies to the run. Values are relative
-            ///     to scales that do not vanish.
+            ///     ``(name, value, gate, passed)`` for each check that applies to the run. Values are
+            ///     relative to nonzero scales, apart from angles in rad (names in ``_rad``).
             fn certificate(this: &Bound<'_, Self>) -> PyResult<Vec<(&'static str, f64, f64, bool)>> {
                 let of = |this: &PyTrace| certify(&this.model, &this.trace).checks();
                 let (own, shared) = (this.get(), this.clone().unbind());
@@ -133,16 +133,17 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Times, (K,), s, at which the robot had drifted so far from its reference orbit that
-            /// integration continued about a new one.
+            /// Times at which the robot had drifted so far from its reference orbit that integration
+            /// continued about a new one: (K,), s.
             #[getter]
             fn rereferenced<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
                 PyArray1::from_slice(py, &self.trace.rereferenced)
             }
 
             /// Outcomes of the goals: dicts of ``name``, ``outcome`` (``succeeded``,
-            /// ``path_tolerance_violated``, ``goal_tolerance_violated``, ``unfinished``), ``time`` s, and the
-            /// ``component`` (a joint, ``position`` or ``attitude``) and ``error`` that were too large.
+            /// ``path_tolerance_violated``, ``goal_tolerance_violated``, ``unfinished``), ``time``, s, the
+            /// ``component`` (a joint, ``position`` or ``attitude``) whose error was too large, and that
+            /// ``error``, m or rad.
             #[getter]
             fn results<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
                 let all = self.trace.results.iter().map(|result| {

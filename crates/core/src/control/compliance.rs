@@ -11,12 +11,11 @@ use crate::spatial::Motion;
 ///
 /// In free fall there is no gravity load to compensate. Friction is not compensated: the tool stays off its
 /// goal where the spring torque is below the static friction of the joints. The law is passive: the power of
-/// the joint torques is `τᵀ q̇`, so that with the spring energy `U = ½ eᵀ K e`, zero momentum (`ẋ = Jg q̇`)
-/// and a reference at rest
-/// `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. For a reference relative to the base, `ẋ = J q̇` for any
-/// momentum, and the same holds. A robot that drifts past a reference fixed in W is pulled by the spring and
-/// may gain energy. The rotational spring has an energy if its stiffness is the same about all axes, or if
-/// the error is small.
+/// the joint torques is `τᵀ q̇`, so that with the kinetic energy `T`, the spring energy `U = ½ eᵀ K e`, zero momentum
+/// (`ẋ = Jg q̇`), no friction and a reference at rest `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. For a reference
+/// relative to the base, `ẋ = J q̇` for any momentum, and the same holds. A robot that drifts past a reference fixed in
+/// W is pulled by the spring and may gain energy. The rotational spring has an energy if its stiffness is the same
+/// about all axes, or if the error is small.
 ///
 /// Source: Hogan, J. Dyn. Sys. Meas. Control 107(1), 1985.
 #[derive(Clone, Debug)]

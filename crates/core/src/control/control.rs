@@ -7,7 +7,7 @@ use crate::model::Model;
 
 /// One control of a run: a law, the joints it drives, and when it is active.
 ///
-/// Joints that no active control drives move freely.
+/// Joints that no active control drives have no motor torque, unless a stepper's caller commands one.
 pub struct Control {
     /// Name in results, trace columns and messages.
     pub name: String,

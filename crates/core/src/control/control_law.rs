@@ -24,8 +24,8 @@ pub(super) trait ControlLaw {
         Interface::Position
     }
 
-    /// Returns true if the law uses the tracking error of its control: laws that command accelerations, and
-    /// those that move a frame by efforts.
+    /// Returns true if the law uses the tracking error of its control, as laws do that command accelerations or move a
+    /// frame by efforts.
     fn uses_error(&self) -> bool {
         self.joint_command() != JointCommand::Effort || self.needs_jacobian()
     }
@@ -61,8 +61,8 @@ pub(super) trait ControlLaw {
         0.0
     }
 
-    /// Returns the acceleration of the tracked frame, for [`JointCommand::Task`], from the errors of its pose
-    /// and its velocity and the desired acceleration.
+    /// Returns the acceleration of the tracked frame, for [`JointCommand::Task`], from its pose error, its velocity
+    /// error and the desired acceleration.
     fn task_acceleration(
         &self,
         _error: Motion<f64>,
@@ -145,7 +145,7 @@ pub(super) struct EffortInput<'a> {
     pub(super) elapsed: f64,
     /// Desired motion of the joints of the group.
     pub(super) desired: &'a JointSample,
-    /// Error of the control, and velocity error of its frame, m/s and rad/s.
+    /// Tracking error of the control, `(width,)`, and velocity error of its frame, m/s and rad/s.
     pub(super) error: (&'a [f64], Motion<f64>),
     /// Generalized Jacobian of the tracked frame, the columns of the group, `(6, k)`.
     pub(super) jacobian: &'a [f64],

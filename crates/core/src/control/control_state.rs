@@ -44,7 +44,7 @@ pub(super) struct ControlState {
     pub(super) memory: ControlMemory,
     /// True if the error is used at every control tick.
     pub(super) needs_error: bool,
-    /// Reference at rest at the origin of the frame of the task's reference; `None` without a task.
+    /// Constant reference at the origin of the frame in which the task's reference is given; `None` without a task.
     frame: Option<TaskReference>,
     pub(super) desired: JointSample,
     pub(super) desired_pose: Option<TaskSample<f64>>,

@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 /// end of the path, the goal is reached once all errors are within `tolerance`, and fails after `time`.
 #[derive(Clone, Debug)]
 pub struct Goal {
-    /// Largest errors during the path; `None` for no limit.
+    /// Largest permitted errors during the path, rad or m; `None` for no limit.
     pub path: Option<PerJoint>,
-    /// Largest errors at the end.
+    /// Largest permitted errors at the end, rad or m.
     pub tolerance: PerJoint,
     /// Time allowed after the end of the path, s; `None` for no limit.
     pub time: Option<f64>,

@@ -4,16 +4,16 @@ use super::control_law::JointCommand;
 use super::pseudo_inverse::{PseudoInverse, ROWS};
 use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 
-/// Solver for the torques that give the joints `A` their commanded accelerations while the efforts of all
-/// other joints `E` are given.
+/// Solver for the torques that give the joints `A` their commanded accelerations while the efforts of the joints `E`
+/// are given.
 ///
 /// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`. The joints `E` react like a second base,
 /// `q̈_E = y − G q̈_A` with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d`
 /// depends on `A` alone: `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. The set `A` consists of the joints `J`, whose
 /// accelerations joint laws command, and the joints `T`, which the tasks drive with one damped pseudo-inverse
-/// of all task rows, `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each arm accounts for
-/// the reaction to the other. Joints that friction holds belong to neither set; their acceleration is zero. For
-/// a single task on all joints the solution equals that of [`computed_torque`](super::computed_torque).
+/// of all task rows, `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each task accounts for the
+/// reactions to all others. Joints that friction holds belong to neither set; their acceleration is zero. For a single
+/// task on all joints the solution equals that of [`computed_torque`](super::computed_torque).
 ///
 /// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
 pub(super) struct HybridDynamics {
@@ -94,7 +94,7 @@ impl HybridDynamics {
         }
     }
 
-    /// Adds a task with the Jacobian `(6, n)`, the acceleration `p̈r − d` and `λ₀`.
+    /// Adds a task with the Jacobian `(6, n)`, the acceleration `p̈r − d` and the damping threshold `λ₀`.
     pub(super) fn add_task(&mut self, jacobian: &[f64], acceleration: [f64; ROWS], damping: f64) {
         let (n, given) = (self.n, &self.given);
         let [of_given, ..] = &mut self.work;

@@ -8,9 +8,9 @@ use crate::reference::TaskSample;
 pub struct Observation<'a> {
     /// Time, s.
     pub time: f64,
-    /// Configuration, `(nq,)`.
+    /// Configuration, `(nq,)`, m and rad.
     pub q: &'a [f64],
-    /// Velocity, `(nv,)`.
+    /// Velocity, `(nv,)`, m/s and rad/s.
     pub v: &'a [f64],
     /// The robot.
     pub model: &'a Model,

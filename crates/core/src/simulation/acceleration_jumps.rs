@@ -23,7 +23,7 @@ pub(super) struct AccelerationJumps {
     command: Vec<f64>,
     /// Length of the previous step, s.
     h: f64,
-    /// Sum of each joint, `Σ (h |Δq̈|/6)^(5/4)`.
+    /// Sum `Σ (h |Δq̈|/6)^(5/4)` for each joint.
     pub(super) jumps: Vec<f64>,
     /// Largest magnitude of the rate of each joint, rad/s (m/s).
     pub(super) fastest: Vec<f64>,

@@ -14,10 +14,10 @@ const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
 impl Simulation {
     /// Checks all settings that can be checked before a run.
     ///
-    /// # Errors Vectors of wrong length, values that are not finite, a quaternion that does not have unit norm, time
-    /// steps that are not positive, an effect that lacks the orbit it requires, a frame that the robot does not have,
-    /// a reference that starts too far from its frame, and an Earth orientation with another epoch or other axes than
-    /// the orbit.
+    /// # Errors
+    /// Vectors of wrong length, values that are not finite, a quaternion that does not have unit norm, time steps that
+    /// are not positive, an effect that lacks the orbit it requires, a frame that the robot does not have, a reference
+    /// that starts too far from its frame, and an Earth orientation with another epoch or other axes than the orbit.
     pub fn check(&self) -> Result<(), SimulationError> {
         check_state(&self.model, &self.q, &self.v)?;
         let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];

@@ -121,8 +121,9 @@ impl Checkpoint {
 
     /// Reads a checkpoint from the output of [`Checkpoint::to_json`].
     ///
-    /// # Errors [`CheckpointError::Unreadable`] if `text` is damaged, and [`CheckpointError::OtherVersion`] if
-    /// another version wrote it.
+    /// # Errors
+    /// [`CheckpointError::Unreadable`] if `text` is damaged, and [`CheckpointError::OtherVersion`] if another version
+    /// wrote it.
     pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
         let own = env!("CARGO_PKG_VERSION");
         let unreadable = |error: serde_json::Error| CheckpointError::Unreadable { reason: error.to_string() };

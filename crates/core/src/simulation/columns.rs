@@ -218,8 +218,8 @@ macro_rules! column {
     };
 }
 
-/// Passes the rows of the table to a macro, which declares a field, a getter or a description for each:
-/// name, shape, unit, frame, condition, parts, meaning.
+/// Passes the rows of the table to a macro, which declares a field, a getter or a description for each. A row holds
+/// name, shape, unit, frame, condition, parts and meaning.
 ///
 /// The path of each of these columns is its name.
 #[macro_export]

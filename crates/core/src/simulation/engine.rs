@@ -26,9 +26,9 @@ pub trait Engine: Send {
 pub struct StepInput<'a> {
     /// Start and end of the step, s.
     pub interval: (f64, f64),
-    /// Configuration at the start, `(nq,)`.
+    /// Configuration at the start, `(nq,)`, m and rad.
     pub q: &'a [f64],
-    /// Velocity at the start, `(nv,)`.
+    /// Velocity at the start, `(nv,)`, m/s and rad/s.
     pub v: &'a [f64],
     /// Joint torques, constant during the step, `(n,)`, N m (N).
     pub tau: &'a [f64],
@@ -40,11 +40,11 @@ const UNIT: f64 = 1e-9;
 /// Result of a step.
 #[derive(Clone, Debug)]
 pub struct StepOutput {
-    /// Configuration at the end, `(nq,)`.
+    /// Configuration at the end, `(nq,)`, m and rad.
     pub q: Vec<f64>,
-    /// Velocity at the end, `(nv,)`.
+    /// Velocity at the end, `(nv,)`, m/s and rad/s.
     pub v: Vec<f64>,
-    /// Acceleration at the start, `(nv,)`.
+    /// Acceleration at the start, `(nv,)`, m/s² and rad/s².
     pub acceleration: Vec<f64>,
     /// Time integral over the step of the external forces and of their moments about the centre of mass, W axes, N s
     /// and N m s.

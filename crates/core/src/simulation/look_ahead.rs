@@ -45,9 +45,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Returns true if the step in `interval`, which ends after `t`, itself ends at or before `t`, because the mode
-    /// of a joint changes or because the tolerance requires a shorter step. Takes a trial step without recording
-    /// rows.
+    /// Returns true if the step in `interval` ends at or before `t`, although `interval` ends later, because the mode
+    /// of a joint changes or because the tolerance requires a shorter step. Takes a trial step without recording rows.
     fn step_ends_by(&mut self, t: f64, interval: &Interval, after: Cursor) -> Result<bool, SimulationError> {
         if !self.mover.may_end_early(&self.equations) {
             return Ok(false);
@@ -77,7 +76,7 @@ impl<S: Scalar> RunState<'_, S> {
         result
     }
 
-    /// Ends the step that contains the current time at that time, which becomes the current cut.
+    /// Ends the current step at the current time, which becomes the current cut.
     pub(super) fn cut_at_current_time(&mut self) -> Result<(), SimulationError> {
         while self.schedule.is_later(self.time, self.schedule.now()) {
             let Some((interval, after)) = self.schedule.following() else { break };

@@ -17,9 +17,9 @@ use std::sync::Arc;
 pub struct Simulation {
     /// The robot.
     pub model: Arc<Model>,
-    /// Initial configuration, `(nq,)`.
+    /// Initial configuration, `(nq,)`, m and rad.
     pub q: Vec<f64>,
-    /// Initial velocity, `(nv,)`.
+    /// Initial velocity, `(nv,)`, m/s and rad/s.
     pub v: Vec<f64>,
     /// Reference orbit, on which the origin of W moves.
     pub orbit: Option<Arc<dyn Orbit>>,
@@ -32,7 +32,7 @@ pub struct Simulation {
     pub gravity_mode: GravityMode,
     /// Effects in addition to gravity.
     pub effects: Vec<Arc<dyn Effect>>,
-    /// Controls of the joints; joints without an active control move freely.
+    /// Controls of the joints; joints without an active control have no motor torque by default.
     pub controls: Vec<Control>,
     /// Index of the frame that is recorded and compared with the reference.
     pub tool: Option<usize>,

@@ -33,8 +33,9 @@ const ROWS_OF_OPEN_RUN: usize = 1024;
 impl Simulation {
     /// Runs from the initial state for `duration` seconds; repeated calls give bit-identical results.
     ///
-    /// # Errors The errors of [`Simulation::start`] and [`Stepper::advance_to`]. The failure contains the rows
-    /// recorded before it.
+    /// # Errors
+    /// The errors of [`Simulation::start`] and [`Stepper::advance_to`]. The failure contains the rows recorded before
+    /// it.
     pub fn run(&mut self, duration: f64) -> Result<Trace, RunFailure> {
         let mut stepper = self.start(Some(duration)).map_err(RunFailure::at_start)?;
         let advanced = stepper.advance_to(duration);
@@ -49,8 +50,9 @@ impl Simulation {
     /// open-ended run. The last step ends there, and the adaptive integrator and the error estimates are set up for
     /// this duration.
     ///
-    /// # Errors The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not
-    /// positive, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover the run.
+    /// # Errors
+    /// The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not positive, and
+    /// [`SimulationError::Earth`] if the orientation data of the Earth do not cover the run.
     pub fn start(&mut self, duration: Option<f64>) -> Result<Stepper<'_>, SimulationError> {
         self.start_from(duration, None)
     }
@@ -58,8 +60,9 @@ impl Simulation {
     /// Resumes a run of the same simulation from a checkpoint and the rows recorded before it. The results are
     /// bit-identical to those of an uninterrupted run. `duration`, s, is by default that of the checkpoint.
     ///
-    /// # Errors The errors of [`Simulation::start`], and [`SimulationError::Checkpoint`] for a checkpoint of another
-    /// robot, schedule or instruction set.
+    /// # Errors
+    /// The errors of [`Simulation::start`], and [`SimulationError::Checkpoint`] for a checkpoint of another robot,
+    /// schedule or instruction set.
     pub fn resume(
         &mut self,
         duration: Option<f64>,

@@ -63,7 +63,8 @@ impl<'a> Stepper<'a> {
 
     /// Advances the run by `dt`, s.
     ///
-    /// # Errors [`SimulationError::NotPositive`], and the errors of [`Stepper::advance_to`].
+    /// # Errors
+    /// [`SimulationError::NotPositive`], and the errors of [`Stepper::advance_to`].
     pub fn advance(&mut self, dt: f64) -> Result<(), SimulationError> {
         self.advance_to(self.time_after(dt)?)
     }
@@ -80,16 +81,18 @@ impl<'a> Stepper<'a> {
     /// Advances the run to the time `t`, s. If `t` lies within a step, the state at `t` comes from dense output or
     /// from a shorter trial step, and the step itself is taken by a later advance.
     ///
-    /// # Errors [`SimulationError::NotPositive`], [`SimulationError::PastTime`], [`SimulationError::AfterEnd`], and
-    /// [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`, leave the run unchanged.
-    /// Every other error, such as [`SimulationError::Diverged`], ends the run.
+    /// # Errors
+    /// [`SimulationError::NotPositive`], [`SimulationError::PastTime`], [`SimulationError::AfterEnd`], and
+    /// [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`, leave the run unchanged. Every
+    /// other error, such as [`SimulationError::Diverged`], ends the run.
     pub fn advance_to(&mut self, t: f64) -> Result<(), SimulationError> {
         self.advance_until(t, &mut |_| ControlFlow::Continue(())).map(|_| ())
     }
 
     /// Advances the run like [`Stepper::advance_to`], but stops at the end of a step if the monitor returns `Break`.
     ///
-    /// # Errors The errors of [`Stepper::advance_to`].
+    /// # Errors
+    /// The errors of [`Stepper::advance_to`].
     pub fn advance_until(
         &mut self,
         t: f64,
@@ -114,8 +117,9 @@ impl<'a> Stepper<'a> {
     /// Sets the joint torques `tau`, `(n,)`, N m (N), which are held from the current time on; `None` leaves the
     /// torque of a joint unchanged. The current step ends at the current time.
     ///
-    /// # Errors [`SimulationError::WrongLength`], [`SimulationError::NotFinite`] and, for a joint of an active
-    /// control, [`SimulationError::CommandedJoint`] leave the run unchanged. The errors of a step end the run.
+    /// # Errors
+    /// [`SimulationError::WrongLength`], [`SimulationError::NotFinite`] and, for a joint of an active control,
+    /// [`SimulationError::CommandedJoint`] leave the run unchanged. The errors of a step end the run.
     pub fn command(&mut self, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.check()?;
         self.run.check_command(tau)?;
@@ -125,7 +129,8 @@ impl<'a> Stepper<'a> {
 
     /// Returns a checkpoint, from which the run can be resumed together with the rows of [`Stepper::rows`].
     ///
-    /// # Errors The error of a user-defined controller whose state cannot be saved; it leaves the run unchanged.
+    /// # Errors
+    /// The error of a user-defined controller whose state cannot be saved; it leaves the run unchanged.
     pub fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
         self.check()?;
         self.run.checkpoint()
@@ -149,8 +154,8 @@ impl<'a> Stepper<'a> {
     /// Ends the run at the current time and returns its trace; after an error, the trace has the rows recorded before
     /// it.
     ///
-    /// # Errors An error in computing the last row, with the rows before it; [`SimulationError::Ended`] if called a
-    /// second time.
+    /// # Errors
+    /// An error in computing the last row, with the rows before it; [`SimulationError::Ended`] if called a second time.
     pub fn finish(&mut self) -> Result<Trace, RunFailure> {
         let last_row = match self.status {
             Status::Running => self.run.record_current_time(),

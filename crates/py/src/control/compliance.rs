@@ -14,8 +14,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Compliance of a tool by a virtual spring and damper: ``tau = Jg^T (K e + D e') - k N qdot``.
 ///
 /// The law is passive; in free fall there is no gravity load to compensate. Friction is not compensated and
-/// may keep the tool from reaching its goal. Because torques are held between control ticks, the damping is
-/// limited to about twice the inertia of the tool divided by the control period.
+/// may keep the tool from reaching its goal. Because torques are held between control ticks, the motion is
+/// unstable if the damping exceeds about twice the inertia of the tool divided by the control period.
 ///
 /// Parameters
 /// ----------

@@ -18,7 +18,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Parameters
 /// ----------
 /// tolerance : float or array
-///     Permitted error at the end of the reference: (m, rad) for a task, a number or (k,) for joints.
+///     Permitted error at the end of the reference: (m, rad) for a task, a number or (k,), rad or m, for
+///     joints.
 /// path_tolerance : float or array, optional
 ///     Permitted error during the motion; default: unlimited.
 /// time : float, optional
@@ -41,7 +42,7 @@ impl PyGoal {
 
 /// One of several controllers of a robot, with its joints, reference and times.
 ///
-/// Joints that belong to no control move freely.
+/// Joints that belong to no control have no motor torque, unless :meth:`Stepper.command` sets one.
 ///
 /// Parameters
 /// ----------

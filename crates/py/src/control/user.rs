@@ -9,17 +9,17 @@ use pyo3::types::PyBytes;
 /// State that a Python controller receives; its arrays are copies.
 #[pyclass(name = "State", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyState {
-    /// Configuration, (nq,).
+    /// Configuration, (nq,), m and rad.
     q: Py<PyAny>,
-    /// Velocity, (nv,).
+    /// Velocity, (nv,), m/s and rad/s.
     v: Py<PyAny>,
     /// Names of the joints of the control, in the order of the torques.
     joints: Vec<String>,
-    /// Desired pose of the tool in W, (4, 4), or None without a reference.
+    /// Desired pose of the tool in W, (4, 4), m, or None without a reference.
     reference_pose: Option<Py<PyAny>>,
-    /// Desired twist of the tool in W axes, (6,), or None.
+    /// Desired twist of the tool in W axes, (6,), m/s and rad/s, or None.
     reference_velocity: Option<Py<PyAny>>,
-    /// Desired acceleration of the tool in W axes, (6,), or None.
+    /// Desired acceleration of the tool in W axes, (6,), m/s² and rad/s², or None.
     reference_acceleration: Option<Py<PyAny>>,
 }
 

@@ -14,8 +14,9 @@ use std::sync::Arc;
 /// Gravity field of a planet, without its point mass.
 ///
 /// The ``mu`` of the field replaces that of the run. As an effect of a simulation it acts on every body. The
-/// orientation of the planet is that of the simulation's ``earth``. A field of order 0 does not require one;
-/// its axis is then z. Positions are from the planet's centre in planet-fixed axes.
+/// orientation of the planet is that of the simulation's ``earth``. A field of order 0 does not require an
+/// ``earth``; without one, the axis of the field is z. Positions are from the planet's centre in
+/// planet-fixed axes.
 ///
 /// Parameters
 /// ----------

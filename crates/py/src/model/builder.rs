@@ -84,7 +84,7 @@ impl PyModelBuilder {
     /// effort : float, optional
     ///     Effort limit, N m or N.
     /// static_friction : float, optional
-    ///     Largest friction at rest, at least ``friction``, which is the default, N m or N.
+    ///     Largest friction at rest, N m or N; at least ``friction``, the default.
     #[pyo3(signature = (
         name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
         damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,

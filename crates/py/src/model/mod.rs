@@ -45,9 +45,10 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 
 /// Model of a free-floating robot: an immutable tree of bodies.
 ///
-/// ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad, ``v = [v_body(3), w_body(3), rates(n)]``: linear and
-/// angular velocity of the base in base axes, then joint rates. W is the world frame of the simulation. The
-/// methods accept one state ``(n,)`` or a batch ``(B, n)`` and return arrays of the matching shape.
+/// ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad, ``v = [v_body(3), w_body(3), rates(n)]`` in m/s
+/// and rad/s: linear and angular velocity of the base in base axes, then joint rates. W is the world frame
+/// of the simulation. The methods accept one state ``(n,)`` or a batch ``(B, n)`` and return arrays of the
+/// matching shape.
 ///
 /// Two keyword arguments are common to these methods. ``threads`` is the number of threads for a batch
 /// (default: all cores). ``out`` is a contiguous float64 array for the result, which is then returned; it
@@ -243,7 +244,7 @@ impl PyModel {
     /// v : (nv,) array
     ///     Velocity of this model.
     /// to : Model
-    ///     Other model. This model has its joints and the link of its base.
+    ///     Other model. All its joints and the link of its base exist in this model.
     ///
     /// Returns
     /// -------

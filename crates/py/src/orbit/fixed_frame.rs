@@ -12,15 +12,15 @@ use std::sync::Arc;
 
 /// Reference at rest in inertial axes.
 ///
-/// It has no local orbital frame; :meth:`frame` returns its attitude. With ``mu``, the robot falls and
-/// leaves the reference, which does not.
+/// It has no local orbital frame; :meth:`frame` returns its attitude. With ``mu``, the robot falls away
+/// from the reference, which stays at rest.
 ///
 /// Parameters
 /// ----------
 /// position : (3,) array, optional
 ///     Position from the planet's centre, m.
 /// attitude : (4,) array, optional
-///     Quaternion (x, y, z, w) from its axes to inertial axes.
+///     Quaternion (x, y, z, w) from the axes of the reference to inertial axes.
 /// mu : float, optional
 ///     Gravitational parameter, m³/s²; None means that there is no planet.
 #[pyclass(name = "FixedFrame", extends = PyOrbit, frozen, module = "onorbit_rs")]

@@ -211,7 +211,7 @@ impl PySgp4 {
         self.sgp4.elements().epoch.to_string()
     }
 
-    /// Epoch as a Julian date (UTC): that of midnight, and the fraction of the day.
+    /// Epoch as a Julian date (UTC), days: the date of midnight, and the fraction of the day.
     #[getter]
     fn julian_date(&self) -> (f64, f64) {
         self.sgp4.elements().epoch.julian_date()

@@ -47,7 +47,8 @@ impl PyJointHold {
     }
 }
 
-/// Twice continuously differentiable path through joint positions, from rest to rest, all joints together.
+/// Twice continuously differentiable path through joint positions, from rest to rest; all joints move
+/// together.
 ///
 /// Parameters
 /// ----------
@@ -57,7 +58,7 @@ impl PyJointHold {
 ///     Times of the points, s. Default: the shortest times within ``speed`` and ``acceleration``; some joint
 ///     then reaches a limit in each piece, or with ``stops=False`` at one point of the path.
 /// speed, acceleration : float or (n,) array, optional
-///     Limits, rad/s or m/s, rad/s² or m/s².
+///     Limits of the rates, rad/s or m/s, and of the accelerations, rad/s² or m/s².
 /// stops : bool
 ///     If False, the path passes through the points without stopping.
 #[pyclass(name = "JointWaypoints", extends = PyJointReference, frozen, module = "onorbit_rs")]

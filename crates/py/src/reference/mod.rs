@@ -61,14 +61,14 @@ impl PyReference {
     /// Parameters
     /// ----------
     /// t : float or (T,) array
-    ///     Time since its start, s.
+    ///     Time since the start of the reference, s.
     ///
     /// Returns
     /// -------
     /// pose : (4, 4) or (T, 4, 4) array
     ///     Homogeneous matrix, m.
     /// velocity, acceleration : (6,) or (T, 6) array
-    ///     Linear, then angular, m/s, rad/s, m/s², rad/s².
+    ///     Linear, then angular: m/s and rad/s, or m/s² and rad/s².
     fn sample<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Arrays<'py>> {
         let reference = TaskReference { path: Arc::clone(&self.path), frame: Default::default() };
         table(py, &reference, true, t)
@@ -81,7 +81,7 @@ impl PyReference {
     /// Parameters
     /// ----------
     /// t : float or (T,) array
-    ///     Time since its start, s.
+    ///     Time since the start of the reference, s.
     /// orbit : Orbit, optional
     ///     Orbit of a reference in the frame ``"lvlh"``.
     ///
@@ -142,7 +142,7 @@ impl PyJointReference {
     /// Parameters
     /// ----------
     /// t : float or (T,) array
-    ///     Time since its start, s.
+    ///     Time since the start of the reference, s.
     ///
     /// Returns
     /// -------

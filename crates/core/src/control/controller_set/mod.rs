@@ -59,7 +59,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     /// Checks the controls, resets the users' controllers, and allocates the workspaces.
     ///
     /// # Errors
-    /// Those of [`check_controls`], and of the users' controllers.
+    /// The errors of [`check_controls`] and of the users' controllers.
     pub fn new(controls: &'a mut [Control], model: &Model, same_instant: f64) -> Result<Self, ControlError> {
         check_controls(controls, model)?;
         for control in controls.iter_mut() {
@@ -166,7 +166,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     /// Returns the states of all controls, including users' controllers, for a checkpoint.
     ///
     /// # Errors
-    /// Those of a user's controller.
+    /// The errors of a user's controller.
     pub fn save(&self) -> Result<Vec<ControlMemory>, ControlError> {
         let states = self.controls.iter().zip(&self.states);
         let saved = states.map(|(control, state)| {
@@ -180,8 +180,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     /// Restores the states returned by [`ControllerSet::save`].
     ///
     /// # Errors
-    /// [`ControlError::OtherControls`], [`ControlError::OtherMemory`] for states of other controls, and those
-    /// of a user's controller.
+    /// [`ControlError::OtherControls`], [`ControlError::OtherMemory`] for states of other controls, and the errors of a
+    /// user's controller.
     pub fn load(&mut self, saved: &[ControlMemory]) -> Result<(), ControlError> {
         let (got, expected) = (saved.len(), self.controls.len());
         if got != expected {
@@ -202,8 +202,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     /// to compensate in `data`.
     ///
     /// # Errors
-    /// [`ControlError`]: active controls with a joint in common, a reference that is not defined at `t`, and
-    /// those of a user's controller.
+    /// [`ControlError`]: active controls with a joint in common, a reference that is not defined at `t`, or an error of
+    /// a user's controller.
     pub fn update(
         &mut self,
         t: f64,

@@ -30,7 +30,7 @@ impl Drift {
     }
 }
 
-/// Sums over the intervals so far.
+/// Sums of the attitude check over the intervals so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Attitude {
     residual: Drift,

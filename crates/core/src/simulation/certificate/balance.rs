@@ -71,15 +71,14 @@ impl Balance {
     }
 
     /// Returns the relative drift of linear momentum. The scale is the momentum of the bodies relative to the centre
-    /// of mass or, for a single body, that of its spin, and at least the total momentum, which determines the
-    /// rounding.
+    /// of mass (for a single body, that of its spin) or, if larger, the total momentum, which determines the rounding.
     pub(super) fn linear(&self) -> f64 {
         let relative_momentum = if self.relative_momentum > 0.0 { self.relative_momentum } else { self.spin };
         relative(self.linear, relative_momentum.max(self.momentum))
     }
 
-    /// Returns the relative drift of angular momentum. The scale is `Σ |Lₖ|`, and at least the rounding of the
-    /// moments of the linear momenta.
+    /// Returns the relative drift of angular momentum. The scale is `Σ |Lₖ|` or, if larger, the rounding of the moments
+    /// of the linear momenta.
     pub(super) fn angular(&self) -> f64 {
         const ROUNDING: f64 = 1e-4;
         let moments = ROUNDING * self.size * self.momentum.max(self.relative_momentum);

@@ -135,7 +135,8 @@ fn about_base(body: &BodyData<f64>) -> (Motion<f64>, Force<f64>) {
     (body.velocity.referred_to(-body.pos_b), momentum)
 }
 
-/// Returns `h² (w² + ẇ)`. The sum `w` of the magnitudes of all rates bounds the angular velocity of every body.
+/// Returns `h² (w² + ẇ)`, with the sums `w` and `ẇ` of the magnitudes of all rates and of all angular and joint
+/// accelerations; `w` bounds the angular velocity of every body.
 fn truncation(h: f64, v: &[f64], a: &[f64]) -> f64 {
     let fastest =
         |x: &[f64]| Vec3::from_slice(&x[3..]).norm() + x[BASE_NV..].iter().map(|x| x.abs()).sum::<f64>();

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Bound of the relative rounding of the position in one step, in units of ε.
 const ROUNDING: f64 = 4.0;
 
-/// Difference between the recorded centre of mass and the integral of its momentum.
+/// Gap between the recorded centre of mass and the position that the integral of the momentum gives.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct CenterOfMass {
     gap: Vec3<f64>,

@@ -5,7 +5,7 @@ pub(super) const MOMENTUM: f64 = 1e-11;
 /// Largest relative error of the energy balance that passes: that of a fourth-order integrator that resolves the
 /// motion.
 pub(super) const ENERGY: f64 = 1e-6;
-/// Largest relative distance that passes between the centre of mass and the integral of its momentum.
+/// Largest relative distance of the centre of mass from the integral of its momentum that still passes.
 pub(super) const CENTER: f64 = 1e-7;
 /// Largest attitude error estimated by step doubling that passes, rad.
 pub(super) const STEP_DOUBLING: f64 = 1e-6;

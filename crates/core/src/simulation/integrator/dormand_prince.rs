@@ -67,10 +67,11 @@ impl<S: Real> DormandPrince<S> {
         Ok(())
     }
 
-    /// Takes a step whose error is within the tolerance, from the start of `interval` at most to its end, and returns
-    /// the time reached, s. Expects kinematics and loads at the start in `equations`.
+    /// Takes a step from the start of `interval` that ends at its end or earlier, so that the error is within the
+    /// tolerance, and returns the time reached, s. Expects kinematics and loads at the start in `equations`.
     ///
-    /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04`.
+    /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04`, with the errors `ε` of this and `ε₋₁` of the last
+    /// accepted step, relative to the tolerance.
     ///
     /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, IV.2.
     pub(super) fn adaptive_step(
@@ -118,7 +119,7 @@ impl<S: Real> DormandPrince<S> {
     }
 
     /// Returns the first step size to try, s: the one that step control proposed or, in the first step, `ε^⅕ / (ω +
-    /// √ω̇)`.
+    /// √ω̇)` with the tolerance `ε`, the largest rate `ω` and the largest acceleration `ω̇`.
     fn initial_step(
         &mut self,
         stages: &Stages<S>,

@@ -79,7 +79,7 @@ impl<S: Real> Integration<S> {
         self.dormand_prince.is_some()
     }
 
-    /// State of the step control, if the integrator is adaptive.
+    /// Returns the state of the step control, if the integrator is adaptive.
     pub(crate) fn control(&self) -> Option<&StepControl> {
         self.dormand_prince.as_ref().map(|method| &method.control)
     }

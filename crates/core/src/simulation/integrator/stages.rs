@@ -27,8 +27,7 @@ pub(crate) struct FirstStage<S> {
     pub(crate) acceleration: Vec<S>,
     /// Sum of the external forces at the start of the step, W axes, N.
     pub(crate) force: Vec3<S>,
-    /// Velocity of the base's origin at the start of the step, which is that of the frame of the step, base axes,
-    /// m/s.
+    /// Velocity of the base's origin at the start of the step, and thus of the step's frame, base axes, m/s.
     pub(super) frame_velocity_b: Vec3<S>,
 }
 
@@ -78,7 +77,8 @@ impl<S: Real> Stages<S> {
         }
     }
 
-    /// Transforms the velocities of `state` from the frames of the step to W: `v = v' + Rᵀ u`.
+    /// Transforms the velocities of `state` from the frames of the step to W: `v = v' + Rᵀ u`, with the velocity `u` of
+    /// the frame.
     pub(super) fn leave_step_frame(
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
         state: &mut State<S>,

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// Largest rotation of the base in a step, rad: the rotation vector must stay well below a full turn.
 pub(super) const LARGEST_ROTATION: f64 = 2.0;
 
-/// Fraction of the largest rate of the run that the scale of rate errors does not fall below.
+/// Lower bound of the scale of rate errors, as a fraction of the largest rate of the run.
 const SLOW: f64 = 1e-3;
 
 /// State of the step-size control. A run that resumes from it gives bit-identical results.
@@ -154,9 +154,9 @@ struct SystemStep<'a, 's, S> {
     sum: &'a SystemRate<S>,
     h: f64,
     size: f64,
-    /// Angular velocity of the base, rad/s: the larger value of both ends of the step.
+    /// Angular velocity of the base, rad/s: the larger of the values at both ends of the step.
     spin: f64,
-    /// Speed of the base, m/s: the larger value of both ends of the step.
+    /// Speed of the base, m/s: the larger of the values at both ends of the step.
     speed: f64,
     /// Largest rate, rad/s, and largest speed, m/s, so far, including this step.
     fastest: [f64; 2],
@@ -186,7 +186,7 @@ impl<'a, 's, S: Real> SystemStep<'a, 's, S> {
         self.system.model.nodes()[j + 1].axis == Axis::Prismatic
     }
 
-    /// Returns the magnitude of the rate of a joint, the larger value of both ends of the step, rad/s (m/s).
+    /// Returns the magnitude of the rate of a joint, the larger of those at both ends of the step, rad/s (m/s).
     fn rate(&self, j: usize) -> f64 {
         let rate = |state: &SystemState<S>| state.v[BASE_NV + j].lane(0).abs();
         rate(self.start).max(rate(self.trial))

@@ -55,8 +55,8 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         self.joints().find(slips_back)
     }
 
-    /// Returns the rate of the first joint that came to rest or reached its stop, the larger magnitude of both ends
-    /// of the step, rad/s (m/s).
+    /// Returns the rate of the first joint that came to rest or reached its stop: the larger of the magnitudes at both
+    /// ends of the step, rad/s (m/s).
     pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
         let rate = |state: &SystemState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
         let came_to_rest = |j: &usize| rate(self.end, *j) == 0.0 && rate(self.start, *j) > 0.0;

@@ -1,4 +1,4 @@
-//! Modes of the joints: which stick, slip or rest at a stop, and the instants within a step at which that changes.
+//! Modes of the joints: which stick, slip or rest at a stop, and the instants within a step at which a mode changes.
 
 mod impacts;
 mod joint_friction;

@@ -7,8 +7,9 @@ use pyo3::prelude::*;
 
 /// Harris-Priester atmosphere from 100 to 1000 km for mean solar activity.
 ///
-/// The density is ``ρm + (ρM - ρm) cosⁿ(ψ/2)``, with ψ the angle from the apex of the diurnal bulge.
-/// The model requires an ``earth`` with an epoch, and raises ``EffectError`` outside its range of altitudes.
+/// The density is ``ρm + (ρM - ρm) cosⁿ(ψ/2)``, with ψ the angle from the apex of the diurnal bulge, ``ρM``
+/// the density at the apex and ``ρm`` that opposite it. The model requires an ``earth`` with an epoch, and
+/// raises ``EffectError`` outside its range of altitudes.
 ///
 /// Parameters
 /// ----------

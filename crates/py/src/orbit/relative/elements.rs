@@ -61,7 +61,7 @@ pub(super) fn relative_elements<'py>(
 /// r, v : (3,) or (B, 3) array
 ///     State of the chief, inertial axes, m and m/s.
 /// elements : (6,) or (B, 6) array
-///     Relative orbital elements.
+///     Relative orbital elements, dimensionless and rad.
 /// mu : float
 ///     Gravitational parameter, m³/s²; default: that of the Earth.
 ///
