@@ -158,7 +158,7 @@ class OrbitError(OnOrbitError, ValueError):
 
 
 class ElementSetError(OrbitError):
-    """Invalid TLE or OMM; ``line`` and ``column`` (from 1) of a TLE, ``name`` of the entry."""
+    """Invalid TLE or OMM: at ``line`` and ``column`` (from 1) of a TLE, or in the entry ``name``."""
 
     line: Any = None
     column: Any = None

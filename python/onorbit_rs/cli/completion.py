@@ -7,14 +7,14 @@ from pathlib import Path
 
 
 def scenario_names(incomplete: str) -> list[str]:
-    """Return bundled scenarios and YAML files."""
+    """Return the bundled scenarios, and YAML files."""
     from onorbit_rs import scenarios
 
     return [*_fitting(scenarios.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
 
 
 def robot_names(incomplete: str) -> list[str]:
-    """Return bundled robots, URDF and xacro files."""
+    """Return the bundled robots, and URDF and xacro files."""
     from onorbit_rs import robots
 
     return [*_fitting(robots.names(), incomplete), *_files(incomplete, (".urdf", ".xacro"))]

@@ -29,7 +29,7 @@ def list_(as_json: JsonOption = False) -> None:
 
 
 def description(name: str) -> str:
-    """Return the description of a bundled scenario without validation, which takes half a second."""
+    """Return the description of a bundled scenario; skips its validation, which takes half a second."""
     import yaml
 
     from onorbit_rs import scenarios

@@ -31,7 +31,7 @@ class _Handler:
 
 @contextmanager
 def ending_signals() -> Iterator[None]:
-    """Handle SIGTERM and SIGHUP in the block, in the main thread, if they have their default handlers."""
+    """During a block in the main thread, handle SIGTERM and SIGHUP unless they already have handlers."""
     handler, replaced = _Handler(), []
     if threading.current_thread() is threading.main_thread():
         for name in ("SIGTERM", "SIGHUP"):  # Windows has no SIGHUP

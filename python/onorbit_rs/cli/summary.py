@@ -97,7 +97,7 @@ def _formatted(value: Any, unit: str) -> str:
 
 
 def _verdict(summary: dict[str, Any]) -> str:
-    """Return the result of the certificate: green, red, or yellow if a check is missing."""
+    """Return the result of the certificate in green or red, or in yellow if a check is missing."""
     has_passed = summary.get("certificate_passed")
     if has_passed is None:
         return "[yellow]certificate absent[/yellow]: nothing was checked"

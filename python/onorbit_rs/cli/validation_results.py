@@ -29,7 +29,7 @@ def print_cases(cases: Sequence[Case]) -> None:
 
 
 def print_verdicts(verdicts: Sequence[Verdict], *, in_full: bool) -> None:
-    """Print tables by family and source: failed numbers, or each case's number nearest to its gate."""
+    """Print checks by family and source: all, or those that failed, or each case's nearest to its gate."""
     console = new_console(at_least=72)
     rows = [(verdict, _rows(verdict, in_full=in_full)) for verdict in verdicts]
     widths = _widths([row for _, some in rows for row in some], console.width)

@@ -125,7 +125,7 @@ def has_local_frame(trace: Trace) -> bool:
 
 
 def is_local_frame_defined(position: ArrayLike, velocity: ArrayLike) -> bool:
-    """Return whether L is defined: an orbit, (T, 3) each, is never at rest and never moves radially."""
+    """Return whether L is defined in all rows (T, 3), none of which is at rest or moves radially."""
     r, v = np.asarray(position), np.asarray(velocity)
     momentum = np.linalg.norm(np.cross(r, v), axis=-1)
     return bool(np.all(momentum > 1e-10 * np.linalg.norm(r, axis=-1) * np.linalg.norm(v, axis=-1)))

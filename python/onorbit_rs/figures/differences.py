@@ -30,7 +30,7 @@ LOWEST = 1e-12
 
 
 def differences(compared: Comparison) -> Figure:
-    """Draw differences over time, one panel per quantity: tolerance dashed, a dot where it is exceeded."""
+    """Draw differences over time, one panel per quantity; a dot marks the first value above the limit."""
     measured = compared.differences
     lines = -(-len(measured) // COLUMNS)
     figure = new_figure(PAGE, 0.5 + 1.15 * lines)

@@ -40,7 +40,7 @@ class Drawing:
 
 
 def drawings(subject: Subject) -> Iterator[Drawing]:
-    """Yield every figure that applies to a run; those of the paper's experiment have the paper's numbers."""
+    """Yield every figure that applies to a run; for the paper's experiment, with the paper's numbers."""
     for number, drawing in _all(subject):
         if number and subject.is_the_papers:
             named = f"fig{number}_{drawing.name}"
@@ -138,7 +138,7 @@ def _file_part(name: str) -> str:
 
 
 def _angle_flown_deg(trace: Trace) -> float:
-    """Return the largest angle (degrees) between the first and any other direction from the planet."""
+    """Return the largest angle, degrees, between the first and any later direction to the robot."""
     direction = np.asarray(trace.position_eci)
     direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
     return float(np.degrees(np.arccos(np.clip(direction @ direction[0], -1.0, 1.0)).max()))

@@ -48,8 +48,8 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
     """Draw force and torque of every effect on every body; torques are about the body's centre of mass.
 
     Rounding errors are not drawn. These are magnitudes below
-    :data:`~onorbit_rs.common.display_units.ROUNDING` times the largest force or torque of all effects, or of
-    the effect with a lever of 1 m.
+    :data:`~onorbit_rs.common.display_units.ROUNDING` times the largest force or torque of all effects; the
+    effect's own force counts as a torque with a lever of 1 m, and vice versa.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def _size(rows: Floats, part: str) -> Floats:
 
 
 def _largest(wrenches: dict[str, Floats]) -> list[int]:
-    """Return the bodies with the largest wrenches, each effect relative to its largest value."""
+    """Return the bodies with the largest wrenches; each effect is divided by its own largest value."""
     fractions = [
         peak / max(peak.max(), 1e-300)
         for rows in wrenches.values()

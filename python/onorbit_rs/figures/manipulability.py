@@ -31,8 +31,9 @@ _MOST_ROWS = 2_000
 def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] | None = None) -> Figure:
     """Draw Yoshikawa's measure `w = √det(J Jᵀ)` with the base free (`J = Jg`) and fixed (`J = Jm`).
 
-    The upper panel, with six joints or more, is for linear and angular velocity together, the lower one for
-    linear velocity; both in m³ if all joints are revolute. At zero the tool cannot move in some direction.
+    The upper panel, drawn for six joints or more, is for linear and angular velocity together, the lower
+    one for linear velocity; both in m³ if all joints are revolute. At zero the tool cannot move in some
+    direction.
 
     Source: Yoshikawa, Int. J. Robotics Research 4(2), 1985; with `Jg` Umetani and Yoshida, 1989.
 

@@ -92,7 +92,7 @@ def paths_in_orbit(trace: Trace, targets: Sequence[Target] = ()) -> list[Floats]
 
 
 def goes_far(trace: Trace, model: Model) -> bool:
-    """Return True if the base's path in L is longer than :data:`WORTH_A_PATH` sizes of the robot."""
+    """Return True if the base's path in L extends over more than :data:`WORTH_A_PATH` robot sizes."""
     (base,) = paths_in_orbit(trace)
     _, size = extent(model, shapes(model), np.asarray(trace.q)[:1])
     return float(np.ptp(base, axis=0).max()) > WORTH_A_PATH * size

@@ -37,7 +37,7 @@ def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
     Returns
     -------
     list of (faces, colors)
-        For each configuration: corners (n, 4, 3) of quadrangles, W, m, and colours (n, 3), RGB from 0 to 1.
+        For each configuration: corners (n, 4, 3) of quadrangles in W, m; colours (n, 3), RGB from 0 to 1.
         The last two corners of a triangle coincide. Meshes have at most :data:`MESH_TRIANGLES`.
     """
     robot = shapes(model)
@@ -62,7 +62,7 @@ def _primitives(robot: list[Shape]) -> Iterator[tuple[Shape, Floats, Floats]]:
 
 
 def _meshes(model: Model, robot: list[Shape], q: Floats) -> Iterator[tuple[Shape, Floats, Floats]]:
-    """Yield the parts of meshes with their triangles as quadrangles and colours, in their own axes."""
+    """Yield the parts of meshes, with their triangles as quadrangles in their own axes, and colours."""
     parts = [(shape, part) for shape in robot if shape.mesh is not None for part in shape.mesh.parts]
     if not parts:
         return

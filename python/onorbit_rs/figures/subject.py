@@ -38,7 +38,7 @@ class Subject:
         None if the robot's file cannot be read.
     tools : tuple of Tool
     joint_controls : dict
-        Names of the joints by control, of controls in joint space.
+        Names of the joints of each control in joint space, by the name of the control.
     mu : float or None
         Gravitational parameter, m³/s²; None without a planet.
     earth : Earth or None

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 
 
 def tracking_errors(trace: Trace) -> Figure:
-    """Draw Fig. 6: desired minus obtained position and attitude (rotation vector) of the tool, W axes."""
+    """Draw Fig. 6: desired minus obtained position and attitude (rotation vector) of the tool, in W."""
     time, label = clock(trace)
     figure = new_figure(COLUMN, 3.3)
     panels = figure.subplots(2, 1, sharex=True)

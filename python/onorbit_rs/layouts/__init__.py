@@ -1,7 +1,7 @@
 """Converts configurations and velocities to and from the conventions of other engines.
 
-`p` is the position of the base's origin in the world W, `v` and `w` are its linear and angular velocity. The
-letter after them names the axes: B base, W world.
+`p` is the position of the base's origin in the world W; `v` and `w` are the base's linear and angular
+velocity. The letter after `v` or `w` names the axes: B base, W world.
 
 ==============  ========================================  ======================================
 engine          configuration                             velocity

@@ -124,7 +124,7 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
 
 
 def names_in(joints: Any, attribute: str) -> bool:
-    """Return whether ``joints`` is a model of the other engine, which has this attribute, and not names."""
+    """Return whether ``joints`` is a model of the other engine, known by this attribute, and not names."""
     return joints is not None and hasattr(joints, attribute)
 
 

@@ -46,7 +46,7 @@ class CheckpointWriter:
     """Writes the checkpoints that :meth:`onorbit_rs.Simulation.run` passes to its ``checkpoint`` callback."""
 
     def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
-        """Prepare to write checkpoints of the scenario with this digest; ``after`` is the resumed one."""
+        """Prepare to write checkpoints of the scenario with this digest; a resumed run has ``after``."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
         self._digest, self._rows = digest, after.rows if after else 0
         self._digests = dict(after.digests) if after else {}

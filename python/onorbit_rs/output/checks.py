@@ -60,7 +60,7 @@ def is_incomplete(summary: dict[str, Any]) -> bool:
 def advice(summary: dict[str, Any]) -> str:
     """Return advice for a failed certificate; empty if the summary lacks the integrator's settings.
 
-    A shorter step is suggested only if steps and halved steps differ, or were not compared.
+    A shorter step is suggested only if halved steps give another motion, or were not tried.
     """
     if summary.get("integrator") == "dormand_prince":
         return "try a smaller tolerance"

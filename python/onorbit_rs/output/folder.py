@@ -1,4 +1,4 @@
-"""The output folder, which one process at a time locks; each file is replaced atomically."""
+"""The output folder, which only one process at a time can lock; each file is replaced atomically."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ class OutputFolder:
         self.close()
 
     def close(self) -> None:
-        """Release the lock; written files are on the disk."""
+        """Release the lock; all written files are already on the disk."""
         self._lock.release()
 
     @contextmanager
@@ -178,7 +178,7 @@ class OutputFolder:
                 self.check_replaceable(name)
 
     def _is_edited(self, name: str, entry: Entry) -> bool:
-        """Return True if a file differs from its entry, unless a killed process was replacing it."""
+        """Return True if a file differs from the manifest, unless a killed process was replacing it."""
         return _as_partial(name) not in self._unfinished and Entry.of(self.path / name) != entry
 
     def expect_checkpoint(self, names: tuple[str, ...]) -> None:

@@ -27,7 +27,7 @@ _ROUNDING = 1e-9
 
 
 def joint_loads(trace: Trace, built: Built) -> Summary:
-    """Return the largest torque and force, and the largest joint rates at the end."""
+    """Return the largest torque and force, and the largest joint rates at the end of the run."""
     tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, JOINTS_V])
     loads: Summary = {}
     for is_prismatic, load, rate in (
@@ -90,7 +90,7 @@ def loads_exceeded(trace: Trace, model: Model) -> Summary:
 
 
 def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:
-    """Return ``KEY_joint_error_max_rad`` and ``…_m`` of errors (T, joints) of the joints ``wanted``."""
+    """Return the largest errors as ``KEY_joint_error_max_rad`` and ``…_m``, given errors (T, joints)."""
     prismatic = _are_prismatic(built, wanted)
     units = {"rad": ~prismatic, "m": prismatic}
     return {

@@ -45,8 +45,8 @@ def summarize(
     built : Built
         The scenario and the objects built from it.
     status : str
-        ``complete``, ``interrupted`` (Ctrl-C), ``diverged``, or ``failed``: a custom controller raised, or
-        orbit or environment ended.
+        ``complete``, ``interrupted`` (Ctrl-C), ``diverged``, or ``failed``: a custom controller raised an
+        error, or the orbit or environment ended.
 
     Returns
     -------

@@ -55,7 +55,7 @@ def write_report(
     IntegrityError
         If the files were changed after the run.
     OutputFolderError
-        If the page cannot be written, or another process writes the folder.
+        If the page cannot be written, or another process writes to the folder.
     """
     path = Path(folder)
     read_summary(path)  # raises before anything is written

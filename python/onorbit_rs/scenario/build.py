@@ -90,7 +90,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
 def _environment(
     scenario: Scenario, model: _core.Model
 ) -> tuple[_core.Orbit | None, _core.Earth | None, list[_core.Effect]]:
-    """Return orbit, Earth and effects, which cover the whole run."""
+    """Return orbit, Earth and effects; raise an error if orbit or Earth end before the run."""
     duration, folder = scenario.simulation.duration, scenario.folder
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(folder)

@@ -18,7 +18,7 @@ _TURN = 0.1
 
 
 def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
-    """Return the message, one line; the error contains the last finite state as ``q`` and ``v``."""
+    """Return the message in one line; ``stop`` contains the last finite state as ``q`` and ``v``."""
     if stop.time is None or stop.v is None:
         return stop.message
     settings = scenario.simulation
@@ -50,7 +50,7 @@ def _fastest_turn(stop: SimulationError) -> float:
 
 
 def _rates(model: Model) -> Iterator[tuple[str, str]]:
-    """Yield the description of each entry of ``v`` and its unit."""
+    """Yield a description and the unit of each entry of ``v``."""
     for kind, unit in _BASE:
         for axis in "xyz":
             yield f"the base's {kind} velocity along {axis}", unit

@@ -40,7 +40,7 @@ def _not_negative(value: float) -> float:
 
 
 def resolved_path(path: Path | str, info: SerializationInfo) -> str:
-    """Return the absolute path, relative to the folder in the context of the dump, if there is one."""
+    """Return the path, made absolute from the folder that is the context of the dump, if there is one."""
     return str(path if info.context is None else (info.context / path).resolve())
 
 

@@ -55,7 +55,7 @@ class InitialState(Part):
         q : (nq,) array
             Base position in m, base quaternion xyzw, joint positions in rad or m.
         v : (nv,) array
-            Base twist in m/s and rad/s, body axes; joint rates.
+            Base twist in body axes, m/s and rad/s; joint rates in rad/s or m/s.
 
         Raises
         ------

@@ -43,7 +43,7 @@ InertiaMatrix = Annotated[list[list[Inertia]], BeforeValidator(_from_diagonal)]
 
 
 class RigidBody(Part):
-    """Spacecraft without joints; its body is named ``base``, its origin is the centre of mass."""
+    """Spacecraft without joints; its body is named ``base`` and has its origin at the centre of mass."""
 
     mass: Annotated[Mass, Positive]
     inertia: InertiaMatrix

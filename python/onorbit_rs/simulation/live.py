@@ -82,7 +82,7 @@ def _advance(
 
 
 def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
-    """Return the signal as the error that carries the rows so far; the stepper converts it within a step."""
+    """Return the error that carries the rows so far; for a signal within a step, the stepper raised it."""
     if isinstance(signal, RunInterrupted):
         return signal
     message = f"the run was interrupted at t = {stepper.time:g} s"

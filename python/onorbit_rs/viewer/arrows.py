@@ -105,7 +105,7 @@ class Arrows:
                 yield kind, vectors
 
     def _send(self, rows: TraceRows, kind: _Kind, origins: Floats, vectors: Floats) -> None:
-        """Send arrows (T, n, 3) at origins (T, n, 3), W."""
+        """Send arrows (T, n, 3) at origins (T, n, 3), m, both in W."""
         path, to_surface = kind.path, self._to_surface(rows, origins, vectors)
         room = kind.longest * self.viewpoint.size - np.linalg.norm(to_surface, axis=2, keepdims=True)
         needed = _peak(vectors / np.maximum(room, LEAST_LENGTH * self.viewpoint.size))

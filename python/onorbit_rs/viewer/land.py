@@ -34,13 +34,13 @@ _PACKED = (
 
 
 def land() -> NDArray[np.bool_]:
-    """Return (90, 180) cells: rows from the north pole southwards, columns from longitude -180° eastwards."""
+    """Return cells (90, 180), True on land; rows go south from the north pole, columns east from -180°."""
     bits = np.frombuffer(zlib.decompress(base64.b85decode(_PACKED)), np.uint8)
     return np.unpackbits(bits).reshape(_CELLS).astype(bool)
 
 
 def world_map(has_land: bool, times: int = 4, grid_deg: float = 30.0) -> NDArray[np.uint8]:
-    """Return a (90 · times, 180 · times, 3) texture of the Earth with meridians; sea only without land."""
+    """Return a (90 · times, 180 · times, 3) texture of the Earth with a grid, with or without land."""
     rows, columns = (times * cells for cells in _CELLS)
     fraction: NDArray[np.float64] = (
         _smooth(np.kron(land(), np.ones((times, times))).astype(np.float64), times)

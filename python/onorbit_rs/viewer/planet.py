@@ -183,7 +183,7 @@ def _globe(radii: Floats, *, has_land: bool, bands: int = 60, sectors: int = 120
 
 
 def _night(radii: Floats, depth: float, bands: int = 24, sectors: int = 72) -> rr.Mesh3D:
-    """Return a dark surface over the half opposite x, where the Sun is ``depth`` rad below the horizon."""
+    """Return a dark surface opposite to x, where a Sun at x is at least ``depth`` rad below the horizon."""
     away, around = np.meshgrid(
         np.linspace(np.pi / 2 + depth, np.pi, bands + 1),
         np.linspace(0.0, 2.0 * np.pi, sectors + 1),

@@ -99,7 +99,7 @@ class TraceRows:
 
     @cached_property
     def times(self) -> rr.TimeColumn:
-        """Times of the rows."""
+        """Times of the rows on the viewer's timeline."""
         return rr.TimeColumn(TIMELINE, duration=self["time"])
 
     @cached_property

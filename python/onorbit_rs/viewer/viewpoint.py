@@ -89,10 +89,10 @@ class Viewpoint:
 
     @property
     def inertial_at(self) -> Floats:
-        """Position of the axes of I, m."""
+        """Position of the axes of I in ``follow``, m."""
         return self.place(-0.8, 0.32)
 
     @property
     def local_at(self) -> Floats:
-        """Position of the axes of L, m."""
+        """Position of the axes of L in ``follow``, m."""
         return self.place(-0.8, -0.36)

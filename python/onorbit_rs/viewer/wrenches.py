@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def centers_of_bodies(rows: TraceRows, model: Model) -> Floats:
-    """Return the centres of mass of the bodies (T, bodies, 3), W, m."""
+    """Return the centres of mass of the bodies in W: (T, bodies, 3), m."""
     q = np.ascontiguousarray(rows["q"])
     centers = np.empty((len(q), len(model.bodies), 3))
     for index, body in enumerate(model.bodies):
@@ -43,7 +43,7 @@ def net_force(wrenches: Floats) -> Floats:
 
 
 def torque_about_center(rows: TraceRows, centers: Floats, wrenches: Floats) -> Floats:
-    """Return the torque (T, 3) about the centre of mass `r` of the robot, W, N m: `Σ (rₖ - r) × Fₖ + Tₖ`.
+    """Return `Σ (rₖ - r) × Fₖ + Tₖ` in W, (T, 3), N m: the torque about the robot's centre of mass `r`.
 
     Parameters
     ----------

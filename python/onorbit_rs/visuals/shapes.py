@@ -71,7 +71,7 @@ def _drawable(visuals: Sequence[Visual]) -> tuple[list[Shape], list[Visual], lis
 
 
 def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:
-    """Yield rods and spheres for bodies with a link without shapes, or the base's box of inertia."""
+    """Yield rods and spheres for bodies with links without shapes; for such a base, its box of inertia."""
     ends: dict[str, list[Floats]] = {body.name: [] for body in model.bodies}
     for joint in model.joints:
         ends[joint.parent].append(np.array(joint.pose)[:3, 3])

@@ -12,7 +12,7 @@ from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 
 def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeValidator:
-    """Return the reader of a task-space gain; a single number has no unit if the dimensions differ."""
+    """Return the reader of a task-space gain; one number for two different dimensions has no unit."""
 
     def row(value: object) -> list[float]:
         if not isinstance(value, list) or len(value) != 6:

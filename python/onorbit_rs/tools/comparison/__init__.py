@@ -121,8 +121,8 @@ def compare(
         engine (MuJoCo or the built-in equations of motion).
     tolerance : float
         Runs diverge where a difference exceeds this fraction of the quantity's largest value, or of 1 in
-        its unit (m, rad, N m). For inertial positions it is a fraction of the largest distance from the
-        reference.
+        its unit (m, rad, N m) if that is larger. For inertial positions it is a fraction of the largest
+        distance from the reference.
 
     Returns
     -------

@@ -115,7 +115,7 @@ def _interpolated(rows: Rows, at: Floats) -> Rows:
 def _hermite(
     first: Floats, second: Floats, rate_a: Floats, rate_b: Floats, s: Floats, step: Floats
 ) -> Floats:
-    """Return the cubic Hermite interpolation; a line would deviate by `v² h² / 8 r`, 8 km in two minutes."""
+    """Return the cubic Hermite interpolation; a line would deviate by `v² h² / 8 r`, 16 km for 120 s."""
     weight = s * s * (3.0 - 2.0 * s)
     rates = s * (1.0 - s) * ((1.0 - s) * rate_a - s * rate_b)
     return first + weight * (second - first) + step * rates

@@ -1,4 +1,4 @@
-"""Converts orbits and fixed poses of OnOrbitROS: kilometres, radians, struct tm."""
+"""Converts orbits and fixed poses of OnOrbitROS, given in km and rad with dates as in ``struct tm``."""
 
 from __future__ import annotations
 
@@ -136,7 +136,7 @@ def _since_perigee(source: Source, a_m: float) -> float:
 
 
 def _date(source: Source, name: str) -> datetime | None:
-    """Return a date as mktime interprets struct tm: months from 0, days may be 0; years may be complete."""
+    """Return a date as mktime interprets struct tm: months from 0; a day may be 0, a year 124 or 2024."""
     nested = source.data.get(name)
     parts: dict[str, object] = dict(nested) if isinstance(nested, dict) else {}
     if nested is not None and not isinstance(nested, dict):
@@ -168,7 +168,7 @@ def _date(source: Source, name: str) -> datetime | None:
 def read_fixed_pose(source: Source) -> None:
     """Convert a pose to ``orbit: {kind: fixed_frame}``.
 
-    It is given in km and by the quaternion from the local frame to the inertial frame.
+    Its position is in km, and its quaternion rotates the local frame to the inertial frame.
     """
     position = [source.number(f"pos_{axis}", 0.0) * 1e3 for axis in "xyz"]
     names = [f"orientation_{axis}" for axis in "xyzw"]

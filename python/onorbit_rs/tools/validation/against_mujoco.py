@@ -1,8 +1,8 @@
 """Accelerations of free-floating robots against MuJoCo.
 
-MuJoCo shares neither code nor conventions with this package: its quaternions are wxyz, the base's linear
-velocity is in W axes and its angular velocity in body axes. Accelerations are compared instead of
-trajectories because MuJoCo's integrators do not conserve momentum.
+MuJoCo shares no code with this package, and its conventions differ: quaternions are wxyz, and the base's
+linear velocity is in W axes, unlike the angular velocity, which is in body axes. Accelerations are compared
+instead of trajectories because MuJoCo's integrators do not conserve momentum.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ RADIUS = 6_778e3
 
 
 def jacobi(model: oo.Model, orbit: oo.Kepler, trace: oo.Trace, rows: slice) -> Any:
-    """Return the energy (T,) in the frame that rotates with a circular orbit, J.
+    """Return the energy, (T,), J, in the frame that rotates with a circular orbit.
 
     `Σ ½m|ρ̇−n×ρ|² + ½n²ρ_z²m − m n²R²X + ½(ω−n)·I(ω−n) − ½n·In + (3μ/2r³) r̂·I r̂` with `X = (s−1)²(s+2)/2s`,
     `s² = 1 + (2R u + ρ²)/R²`, `u = R̂·ρ`. Tidal and centrifugal potential are combined, which avoids
@@ -85,7 +85,7 @@ def jacobi(model: oo.Model, orbit: oo.Kepler, trace: oo.Trace, rows: slice) -> A
 
 
 def in_orbit() -> tuple[float]:
-    """Return the drift of Jacobi's integral, relative to the kinetic energy, 37 m from the reference."""
+    """Return the drift of Jacobi's integral of a robot 37 m from its reference, per kinetic energy."""
     model, q = humanoid()
     q[:3] = [20.0, -30.0, 10.0]  # far enough for tides to matter
     orbit = oo.Kepler(semi_major_axis=RADIUS, inclination=np.radians(51.6), mean_anomaly=0.0)

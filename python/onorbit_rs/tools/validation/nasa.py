@@ -115,7 +115,7 @@ RUNS = {
 
 
 class Row(NamedTuple):
-    """A row of NASA's table: s, m, m/s, rad/s, T."""
+    """A row of NASA's table: time (s), position (m), velocity (m/s), rate (rad/s) and attitude (T)."""
 
     time: float
     position: Any

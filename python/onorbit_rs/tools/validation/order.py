@@ -74,7 +74,7 @@ PATHS = {"positions": 4.0, "positions and velocities": 6.0}
 
 
 def path(given: str) -> tuple[float]:
-    """Return the deviation of the order of a path through points of an ellipse from its spline's order."""
+    """Interpolate points of an ellipse; return the deviation of the measured order from the spline's."""
     orbit = oo.Kepler(semi_major_axis=8e6, eccentricity=0.15, inclination=0.9, raan=0.3, mean_anomaly=0.0)
     between = np.linspace(0.0, 2000.0, 998)
 

@@ -19,7 +19,7 @@ CODES = [1, 1, 6, 6, 4, 3, 6]
 
 
 class ElementSet(NamedTuple):
-    """Two lines, the report's times (start, stop, step, min) and rows of its output."""
+    """Two lines, the report's times (start, stop and step, min) and rows of the report's output."""
 
     regime: str
     span: tuple[float, float, float]

@@ -57,7 +57,7 @@ class Tree:
 
 @dataclass(frozen=True)
 class State:
-    """Arguments of the kernels; ``external`` holds wrenches about the named frame's origin, in its axes."""
+    """Arguments of the kernels; ``external`` holds wrenches by frame, about its origin and in its axes."""
 
     q: Array
     v: Array
