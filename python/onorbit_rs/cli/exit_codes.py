@@ -56,7 +56,7 @@ def fail(message: str, code: int) -> NoReturn:
 
 
 def _discard_unwritable_stderr() -> None:
-    """Redirect a closed stderr to the null device; for what it still buffers, Python would exit with code 120."""
+    """Redirect a closed stderr to the null device; else its buffer would make Python exit with code 120."""
     try:
         if sys.stderr is not None:
             sys.stderr.flush()
