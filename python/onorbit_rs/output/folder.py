@@ -231,7 +231,7 @@ class OutputFolder:
             self._remove_checkpoint()
 
     def _remove_checkpoint(self) -> None:
-        """Remove the files that the manifest lists, and the folder if it is then empty."""
+        """Remove the listed files of the checkpoint, and the checkpoint folder if it is then empty."""
         folder = self.path / CHECKPOINT
         if self.manifest is None or not is_real_folder(folder):
             return

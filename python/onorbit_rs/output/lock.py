@@ -163,7 +163,10 @@ def _is_at(file: Path, descriptor: int) -> bool:
 
 
 def _try_lock(descriptor: int, folder: Path | None) -> bool:
-    """Try to acquire the lock, in shared mode if ``folder`` is None; return True on success."""
+    """Try to acquire the lock, in shared mode if ``folder`` is None; return False if it is not available.
+
+    On a file system without locks, return True, with a warning if ``folder`` is given.
+    """
     try:
         _lock(descriptor, is_shared=folder is None)
     except OSError as error:

@@ -43,7 +43,10 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
 
 
 def _fastest_turn(stop: SimulationError) -> float:
-    """Return the largest initial rate, rad/s; later rates are a result of the divergence."""
+    """Return the largest angular rate of the base or rate of a joint at the start, rad/s (m/s).
+
+    Later rates are a result of the divergence. Without a recorded row, the last finite state is used.
+    """
     has_rows = stop.trace is not None and len(stop.trace) > 0
     start = np.asarray(stop.trace.v)[0] if has_rows else np.asarray(stop.v)
     return float(np.abs(start[3:]).max())

@@ -34,12 +34,14 @@ pub struct Geodetic {
 const NEAREST: f64 = 50e3;
 
 impl Geodetic {
-    /// Returns the coordinates of a position from the Earth's centre, Earth-fixed axes, m.
+    /// Returns the geodetic coordinates of a position relative to the Earth's centre, in Earth-fixed axes, m.
     ///
     /// # Errors
-    /// [`EarthError::NearCentre`] within 50 km of the centre, [`EarthError::NotFinite`].
+    /// [`EarthError::NearCentre`] if the position is within 50 km of the centre, and [`EarthError::NotFinite`] if it is
+    /// infinite or NaN.
     ///
-    /// Source: Bowring, Survey Review 23(181), 1976, iterated to rounding at every altitude.
+    /// Source: Bowring, Survey Review 23(181), 1976; iterated until only rounding changes, so that the result is
+    /// accurate at every altitude.
     pub fn of(position_f: &Vector3<f64>, ellipsoid: &Ellipsoid) -> Result<Self, EarthError> {
         let distance = position_f.norm();
         if !distance.is_finite() {

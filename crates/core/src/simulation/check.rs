@@ -15,9 +15,11 @@ impl Simulation {
     /// Checks all settings that can be checked before a run.
     ///
     /// # Errors
-    /// Vectors of wrong length, values that are not finite, a quaternion that does not have unit norm, time steps that
-    /// are not positive, an effect that lacks the orbit it requires, a frame that the robot does not have, a reference
-    /// that starts too far from its frame, and an Earth orientation with another epoch or other axes than the orbit.
+    /// A [`SimulationError`] for the first invalid setting: an initial state of the wrong length, outside its range or
+    /// with a quaternion that does not have unit norm; a joint that starts beyond its limits when these are enforced; a
+    /// time step, tolerance or other number outside its range; an effect or a gravity field without the orbit that it
+    /// requires; an Earth whose epoch or axes differ from those of the orbit; invalid controls; a reference that has no
+    /// tool or starts too far from it.
     pub fn check(&self) -> Result<(), SimulationError> {
         check_state(&self.model, &self.q, &self.v)?;
         let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];

@@ -89,7 +89,7 @@ impl<'a> ExternalEngine<'a> {
         self.has_output.then_some(&self.output.acceleration[..])
     }
 
-    /// Returns the work done on the robot in the last step, J.
+    /// Returns the work done on the robot in the last step minus the energy that its joints dissipated, J.
     pub(super) fn work_of_step(&self) -> f64 {
         self.output.work
     }

@@ -25,7 +25,7 @@ pub(super) struct EveryStep {
     /// Motion at the start of the current step; after the step it also contains the accelerations and forces at both
     /// ends of the step.
     start: Option<End>,
-    /// Rows at the start and at the end of a step whose base rows are checked.
+    /// Trace rows at both ends of the last step in which the equations of motion of the base were checked.
     rows: Recorder,
 }
 

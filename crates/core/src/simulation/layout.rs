@@ -43,7 +43,7 @@ impl Layout {
         &self.systems
     }
 
-    /// Returns the number of the system with this name; `None` if there is none.
+    /// Returns the index of the system with this name; `None` if there is none.
     pub fn system(&self, name: &str) -> Option<usize> {
         self.systems.iter().position(|system| system.name == name)
     }

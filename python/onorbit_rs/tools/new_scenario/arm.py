@@ -42,9 +42,10 @@ class Arm:
 def find_arm(model: Model, tool: str | None = None) -> Arm | None:
     """Return the arm that moves the frame ``tool``; without ``tool``, the arm of the most likely tool.
 
-    Frames are preferred in this order: those moved by six joints or more, those on a link that carries
-    fingers, those with a usual name of a tool, those moved by many joints. Frames on fingers are omitted.
-    Returns None if nothing moves, or if no joint moves ``tool``.
+    Frames are preferred by these criteria, in this order: six joints or more move them, they are on a link
+    that carries fingers, they have a common name for tools, more joints move them. Without ``tool``, frames
+    on fingers are considered only if no other frame moves. Returns None if nothing moves, or if no joint
+    moves ``tool``.
     """
     chains = _chains(model)
     fingers, palms = find_fingers(model)
