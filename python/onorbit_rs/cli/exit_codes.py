@@ -8,7 +8,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TextIO
 
 from onorbit_rs.cli.text_output import print_failure
 from onorbit_rs.exceptions import RunInterrupted
@@ -43,7 +43,11 @@ def ignore_closed_pipe() -> Iterator[None]:
 
 def discard_stdout() -> None:
     """Redirect stdout to the null device, so that Python's exit does not write to a closed or full stdout."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    _redirect_to_null(sys.stdout)
+
+
+def _redirect_to_null(stream: TextIO) -> None:
+    os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def fail(message: str, code: int) -> NoReturn:
@@ -61,7 +65,7 @@ def _discard_unwritable_stderr() -> None:
         if sys.stderr is not None:
             sys.stderr.flush()
     except OSError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stderr.fileno())
+        _redirect_to_null(sys.stderr)
 
 
 def exit_stopped(stop: KeyboardInterrupt) -> NoReturn:
