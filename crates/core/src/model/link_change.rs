@@ -3,6 +3,7 @@
 use super::builder::ModelBuilder;
 use super::description::{Inertial, Link};
 use super::error::ModelError;
+use super::lookup::find;
 use super::tree::Model;
 use nalgebra::{Matrix3, Vector3};
 
@@ -47,11 +48,7 @@ impl LinkChange {
         &self,
         names: impl Iterator<Item = &'a str> + Clone,
     ) -> Result<(), ModelError> {
-        if names.clone().any(|name| name == self.link) {
-            return Ok(());
-        }
-        let candidates = names.map(str::to_owned).collect();
-        Err(ModelError::UnknownName { what: "link", name: self.link.clone(), candidates })
+        find("link", &self.link, names).map(|_| ())
     }
 }
 

@@ -50,7 +50,11 @@ impl Model {
     }
 }
 
-fn find<'a>(
+/// Returns the index of a name.
+///
+/// # Errors
+/// [`ModelError::UnknownName`].
+pub(super) fn find<'a>(
     what: &'static str,
     name: &str,
     mut names: impl Iterator<Item = &'a str> + Clone,

@@ -3,6 +3,7 @@
 use super::builder::ModelBuilder;
 use super::description::{Description, Joint, JointKind};
 use super::error::ModelError;
+use super::lookup::find;
 use super::tree::Model;
 
 impl Model {
@@ -23,12 +24,7 @@ impl Model {
 impl Description {
     /// Returns the description of the same robot with the link `name` as its root.
     pub(super) fn rerooted(&self, name: &str) -> Result<Self, ModelError> {
-        let root = self.links.iter().position(|link| link.name == name);
-        let root = root.ok_or_else(|| ModelError::UnknownName {
-            what: "link",
-            name: name.to_owned(),
-            candidates: self.links.iter().map(|link| link.name.clone()).collect(),
-        })?;
+        let root = find("link", name, self.links.iter().map(|link| link.name.as_str()))?;
         if root == 0 {
             return Ok(self.clone());
         }
