@@ -96,7 +96,7 @@ def test_a_field_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
             "order is 9; it must be at most the degree, 8",
         ),
         (lambda: oo.GravityField("egm2008", degree=-1), "degree is -1"),
-        (lambda: oo.GravityField.zonal(7), "for degrees 2 to 6"),
+        (lambda: oo.GravityField.zonal(7), "is 7; it must be from 2 to 6"),
         (lambda: oo.GravityField.zonal(j=[1e-3], mu=-1.0, radius=1.0), "mu is -1"),
         (lambda: oo.GravityField.zonal(j=[1e-3]), "all of j, mu and radius"),
         (lambda: oo.GravityField.zonal(2).acceleration([6.2e6, 0, 0]), "below the surface"),

@@ -166,7 +166,7 @@ def test_runs_that_cannot_be_resumed_are_rejected(
 
 
 def test_folders_without_a_checkpoint(tmp_path: Path) -> None:
-    with pytest.raises(NotFoundError, match="it is a file, but the output folder of a run is required"):
+    with pytest.raises(NotFoundError, match="is a file, but the output folder of a run is required"):
         oo.resume(__file__)
     with pytest.raises(NotFoundError, match="no such folder"):
         oo.resume(tmp_path / "none")

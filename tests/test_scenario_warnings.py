@@ -176,6 +176,24 @@ def test_a_divergence_of_a_fast_spin_suggests_a_step_and_not_gains() -> None:
         oo.run(spin, quiet=True)
 
 
+def test_the_rate_of_a_prismatic_joint_is_not_a_rotation() -> None:
+    """A tape that unrolls at 100 m/s does not require a shorter step or lower initial rates."""
+    robot = """<robot name="r"><link name="base"><inertial><mass value="10"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <link name="tape"><inertial><mass value="1"/>
+      <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <joint name="slide" type="prismatic"><parent link="base"/><child link="tape"/><axis xyz="1 0 0"/>
+      <limit lower="0" upper="1" effort="1" velocity="1"/></joint></robot>"""
+    model = oo.Model.from_urdf_string(robot)
+    scenario = load({"robot": {"rigid_body": {"mass": 1.0, "inertia": [1.0, 1.0, 1.0]}},
+                     "simulation": {"duration": 1.0, "time_step": 0.02}})  # fmt: skip
+    v = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 100.0])
+    stop = SimulationError("diverged", time=0.5, q=np.zeros(8), v=v, trace=None)
+    said = divergence(stop, scenario, model)
+    assert "joint 'slide', 100 m/s; try a time_step shorter than 0.02 s" in said
+    assert "initial rates" not in said
+
+
 def test_a_divergence_by_a_damper_does_not_suggest_more_damping() -> None:
     data = pushed({"kind": "joint_pid", "d": 10.0, "effort_limit": 1e9}, 0.1)
     with warnings.catch_warnings():

@@ -161,14 +161,14 @@ class SavedRun:
 
 
 def check_folder(folder: Path) -> None:
-    """Raise :class:`NotFoundError` if there is no folder of this name."""
+    """Raise :class:`NotFoundError` if the folder does not exist or is not a folder."""
     if not folder.is_dir():
         what = (
-            f"it is {file_kind(folder)}, but the output folder of a run is required"
+            f" is {file_kind(folder)}, but the output folder of a run is required"
             if exists(folder)
-            else "no such folder"
+            else ": no such folder"
         )
-        raise NotFoundError(f"{what}: {folder}", path=str(folder), kind="run")
+        raise NotFoundError(f"{folder}{what}", path=str(folder), kind="run")
 
 
 def read_trace(folder: Path) -> Trace:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 _BASE = ("linear", "m/s"), ("angular", "rad/s")
 _TURN = 0.1
-"""Rotation of the base per step, rad, up to which a step is usually short enough."""
+"""Rotation of the base or a joint per step, rad, up to which a step is usually short enough."""
 
 
 def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
@@ -27,7 +27,7 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
     rates = np.asarray(stop.v, dtype=float)
     worst = int(np.argmax(np.abs(rates)))
     name, unit = list(_rates(model))[worst]
-    turned = 0.0 if scenario.laws else _fastest_turn(stop) * settings.time_step
+    turned = 0.0 if scenario.laws else _fastest_turn(stop, model) * settings.time_step
     shorter = min(1.0, _TURN / max(turned, _TURN)) * settings.time_step
     fixes = ["a smaller tolerance" if is_adaptive else f"a time_step shorter than {shorter:.2g} s"]
     if settings.control_period is not None and scenario.laws:
@@ -42,14 +42,16 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
     )
 
 
-def _fastest_turn(stop: SimulationError) -> float:
-    """Return the largest angular rate of the base or rate of a joint at the start, rad/s (m/s).
+def _fastest_turn(stop: SimulationError, model: Model) -> float:
+    """Return the largest angular rate at the start of the run, of an axis of the base or of a joint, rad/s.
 
-    Later rates are a result of the divergence. Without a recorded row, the last finite state is used.
+    Prismatic joints are excluded. Later rates are a result of the divergence. Without a recorded row, the
+    last finite state is used.
     """
     has_rows = stop.trace is not None and len(stop.trace) > 0
     start = np.asarray(stop.trace.v)[0] if has_rows else np.asarray(stop.v)
-    return float(np.abs(start[3:]).max())
+    is_angular = [unit == "rad/s" for _, unit in _rates(model)]
+    return float(np.abs(start[is_angular]).max())
 
 
 def _rates(model: Model) -> Iterator[tuple[str, str]]:

@@ -5,7 +5,7 @@
 
 use super::series::Series;
 
-/// Longitude beyond `F + Ω`, arc seconds.
+/// Longitude minus `F + Ω`, arc seconds.
 pub(super) const LONGITUDE: Series = Series {
     polynomial: &[-4.579, 1.657],
     terms: &[

@@ -5,7 +5,7 @@
 
 use super::series::Series;
 
-/// Longitude beyond `F - D + Ω`, arc seconds.
+/// Longitude minus `F - D + Ω`, arc seconds.
 pub(super) const LONGITUDE: Series = Series {
     polynomial: &[-7.479, -2.884],
     terms: &[

@@ -13,8 +13,8 @@ pub enum GravityError {
     #[error("{name} is {value}; it must be positive and finite", value = short(*value))]
     NotPositive { name: &'static str, value: f64 },
     #[error(
-        "zonal harmonics in closed form are available for degrees 2 to 6, not {degree}; use a gravity model with \
-         higher harmonics"
+        "the degree of a zonal field is {degree}; it must be from 2 to 6 (J2 to J6); use a gravity model for higher \
+         harmonics"
     )]
     ZonalDegree { degree: usize },
     #[error("order is {order}; it must be at most the degree, {degree}")]

@@ -24,8 +24,8 @@ pub enum CheckpointError {
     )]
     MissingRows { got: usize, expected: usize },
     #[error(
-        "the checkpoint has {got} {name}, but the simulation has {expected}: it belongs to another scenario; resume \
-         with the original one"
+        "the checkpoint belongs to another scenario (size of {name}: {got} in the checkpoint, {expected} in this \
+         simulation); resume with the original one"
     )]
     OtherSize { name: &'static str, got: usize, expected: usize },
     #[error(

@@ -128,8 +128,8 @@ pub enum SimulationError {
     #[error(transparent)]
     Engine(Box<dyn std::error::Error + Send + Sync>),
     #[error(
-        "the engine returned an attitude q[3:7] of length {length} after the step from t = {time} s, but a \
-         quaternion has length 1; normalise it at the end of each step",
+        "after the step from t = {time} s, the quaternion q[3:7] returned by the engine has norm {length}; it must \
+         be 1 within 1e-9; normalise it at the end of each step",
         time = short(*time), length = unlike(*length, &[1.0])
     )]
     EngineAttitude { time: f64, length: f64 },
