@@ -7,7 +7,7 @@ use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::model::{Model, neutral};
 use crate::reference::TaskReference;
 use crate::simulation::{
-    EquationsOfMotion, Integrator, NoLoads, State, StepMethod, StepSettings, SystemState, only, only_mut,
+    EquationsOfMotion, Integrator, NoLoads, State, StepMethod, StepSettings, TreeState, only, only_mut,
 };
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -155,7 +155,7 @@ impl<'a, S: Real> Lanes<'a, S> {
     fn new(settings: &'a Rollout<'a>, model: &'a Model) -> Self {
         let mut equations = EquationsOfMotion::new(&[model], NoLoads, None);
         let q = neutral(model).into_iter().map(S::of).collect();
-        let state = State::at(&mut equations.systems, [(q, vec![S::of(0.0); model.nv()])]);
+        let state = State::at(&mut equations.trees, [(q, vec![S::of(0.0); model.nv()])]);
         let Rollout { integrator, time_step, .. } = *settings;
         let duration = time_step * settings.steps as f64;
         let how = StepSettings { integrator, tolerance: 0.0, time_step, duration };
@@ -168,7 +168,7 @@ impl<'a, S: Real> Lanes<'a, S> {
     /// Loads the initial states of `count` runs, starting with run `first`.
     fn start(&mut self, q0: &[f64], v0: &[f64], first: usize, count: usize) {
         (self.first, self.count) = (first, count);
-        let (system, state) = (only_mut(&mut self.equations.systems), only_mut(&mut self.state.systems));
+        let (tree, state) = (only_mut(&mut self.equations.trees), only_mut(&mut self.state.trees));
         let (mut q, mut v) = (std::mem::take(&mut state.q), std::mem::take(&mut state.v));
         S::enter(
             #[inline(always)]
@@ -178,7 +178,7 @@ impl<'a, S: Real> Lanes<'a, S> {
                 }
             },
         );
-        *state = SystemState::at(system.model, &mut system.data, q, v);
+        *state = TreeState::at(tree.model, &mut tree.data, q, v);
         self.stepper.reset();
     }
 
@@ -221,16 +221,16 @@ impl<'a, S: Real> Lanes<'a, S> {
     /// Computes the torques of a step.
     fn drive(&mut self, step: usize) {
         let Self { equations, state, settings, work, first, count, .. } = self;
-        let (system, state) = (only_mut(&mut equations.systems), only(&state.systems));
+        let (tree, state) = (only_mut(&mut equations.trees), only(&state.trees));
         match settings.control {
             RolloutControl::Passive => {}
             RolloutControl::Torques(tau) => {
-                let n = system.command.len();
+                let n = tree.command.len();
                 let stride = settings.steps * n;
                 let strides = Strides { first: *first * stride + step * n, stride, count: *count };
                 S::enter(
                     #[inline(always)]
-                    || gather(tau, strides, &mut system.command),
+                    || gather(tau, strides, &mut tree.command),
                 );
             }
             RolloutControl::ComputedTorque(law, reference) => {
@@ -240,17 +240,17 @@ impl<'a, S: Real> Lanes<'a, S> {
                     .sample(t, 0.0)
                     .expect("references in an orbital frame are rejected before the rollout")
                     .lift();
-                let (data, command) = (&mut system.data, &mut system.command);
+                let (data, command) = (&mut tree.data, &mut tree.command);
                 let is_relative = reference.is_relative_to_base();
                 let (q, v) = (&state.q, &state.v);
-                computed_torque(law, system.model, data, q, v, &desired, is_relative, work, command);
-                work.desired_accelerations(law, system.modes.requested_mut());
+                computed_torque(law, tree.model, data, q, v, &desired, is_relative, work, command);
+                work.desired_accelerations(law, tree.modes.requested_mut());
             }
         }
     }
 
     fn write(&self, row: usize, q: &mut [f64], v: &mut [f64]) {
-        let (rows, count, state) = (self.settings.rows(), self.count, only(&self.state.systems));
+        let (rows, count, state) = (self.settings.rows(), self.count, only(&self.state.trees));
         S::enter(
             #[inline(always)]
             || {
@@ -265,7 +265,7 @@ impl<'a, S: Real> Lanes<'a, S> {
     /// Returns the lane of the first run whose state is not finite. A state that has become non-finite never becomes
     /// finite again.
     fn diverged(&self) -> Option<usize> {
-        let state = only(&self.state.systems);
+        let state = only(&self.state.trees);
         let numbers = || state.q.iter().chain(&state.v);
         (0..self.count).find(|&lane| !numbers().all(|x| x.lane(lane).is_finite()))
     }

@@ -8,9 +8,9 @@ use super::integrator::{FirstStage, Stages};
 use super::mover::Mover;
 use super::state::State;
 use super::step_doubling::{Errors, StepDoubling};
-use super::system::System;
-use super::system_state::SystemState;
 use super::trace::Trace;
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::model::Model;
 use crate::spatial::Scalar;
 
@@ -20,7 +20,7 @@ type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 /// errors of an external engine are not estimated.
 pub(super) struct Accuracy<S> {
     doubling: Option<StepDoubling<S>>,
-    /// Checks of every step, one entry per system; empty if every step is a row.
+    /// Checks of every step, one entry per tree; empty if every step is a row.
     every_step: Vec<EveryStep>,
     /// True if the base rows of inverse dynamics are checked for the current step.
     is_recorded: bool,
@@ -31,13 +31,13 @@ impl<S: Scalar> Accuracy<S> {
         Self { doubling, every_step, is_recorded: false }
     }
 
-    /// Returns the errors and checks of a system accumulated so far.
+    /// Returns the errors and checks of a tree accumulated so far.
     pub(super) fn save(&self, number: usize) -> (Option<Errors>, Option<SavedChecks>) {
         let errors = self.doubling.as_ref().map(|doubling| doubling.errors[number].clone());
         (errors, self.every_step.get(number).map(EveryStep::save))
     }
 
-    /// Restores what [`Accuracy::save`] returned for a system.
+    /// Restores what [`Accuracy::save`] returned for a tree.
     pub(super) fn restore(&mut self, number: usize, (errors, checks): (Option<Errors>, Option<SavedChecks>)) {
         if let (Some(doubling), Some(errors)) = (&mut self.doubling, errors) {
             doubling.errors[number] = errors;
@@ -50,13 +50,12 @@ impl<S: Scalar> Accuracy<S> {
     /// Completes the checks of the last step, which ended at time `t`, s. Expects a state with projected base twists,
     /// whose kinematics are in `equations`.
     pub(super) fn end_step(&mut self, t: f64, state: &State<S>, equations: &Equations<'_, S>) {
-        for (every_step, (state, system)) in self.every_step.iter_mut().zip(pairs(state, &equations.systems))
-        {
-            every_step.end(t, state, system);
+        for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, &equations.trees)) {
+            every_step.end(t, state, tree);
         }
     }
 
-    /// Excludes the last step of a system from the checks.
+    /// Excludes the last step of a tree from the checks.
     pub(super) fn skip_step(&mut self, number: usize) {
         if let Some(every_step) = self.every_step.get_mut(number) {
             every_step.skip();
@@ -74,12 +73,12 @@ impl<S: Scalar> Accuracy<S> {
     ) -> Result<(), SimulationError> {
         let is_due = self.doubling.as_ref().is_some_and(|doubling| doubling.is_due(step));
         self.is_recorded = is_due && !self.every_step.is_empty();
-        let EquationsOfMotion { systems, loads } = equations;
-        for (every_step, (state, system)) in self.every_step.iter_mut().zip(pairs(state, systems)) {
+        let EquationsOfMotion { trees, loads } = equations;
+        for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, trees)) {
             if is_due {
-                every_step.record_start(interval.0, state, system, loads)?;
+                every_step.record_start(interval.0, state, tree, loads)?;
             }
-            every_step.start(interval.0, state, system);
+            every_step.start(interval.0, state, tree);
         }
         if let (Some(doubling), Some(integration)) = (&mut self.doubling, mover.integration()) {
             // if step doubling fails, the step itself fails too and reports the error
@@ -102,9 +101,9 @@ impl<S: Scalar> Accuracy<S> {
         let Some(integration) = mover.integration() else { return Ok(()) };
         if let Some(doubling) = &mut self.doubling {
             let h = interval.1 - interval.0;
-            let steps = integration.stages.ends().zip(&equations.systems);
-            for (errors, (ends, system)) in doubling.errors.iter_mut().zip(steps) {
-                errors.jumps.add_step(&ends, &system.command, h, is_smooth);
+            let steps = integration.stages.ends().zip(&equations.trees);
+            for (errors, (ends, tree)) in doubling.errors.iter_mut().zip(steps) {
+                errors.jumps.add_step(&ends, &tree.command, h, is_smooth);
             }
         }
         for (every_step, ends) in self.every_step.iter_mut().zip(integration.stages.ends()) {
@@ -131,29 +130,29 @@ impl<S: Scalar> Accuracy<S> {
         end.copy_from(state);
         equations.project_momentum(end);
         equations.apply_loads(interval.1, interval, end)?;
-        let EquationsOfMotion { systems, loads } = equations;
-        for (every_step, (state, system)) in self.every_step.iter_mut().zip(pairs(end, systems)) {
-            every_step.record_end(interval.1, state, system, loads)?;
+        let EquationsOfMotion { trees, loads } = equations;
+        for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(end, trees)) {
+            every_step.record_end(interval.1, state, tree, loads)?;
         }
         stages.evaluate_first(equations, end);
         self.complete_rows(equations, stages, EveryStep::complete_end);
         Ok(())
     }
 
-    /// Completes the last row of the checks of each system with the acceleration of the first stage.
+    /// Completes the last row of the checks of each tree with the acceleration of the first stage.
     fn complete_rows(
         &mut self,
         equations: &Equations<'_, S>,
         stages: &Stages<S>,
         complete: fn(&mut EveryStep, &Model, &FirstStage<S>),
     ) {
-        let firsts = stages.first.iter().zip(&equations.systems);
-        for (every_step, (first, system)) in self.every_step.iter_mut().zip(firsts) {
-            complete(every_step, system.model, first);
+        let firsts = stages.first.iter().zip(&equations.trees);
+        for (every_step, (first, tree)) in self.every_step.iter_mut().zip(firsts) {
+            complete(every_step, tree.model, first);
         }
     }
 
-    /// Writes the error estimates of a system after `steps` steps to its trace. `rotation_error` is the accumulated
+    /// Writes the error estimates of a tree after `steps` steps to its trace. `rotation_error` is the accumulated
     /// attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator.
     pub(super) fn conclude(
         &self,
@@ -172,10 +171,10 @@ impl<S: Scalar> Accuracy<S> {
     }
 }
 
-/// Returns pairs of the state of each system and the system.
+/// Returns pairs of the state of each tree and the tree.
 fn pairs<'a, 's, S>(
     state: &'a State<S>,
-    systems: &'a [System<'s, S>],
-) -> impl Iterator<Item = (&'a SystemState<S>, &'a System<'s, S>)> {
-    state.systems.iter().zip(systems)
+    trees: &'a [Tree<'s, S>],
+) -> impl Iterator<Item = (&'a TreeState<S>, &'a Tree<'s, S>)> {
+    state.trees.iter().zip(trees)
 }

@@ -10,7 +10,7 @@ use super::schedule::{Cursor, Schedule};
 use super::state::State;
 use super::state_range::{UNIT_NORM, attitude_norm};
 use super::step_doubling::Errors;
-use super::system_state::SystemState;
+use super::tree_state::TreeState;
 use crate::control::ControlMemory;
 use crate::spatial::InstructionSet;
 use serde::{Deserialize, Serialize};
@@ -178,14 +178,14 @@ impl Checkpoint {
     /// Checks that the state is finite, the attitudes are unit quaternions, and the step control is valid.
     fn check_state(&self) -> Result<(), CheckpointError> {
         let Progress { state, step_control, .. } = &self.progress;
-        let has_unit_attitude = |state: &SystemState<f64>| (attitude_norm(&state.q) - 1.0).abs() <= UNIT_NORM;
+        let has_unit_attitude = |state: &TreeState<f64>| (attitude_norm(&state.q) - 1.0).abs() <= UNIT_NORM;
         let is_step = |step: f64| step == 0.0 || step.is_normal() && step > 0.0;
         let has_step = step_control.as_ref().is_none_or(|control| {
-            is_step(control.step) && control.systems.iter().all(|system| system.size >= 0.0)
+            is_step(control.step) && control.trees.iter().all(|system| system.size >= 0.0)
         });
         let reason = if !state.is_finite() {
             "its state is not finite"
-        } else if !state.systems.iter().all(has_unit_attitude) {
+        } else if !state.trees.iter().all(has_unit_attitude) {
             "an attitude is not a unit quaternion"
         } else if !has_step {
             "its step size is not a positive number"
@@ -198,16 +198,16 @@ impl Checkpoint {
     fn check_sizes(&self, layout: &Layout) -> Result<(), CheckpointError> {
         let Self { progress, controllers, .. } = self;
         let count = layout.systems().len();
-        let scales = progress.step_control.as_ref().map(|control| control.systems.len());
+        let scales = progress.step_control.as_ref().map(|control| control.trees.len());
         check_each([
-            ("systems", progress.state.systems.len(), count),
+            ("systems", progress.state.trees.len(), count),
             ("systems with modes", progress.systems.len(), count),
             ("systems with controllers", controllers.systems.len(), count),
             ("systems with error scales", scales.unwrap_or(count), count),
         ])?;
         let systems = progress.systems.iter().zip(&controllers.systems);
         for ((place, state), (progress, controllers)) in
-            layout.systems().iter().zip(&progress.state.systems).zip(systems)
+            layout.systems().iter().zip(&progress.state.trees).zip(systems)
         {
             check_each([
                 ("coordinates", state.q.len(), place.q.len()),

@@ -2,8 +2,8 @@
 
 use super::error::SimulationError;
 use super::schedule::SAME_INSTANT;
-use super::system::System;
-use super::system_state::SystemState;
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::control::{Control, ControlError, ControllerSet};
 use crate::model::Model;
 use crate::reference::{TaskReference, TaskSample};
@@ -34,8 +34,8 @@ impl<'a, S: Scalar> Controllers<'a, S> {
     pub(super) fn desired(
         &mut self,
         t: f64,
-        state: &SystemState<S>,
-        system: &System<'_, S>,
+        state: &TreeState<S>,
+        system: &Tree<'_, S>,
     ) -> Result<Option<(&TaskSample<f64>, bool)>, SimulationError> {
         self.set.update_errors(t, system.model, &system.data, &state.q, &state.v)?;
         if let Some(reference) = self.reference {
@@ -54,13 +54,13 @@ impl<'a, S: Scalar> Controllers<'a, S> {
     pub(super) fn update(
         &mut self,
         t: f64,
-        state: &SystemState<S>,
-        system: &mut System<'_, S>,
+        state: &TreeState<S>,
+        system: &mut Tree<'_, S>,
     ) -> Result<(), SimulationError> {
         if self.set.controls().is_empty() {
             return Ok(());
         }
-        let System { model, data, command, modes, .. } = system;
+        let Tree { model, data, command, modes, .. } = system;
         self.set.update(t, model, data, &state.q, &state.v, command)?;
         modes.requested_mut().copy_from_slice(self.set.desired_accelerations());
         let overflow = command.iter().map(|tau| tau.value()).enumerate().find(|(_, tau)| !tau.is_finite());

@@ -2,8 +2,8 @@
 
 use super::error::SimulationError;
 use super::state_range::attitude_norm;
-use super::system::System;
-use super::system_state::SystemState;
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::model::Model;
 use crate::spatial::{Scalar, Vec3};
 
@@ -97,8 +97,8 @@ impl<'a> ExternalEngine<'a> {
     /// Moves `state` over `interval` with the torques of `system`.
     pub(super) fn advance<S: Scalar>(
         &mut self,
-        system: &System<'_, S>,
-        state: &mut SystemState<S>,
+        system: &Tree<'_, S>,
+        state: &mut TreeState<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
         let Self { engine, q, v, tau, output, has_output } = self;
@@ -128,7 +128,7 @@ impl<'a> ExternalEngine<'a> {
     }
 
     /// Writes the output of a step to `state`.
-    fn update_state<S: Scalar>(&self, state: &mut SystemState<S>) {
+    fn update_state<S: Scalar>(&self, state: &mut TreeState<S>) {
         let output = &self.output;
         for (to, from) in [(&mut state.q, &output.q), (&mut state.v, &output.v)] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = S::of(*from));

@@ -6,7 +6,7 @@ use super::external_loads::ExternalLoads;
 use super::local_reference::{LocalReference, Shift};
 use super::reference_cache::{Instant, ReferenceCache};
 use super::state::State;
-use super::system::System;
+use super::tree::Tree;
 use crate::earth::Earth;
 use crate::environment::{
     Bodies, DifferentialGravity, Effect, EnvironmentError, GravityMode, Reference, Scene, Wrench, Wrenches,
@@ -205,7 +205,7 @@ impl EnvironmentLoads {
 impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
     fn apply(
         &mut self,
-        systems: &mut [System<'_, S>],
+        systems: &mut [Tree<'_, S>],
         state: &State<S>,
         t: f64,
         interval: (f64, f64),
@@ -213,12 +213,12 @@ impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
         if self.effects.is_empty() {
             return Ok(());
         }
-        for (number, (system, state)) in systems.iter_mut().zip(&state.systems).enumerate() {
+        for (number, (system, state)) in systems.iter_mut().zip(&state.trees).enumerate() {
             system.loaded(&state.q).gather_bodies(number, self.reads_velocities, &mut self.bodies);
         }
         self.interval = interval;
         self.sum_effects(t, 0..self.effects.len())?;
-        for (number, (system, state)) in systems.iter_mut().zip(&state.systems).enumerate() {
+        for (number, (system, state)) in systems.iter_mut().zip(&state.trees).enumerate() {
             system.loaded(&state.q).scatter_wrenches(number, &self.wrenches);
         }
         Ok(())

@@ -1,21 +1,21 @@
-//! Equations of motion of all systems of a run: computes the time derivatives of the state from state, loads and
+//! Equations of motion of all trees of a run: computes the time derivatives of the state from state, loads and
 //! joint torques.
 
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
 use super::state::{Rate, State};
-use super::system::System;
+use super::tree::Tree;
 use crate::dynamics::Data;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Equations of motion of all systems under external loads and constant joint torques.
+/// Equations of motion of all trees under external loads and constant joint torques.
 ///
-/// Every evaluation first computes the kinematics of all systems, then the loads once for all of them, then the rates
+/// Every evaluation first computes the kinematics of all trees, then the loads once for all of them, then the rates
 /// of each.
 pub(crate) struct EquationsOfMotion<'a, S, W> {
-    /// The systems, in the order of the run.
-    pub(crate) systems: Vec<System<'a, S>>,
+    /// The trees, in the order of the run.
+    pub(crate) trees: Vec<Tree<'a, S>>,
     pub(crate) loads: W,
 }
 
@@ -23,46 +23,46 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     /// Returns the equations of motion of `models`. `restitution` is that of the stops at the position limits of
     /// joints; `None` means no stops.
     pub(crate) fn new(models: &[&'a Model], loads: W, restitution: Option<f64>) -> Self {
-        Self { systems: models.iter().map(|model| System::new(model, restitution)).collect(), loads }
+        Self { trees: models.iter().map(|model| Tree::new(model, restitution)).collect(), loads }
     }
 
-    /// Computes the kinematics of `state` and projects every base twist onto the momentum of its system.
+    /// Computes the kinematics of `state` and projects every base twist onto the momentum of its tree.
     pub(crate) fn project_momentum(&mut self, state: &mut State<S>) {
-        for (system, state) in self.systems.iter_mut().zip(&mut state.systems) {
-            system.project_momentum(state);
+        for (tree, state) in self.trees.iter_mut().zip(&mut state.trees) {
+            tree.project_momentum(state);
         }
     }
 
     /// Computes the kinematics of `state` in W.
     pub(crate) fn update_kinematics(&mut self, state: &State<S>) {
-        for (system, state) in self.systems.iter_mut().zip(&state.systems) {
-            system.update_kinematics(state);
+        for (tree, state) in self.trees.iter_mut().zip(&state.trees) {
+            tree.update_kinematics(state);
         }
     }
 
     /// Restores kinematics and loads at the start of a step, which a trial step has overwritten.
     pub(super) fn restore(&mut self, start: &[Data<S>]) {
-        for (system, start) in self.systems.iter_mut().zip(start) {
-            system.restore(start);
+        for (tree, start) in self.trees.iter_mut().zip(start) {
+            tree.restore(start);
         }
     }
 
-    /// Computes the external wrenches on all systems at time `t`, s, in a step over `interval`, s. Expects the
-    /// kinematics of `state` in the systems.
+    /// Computes the external wrenches on all trees at time `t`, s, in a step over `interval`, s. Expects the
+    /// kinematics of `state` in the trees.
     pub(crate) fn apply_loads(
         &mut self,
         t: f64,
         interval: (f64, f64),
         state: &State<S>,
     ) -> Result<(), SimulationError> {
-        self.loads.apply(&mut self.systems, state, t, interval)
+        self.loads.apply(&mut self.trees, state, t, interval)
     }
 
-    /// Computes the rates at `state`. Expects its kinematics and loads in the systems.
+    /// Computes the rates at `state`. Expects its kinematics and loads in the trees.
     pub(crate) fn rates(&mut self, state: &State<S>, rate: &mut Rate<S>) {
         let is_loaded = self.loads.is_active();
-        for ((system, state), rate) in self.systems.iter_mut().zip(&state.systems).zip(&mut rate.systems) {
-            system.rates(state, is_loaded, rate);
+        for ((tree, state), rate) in self.trees.iter_mut().zip(&state.trees).zip(&mut rate.trees) {
+            tree.rates(state, is_loaded, rate);
         }
     }
 
@@ -74,29 +74,29 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         state: &State<S>,
         rate: &mut Rate<S>,
     ) -> Result<(), SimulationError> {
-        for (system, state) in self.systems.iter_mut().zip(&state.systems) {
-            system.update_stage_kinematics(state);
+        for (tree, state) in self.trees.iter_mut().zip(&state.trees) {
+            tree.update_stage_kinematics(state);
         }
         self.apply_loads(t, interval, state)?;
         self.rates(state, rate);
         Ok(())
     }
 
-    /// Returns true if a joint of any system has friction or stops.
+    /// Returns true if a joint of any tree has friction or stops.
     pub(crate) fn has_modes(&self) -> bool {
-        self.systems.iter().any(|system| system.modes.is_active())
+        self.trees.iter().any(|tree| tree.modes.is_active())
     }
 
-    /// Returns true if a joint of any system is locked.
+    /// Returns true if a joint of any tree is locked.
     pub(super) fn any_locked(&self) -> bool {
-        self.systems.iter().any(|system| system.modes.locked().is_some())
+        self.trees.iter().any(|tree| tree.modes.locked().is_some())
     }
 
     /// Determines the modes of all joints for the step that starts at `state`. Expects its kinematics and loads in
-    /// the systems.
+    /// the trees.
     pub(crate) fn solve_modes(&mut self, state: &State<S>) {
-        for (system, state) in self.systems.iter_mut().zip(&state.systems) {
-            system.solve_modes(&state.q, &state.v);
+        for (tree, state) in self.trees.iter_mut().zip(&state.trees) {
+            tree.solve_modes(&state.q, &state.v);
         }
     }
 }

@@ -5,8 +5,8 @@ use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
 use super::integrator::{FirstStage, StepEnds};
 use super::recorder::{RecordOptions, Recorder};
-use super::system::System;
-use super::system_state::SystemState;
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::dynamics::center_of_mass;
 use crate::model::Model;
 use crate::spatial::{Quat, Scalar, Vec3};
@@ -63,7 +63,7 @@ impl EveryStep {
 
     /// Adds the step that ends at `state`, whose base twist is projected onto the momentum and whose kinematics are
     /// in `system`.
-    pub(super) fn end<S: Scalar>(&mut self, t: f64, state: &SystemState<S>, system: &System<'_, S>) {
+    pub(super) fn end<S: Scalar>(&mut self, t: f64, state: &TreeState<S>, system: &Tree<'_, S>) {
         if let Some(start) = self.start.take().filter(|start| start.base.time < t) {
             let mut now = End::of(t, state, system);
             // the accelerations at the end of the step are stored with its start
@@ -75,7 +75,7 @@ impl EveryStep {
     }
 
     /// Stores the start of a step, before it is taken. Expects kinematics of `state` in `system`.
-    pub(super) fn start<S: Scalar>(&mut self, t: f64, state: &SystemState<S>, system: &System<'_, S>) {
+    pub(super) fn start<S: Scalar>(&mut self, t: f64, state: &TreeState<S>, system: &Tree<'_, S>) {
         self.start = Some(End::of(t, state, system));
     }
 
@@ -95,8 +95,8 @@ impl EveryStep {
     pub(super) fn record_start<S: Scalar>(
         &mut self,
         t: f64,
-        state: &SystemState<S>,
-        system: &System<'_, S>,
+        state: &TreeState<S>,
+        system: &Tree<'_, S>,
         loads: &mut EnvironmentLoads,
     ) -> Result<(), SimulationError> {
         self.rows.truncate(0);
@@ -108,8 +108,8 @@ impl EveryStep {
     pub(super) fn record_end<S: Scalar>(
         &mut self,
         t: f64,
-        state: &SystemState<S>,
-        system: &System<'_, S>,
+        state: &TreeState<S>,
+        system: &Tree<'_, S>,
         loads: &mut EnvironmentLoads,
     ) -> Result<(), SimulationError> {
         self.rows.record_state(t, state, system, None, None);
@@ -132,7 +132,7 @@ impl EveryStep {
 impl End {
     /// Returns the motion at `state`, whose base twist is projected onto the momentum, without accelerations and
     /// forces.
-    fn of<S: Scalar>(time: f64, state: &SystemState<S>, system: &System<'_, S>) -> Self {
+    fn of<S: Scalar>(time: f64, state: &TreeState<S>, system: &Tree<'_, S>) -> Self {
         let attitude = Quat { v: value(Vec3::from_slice(&state.q[3..])), w: state.q[6].value() };
         let rate = value(Vec3::from_slice(&state.v[3..]));
         let rates: f64 = state.v[3..].iter().map(|x| x.value().abs()).sum();

@@ -1,16 +1,16 @@
-//! External loads on the systems: the interface between the equations of motion and the environment.
+//! External loads on the trees: the interface between the equations of motion and the environment.
 
 use super::error::SimulationError;
 use super::state::State;
-use super::system::System;
+use super::tree::Tree;
 
-/// External wrenches on the bodies of all systems of a run.
+/// External wrenches on the bodies of all trees of a run.
 pub(crate) trait ExternalLoads<S> {
     /// Writes the external wrench on each body at time `t`, s, in a step over `interval`, s, to the data of
-    /// `systems`. Expects the kinematics of `state` in the systems.
+    /// `trees`. Expects the kinematics of `state` in the trees.
     fn apply(
         &mut self,
-        systems: &mut [System<'_, S>],
+        trees: &mut [Tree<'_, S>],
         state: &State<S>,
         t: f64,
         interval: (f64, f64),
@@ -26,7 +26,7 @@ pub(crate) struct NoLoads;
 impl<S> ExternalLoads<S> for NoLoads {
     fn apply(
         &mut self,
-        _: &mut [System<'_, S>],
+        _: &mut [Tree<'_, S>],
         _: &State<S>,
         _: f64,
         _: (f64, f64),

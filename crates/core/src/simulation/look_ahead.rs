@@ -98,7 +98,7 @@ impl<S: Scalar> RunState<'_, S> {
         let Self { equations, mover, row_buffers: (state, _), time, .. } = self;
         mover.kinematics(equations, state);
         mover.resolve_impacts(equations, state);
-        let (state, model) = (only(&state.systems), only(&equations.systems).model);
+        let (state, model) = (only(&state.trees), only(&equations.trees).model);
         for (to, from) in [(&mut *q, &state.q), (&mut *v, &state.v)] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
         }

@@ -38,9 +38,9 @@ mod state_range;
 mod step;
 mod step_doubling;
 mod stepper;
-mod system;
-mod system_state;
 mod trace;
+mod tree;
+mod tree_state;
 
 pub use certificate::{Certificate, Check, PairChecks, certify};
 pub use checkpoint::Checkpoint;
@@ -59,5 +59,5 @@ pub(crate) use only::{only, only_mut};
 pub use settings::Simulation;
 pub(crate) use state::State;
 pub use stepper::{Monitor, Stepper};
-pub(crate) use system_state::SystemState;
 pub use trace::{CoordinateDrift, GoalResult, NamedColumn, Trace};
+pub(crate) use tree_state::TreeState;

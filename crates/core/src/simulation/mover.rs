@@ -1,4 +1,4 @@
-//! Moves the systems over a step with the native equations of motion or with an external engine.
+//! Moves the trees over a step with the native equations of motion or with an external engine.
 
 use super::engine::ExternalEngine;
 use super::environment_loads::EnvironmentLoads;
@@ -9,14 +9,14 @@ use super::modes::StepMethod;
 use super::only::{only, only_mut};
 use super::recorder::Recorder;
 use super::state::State;
-use super::system_state::SystemState;
+use super::tree_state::TreeState;
 use crate::model::Model;
 use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
 /// The native integrator or an external engine; the order of execution in a step is the same for both. An external
-/// engine moves one robot, the only system of its run.
+/// engine moves one robot, the only tree of its run.
 pub(super) enum Mover<'a, S> {
     Native(StepMethod<S>),
     External(ExternalEngine<'a>),
@@ -44,7 +44,7 @@ impl<S: Scalar> Mover<'_, S> {
         match self {
             Self::Native(_) => equations.solve_modes(state),
             Self::External(_) => {
-                only_mut(&mut equations.systems).modes.compensate_by_rate(&only(&state.systems).v);
+                only_mut(&mut equations.trees).modes.compensate_by_rate(&only(&state.trees).v);
             }
         }
     }
@@ -80,13 +80,13 @@ impl<S: Scalar> Mover<'_, S> {
         match self {
             Self::Native(method) => method.advance(equations, state, interval),
             Self::External(engine) => {
-                let (system, state) = (only(&equations.systems), only_mut(&mut state.systems));
-                engine.advance(system, state, interval).map(|()| interval.1)
+                let (tree, state) = (only(&equations.trees), only_mut(&mut state.trees));
+                engine.advance(tree, state, interval).map(|()| interval.1)
             }
         }
     }
 
-    /// Adds the acceleration at the start of the last step to the row of a system; removes the row if an external
+    /// Adds the acceleration at the start of the last step to the row of a tree; removes the row if an external
     /// engine returned no acceleration.
     pub(super) fn complete_row(&self, number: usize, recorder: &mut Recorder, model: &Model) {
         match self {
@@ -100,12 +100,10 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the work done on a system in the last step, J; `state` is its state at the end of the step.
-    pub(super) fn work_of_step(&self, number: usize, state: &SystemState<S>) -> f64 {
+    /// Returns the work done on a tree in the last step, J; `state` is its state at the end of the step.
+    pub(super) fn work_of_step(&self, number: usize, state: &TreeState<S>) -> f64 {
         match self {
-            Self::Native(method) => {
-                (state.work - method.integration.stages.start.systems[number].work).value()
-            }
+            Self::Native(method) => (state.work - method.integration.stages.start.trees[number].work).value(),
             Self::External(engine) => engine.work_of_step(),
         }
     }
@@ -137,18 +135,18 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the number of the first system that is not finite, in `state` or in the last stage of the integrator.
+    /// Returns the number of the first tree that is not finite, in `state` or in the last stage of the integrator.
     pub(super) fn first_diverged(&self, state: &State<S>) -> Option<usize> {
-        state.systems.iter().enumerate().position(|(number, state)| match self {
+        state.trees.iter().enumerate().position(|(number, state)| match self {
             Self::Native(method) => !state.is_finite() || !method.integration.stages.is_finite(number),
             Self::External(_) => !state.is_finite(),
         })
     }
 
-    /// Returns the configuration and the velocity of a system in its last finite state: `state` or, if that is not
+    /// Returns the configuration and the velocity of a tree in its last finite state: `state` or, if that is not
     /// finite, the state at the start of the step.
     pub(super) fn last_finite(&self, number: usize, state: &State<S>) -> [Vec<f64>; 2] {
-        let current = &state.systems[number];
+        let current = &state.trees[number];
         match self {
             Self::Native(method) if !current.is_finite() => method.integration.stages.start_state(number),
             _ => [&current.q, &current.v].map(|x| x.iter().map(|x| x.value()).collect()),

@@ -54,7 +54,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Applies the impacts of joints that reach their stops. If every step is recorded, there is one row before the
     /// impacts and one after them, at the same time.
     pub(super) fn impacts(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
-        let mut pairs = self.equations.systems.iter().zip(&self.state.systems);
+        let mut pairs = self.equations.trees.iter().zip(&self.state.trees);
         if !pairs.any(|(system, state)| system.modes.is_active() && system.first_impact(state).is_some()) {
             return Ok(());
         }
@@ -100,7 +100,7 @@ pub(super) fn complete_rows<S: Scalar>(
     mover: &Mover<'_, S>,
     equations: &EquationsOfMotion<'_, S, EnvironmentLoads>,
 ) {
-    for (number, (run, system)) in systems.iter_mut().zip(&equations.systems).enumerate() {
+    for (number, (run, system)) in systems.iter_mut().zip(&equations.trees).enumerate() {
         mover.complete_row(number, &mut run.recorder, system.model);
     }
 }
@@ -112,9 +112,9 @@ fn add_rows<S: Scalar>(
     t: f64,
     state: &State<S>,
 ) -> Result<(), SimulationError> {
-    let EquationsOfMotion { systems: moved, loads } = equations;
+    let EquationsOfMotion { trees: moved, loads } = equations;
     let orbit = loads.reference_state(t)?;
-    for ((run, system), state) in systems.iter_mut().zip(moved).zip(&state.systems) {
+    for ((run, system), state) in systems.iter_mut().zip(moved).zip(&state.trees) {
         run.add_row(t, state, system, loads, orbit)?;
     }
     Ok(())
@@ -129,7 +129,7 @@ fn add_accelerations<S: Scalar>(
     stages: &mut Stages<S>,
 ) {
     stages.evaluate_first(equations, state);
-    for ((run, system), first) in systems.iter_mut().zip(&equations.systems).zip(&stages.first) {
+    for ((run, system), first) in systems.iter_mut().zip(&equations.trees).zip(&stages.first) {
         run.recorder.record_acceleration(system.model, &first.acceleration);
     }
 }

@@ -5,9 +5,9 @@ use super::columns::{COLUMNS, Column, Condition, WRENCHES};
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
 use super::local_reference::Shift;
-use super::system::System;
-use super::system_state::SystemState;
 use super::trace::{NamedColumn, Trace};
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::control::{Control, ControllerSet, task_error};
 use crate::dynamics::{FramePose, base_rotation, frame_pose, momentum_energy_com};
 use crate::model::Model;
@@ -121,8 +121,8 @@ impl Recorder {
     pub(super) fn record_state<S: Scalar>(
         &mut self,
         t: f64,
-        state: &SystemState<S>,
-        system: &System<'_, S>,
+        state: &TreeState<S>,
+        system: &Tree<'_, S>,
         orbit: Option<OrbitState>,
         desired: Option<(&TaskSample<f64>, bool)>,
     ) {
@@ -173,8 +173,8 @@ impl Recorder {
     fn record_state_kernel<S: Scalar>(
         &mut self,
         t: f64,
-        state: &SystemState<S>,
-        system: &System<'_, S>,
+        state: &TreeState<S>,
+        system: &Tree<'_, S>,
         orbit: Option<OrbitState>,
         desired: Option<(&TaskSample<f64>, bool)>,
     ) {

@@ -2,13 +2,13 @@
 
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
-use super::system::System;
-use super::system_state::SystemState;
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::dynamics::{base_rotation, center_of_mass, momentum};
 use crate::spatial::{Scalar, Vec3};
 use nalgebra::Vector3;
 
-impl<S: Scalar> System<'_, S> {
+impl<S: Scalar> Tree<'_, S> {
     /// Changes the reference of `loads` to a local orbit in free fall that starts at the centre of mass of this
     /// system, and transforms `state` to its frame. This system must be the only one on which `loads` act.
     ///
@@ -18,7 +18,7 @@ impl<S: Scalar> System<'_, S> {
         &mut self,
         loads: &mut EnvironmentLoads,
         t: f64,
-        state: &mut SystemState<S>,
+        state: &mut TreeState<S>,
     ) -> Result<(), SimulationError> {
         let Some(origin) = loads.origin_state(t)? else { return Ok(()) };
         self.project_momentum(state);

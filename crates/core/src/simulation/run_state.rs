@@ -13,8 +13,8 @@ use super::only::only_mut;
 use super::run_system::RunSystem;
 use super::schedule::Schedule;
 use super::state::State;
-use super::system::System;
 use super::trace::Trace;
+use super::tree::Tree;
 use crate::earth::Earth;
 use crate::spatial::Scalar;
 use std::sync::Arc;
@@ -54,8 +54,8 @@ impl<S: Scalar> RunState<'_, S> {
     /// Returns the state of everything that a step changes, except the controllers.
     pub(super) fn progress(&self) -> Progress {
         let (step_control, idle_steps) = self.mover.save();
-        let systems = self.systems.iter().zip(&self.equations.systems).enumerate();
-        let progress = |(number, (run, system)): (usize, (&RunSystem<'_, S>, &System<'_, S>))| {
+        let systems = self.systems.iter().zip(&self.equations.trees).enumerate();
+        let progress = |(number, (run, system)): (usize, (&RunSystem<'_, S>, &Tree<'_, S>))| {
             let (errors, checks) = self.accuracy.save(number);
             let trace = &run.recorder.trace;
             let (rows, work_done) = (trace.rows(), trace.work_done);
@@ -77,7 +77,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.schedule.set_cursor(progress.cursor);
         self.steps = progress.steps;
         self.mover.restore((progress.step_control, progress.idle_steps));
-        let systems = self.systems.iter_mut().zip(&mut self.equations.systems);
+        let systems = self.systems.iter_mut().zip(&mut self.equations.trees);
         for (number, (saved, (run, system))) in progress.systems.into_iter().zip(systems).enumerate() {
             system.modes.restore(&saved.modes);
             self.accuracy.restore(number, (saved.errors, saved.checks));
@@ -88,7 +88,7 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Returns a checkpoint of the current state. The rows recorded so far are not part of it.
     pub(super) fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
-        let systems = self.systems.iter().zip(&self.equations.systems);
+        let systems = self.systems.iter().zip(&self.equations.trees);
         let systems = systems.map(|(run, system)| run.save_controllers(system)).collect::<Result<_, _>>()?;
         let controllers = SavedControllers { controllers_updated: self.controllers_updated, systems };
         let local_reference = self.equations.loads.local_reference().cloned();
@@ -107,7 +107,7 @@ impl<S: Scalar> RunState<'_, S> {
             self.equations.loads.set_local_reference(local)?;
         }
         self.controllers_updated = saved.controllers_updated;
-        let systems = self.systems.iter_mut().zip(&mut self.equations.systems);
+        let systems = self.systems.iter_mut().zip(&mut self.equations.trees);
         for (saved, (run, system)) in saved.systems.into_iter().zip(systems) {
             run.load_controllers(saved, system)?;
         }
@@ -131,9 +131,9 @@ impl<S: Scalar> RunState<'_, S> {
     pub(super) fn conclude(&mut self) {
         let control = self.mover.save().0;
         let local = self.equations.loads.local_reference();
-        let systems = self.systems.iter_mut().zip(&self.equations.systems);
+        let systems = self.systems.iter_mut().zip(&self.equations.trees);
         for (number, (run, system)) in systems.enumerate() {
-            let rotation_error = control.as_ref().map(|control| control.systems[number].rotation_error);
+            let rotation_error = control.as_ref().map(|control| control.trees[number].rotation_error);
             let results = run.goal_results(system.model);
             let trace = &mut run.recorder.trace;
             self.accuracy.conclude(number, self.steps, rotation_error, trace);

@@ -5,9 +5,9 @@ use super::controllers::Controllers;
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
 use super::recorder::Recorder;
-use super::system::System;
-use super::system_state::SystemState;
 use super::trace::GoalResult;
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::spatial::Scalar;
@@ -24,8 +24,8 @@ impl<S: Scalar> RunSystem<'_, S> {
     pub(super) fn add_row(
         &mut self,
         t: f64,
-        state: &SystemState<S>,
-        system: &System<'_, S>,
+        state: &TreeState<S>,
+        system: &Tree<'_, S>,
         loads: &mut EnvironmentLoads,
         orbit: Option<OrbitState>,
     ) -> Result<(), SimulationError> {
@@ -38,7 +38,7 @@ impl<S: Scalar> RunSystem<'_, S> {
     /// Returns the state of the controllers and the torques of `system`.
     pub(super) fn save_controllers(
         &self,
-        system: &System<'_, S>,
+        system: &Tree<'_, S>,
     ) -> Result<SystemControllers, SimulationError> {
         Ok(SystemControllers {
             command: system.command.iter().map(|x| x.value()).collect(),
@@ -52,7 +52,7 @@ impl<S: Scalar> RunSystem<'_, S> {
     pub(super) fn load_controllers(
         &mut self,
         saved: SystemControllers,
-        system: &mut System<'_, S>,
+        system: &mut Tree<'_, S>,
     ) -> Result<(), SimulationError> {
         let SystemControllers { command, commanded, requested, controls } = saved;
         system.command.iter_mut().zip(command).for_each(|(to, from)| *to = S::of(from));

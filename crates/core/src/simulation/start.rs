@@ -118,10 +118,10 @@ impl Simulation {
         let stops = self.stops.filter(|_| is_native); // an external engine has its own
         let mut equations = EquationsOfMotion::<S, _>::new(&[model], loads, stops);
         let numbers = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
-        let state = State::at(&mut equations.systems, [(numbers(&self.q), numbers(&self.v))]);
+        let state = State::at(&mut equations.trees, [(numbers(&self.q), numbers(&self.v))]);
         let is_fixed = is_native && !is_adaptive;
-        let doubling = is_fixed.then(|| StepDoubling::new(&equations.systems, &state, schedule.grid_steps()));
-        let checked = equations.systems.iter().filter(|_| is_fixed && !has_every_step).enumerate();
+        let doubling = is_fixed.then(|| StepDoubling::new(&equations.trees, &state, schedule.grid_steps()));
+        let checked = equations.trees.iter().filter(|_| is_fixed && !has_every_step).enumerate();
         let every_step = checked.map(|(number, system)| EveryStep::new(number, system.model));
         let every_step = every_step.collect::<Result<_, _>>()?;
         let recorder = Recorder::new(rows, (0, model), options, &self.controls, has_every_step)?;

@@ -80,7 +80,7 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Updates the controllers of those systems whose value of `compensates_environment` equals the argument.
     fn update_controllers(&mut self, t: f64, compensates_environment: bool) -> Result<(), SimulationError> {
-        let parts = self.systems.iter_mut().zip(&mut self.equations.systems).zip(&self.state.systems);
+        let parts = self.systems.iter_mut().zip(&mut self.equations.trees).zip(&self.state.trees);
         for ((RunSystem { controllers, .. }, system), state) in parts {
             if controllers.set.compensates_environment() == compensates_environment {
                 if !compensates_environment {
@@ -103,7 +103,7 @@ impl<S: Scalar> RunState<'_, S> {
             complete_rows(systems, mover, equations);
         }
         let reached = result?;
-        for (number, (run, state)) in systems.iter_mut().zip(&state.systems).enumerate() {
+        for (number, (run, state)) in systems.iter_mut().zip(&state.trees).enumerate() {
             run.recorder.trace.work_done += mover.work_of_step(number, state).abs();
         }
         let is_smooth = !interval.is_event && !equations.has_modes();
@@ -120,10 +120,10 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Changes to a new local reference orbit if a system has drifted far from its current reference orbit.
     pub(super) fn rereference_if_far(&mut self, t: f64) -> Result<(), SimulationError> {
-        let EquationsOfMotion { systems, loads } = &mut self.equations;
-        for (number, (system, state)) in systems.iter_mut().zip(&mut self.state.systems).enumerate() {
+        let EquationsOfMotion { trees, loads } = &mut self.equations;
+        for (number, (tree, state)) in trees.iter_mut().zip(&mut self.state.trees).enumerate() {
             if Vec3::from_slice(&state.q).norm().value() > self.rereference_beyond {
-                system.rereference(loads, t, state)?;
+                tree.rereference(loads, t, state)?;
                 self.accuracy.skip_step(number);
             }
         }

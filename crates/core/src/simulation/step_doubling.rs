@@ -7,9 +7,9 @@ use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
 use super::integrator::Integration;
 use super::state::State;
-use super::system::System;
-use super::system_state::SystemState;
 use super::trace::CoordinateDrift;
+use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::dynamics::Data;
 use crate::model::{BASE_NQ, BASE_NV, QUATERNION};
 use crate::spatial::{Quat, Scalar, Vec3, log_so3};
@@ -33,17 +33,17 @@ const ROUNDING: f64 = 16.0;
 pub(super) struct StepDoubling<S> {
     whole: State<S>,
     halved: State<S>,
-    /// Kinematics and loads of each system at the start of the step.
+    /// Kinematics and loads of each tree at the start of the step.
     start: Vec<Data<S>>,
     /// Steps between two probes.
     every: usize,
-    /// Sum of the magnitudes of all accelerations of each system at the start of the step.
+    /// Sum of the magnitudes of all accelerations of each tree at the start of the step.
     changes: Vec<f64>,
-    /// Errors of each system.
+    /// Errors of each tree.
     pub(super) errors: Vec<Errors>,
 }
 
-/// Errors of one system, measured by the probes.
+/// Errors of one tree, measured by the probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Errors {
     /// Number of the step of the last probe.
@@ -90,7 +90,7 @@ impl Errors {
         CoordinateDrift { position, rate, fastest, jumps: of_joint(&self.jumps.jumps) }
     }
 
-    /// Returns the errors of a system with `joints` joints before the first probe, all zero.
+    /// Returns the errors of a tree with `joints` joints before the first probe, all zero.
     fn new(joints: usize) -> Self {
         let drifts = vec![Drift::default(); joints + 1];
         Self { drifts, jumps: AccelerationJumps::new(joints), ..Self::default() }
@@ -109,15 +109,15 @@ impl Errors {
 impl<S: Scalar> StepDoubling<S> {
     /// Returns the probes of a run before its first step. `steps` is the planned number of steps; `None` for an
     /// open-ended run.
-    pub(super) fn new(systems: &[System<'_, S>], state: &State<S>, steps: Option<usize>) -> Self {
+    pub(super) fn new(trees: &[Tree<'_, S>], state: &State<S>, steps: Option<usize>) -> Self {
         let every = steps.map_or(EVERY, |steps| (steps / LEAST).clamp(1, EVERY));
         Self {
             whole: state.clone(),
             halved: state.clone(),
-            start: systems.iter().map(|system| Data::new(system.model)).collect(),
+            start: trees.iter().map(|tree| Data::new(tree.model)).collect(),
             every,
-            changes: vec![0.0; systems.len()],
-            errors: systems.iter().map(|system| Errors::new(system.model.joint_count())).collect(),
+            changes: vec![0.0; trees.len()],
+            errors: trees.iter().map(|tree| Errors::new(tree.model.joint_count())).collect(),
         }
     }
 
@@ -140,8 +140,8 @@ impl<S: Scalar> StepDoubling<S> {
             return Ok(());
         }
         self.errors.iter_mut().for_each(|errors| errors.advance(step));
-        for (start, system) in self.start.iter_mut().zip(&equations.systems) {
-            start.copy_from(&system.data);
+        for (start, tree) in self.start.iter_mut().zip(&equations.trees) {
+            start.copy_from(&tree.data);
         }
         let repeated = self.repeat(interval, state, equations, integration);
         equations.restore(&self.start);
@@ -176,10 +176,9 @@ impl<S: Scalar> StepDoubling<S> {
 
     /// Stores the differences between the two results of a step of length `h`, s, from `state`.
     fn compare<W>(&mut self, state: &State<S>, h: f64, equations: &EquationsOfMotion<'_, S, W>) {
-        for (number, (errors, system)) in self.errors.iter_mut().zip(&equations.systems).enumerate() {
-            let [start, whole, halved] =
-                [state, &self.whole, &self.halved].map(|state| &state.systems[number]);
-            errors.compare(start, [whole, halved], h, self.changes[number], system.model.mass());
+        for (number, (errors, tree)) in self.errors.iter_mut().zip(&equations.trees).enumerate() {
+            let [start, whole, halved] = [state, &self.whole, &self.halved].map(|state| &state.trees[number]);
+            errors.compare(start, [whole, halved], h, self.changes[number], tree.model.mass());
         }
     }
 }
@@ -189,8 +188,8 @@ impl Errors {
     /// steps. `changes` is the sum of the magnitudes of all accelerations.
     fn compare<S: Scalar>(
         &mut self,
-        start: &SystemState<S>,
-        [whole, halved]: [&SystemState<S>; 2],
+        start: &TreeState<S>,
+        [whole, halved]: [&TreeState<S>; 2],
         h: f64,
         changes: f64,
         mass: f64,

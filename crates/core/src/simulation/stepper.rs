@@ -249,7 +249,7 @@ impl<S: Scalar> Steps for RunState<'_, S> {
     fn command(&mut self, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.cut_at_current_time()?;
         let (set, system) =
-            (&mut only_mut(&mut self.systems).controllers.set, only_mut(&mut self.equations.systems));
+            (&mut only_mut(&mut self.systems).controllers.set, only_mut(&mut self.equations.trees));
         set.command(tau);
         for (j, tau) in tau.iter().enumerate() {
             // a control may have become active in the step that ended here

@@ -9,7 +9,7 @@ use crate::simulation::equations::EquationsOfMotion;
 use crate::simulation::error::SimulationError;
 use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::{Rate, State};
-use crate::simulation::system_state::SystemState;
+use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Real, Vec3, dexp_inv_exact};
 
 /// Smallest and largest factor by which the step size may change from one step to the next.
@@ -29,7 +29,7 @@ impl<S: Real> DormandPrince<S> {
     /// Returns the method for runs of `duration`, s, with the error tolerance `epsilon`.
     pub(super) fn new(rate: &Rate<S>, epsilon: f64, duration: f64) -> Self {
         let tolerance = Tolerance::new(epsilon, duration);
-        let control = StepControl::new(rate.systems.len());
+        let control = StepControl::new(rate.trees.len());
         Self { k: vec![rate.clone(); 7], tolerance, control, span: (0.0, 0.0) }
     }
 
@@ -55,7 +55,7 @@ impl<S: Real> DormandPrince<S> {
             );
             let instant = if c == 1.0 { interval.1 } else { t + c * h };
             equations.evaluate(instant, interval, trial, &mut next[0])?;
-            let parts = next[0].systems.iter_mut().zip(&sum.systems).zip(&trial.systems);
+            let parts = next[0].trees.iter_mut().zip(&sum.trees).zip(&trial.trees);
             for ((next, sum), trial) in parts {
                 next.rotation_rate = S::enter(
                     #[inline(always)]
@@ -131,7 +131,7 @@ impl<S: Real> DormandPrince<S> {
             return control.step;
         }
         let start = tolerance.epsilon.powf(0.2);
-        let parts = control.systems.iter().zip(&stages.start.systems).zip(&stages.rate.systems);
+        let parts = control.trees.iter().zip(&stages.start.trees).zip(&stages.rate.trees);
         let steps = parts.map(|((control, state), rate)| {
             start / (fastest(&state.v, control.size) + fastest(&rate.a, control.size).sqrt())
         });
@@ -144,7 +144,7 @@ impl<S: Real> DormandPrince<S> {
         let h = self.span.1 - self.span.0;
         combine(sum, &self.k, &dense((t - self.span.0) / h));
         state.move_from(start, sum, S::of(h));
-        for ((state, start), first) in state.systems.iter_mut().zip(&start.systems).zip(first) {
+        for ((state, start), first) in state.trees.iter_mut().zip(&start.trees).zip(first) {
             // velocity relative to W: v = v' + Rᵀ u
             let frame_velocity = base_rotation(&start.q) * first.frame_velocity_b;
             let velocity = Vec3::from_slice(&state.v) + base_rotation(&state.q).transpose_mul(frame_velocity);
@@ -162,8 +162,8 @@ fn fastest<S: Real>(v: &[S], size: f64) -> f64 {
 
 /// Returns the longest step, s, for which the rotation vectors of all bases stay well below a full turn.
 fn longest_step<S: Real>(stages: &Stages<S>) -> f64 {
-    let longest = |start: &SystemState<S>| LARGEST_ROTATION / Vec3::from_slice(&start.v[3..]).norm().lane(0);
-    stages.start.systems.iter().map(longest).fold(f64::INFINITY, f64::min)
+    let longest = |start: &TreeState<S>| LARGEST_ROTATION / Vec3::from_slice(&start.v[3..]).norm().lane(0);
+    stages.start.trees.iter().map(longest).fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
@@ -185,7 +185,7 @@ mod tests {
         let model = Model::rigid_body(10.0, inertia).unwrap();
         let mut equations = EquationsOfMotion::<f64, _>::new(&[&model], NoLoads, None);
         let v = vec![0.1, 0.0, -0.2, 0.7, 0.9, -0.4];
-        let mut state = State::at(&mut equations.systems, [(neutral(&model), v)]);
+        let mut state = State::at(&mut equations.trees, [(neutral(&model), v)]);
         let mut stages = Stages::new(&state);
         let mut method = DormandPrince::new(&stages.rate, tolerance, 8.0);
         method.tolerance.attitude_weight = weight;
@@ -194,7 +194,7 @@ mod tests {
             equations.project_momentum(&mut state);
             t = method.adaptive_step(&mut stages, &mut equations, &mut state, (t, 8.0)).unwrap();
         }
-        only(&state.systems).q.clone()
+        only(&state.trees).q.clone()
     }
 
     /// Negative control: the errors of positions and joints alone do not reveal the error of a rotation.

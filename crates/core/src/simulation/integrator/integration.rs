@@ -25,7 +25,7 @@ pub(crate) struct Integration<S> {
 impl<S: Real> Integration<S> {
     pub(crate) fn new(state: &State<S>, settings: &StepSettings) -> Self {
         let stages = Stages::new(state);
-        let bases = state.systems.iter().map(|_| BaseStages::new()).collect();
+        let bases = state.trees.iter().map(|_| BaseStages::new()).collect();
         let is_adaptive = settings.integrator == Integrator::DormandPrince;
         let dormand_prince = is_adaptive
             .then(|| Box::new(DormandPrince::new(&stages.rate, settings.tolerance, settings.duration)));

@@ -8,7 +8,7 @@
 //! 4. Momentum, work and dissipated energy are integrated along with the state; the momentum depends on the external
 //!    wrenches alone.
 //! 5. After the step the base twist is projected onto that momentum
-//!    ([`System::project_momentum`](super::system::System::project_momentum)).
+//!    ([`Tree::project_momentum`](super::tree::Tree::project_momentum)).
 
 mod dormand_prince;
 mod integration;

@@ -5,7 +5,7 @@ use crate::simulation::equations::EquationsOfMotion;
 use crate::simulation::error::SimulationError;
 use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::{Rate, State};
-use crate::simulation::system_state::SystemState;
+use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Real, Vec3, dexp_inv};
 
 /// Nodes `c` (fractions of the step) and weights `b` of the second to fourth stages.
@@ -21,7 +21,7 @@ const NYSTROM: [[f64; 3]; 3] =
 /// Nyström weights at the end of the step: `p₁ = p₀ + h ṗ₀ + h² (p̈₁ + p̈₂ + p̈₃)/6`.
 const NYSTROM_END: [f64; 3] = [1.0 / 6.0; 3];
 
-/// Motion of the base of one system over the stages of a step.
+/// Motion of the base of one tree over the stages of a step.
 pub(super) struct BaseStages<S> {
     /// Velocity of the origin at the start of the step, W axes.
     velocity: Vec3<S>,
@@ -56,14 +56,14 @@ pub(super) fn rk4<S: Real>(
         #[inline(always)]
         || sum.accumulate(rate, S::of(1.0 / 6.0)),
     );
-    for (base, rate) in bases.iter_mut().zip(&rate.systems) {
+    for (base, rate) in bases.iter_mut().zip(&rate.trees) {
         (base.velocity, base.accelerations) = (rate.base_velocity, [rate.base_acceleration; 3]);
     }
     for (stage, (c, b)) in STAGES.into_iter().enumerate() {
         S::enter(
             #[inline(always)]
             || {
-                for (base, rate) in bases.iter_mut().zip(&rate.systems) {
+                for (base, rate) in bases.iter_mut().zip(&rate.trees) {
                     base.accelerations[stage] = rate.base_acceleration;
                     base.theta = rate.rotation_rate * S::of(c * h);
                 }
@@ -94,7 +94,7 @@ pub(super) fn rk4<S: Real>(
 /// Computes the rates of the rotation vectors at a stage, `dexp⁻¹(θ) ω`.
 #[inline(always)]
 fn to_rotation_vector<S: Real>(bases: &[BaseStages<S>], trial: &State<S>, rate: &mut Rate<S>) {
-    for ((base, trial), rate) in bases.iter().zip(&trial.systems).zip(&mut rate.systems) {
+    for ((base, trial), rate) in bases.iter().zip(&trial.trees).zip(&mut rate.trees) {
         rate.rotation_rate = dexp_inv(base.theta, Vec3::from_slice(&trial.v[3..]));
     }
 }
@@ -109,7 +109,7 @@ fn move_origins<S: Real>(
     start: &State<S>,
     to: &mut State<S>,
 ) {
-    for ((base, start), to) in bases.iter().zip(&start.systems).zip(&mut to.systems) {
+    for ((base, start), to) in bases.iter().zip(&start.trees).zip(&mut to.trees) {
         move_origin(base, weights, h, h_squared, start, to);
     }
 }
@@ -121,8 +121,8 @@ fn move_origin<S: Real>(
     weights: [f64; 3],
     h: S,
     h_squared: S,
-    start: &SystemState<S>,
-    to: &mut SystemState<S>,
+    start: &TreeState<S>,
+    to: &mut TreeState<S>,
 ) {
     let mut sum = Vec3::zero();
     for (acceleration, weight) in base.accelerations.iter().zip(weights) {

@@ -7,7 +7,7 @@ use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::State;
 use crate::spatial::{Real, Vec3};
 
-/// Takes a step: `v' = v + h a(q, v)`, `q' = q ⊕ h v'`, for each system in the frame of its step. Expects the first
+/// Takes a step: `v' = v + h a(q, v)`, `q' = q ⊕ h v'`, for each tree in the frame of its step. Expects the first
 /// stage in `stages`.
 pub(super) fn semi_implicit_euler<S: Real>(
     stages: &mut Stages<S>,
@@ -21,13 +21,13 @@ pub(super) fn semi_implicit_euler<S: Real>(
         #[inline(always)]
         || {
             state.move_from(start, rate, h);
-            let parts = state.systems.iter_mut().zip(&start.systems).zip(&mut sum.systems);
-            for (((state, start), sum), system) in parts.zip(&equations.systems) {
+            let parts = state.trees.iter_mut().zip(&start.trees).zip(&mut sum.trees);
+            for (((state, start), sum), tree) in parts.zip(&equations.trees) {
                 for (delta, v) in sum.v.iter_mut().zip(&state.v) {
                     *delta = *v * h;
                 }
                 integrate(&start.q, &sum.v, &mut state.q);
-                system.frame_velocity().scale_add(h, Vec3::from_slice(&state.q)).write(&mut state.q);
+                tree.frame_velocity().scale_add(h, Vec3::from_slice(&state.q)).write(&mut state.q);
             }
         },
     );

@@ -4,7 +4,7 @@ use crate::dynamics::base_rotation;
 use crate::simulation::equations::EquationsOfMotion;
 use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::{Rate, State};
-use crate::simulation::system_state::{SystemRate, SystemState};
+use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 
 /// States and rates of the stages of a step, allocated once.
@@ -17,11 +17,11 @@ pub(crate) struct Stages<S> {
     pub(crate) rate: Rate<S>,
     /// Weighted sum of rates.
     pub(super) sum: Rate<S>,
-    /// First stage of each system.
+    /// First stage of each tree.
     pub(crate) first: Vec<FirstStage<S>>,
 }
 
-/// First stage of one system, relative to W.
+/// First stage of one tree, relative to W.
 pub(crate) struct FirstStage<S> {
     /// Acceleration at the start of the step, `(nv,)`.
     pub(crate) acceleration: Vec<S>,
@@ -31,19 +31,19 @@ pub(crate) struct FirstStage<S> {
     pub(super) frame_velocity_b: Vec3<S>,
 }
 
-/// Both ends of the last step of one system.
+/// Both ends of the last step of one tree.
 pub(crate) struct StepEnds<'a, S> {
     /// State at the start, with its velocity relative to the frame of the step.
-    pub(crate) start: &'a SystemState<S>,
+    pub(crate) start: &'a TreeState<S>,
     pub(crate) first: &'a FirstStage<S>,
     /// Rates of the last stage.
-    pub(crate) last: &'a SystemRate<S>,
+    pub(crate) last: &'a TreeRate<S>,
 }
 
 impl<S: Real> Stages<S> {
     pub(crate) fn new(state: &State<S>) -> Self {
         let rate = Rate::of(state);
-        let first = |state: &SystemState<S>| FirstStage {
+        let first = |state: &TreeState<S>| FirstStage {
             acceleration: vec![S::of(0.0); state.v.len()],
             force: Vec3::zero(),
             frame_velocity_b: Vec3::zero(),
@@ -53,7 +53,7 @@ impl<S: Real> Stages<S> {
             trial: state.clone(),
             sum: rate.clone(),
             rate,
-            first: state.systems.iter().map(first).collect(),
+            first: state.trees.iter().map(first).collect(),
         }
     }
 
@@ -65,14 +65,14 @@ impl<S: Real> Stages<S> {
         state: &State<S>,
     ) {
         self.start.copy_from(state);
-        for ((first, system), start) in
-            self.first.iter_mut().zip(&mut equations.systems).zip(&mut self.start.systems)
+        for ((first, tree), start) in
+            self.first.iter_mut().zip(&mut equations.trees).zip(&mut self.start.trees)
         {
             first.frame_velocity_b = Vec3::from_slice(&start.v);
-            system.enter_step_frame(&start.q, &mut start.v);
+            tree.enter_step_frame(&start.q, &mut start.v);
         }
         equations.rates(&self.start, &mut self.rate);
-        for ((first, rate), start) in self.first.iter_mut().zip(&self.rate.systems).zip(&self.start.systems) {
+        for ((first, rate), start) in self.first.iter_mut().zip(&self.rate.trees).zip(&self.start.trees) {
             first.take(rate, &start.v);
         }
     }
@@ -83,40 +83,40 @@ impl<S: Real> Stages<S> {
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
         state: &mut State<S>,
     ) {
-        for (system, state) in equations.systems.iter().zip(&mut state.systems) {
+        for (tree, state) in equations.trees.iter().zip(&mut state.trees) {
             S::enter(
                 #[inline(always)]
                 || {
-                    let frame_velocity_b = base_rotation(&state.q).transpose_mul(system.frame_velocity());
+                    let frame_velocity_b = base_rotation(&state.q).transpose_mul(tree.frame_velocity());
                     (Vec3::from_slice(&state.v) + frame_velocity_b).write(&mut state.v);
                 },
             );
         }
     }
 
-    /// Returns both ends of the last step of each system.
+    /// Returns both ends of the last step of each tree.
     pub(crate) fn ends(&self) -> impl Iterator<Item = StepEnds<'_, S>> {
-        let parts = self.start.systems.iter().zip(&self.first).zip(&self.rate.systems);
+        let parts = self.start.trees.iter().zip(&self.first).zip(&self.rate.trees);
         parts.map(|((start, first), last)| StepEnds { start, first, last })
     }
 
-    /// Returns `q` and `v` of a system at the start of the last step, of the first lane.
+    /// Returns `q` and `v` of a tree at the start of the last step, of the first lane.
     pub(crate) fn start_state(&self, number: usize) -> [Vec<f64>; 2] {
-        let start = &self.start.systems[number];
+        let start = &self.start.trees[number];
         let mut v = start.v.clone();
         (Vec3::from_slice(&v) + self.first[number].frame_velocity_b).write(&mut v);
         [&start.q, &v].map(|x| x.iter().map(|x| x.lane(0)).collect())
     }
 
-    /// Returns true if the state of a system in the last stage is finite.
+    /// Returns true if the state of a tree in the last stage is finite.
     pub(crate) fn is_finite(&self, number: usize) -> bool {
-        self.trial.systems[number].is_finite()
+        self.trial.trees[number].is_finite()
     }
 }
 
 impl<S: Real> FirstStage<S> {
     /// Stores the acceleration and the external force at the start of the step, where the velocity is `v`.
-    fn take(&mut self, rate: &SystemRate<S>, v: &[S]) {
+    fn take(&mut self, rate: &TreeRate<S>, v: &[S]) {
         self.force = rate.wrench.linear;
         self.acceleration.copy_from_slice(&rate.a);
         // in base axes, the constant velocity u of the frame of the step rotates: a = a' − (ω × u, 0)

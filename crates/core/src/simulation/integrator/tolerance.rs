@@ -7,8 +7,8 @@ use crate::model::{Axis, BASE_NV};
 use crate::simulation::equations::EquationsOfMotion;
 use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::Rate;
-use crate::simulation::system::System;
-use crate::simulation::system_state::{SystemRate, SystemState};
+use crate::simulation::tree::Tree;
+use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -25,35 +25,35 @@ pub(crate) struct StepControl {
     pub(crate) step: f64,
     /// Error of the last accepted step, relative to the tolerance.
     pub(crate) error: f64,
-    /// Scales and errors of each system.
-    pub(crate) systems: Vec<SystemControl>,
+    /// Scales and errors of each tree.
+    pub(crate) trees: Vec<TreeControl>,
 }
 
-/// Scales to which the errors of a system are relative, and the errors of its attitude.
+/// Scales to which the errors of a tree are relative, and the errors of its attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SystemControl {
+pub(crate) struct TreeControl {
     /// Largest rate, rad/s, and largest speed, m/s, so far.
     pub(crate) fastest: [f64; 2],
     /// Sum of the estimated attitude errors of all steps, rad.
     pub(crate) rotation_error: f64,
-    /// Radius of gyration of the system at the start of the run, m: the scale of lengths.
+    /// Radius of gyration of the tree at the start of the run, m: the scale of lengths.
     pub(crate) size: f64,
 }
 
 impl StepControl {
-    /// Returns the control of `systems` systems before the first step.
-    pub(super) fn new(systems: usize) -> Self {
-        Self { step: 0.0, error: 0.0, systems: vec![SystemControl::default(); systems] }
+    /// Returns the control of `trees` trees before the first step.
+    pub(super) fn new(trees: usize) -> Self {
+        Self { step: 0.0, error: 0.0, trees: vec![TreeControl::default(); trees] }
     }
 
-    /// Computes the sizes of the systems at the first call. Expects kinematics in `equations`.
+    /// Computes the sizes of the trees at the first call. Expects kinematics in `equations`.
     pub(super) fn measure_sizes<S: Real>(
         &mut self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
     ) {
-        for (control, system) in self.systems.iter_mut().zip(&equations.systems) {
+        for (control, tree) in self.trees.iter_mut().zip(&equations.trees) {
             if control.size == 0.0 {
-                let inertia = composite_momentum(&system.data).0;
+                let inertia = composite_momentum(&tree.data).0;
                 let about = inertia.about_com();
                 let trace = (about.xx + about.yy + about.zz).lane(0);
                 control.size = (trace / (2.0 * inertia.mass.lane(0))).sqrt();
@@ -63,7 +63,7 @@ impl StepControl {
 
     /// Adds the attitude errors of a step of length `h`, s; `errors` holds the error estimates of the rates.
     pub(super) fn add_rotation_errors<S: Real>(&mut self, errors: &Rate<S>, h: f64) {
-        for (control, error) in self.systems.iter_mut().zip(&errors.systems) {
+        for (control, error) in self.trees.iter_mut().zip(&errors.trees) {
             control.rotation_error += h * norm(error.rotation_rate);
         }
     }
@@ -85,11 +85,11 @@ impl Tolerance {
         Self { epsilon, horizon, attitude_weight: 1.0 }
     }
 
-    /// Returns the largest error of any system in the last step, relative to the tolerance; NaN if the step must be
+    /// Returns the largest error of any tree in the last step, relative to the tolerance; NaN if the step must be
     /// rejected.
     ///
     /// The tolerance is `ε` times a scale: 1 rad for attitude and revolute joints, the radius of gyration of the
-    /// system or, if larger, its distance from the origin of W for lengths, and the magnitude of the rates for rates.
+    /// tree or, if larger, its distance from the origin of W for lengths, and the magnitude of the rates for rates.
     pub(super) fn error<S: Real>(
         &self,
         stages: &mut Stages<S>,
@@ -100,24 +100,23 @@ impl Tolerance {
     ) -> f64 {
         combine(&mut stages.sum, k, &E);
         let (mut largest, mut is_folded) = (0.0, false);
-        for (number, (system, control)) in equations.systems.iter().zip(&control.systems).enumerate() {
-            let step = SystemStep::new(stages, number, system, control, h);
+        for (number, (tree, control)) in equations.trees.iter().zip(&control.trees).enumerate() {
+            let step = SystemStep::new(stages, number, tree, control, h);
             largest = larger(largest, self.system_error(&step));
-            let last = &k[6].systems[number];
+            let last = &k[6].trees[number];
             is_folded |=
                 vector(&step.trial.q[3..]).is_nan() || h * norm(last.rotation_rate) > 2.0 * LARGEST_ROTATION;
         }
         if largest <= 1.0 {
-            for (number, (system, control)) in equations.systems.iter().zip(&mut control.systems).enumerate()
-            {
+            for (number, (tree, control)) in equations.trees.iter().zip(&mut control.trees).enumerate() {
                 // rejected steps do not change the scales
-                control.fastest = SystemStep::new(stages, number, system, control, h).fastest;
+                control.fastest = SystemStep::new(stages, number, tree, control, h).fastest;
             }
         }
         if is_folded { f64::NAN } else { largest }
     }
 
-    /// Returns the error of one system in a step.
+    /// Returns the error of one tree in a step.
     fn system_error<S: Real>(&self, step: &SystemStep<'_, '_, S>) -> f64 {
         let SystemStep { start, trial, sum, size, spin, speed, h, fastest: [fastest, highest], .. } = *step;
         // the rounding of a robot at rest must not stop the run: a drift of ε/1000 by the end of the run is accepted
@@ -145,13 +144,13 @@ impl Tolerance {
     }
 }
 
-/// Step of one system whose error is measured.
+/// Step of one tree whose error is measured.
 struct SystemStep<'a, 's, S> {
-    system: &'a System<'s, S>,
-    start: &'a SystemState<S>,
-    trial: &'a SystemState<S>,
+    tree: &'a Tree<'s, S>,
+    start: &'a TreeState<S>,
+    trial: &'a TreeState<S>,
     /// Error estimate: fifth-order minus fourth-order solution.
-    sum: &'a SystemRate<S>,
+    sum: &'a TreeRate<S>,
     h: f64,
     size: f64,
     /// Angular velocity of the base, rad/s: the larger of the values at both ends of the step.
@@ -166,15 +165,15 @@ impl<'a, 's, S: Real> SystemStep<'a, 's, S> {
     fn new(
         stages: &'a Stages<S>,
         number: usize,
-        system: &'a System<'s, S>,
-        control: &SystemControl,
+        tree: &'a Tree<'s, S>,
+        control: &TreeControl,
         h: f64,
     ) -> Self {
-        let (start, trial) = (&stages.start.systems[number], &stages.trial.systems[number]);
-        let (sum, size) = (&stages.sum.systems[number], control.size);
+        let (start, trial) = (&stages.start.trees[number], &stages.trial.trees[number]);
+        let (sum, size) = (&stages.sum.trees[number], control.size);
         let spin = vector(&start.v[3..]).max(vector(&trial.v[3..]));
-        let speed = norm(system.frame_velocity()).max(vector(&trial.v));
-        let mut step = Self { system, start, trial, sum, h, size, spin, speed, fastest: control.fastest };
+        let speed = norm(tree.frame_velocity()).max(vector(&trial.v));
+        let mut step = Self { tree, start, trial, sum, h, size, spin, speed, fastest: control.fastest };
         let [fastest, highest] = control.fastest;
         let angular = |j: usize| if step.is_prismatic(j) { step.rate(j) / size } else { step.rate(j) };
         let fastest = (0..start.v.len() - BASE_NV).map(angular).fold(fastest.max(spin), f64::max);
@@ -183,12 +182,12 @@ impl<'a, 's, S: Real> SystemStep<'a, 's, S> {
     }
 
     fn is_prismatic(&self, j: usize) -> bool {
-        self.system.model.nodes()[j + 1].axis == Axis::Prismatic
+        self.tree.model.nodes()[j + 1].axis == Axis::Prismatic
     }
 
     /// Returns the magnitude of the rate of a joint, the larger of those at both ends of the step, rad/s (m/s).
     fn rate(&self, j: usize) -> f64 {
-        let rate = |state: &SystemState<S>| state.v[BASE_NV + j].lane(0).abs();
+        let rate = |state: &TreeState<S>| state.v[BASE_NV + j].lane(0).abs();
         rate(self.start).max(rate(self.trial))
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::dynamics::locked_dynamics_recursion;
 use crate::model::{BASE_NQ, BASE_NV};
-use crate::simulation::system::System;
-use crate::simulation::system_state::SystemState;
+use crate::simulation::tree::Tree;
+use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Force, Motion, Real};
 
-impl<S: Real> System<'_, S> {
+impl<S: Real> Tree<'_, S> {
     /// Returns the first joint that moves into its stop, if there is one.
-    pub(in crate::simulation) fn first_impact(&self, state: &SystemState<S>) -> Option<usize> {
+    pub(in crate::simulation) fn first_impact(&self, state: &TreeState<S>) -> Option<usize> {
         (0..self.model.joint_count()).find(|&j| {
             let stop = self.modes.stop(j, state.q[BASE_NQ + j].lane(0));
             stop * state.v[BASE_NV + j].lane(0) > 0.0
@@ -21,7 +21,7 @@ impl<S: Real> System<'_, S> {
     /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj`: the momentum does not change, and the dissipated energy is
     /// `−½ (1 − e) λ q̇_j`. Joints that rest at their stops stay locked as long as their stops push against them.
     /// Friction exerts no impulse.
-    pub(crate) fn resolve_impacts(&mut self, state: &mut SystemState<S>, restitution: f64) {
+    pub(crate) fn resolve_impacts(&mut self, state: &mut TreeState<S>, restitution: f64) {
         let n = self.model.joint_count();
         for round in 0..4 * n + 4 {
             let Some(j) = self.first_impact(state) else { break };
@@ -42,7 +42,7 @@ impl<S: Real> System<'_, S> {
 
     /// Writes the change of velocity for a unit impulse at joint `j` to `scratch`; returns `(M⁻¹)_jj`, the change of
     /// that joint's rate per unit of signed impulse.
-    fn impulse_response(&mut self, j: usize, sign: f64, state: &SystemState<S>) -> f64 {
+    fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> f64 {
         let n = self.model.joint_count();
         for body in &mut self.data.bodies {
             (body.velocity, body.external) = (Motion::zero(), Force::zero());

@@ -2,14 +2,14 @@
 
 use crate::dynamics::locked_dynamics_recursion;
 use crate::model::{Axis, BASE_NQ, BASE_NV};
-use crate::simulation::system::System;
+use crate::simulation::tree::Tree;
 use crate::spatial::{Force, Motion, Real};
 
 /// Fraction of the torques at a joint by which the holding torque may exceed its bounds, so that rounding does not
 /// release the joint.
 const ROUNDING: f64 = 1e-10;
 
-impl<S: Real> System<'_, S> {
+impl<S: Real> Tree<'_, S> {
     /// Determines the modes of the joints for the step that starts at `q` and `v`. Expects kinematics and loads in
     /// `data`.
     ///

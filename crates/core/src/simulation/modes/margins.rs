@@ -1,23 +1,23 @@
-//! Margins of the joints of a system to the next change of their modes, and corrections of the state at the change.
+//! Margins of the joints of a tree to the next change of their modes, and corrections of the state at the change.
 
 use super::joint_modes::AT_LIMIT;
 use crate::model::{BASE_NQ, BASE_NV};
-use crate::simulation::system::System;
-use crate::simulation::system_state::SystemState;
+use crate::simulation::tree::Tree;
+use crate::simulation::tree_state::TreeState;
 use crate::spatial::Real;
 
-/// A step of one system, from `start` to `end`.
+/// A step of one tree, from `start` to `end`.
 pub(super) struct ModesOfStep<'a, 's, S> {
-    pub(super) system: &'a System<'s, S>,
-    pub(super) start: &'a SystemState<S>,
-    pub(super) end: &'a SystemState<S>,
+    pub(super) tree: &'a Tree<'s, S>,
+    pub(super) start: &'a TreeState<S>,
+    pub(super) end: &'a TreeState<S>,
     /// True if a change of the direction of slip does not end the step.
     pub(super) ignores_slip: bool,
 }
 
 impl<S: Real> ModesOfStep<'_, '_, S> {
     fn joints(&self) -> std::ops::Range<usize> {
-        0..self.system.model.joint_count()
+        0..self.tree.model.joint_count()
     }
 
     /// Returns the smallest margin of the joints that are not locked.
@@ -28,7 +28,7 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
 
     /// Returns the rate of a slipping joint in its direction of slip, relative to its rates at both ends of the step.
     fn slip_margin(&self, j: usize) -> f64 {
-        let modes = &self.system.modes;
+        let modes = &self.tree.modes;
         let direction = modes.direction(j);
         if self.ignores_slip || direction == 0.0 || !modes.has_friction(j) {
             return f64::INFINITY;
@@ -39,7 +39,7 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
 
     /// Returns the distance of a joint from the nearer limit, relative to the distance at the start of the step.
     fn limit_margin(&self, j: usize) -> f64 {
-        let modes = &self.system.modes;
+        let modes = &self.tree.modes;
         let (lower, upper) = modes.limits(j);
         if modes.is_locked(j) || (lower, upper) == (f64::NEG_INFINITY, f64::INFINITY) {
             return f64::INFINITY;
@@ -58,17 +58,17 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
     /// Returns the rate of the first joint that came to rest or reached its stop: the larger of the magnitudes at both
     /// ends of the step, rad/s (m/s).
     pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
-        let rate = |state: &SystemState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
+        let rate = |state: &TreeState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
         let came_to_rest = |j: &usize| rate(self.end, *j) == 0.0 && rate(self.start, *j) > 0.0;
-        let stopped = self.system.first_impact(self.end).or_else(|| self.joints().find(came_to_rest));
+        let stopped = self.tree.first_impact(self.end).or_else(|| self.joints().find(came_to_rest));
         stopped.map(|j| rate(self.start, j).max(rate(self.end, j)))
     }
 }
 
-impl<S: Real> System<'_, S> {
+impl<S: Real> Tree<'_, S> {
     /// Removes rounding at an event: sets the rates of joints that came to rest to zero, and moves joints past a
     /// limit to the limit.
-    pub(super) fn snap_to_event(&self, start: &SystemState<S>, state: &mut SystemState<S>) {
+    pub(super) fn snap_to_event(&self, start: &TreeState<S>, state: &mut TreeState<S>) {
         let modes = &self.modes;
         for j in 0..self.model.joint_count() {
             let direction = modes.direction(j) * f64::from(modes.has_friction(j));

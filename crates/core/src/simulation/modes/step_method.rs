@@ -55,10 +55,10 @@ impl<S: Real> StepMethod<S> {
         state: &mut State<S>,
     ) {
         let is_endless = self.idle_steps > MOST_IDLE_STEPS;
-        for (system, state) in equations.systems.iter_mut().zip(&mut state.systems) {
-            if system.modes.is_active() {
-                let restitution = if is_endless { 0.0 } else { system.modes.restitution };
-                system.resolve_impacts(state, restitution);
+        for (tree, state) in equations.trees.iter_mut().zip(&mut state.trees) {
+            if tree.modes.is_active() {
+                let restitution = if is_endless { 0.0 } else { tree.modes.restitution };
+                tree.resolve_impacts(state, restitution);
             }
         }
     }
@@ -82,8 +82,8 @@ impl<S: Real> StepMethod<S> {
         self.ignores_slip = self.idle_steps >= MOST_IDLE_STEPS;
         let fraction = self.locate(equations, state, (interval.0, end))?;
         let reached = if fraction < 1.0 { interval.0 + fraction * (end - interval.0) } else { end };
-        let parts = equations.systems.iter().zip(&self.start.systems).zip(&mut state.systems);
-        parts.for_each(|((system, start), state)| system.snap_to_event(start, state));
+        let parts = equations.trees.iter().zip(&self.start.trees).zip(&mut state.trees);
+        parts.for_each(|((tree, start), state)| tree.snap_to_event(start, state));
         let is_idle = self.is_idle(equations, state, reached - interval.0);
         self.idle_steps = if is_idle { self.idle_steps + 1 } else { 0 };
         Ok(reached)
@@ -102,15 +102,15 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Returns the step of each system from its start to `end`.
+    /// Returns the step of each tree from its start to `end`.
     fn modes_of<'a, 's, W>(
         &'a self,
         equations: &'a EquationsOfMotion<'s, S, W>,
         end: &'a State<S>,
     ) -> impl Iterator<Item = ModesOfStep<'a, 's, S>> {
-        let parts = equations.systems.iter().zip(&self.start.systems).zip(&end.systems);
+        let parts = equations.trees.iter().zip(&self.start.trees).zip(&end.trees);
         let ignores_slip = self.ignores_slip;
-        parts.map(move |((system, start), end)| ModesOfStep { system, start, end, ignores_slip })
+        parts.map(move |((tree, start), end)| ModesOfStep { tree, start, end, ignores_slip })
     }
 
     /// Returns the fraction of the step after which a mode changes, and moves `state` there; 1 if no mode changes.
@@ -197,14 +197,14 @@ impl<S: Real> StepMethod<S> {
             self.settled.copy_from(state);
             equations.project_momentum(&mut self.settled);
             equations.apply_loads(interval.1, interval, &self.settled)?;
-            for (system, state) in equations.systems.iter_mut().zip(&self.settled.systems) {
-                least = least.min(system.least_stick_margin(&state.q, &state.v));
+            for (tree, state) in equations.trees.iter_mut().zip(&self.settled.trees) {
+                least = least.min(tree.least_stick_margin(&state.q, &state.v));
             }
         }
         Ok(least)
     }
 
-    /// Returns the smallest margin of the joints of all systems that are not locked.
+    /// Returns the smallest margin of the joints of all trees that are not locked.
     fn least_margin(
         &self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -223,7 +223,7 @@ impl<S: Real> StepMethod<S> {
         let steps = self.modes_of(equations, state).enumerate();
         let found = steps.filter_map(|(number, step)| Some((number, step.first_that_slips_back()?))).next();
         if let Some((number, j)) = found {
-            equations.systems[number].modes.set_slip(j, 0.0);
+            equations.trees[number].modes.set_slip(j, 0.0);
         }
         found.is_some()
     }

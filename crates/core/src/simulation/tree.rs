@@ -1,8 +1,8 @@
-//! Equations of motion of one system: computes the time derivatives of its state from state, loads and joint torques.
+//! Equations of motion of one tree: computes the time derivatives of its state from state, loads and joint torques.
 
 use super::body_states::LoadedSystem;
 use super::modes::JointModes;
-use super::system_state::{SystemRate, SystemState};
+use super::tree_state::{TreeRate, TreeState};
 use crate::dynamics::{
     Data, Momentum, base_rotation, center_of_mass_b, forward_dynamics_recursion, kinematics,
     locked_dynamics_recursion, projected_base_twist,
@@ -10,8 +10,8 @@ use crate::dynamics::{
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Motion, Real, Vec3};
 
-/// Equations of motion of one system under constant joint torques and the external wrenches in `data`.
-pub(crate) struct System<'a, S> {
+/// Equations of motion of one tree under constant joint torques and the external wrenches in `data`.
+pub(crate) struct Tree<'a, S> {
     pub(crate) model: &'a Model,
     pub(crate) data: Data<S>,
     /// Commanded joint torques, `(n,)`, N m (N), without the compensation of Coulomb friction.
@@ -30,7 +30,7 @@ pub(crate) struct System<'a, S> {
     is_lossy: bool,
 }
 
-impl<'a, S: Real> System<'a, S> {
+impl<'a, S: Real> Tree<'a, S> {
     /// Returns the equations of motion of `model`. `restitution` is that of the stops at the position limits of
     /// joints; `None` means no stops.
     pub(crate) fn new(model: &'a Model, restitution: Option<f64>) -> Self {
@@ -53,7 +53,7 @@ impl<'a, S: Real> System<'a, S> {
     ///
     /// The momentum `h` is integrated from the external wrenches alone, so without them it is conserved to rounding,
     /// whereas the integrated base twist has a truncation error. Called once per step.
-    pub(crate) fn project_momentum(&mut self, state: &mut SystemState<S>) {
+    pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
         // relative to the velocity of the base's origin, so that a speed of km/s in W costs no precision
         let frame_velocity = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
         Vec3::zero().write(&mut state.v);
@@ -73,13 +73,13 @@ impl<'a, S: Real> System<'a, S> {
     }
 
     /// Computes the kinematics of `state` in W.
-    pub(crate) fn update_kinematics(&mut self, state: &SystemState<S>) {
+    pub(crate) fn update_kinematics(&mut self, state: &TreeState<S>) {
         self.frame_velocity = Vec3::zero();
         kinematics(self.model, &mut self.data, &state.q, &state.v);
     }
 
     /// Computes the kinematics of a later stage of a step, whose velocity is relative to the frame of the step.
-    pub(super) fn update_stage_kinematics(&mut self, stage: &SystemState<S>) {
+    pub(super) fn update_stage_kinematics(&mut self, stage: &TreeState<S>) {
         kinematics(self.model, &mut self.data, &stage.q, &stage.v);
     }
 
@@ -114,7 +114,7 @@ impl<'a, S: Real> System<'a, S> {
         self.frame_velocity
     }
 
-    /// Returns the parts of the system that loads read and write; `q` is the configuration whose kinematics are in
+    /// Returns the parts of the tree that loads read and write; `q` is the configuration whose kinematics are in
     /// `data`.
     pub(super) fn loaded<'s>(&'s mut self, q: &'s [S]) -> LoadedSystem<'s, S> {
         LoadedSystem { q, frame_velocity: self.frame_velocity, data: &mut self.data }
@@ -122,7 +122,7 @@ impl<'a, S: Real> System<'a, S> {
 
     /// Computes the rates at a state whose kinematics and loads are in `data`; `is_loaded` is true if there are
     /// external loads.
-    pub(crate) fn rates(&mut self, state: &SystemState<S>, is_loaded: bool, rate: &mut SystemRate<S>) {
+    pub(crate) fn rates(&mut self, state: &TreeState<S>, is_loaded: bool, rate: &mut TreeRate<S>) {
         let (q, v) = (&state.q[..], &state.v[..]);
         self.update_joint_forces(v);
         let Self { model, data, forces, modes, frame_velocity, is_lossy, .. } = self;
@@ -180,7 +180,7 @@ fn base_rates<S: Real>(
     v: &[S],
     frame_velocity: Vec3<S>,
     forces: &[S],
-    rate: &mut SystemRate<S>,
+    rate: &mut TreeRate<S>,
 ) {
     let rot_wb = base_rotation(q);
     rate.base_velocity = rot_wb * Vec3::from_slice(v) + frame_velocity;

@@ -1,30 +1,30 @@
-//! State of one system and its time derivatives.
+//! State of one tree and its time derivatives.
 
 use crate::dynamics::{Data, Momentum, kinematics, momentum};
 use crate::model::{BASE_NQ, BASE_NV, Model};
 use crate::spatial::{Quat, Real, Vec3, exp_so3};
 use serde::{Deserialize, Serialize};
 
-/// Integrated quantities of one system: configuration, velocity, momentum and energies.
+/// Integrated quantities of one tree: configuration, velocity, momentum and energies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct SystemState<S> {
+pub(crate) struct TreeState<S> {
     /// Configuration, `(nq,)`.
     pub(crate) q: Vec<S>,
     /// Velocity, `(nv,)`.
     pub(crate) v: Vec<S>,
-    /// Momentum at the start of the run, W axes; changed only when the system is re-referenced.
+    /// Momentum at the start of the run, W axes; changed only when the tree is re-referenced.
     pub(crate) initial_momentum: Momentum<S>,
     /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N m s.
     pub(crate) impulse: Momentum<S>,
-    /// Work done on the system so far, J.
+    /// Work done on the tree so far, J.
     pub(crate) work: S,
     /// Energy dissipated by damping, friction and stops of the joints so far, J.
     pub(crate) dissipated: S,
 }
 
-/// Time derivatives of a system at one stage.
+/// Time derivatives of a tree at one stage.
 #[derive(Clone, Debug)]
-pub(crate) struct SystemRate<S> {
+pub(crate) struct TreeRate<S> {
     /// Velocity of the base's origin in W axes, m/s.
     pub(crate) base_velocity: Vec3<S>,
     /// Acceleration of the base's origin in W axes, m/s².
@@ -44,7 +44,7 @@ pub(crate) struct SystemRate<S> {
     pub(crate) loss: S,
 }
 
-impl<S: Real> SystemRate<S> {
+impl<S: Real> TreeRate<S> {
     pub(crate) fn new(nv: usize) -> Self {
         let zeros = vec![S::of(0.0); nv];
         Self {
@@ -96,7 +96,7 @@ impl<S: Real> SystemRate<S> {
     }
 }
 
-impl<S: Real> SystemState<S> {
+impl<S: Real> TreeState<S> {
     /// Returns the state with configuration `q`, whose quaternion is normalised, velocity `v` and the corresponding
     /// momentum. Writes the kinematics to `data`.
     pub(crate) fn at(model: &Model, data: &mut Data<S>, mut q: Vec<S>, v: Vec<S>) -> Self {
@@ -125,9 +125,9 @@ impl<S: Real> SystemState<S> {
     }
 
     /// Returns the state with `f` applied to every number.
-    pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> SystemState<T> {
+    pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> TreeState<T> {
         let momentum = |h: &Momentum<S>| Momentum { linear: h.linear.map(&f), angular: h.angular.map(&f) };
-        SystemState {
+        TreeState {
             q: self.q.iter().map(&f).collect(),
             v: self.v.iter().map(&f).collect(),
             initial_momentum: momentum(&self.initial_momentum),
@@ -148,7 +148,7 @@ impl<S: Real> SystemState<S> {
     /// Writes `from ⊕ h rate`: increments are added to positions and velocities, and the attitude is multiplied by
     /// `exp(h θ̇)`.
     #[inline(always)]
-    pub(crate) fn move_from(&mut self, from: &Self, rate: &SystemRate<S>, h: S) {
+    pub(crate) fn move_from(&mut self, from: &Self, rate: &TreeRate<S>, h: S) {
         rate.base_velocity.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);
         let attitude = Quat::from_xyzw(&from.q[3..]).product(exp_so3(rate.rotation_rate * h));
         attitude.renormalized().write_xyzw(&mut self.q[3..]);
