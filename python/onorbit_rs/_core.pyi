@@ -999,12 +999,137 @@ class JointSampled(JointReference):
     ) -> JointSampled: ...
 
 @final
-class Simulation:
+class System:
     def __new__(
         cls,
+        name: str,
         model: Model,
         q: ArrayLike,
         v: ArrayLike,
+        *,
+        controller: _Law | Sequence[Control] | None = None,
+        reference: Reference | JointReference | None = None,
+        tool: str | None = None,
+        control_period: float | None = None,
+        enforce_limits: bool = False,
+        restitution: float = 0.0,
+        reference_start_tolerance: ArrayLike | None = None,
+    ) -> System: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def model(self) -> Model: ...
+
+@final
+class Capture:
+    def __new__(
+        cls,
+        name: str,
+        frame_a: str,
+        frame_b: str,
+        *,
+        at: float | None = None,
+        after: str | None = None,
+        delay: float = 0.0,
+        on_command: bool = False,
+        within: ArrayLike | None = None,
+        slower_than: ArrayLike | None = None,
+        held_for: float = 0.0,
+    ) -> Capture: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def frame_a(self) -> str: ...
+    @property
+    def frame_b(self) -> str: ...
+
+@final
+class Release:
+    def __new__(
+        cls,
+        name: str,
+        capture: str,
+        *,
+        at: float | None = None,
+        after: str | None = None,
+        delay: float = 0.0,
+        on_command: bool = False,
+        impulse: ArrayLike | None = None,
+    ) -> Release: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def capture(self) -> str: ...
+
+@final
+class World:
+    def __new__(
+        cls,
+        systems: Sequence[System],
+        *,
+        orbit: Orbit | None = None,
+        earth: Earth | None = None,
+        gravity_mode: _GravityMode = "true",
+        environment: Sequence[Effect] | None = None,
+        events: Sequence[Capture | Release] | None = None,
+        rereference_beyond: float = 1e5,
+    ) -> World: ...
+    @property
+    def names(self) -> list[str]: ...
+
+@final
+class EventRecord:
+    @property
+    def name(self) -> str: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def systems(self) -> tuple[str, str]: ...
+    @property
+    def impulse(self) -> _Array: ...
+    @property
+    def point(self) -> _Array: ...
+    @property
+    def energy_lost(self) -> float: ...
+    @property
+    def momentum_error(self) -> _Array: ...
+
+@final
+class WorldTrace:
+    is_complete: bool
+    wall_s: float
+    @property
+    def names(self) -> list[str]: ...
+    @property
+    def events(self) -> list[EventRecord]: ...
+    @property
+    def time(self) -> _Array: ...
+    @property
+    def momentum(self) -> _Array: ...
+    @property
+    def kinetic_energy(self) -> _Array: ...
+    def certificate(self) -> list[_CertificateRow]: ...
+    def __getitem__(self, name: str, /) -> Trace: ...
+    def __getattr__(self, name: str, /) -> Any: ...
+    def __len__(self) -> int: ...
+
+@final
+class SystemStepper:
+    @property
+    def q(self) -> _Array: ...
+    @property
+    def v(self) -> _Array: ...
+    def command(self, tau: ArrayLike | dict[str, float]) -> None: ...
+
+@final
+class Simulation:
+    def __new__(
+        cls,
+        model: Model | World,
+        q: ArrayLike | None = None,
+        v: ArrayLike | None = None,
         *,
         orbit: Orbit | None = None,
         earth: Earth | None = None,
@@ -1049,6 +1174,8 @@ class Stepper:
     def advance(self, dt: float) -> None: ...
     def advance_to(self, t: float, *, wall_s: float | None = None) -> None: ...
     def command(self, tau: ArrayLike | dict[str, float]) -> None: ...
+    def trigger(self, name: str) -> None: ...
+    def __getitem__(self, name: str, /) -> SystemStepper: ...
     def trace(self) -> Trace: ...
     def finish(self) -> Trace: ...
     def columns(self, since: int = 0) -> dict[str, _Array]: ...

@@ -20,6 +20,7 @@ class                       built-in               fields: cause
 ``EffectError``             ``ValueError``         ``name, got, expected``: an effect of the environment
 ``GravityError``            ``ValueError``         ``name, got, expected, path, line``: a gravity field
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
+``WorldError``              ``ValueError``         ``name, got``: a system or an event of a world
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
 ``EngineError``             ``ValueError``         ``name, got, expected``: another physics engine
 ``CompareError``            ``ValueError``         ``name, got, expected``: two runs that cannot be compared
@@ -76,6 +77,7 @@ __all__ = [
     "ShapeError",
     "SimulationError",
     "ViewerError",
+    "WorldError",
 ]
 
 
@@ -189,6 +191,13 @@ class EarthError(OnOrbitError, ValueError):
     name: Any = None
     got: Any = None
     expected: Any = None
+
+
+class WorldError(OnOrbitError, ValueError):
+    """Invalid system or event of a world, or unknown name of one."""
+
+    name: Any = None
+    got: Any = None
 
 
 class EffectError(OnOrbitError, ValueError):

@@ -147,10 +147,10 @@ fn reach(model: &Arc<Model>, in_orbit: bool) -> Result<Simulation, Box<dyn Error
         simulation.orbit = Some(Arc::new(Kepler::from_state(r, v, MU_EARTH)?));
         simulation.effects.push(Arc::new(GravityGradient));
     }
-    simulation.tool = Some(tool);
+    simulation.systems[0].tool = Some(tool);
     let law = ComputedTorque { null_space_damping: 2.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
     let law = Law::TaskComputedTorque(Box::new(law), line.into());
-    simulation.controls = vec![Control::on_all_joints(model, law)];
+    simulation.systems[0].controls = vec![Control::on_all_joints(model, law)];
     Ok(simulation)
 }
 

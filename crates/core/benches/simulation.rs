@@ -47,17 +47,17 @@ fn in_orbit(mut simulation: Simulation) -> Simulation {
 
 /// Tracking a line with computed torque.
 fn controlled(mut simulation: Simulation) -> Simulation {
-    simulation.v.fill(0.0);
-    let tool = simulation.model.frame("arm0_link6").unwrap();
-    let mut data = Data::new(&simulation.model);
-    positions(&simulation.model, &mut data, &simulation.q);
-    let pose = frame_pose(&simulation.model, &data, &simulation.q, tool);
+    simulation.systems[0].v.fill(0.0);
+    let tool = simulation.systems[0].model.frame("arm0_link6").unwrap();
+    let mut data = Data::new(&simulation.systems[0].model);
+    positions(&simulation.systems[0].model, &mut data, &simulation.systems[0].q);
+    let pose = frame_pose(&simulation.systems[0].model, &data, &simulation.systems[0].q, tool);
     let (rot, pos) = (pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra());
     let line = LineParabola::new(rot, pos, Vector3::x() * 0.1, Vector3::zeros(), 10.0).unwrap();
-    simulation.tool = Some(tool);
+    simulation.systems[0].tool = Some(tool);
     let law = ComputedTorque { null_space_damping: 5.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
     let law = Law::TaskComputedTorque(Box::new(law), line.into());
-    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
+    simulation.systems[0].controls = vec![Control::on_all_joints(&simulation.systems[0].model, law)];
     simulation
 }
 
@@ -100,7 +100,7 @@ fn step(group: &mut Group<'_>, name: &str, mut simulation: Simulation) {
             let started = Instant::now();
             for _ in 0..runs {
                 let duration = black_box(STEPS as f64 * STEP);
-                black_box(simulation.run(duration).unwrap());
+                black_box(simulation.run(duration).unwrap().only());
             }
             started.elapsed().mul_f64(iterations as f64 / (runs * STEPS as u64) as f64)
         });

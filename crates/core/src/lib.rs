@@ -1,7 +1,7 @@
 //! Free-floating articulated dynamics for robots in orbit.
 //!
 //! Each folder uses only those before it in this order: `spatial`, `model`, `dynamics`, `earth`,
-//! `gravity`, `orbit`, `environment`, `reference`, `control`, `simulation`, `batch`.
+//! `gravity`, `orbit`, `environment`, `reference`, `control`, `world`, `simulation`, `batch`.
 //!
 //! # Equation index
 //!
@@ -37,6 +37,7 @@ pub mod reference;
 pub mod simulation;
 pub mod spatial;
 pub mod text_file;
+pub mod world;
 
 #[cfg(doctest)] // runs the examples of this page as doctests
 #[doc = include_str!("../../../docs/api/rust.md")]

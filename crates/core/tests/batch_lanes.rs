@@ -138,7 +138,7 @@ fn a_rollout_is_a_simulation_in_empty_space() {
     for (k, (q_k, v_k)) in states.iter().enumerate() {
         let mut simulation = Simulation::new(Arc::clone(&model), q_k.clone(), v_k.clone());
         simulation.time_step = h;
-        let trace = simulation.run(steps as f64 * h).unwrap();
+        let trace = simulation.run(steps as f64 * h).unwrap().only();
         let last = |column: &[f64], width: usize| column[column.len() - width..].to_vec();
         assert!(difference(&q[k * model.nq()..][..model.nq()], &last(&trace.q, model.nq())) < 1e-12);
         assert!(difference(&v[k * model.nv()..][..model.nv()], &last(&trace.v, model.nv())) < ROUNDING);

@@ -37,15 +37,15 @@ fn spring(frame: ReferenceFrame, offset: Vector3<f64>, damping: f64) -> Simulati
     let reference = TaskReference { path: Arc::new(hold), frame };
     let v = vec![0.0; model.nv()];
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    (simulation.tool, simulation.time_step) = (Some(tool), 2e-4);
-    simulation.reference_start_tolerance[0] = 0.1; // m: the initial extension of the spring
+    (simulation.systems[0].tool, simulation.time_step) = (Some(tool), 2e-4);
+    simulation.systems[0].reference_start_tolerance[0] = 0.1; // m: the initial extension of the spring
     let law = Law::Compliance(Box::new(law), reference);
-    simulation.controls = vec![Control::new("arm", (0..7).collect(), law)];
+    simulation.systems[0].controls = vec![Control::new("arm", (0..7).collect(), law)];
     simulation
 }
 
 fn run(mut simulation: Simulation, duration: f64) -> Trace {
-    simulation.run(duration).unwrap()
+    simulation.run(duration).unwrap().only()
 }
 
 /// Returns `T + ½ eᵀ K e` at every row, J.
@@ -63,7 +63,7 @@ fn with_damping_the_energy_of_robot_and_spring_decreases() {
     for frame in [ReferenceFrame::World, ReferenceFrame::Base] {
         let mut simulation = spring(frame.clone(), Vector3::new(0.05, -0.03, 0.04), 1.0);
         if matches!(frame, ReferenceFrame::Base) {
-            simulation.v[..6].copy_from_slice(&[0.05, 0.0, -0.02, 0.1, -0.2, 0.1]); // for any momentum
+            simulation.systems[0].v[..6].copy_from_slice(&[0.05, 0.0, -0.02, 0.1, -0.2, 0.1]); // for any momentum
         }
         let energy = energy(&run(simulation, 4.0));
         let (first, last) = (energy[0], energy[energy.len() - 1]);
@@ -111,7 +111,7 @@ impl Effect for Embedded {
 #[test]
 fn at_rest_the_spring_deflects_by_the_load_over_its_stiffness() {
     let mut simulation = spring(ReferenceFrame::Base, Vector3::zeros(), 1.0);
-    let model = Arc::clone(&simulation.model);
+    let model = Arc::clone(&simulation.systems[0].model);
     let tool = model.frame("tool").unwrap();
     let (body, force) = (model.frames()[tool].body, Vector3::new(0.2, -0.1, 0.15));
     simulation.effects.push(Arc::new(Embedded { body, force }));

@@ -51,7 +51,7 @@ fn law(kp: f64, kd: f64, compensate_friction: bool) -> JointComputedTorque {
 fn led(model: Model, q: Vec<f64>, law: JointComputedTorque, path: Arc<dyn JointPath>) -> Simulation {
     let (joints, v) = ((0..model.joint_count()).collect(), vec![0.0; model.nv()]);
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    simulation.controls = vec![Control::new("arm", joints, Law::JointComputedTorque(law, path))];
+    simulation.systems[0].controls = vec![Control::new("arm", joints, Law::JointComputedTorque(law, path))];
     simulation
 }
 
@@ -107,7 +107,7 @@ fn a_joint_at_rest_breaks_away_to_a_goal_near_by() {
         let miss = (trace.q[trace.q.len() - 1] - 0.05).abs();
         println!("{off:e} from the law without friction, {miss:e} rad from the goal, {changes} flips");
         assert!(off < TOLERANCE && miss < TOLERANCE && changes == 0);
-        assert!(certify(&simulation.model, &trace).passed());
+        assert!(certify(&simulation.systems[0].model, &trace).passed());
         // negative control: without compensation the joint never moves
         let trace = run(&mut to(hinges(1, &change), vec![0.05], law(100.0, 20.0, false)), 20.0);
         assert!(trace.q.chunks(8).all(|q| q[7] == 0.0));
@@ -133,7 +133,7 @@ fn a_joint_that_swings_about_its_goal_obeys_the_law_without_friction_and_then_re
         let (rows, mut done) = (trace.rows(), 0.0);
         (1..rows).for_each(|k| done += trace.tau[k - 1] * (trace.q[8 * k + 7] - trace.q[8 * k - 1]));
         assert!((trace.work[rows - 1] + trace.dissipated[rows - 1] - done).abs() < 1e-12);
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         assert!(certificate.passed(), "{certificate:#?}");
         // negative control: with 1e-4 N m of uncompensated friction the swing differs
         let less = |joint: &mut Joint| joint.friction = 1e-4;
@@ -162,10 +162,10 @@ fn arms_with_mixed_friction_follow_a_path_with_reversals() {
             let model = humanoid_with(change);
             let q = start(&model);
             let mut simulation = led(model, q, law(100.0, 20.0, true), path());
-            (simulation.integrator, simulation.control_period) = (integrator, period);
+            (simulation.integrator, simulation.systems[0].control_period) = (integrator, period);
             simulation.tolerance = 1e-12;
             let trace = run(&mut simulation, 3.0);
-            assert!(certify(&simulation.model, &trace).passed());
+            assert!(certify(&simulation.systems[0].model, &trace).passed());
             trace
         });
         let off = apart(&free, &rough, 7);
@@ -191,9 +191,9 @@ fn reaching(change: impl Fn(&mut Joint), compensate_friction: bool, in_group: bo
     let law = Box::new(ComputedTorque { compensate_friction, null_space_damping: 1.0, ..plain });
     let v = vec![0.0; model.nv()];
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    simulation.tool = Some(tool);
+    simulation.systems[0].tool = Some(tool);
     let law = Law::TaskComputedTorque(law, reference);
-    simulation.controls = vec![Control::new("arm", (0..7).collect(), law)];
+    simulation.systems[0].controls = vec![Control::new("arm", (0..7).collect(), law)];
     simulation
 }
 
@@ -215,7 +215,7 @@ fn a_task_law_reaches_with_friction_as_without() {
             assert!(off < TOLERANCE);
             assert!((largest(&trace) - largest(&free)).abs() < TOLERANCE);
             assert!(lost > 10.0 * largest(&free)); // negative control
-            assert!(certify(&simulation.model, &trace).passed());
+            assert!(certify(&simulation.systems[0].model, &trace).passed());
         }
     }
 }
@@ -224,8 +224,8 @@ fn a_task_law_reaches_with_friction_as_without() {
 fn a_rollout_compensates_friction_as_a_simulation_does() {
     let mut simulation = reaching(friction(0.04, 0.06), true, false);
     let trace = run(&mut simulation, 1.0);
-    let (model, stop) = (Arc::clone(&simulation.model), AtomicBool::new(false));
-    let Law::TaskComputedTorque(law, reference) = &simulation.controls[0].law else { panic!() };
+    let (model, stop) = (Arc::clone(&simulation.systems[0].model), AtomicBool::new(false));
+    let Law::TaskComputedTorque(law, reference) = &simulation.systems[0].controls[0].law else { panic!() };
     let rollout = Rollout {
         steps: 1000,
         time_step: 1e-3,
@@ -235,7 +235,7 @@ fn a_rollout_compensates_friction_as_a_simulation_does() {
         threads: Some(1),
         stop: &stop,
     };
-    let (q0, v0) = ([&simulation.q[..]; 3].concat(), [&simulation.v[..]; 3].concat());
+    let (q0, v0) = ([&simulation.systems[0].q[..]; 3].concat(), [&simulation.systems[0].v[..]; 3].concat());
     let (mut q, mut v) = (vec![0.0; 3 * 14], vec![0.0; 3 * 13]);
     rollout.run(&model, &q0, &v0, &mut q, &mut v).unwrap();
     for q in q.chunks(14) {
@@ -255,7 +255,7 @@ fn laws_account_for_joints_held_by_friction() {
         let v = vec![0.0; model.nv()];
         let mut simulation = Simulation::new(Arc::new(model), q, v);
         let law = Law::JointComputedTorque(law(100.0, 20.0, true), path);
-        simulation.controls = vec![Control::new("part", driven.clone(), law)];
+        simulation.systems[0].controls = vec![Control::new("part", driven.clone(), law)];
         let trace = run(&mut simulation, 2e-3);
         let a = &trace.acceleration[6..13];
         for &j in &driven {
@@ -295,7 +295,7 @@ fn a_joint_at_its_goal_does_not_chatter_while_another_moves() {
 fn friction_compensation_is_restored_from_a_checkpoint() {
     let simulation = || {
         let mut simulation = to(hinges(2, friction(0.2, 0.3)), vec![0.05, -0.08], law(100.0, 4.0, true));
-        simulation.control_period = Some(0.05);
+        simulation.systems[0].control_period = Some(0.05);
         simulation
     };
     let whole = run(&mut simulation(), 1.5);

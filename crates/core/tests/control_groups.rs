@@ -140,7 +140,7 @@ fn every_law_of_a_list_realizes_its_commanded_acceleration() {
 }
 
 fn runs(mut simulation: Simulation, duration: f64) -> Trace {
-    simulation.run(duration).unwrap()
+    simulation.run(duration).unwrap().only()
 }
 
 /// Returns the humanoid, with or without an idle joint that makes the arm a group.
@@ -163,9 +163,9 @@ fn reach(frame: ReferenceFrame, in_group: bool, time_step: f64) -> Trace {
     let mut law = ComputedTorque::new(tool, 100.0, 20.0);
     law.null_space_damping = 2.0;
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    (simulation.tool, simulation.time_step) = (Some(tool), time_step);
+    (simulation.systems[0].tool, simulation.time_step) = (Some(tool), time_step);
     let law = Law::TaskComputedTorque(Box::new(law), reference);
-    simulation.controls = vec![Control::new("arm", (0..7).collect(), law)];
+    simulation.systems[0].controls = vec![Control::new("arm", (0..7).collect(), law)];
     runs(simulation, 1.2)
 }
 
@@ -258,8 +258,8 @@ fn two_arms_track_simultaneously_but_not_if_each_ignores_the_other() {
     let run = |controls: Vec<Control>| {
         let v = vec![0.0; model.nv()];
         let mut simulation = Simulation::new(Arc::clone(&model), q.clone(), v);
-        simulation.controls = controls;
-        (simulation.tool, simulation.time_step) = (Some(parts[0].0.frame), 1e-4);
+        simulation.systems[0].controls = controls;
+        (simulation.systems[0].tool, simulation.time_step) = (Some(parts[0].0.frame), 1e-4);
         runs(simulation, 2.5)
     };
     let control = |i: usize| {

@@ -64,12 +64,12 @@ fn simulation(controls: Vec<Control>) -> Simulation {
     let q = neutral(&model);
     let v = vec![0.0; model.nv()];
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    (simulation.time_step, simulation.controls) = (0.01, controls);
+    (simulation.time_step, simulation.systems[0].controls) = (0.01, controls);
     simulation
 }
 
 fn run(controls: Vec<Control>, duration: f64) -> Trace {
-    simulation(controls).run(duration).unwrap()
+    simulation(controls).run(duration).unwrap().only()
 }
 
 fn joint(trace: &Trace, row: usize) -> (f64, f64) {
@@ -125,13 +125,13 @@ fn the_error_of_joint_computed_torque_obeys_a_linear_second_order_equation() {
         );
         let mut simulation = Simulation::new(Arc::new(model), q, v);
         simulation.time_step = h;
-        simulation.controls = vec![Control::new("arm", (0..7).collect(), law)];
+        simulation.systems[0].controls = vec![Control::new("arm", (0..7).collect(), law)];
         let refused = simulation.check().unwrap_err();
         assert!(
             matches!(refused, SimulationError::JointsStartAway { offset, .. } if (offset - 0.3).abs() < 1e-12)
         );
-        simulation.reference_start_tolerance[1] = 0.31; // rad
-        let trace = simulation.run(1.0).unwrap();
+        simulation.systems[0].reference_start_tolerance[1] = 0.31; // rad
+        let trace = simulation.run(1.0).unwrap().only();
         let mut most = 0.0_f64;
         for (row, t) in trace.time.iter().enumerate() {
             for j in 0..7 {
@@ -153,8 +153,8 @@ fn a_switch_is_exact_whatever_the_control_period() {
     let mut second = effort("second", -2.0);
     (second.begin, second.end) = (Begin::At(0.6), 0.9001);
     let mut simulation = simulation(vec![first, second]);
-    simulation.control_period = Some(0.25);
-    let trace = simulation.run(1.0).unwrap();
+    simulation.systems[0].control_period = Some(0.25);
+    let trace = simulation.run(1.0).unwrap().only();
     let expected = (1.0 * 0.3537 - 2.0 * 0.3001) / REDUCED_MASS;
     let (_, rate) = joint(&trace, trace.rows() - 1);
     assert!((rate - expected).abs() < 1e-12, "{rate} {expected}");

@@ -9,7 +9,7 @@ use onorbit_core::control::{ComputedTorque, Control, Law};
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::model::neutral;
 use onorbit_core::reference::LineParabola;
-use onorbit_core::simulation::{Simulation, Trace};
+use onorbit_core::simulation::{Recording, Simulation, Trace};
 use std::sync::Arc;
 
 /// Returns a reach of the humanoid by `displacement` in 10 s, then held for 10 s.
@@ -28,9 +28,9 @@ fn reach(displacement: [f64; 3], adjust: impl Fn(&mut ComputedTorque)) -> Result
     let mut law = ComputedTorque::new(tool, 100.0, 20.0);
     adjust(&mut law);
     let law = Law::TaskComputedTorque(Box::new(law), line.into());
-    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
-    simulation.tool = Some(tool);
-    simulation.run(20.0).map_err(|failure| failure.to_string())
+    simulation.systems[0].controls = vec![Control::on_all_joints(&simulation.systems[0].model, law)];
+    simulation.systems[0].tool = Some(tool);
+    simulation.run(20.0).map(Recording::only).map_err(|failure| failure.to_string())
 }
 
 #[test]

@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex};
 const TOLERANCES: [f64; 6] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
 
 fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration).unwrap()
+    simulation.run(duration).unwrap().only()
 }
 
 /// A spacecraft of 10 kg that tumbles about no principal axis, one turn in about six seconds.
@@ -97,16 +97,19 @@ fn the_tolerance_is_met_within_a_factor_of_ten_over_five_decades() {
             let mut simulation = adaptive(make(), tolerance, duration / 20.0);
             let trace = run(&mut simulation, duration);
             let mut shares = [0.0_f64; 3];
-            for (exact, q) in exact.q.chunks(simulation.model.nq()).zip(trace.q.chunks(simulation.model.nq()))
+            for (exact, q) in exact
+                .q
+                .chunks(simulation.systems[0].model.nq())
+                .zip(trace.q.chunks(simulation.systems[0].model.nq()))
             {
-                let found = errors(&simulation.model, exact, q);
+                let found = errors(&simulation.systems[0].model, exact, q);
                 (0..3).for_each(|i| shares[i] = shares[i].max(found[i] / tolerance));
             }
             println!("{name}, {tolerance:e}: position, attitude, joints off by {shares:.4?} tolerances");
             // the hardest components meet it both ways: the attitude of the spacecraft, the joints of the arm
             let hardest = shares[1].max(shares[2]);
             assert!((0.1..10.0).contains(&hardest), "{name} {tolerance}: {shares:?}");
-            let certificate = certify(&simulation.model, &trace);
+            let certificate = certify(&simulation.systems[0].model, &trace);
             assert!(certificate.linear_momentum_drift_rel < 1e-12, "{certificate:?}");
             assert!(certificate.angular_momentum_drift_rel < 1e-12, "{certificate:?}");
             assert!(tolerance > 2e-9 || certificate.passed(), "{certificate:#?}");
@@ -129,9 +132,10 @@ fn dense_rows_converge_with_fourth_order_at_least() {
         assert_eq!(trace.rows(), 401);
         let steps = (counter.evaluations() - 401) / 7; // a row has one evaluation, a step seven
         let pairs = exact.q.chunks(7).zip(trace.q.chunks(7));
-        let error = pairs.map(|(exact, q)| errors(&simulation.model, exact, q)[1]).fold(0.0, f64::max);
+        let error =
+            pairs.map(|(exact, q)| errors(&simulation.systems[0].model, exact, q)[1]).fold(0.0, f64::max);
         // consistency of the rows: momentum, energy, the straight line
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         println!("{tolerance:e}: {steps} steps, rows off by {error:e} rad, {certificate:?}");
         assert!(certificate.angular_momentum_drift_rel < 1e-12);
         assert!(certificate.energy_balance_error_rel < 100.0 * tolerance);
@@ -148,7 +152,7 @@ fn dense_rows_converge_with_fourth_order_at_least() {
 fn steps_follow_the_pace_of_an_eccentric_orbit() {
     let eccentric = |time_step: f64| {
         let mut simulation = tumbling();
-        simulation.v = vec![0.0, 0.0, 0.0, 0.0, 1e-4, 2e-4];
+        simulation.systems[0].v = vec![0.0, 0.0, 0.0, 0.0, 1e-4, 2e-4];
         let (r, v) = (Vector3::new(6_778e3, 0.0, 0.0), Vector3::new(0.0, 10_300.0, 0.0)); // e = 0.8
         simulation.orbit = Some(Arc::new(Kepler::from_state(r, v, MU_EARTH).unwrap()));
         simulation.effects.push(Arc::new(GravityGradient));
@@ -167,16 +171,16 @@ fn steps_follow_the_pace_of_an_eccentric_orbit() {
     let evaluations = counter.evaluations();
     let mut reference = eccentric(1.0);
     reference.record_every = 60_000;
-    let exact = last(&run(&mut reference, duration), &reference.model);
-    let found = errors(&reference.model, &exact, &last(&trace, &reference.model));
+    let exact = last(&run(&mut reference, duration), &reference.systems[0].model);
+    let found = errors(&reference.systems[0].model, &exact, &last(&trace, &reference.systems[0].model));
     // RK4 of the same accuracy
     let mut even = (0.0, 0);
     for time_step in [60.0, 30.0, 20.0, 15.0, 10.0, 7.5, 5.0] {
         let mut simulation = eccentric(time_step);
         simulation.record_every = 1_000_000;
         let counter = Counter::on(&mut simulation);
-        let q = last(&run(&mut simulation, duration), &simulation.model);
-        even = (errors(&simulation.model, &exact, &q)[1], counter.evaluations());
+        let q = last(&run(&mut simulation, duration), &simulation.systems[0].model);
+        even = (errors(&simulation.systems[0].model, &exact, &q)[1], counter.evaluations());
         if even.0 <= found[1] {
             break;
         }
@@ -185,7 +189,7 @@ fn steps_follow_the_pace_of_an_eccentric_orbit() {
     assert!(longest > 4.0 * shortest);
     assert!(found[1] < 1e-5);
     assert!(even.1 > 3 * evaluations);
-    let certificate = certify(&simulation.model, &trace);
+    let certificate = certify(&simulation.systems[0].model, &trace);
     assert!(certificate.passed(), "{certificate:#?}");
 }
 
@@ -217,7 +221,7 @@ fn a_motion_that_no_step_resolves_is_reported() {
     simulation.effects.push(Arc::new(Noise));
     let failure = simulation.run(1.0).unwrap_err();
     assert!(matches!(failure.error, SimulationError::StepTooSmall { .. }), "{failure}");
-    assert!(failure.to_string().contains("increase tolerance") && failure.trace.rows() > 0);
+    assert!(failure.to_string().contains("increase tolerance") && failure.recording.systems[0].rows() > 0);
 }
 
 /// A torque that changes at every evaluation.
@@ -244,8 +248,9 @@ fn rounding_at_rest_does_not_shorten_the_steps() {
     let model = common::humanoid::humanoid_with(|joint| joint.friction = 2.0);
     let (q, v) = (start(&model), vec![0.0; model.nv()]);
     let mut simulation = adaptive(Simulation::new(Arc::new(model), q, v), 1e-9, 10.0);
-    simulation.controls = vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Load), None))];
-    simulation.control_period = Some(50.0);
+    simulation.systems[0].controls =
+        vec![Control::on_all_joints(&simulation.systems[0].model, Law::User(Box::new(Load), None))];
+    simulation.systems[0].control_period = Some(50.0);
     let counter = Counter::on(&mut simulation);
     let trace = run(&mut simulation, 100.0);
     assert!(trace.v.iter().all(|v| v.abs() < 1e-12));

@@ -95,22 +95,22 @@ fn simulation(control: usize, integrator: Integrator) -> Simulation {
     simulation.orbit = Some(Arc::new(Kepler::from_state(r, v, MU_EARTH).unwrap()));
     simulation.effects.push(Arc::new(GravityGradient));
     simulation.effects.push(Arc::new(BodyWrench::new(3, Vector3::x() * 0.01, Vector3::y() * 0.01).unwrap()));
-    simulation.tool = Some(tool);
+    simulation.systems[0].tool = Some(tool);
     simulation.integrator = integrator;
     let hold = Hold::new(Matrix3::identity(), Vector3::new(-0.1, -0.2, 0.5)).unwrap();
-    simulation.reference_start_tolerance = [1.0, 4.0]; // from the present pose of the tool
-    simulation.controls = match control {
+    simulation.systems[0].reference_start_tolerance = [1.0, 4.0]; // from the present pose of the tool
+    simulation.systems[0].controls = match control {
         0 => {
-            simulation.reference = Some(hold.into());
+            simulation.systems[0].reference = Some(hold.into());
             Vec::new()
         }
         1 => {
             let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, 1.0, 2.0)), hold.into());
-            vec![Control::on_all_joints(&simulation.model, law)]
+            vec![Control::on_all_joints(&simulation.systems[0].model, law)]
         }
         2 => {
             let law = Law::User(Box::new(Still), Some((tool, hold.into())));
-            vec![Control::on_all_joints(&simulation.model, law)]
+            vec![Control::on_all_joints(&simulation.systems[0].model, law)]
         }
         3 => every_law(tool, &hold),
         _ => {
@@ -124,7 +124,7 @@ fn simulation(control: usize, integrator: Integrator) -> Simulation {
 /// Returns the allocations of a run of this many steps.
 fn allocations(simulation: &mut Simulation, steps: usize) -> usize {
     let before = COUNT.with(Cell::get);
-    let trace = simulation.run(steps as f64 * 1e-3).unwrap();
+    let trace = simulation.run(steps as f64 * 1e-3).unwrap().only();
     let count = COUNT.with(Cell::get) - before;
     assert_eq!(trace.rows(), steps + 1);
     count

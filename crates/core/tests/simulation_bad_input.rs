@@ -29,46 +29,46 @@ fn refused(spoil: impl FnOnce(&mut Simulation)) -> SimulationError {
     let mut simulation = sound();
     spoil(&mut simulation);
     let failure = simulation.run(1.0).unwrap_err();
-    assert_eq!(failure.trace.rows(), 0);
+    assert_eq!(failure.recording.rows(), 0);
     println!("{failure}");
     failure.error
 }
 
 fn tracking(simulation: &mut Simulation) -> usize {
-    let tool = simulation.model.frame("tool").unwrap();
+    let tool = simulation.systems[0].model.frame("tool").unwrap();
     let hold = Hold::new(Matrix3::identity(), Vector3::zeros()).unwrap();
-    simulation.reference = Some(hold.into());
-    simulation.reference_start_tolerance = [1.0, 4.0]; // from the present pose of the tool
-    simulation.tool = Some(tool);
+    simulation.systems[0].reference = Some(hold.into());
+    simulation.systems[0].reference_start_tolerance = [1.0, 4.0]; // from the present pose of the tool
+    simulation.systems[0].tool = Some(tool);
     tool
 }
 
 /// Makes the reference of the run that of a law on all joints.
 fn track_alone(simulation: &mut Simulation, law: ComputedTorque) {
-    let law = Law::TaskComputedTorque(Box::new(law), simulation.reference.take().unwrap());
-    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
+    let law = Law::TaskComputedTorque(Box::new(law), simulation.systems[0].reference.take().unwrap());
+    simulation.systems[0].controls = vec![Control::on_all_joints(&simulation.systems[0].model, law)];
 }
 
 #[test]
 fn states_of_the_wrong_length_or_that_are_no_numbers() {
     let is = |error, wanted: (&str, usize, usize)| matches!(error, SimulationError::WrongLength { name, expected, got } if (name, expected, got) == wanted);
-    assert!(is(refused(|s| s.q.truncate(13)), ("q", 14, 13)));
-    assert!(is(refused(|s| s.v.push(0.0)), ("v", 13, 14)));
+    assert!(is(refused(|s| s.systems[0].q.truncate(13)), ("q", 14, 13)));
+    assert!(is(refused(|s| s.systems[0].v.push(0.0)), ("v", 13, 14)));
     for value in [f64::NAN, f64::INFINITY] {
-        let error = refused(|s| s.q[9] = value);
+        let error = refused(|s| s.systems[0].q[9] = value);
         assert!(matches!(error, SimulationError::NotFinite { name: "q", index: 9, .. }));
-        let error = refused(|s| s.v[2] = value);
+        let error = refused(|s| s.systems[0].v[2] = value);
         assert!(matches!(error, SimulationError::NotFinite { name: "v", index: 2, .. }));
     }
 }
 
 #[test]
 fn a_quaternion_off_unit_norm() {
-    assert!(matches!(refused(|s| s.q[6] = 1.000_002), SimulationError::QuaternionNorm { .. }));
-    assert!(matches!(refused(|s| s.q[6] = 0.0), SimulationError::QuaternionNorm { norm: 0.0 }));
+    assert!(matches!(refused(|s| s.systems[0].q[6] = 1.000_002), SimulationError::QuaternionNorm { .. }));
+    assert!(matches!(refused(|s| s.systems[0].q[6] = 0.0), SimulationError::QuaternionNorm { norm: 0.0 }));
     let mut nearly = sound();
-    nearly.q[6] = 1.000_000_5;
-    let trace = nearly.run(0.01).unwrap();
+    nearly.systems[0].q[6] = 1.000_000_5;
+    let trace = nearly.run(0.01).unwrap().only();
     assert!((trace.q[6] - 1.0).abs() < 1e-15); // normalized
 }
 
@@ -77,7 +77,7 @@ fn steps_periods_and_durations_that_are_not_positive() {
     for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = refused(|s| s.time_step = value);
         assert!(matches!(error, SimulationError::NotPositive { name: "time_step", .. }));
-        let error = refused(|s| s.control_period = Some(value));
+        let error = refused(|s| s.systems[0].control_period = Some(value));
         assert!(matches!(error, SimulationError::NotPositive { name: "control_period", .. }));
         let failure = sound().run(value).unwrap_err();
         assert!(matches!(failure.error, SimulationError::NotPositive { name: "duration", .. }));
@@ -93,15 +93,15 @@ fn absurd_steps_and_states_are_refused_with_their_limit() {
     };
     says(|s| s.time_step = 1e-300, "time_step is 1e-300 s; it must be between 1e-12 and 1e9 s");
     says(
-        |s| s.v[3] = 1e200,
+        |s| s.systems[0].v[3] = 1e200,
         "v[3], angular velocity of the base along x, is 1e200 rad/s; it must lie between -1e9 and",
     );
-    says(|s| s.v[1] = -3e8, "v[1], velocity of the base along y, is -300000000 m/s");
-    says(|s| s.v[6] = 1e10, "it must lie between -1e9 and 1e9 rad/s");
-    says(|s| s.q[2] = 1e300, "q[2], position of the base along z, is 1e300 m");
-    says(|s| s.q[7] = -1e300, "q[7], joint '");
+    says(|s| s.systems[0].v[1] = -3e8, "v[1], velocity of the base along y, is -300000000 m/s");
+    says(|s| s.systems[0].v[6] = 1e10, "it must lie between -1e9 and 1e9 rad/s");
+    says(|s| s.systems[0].q[2] = 1e300, "q[2], position of the base along z, is 1e300 m");
+    says(|s| s.systems[0].q[7] = -1e300, "q[7], joint '");
     let mut fast = sound();
-    (fast.v[0], fast.time_step) = (1e8, 1e-12);
+    (fast.systems[0].v[0], fast.time_step) = (1e8, 1e-12);
     fast.check().unwrap(); // control: fast, but accepted
 }
 
@@ -125,19 +125,19 @@ fn effects_without_what_they_need() {
 fn laws_and_references_without_each_other() {
     let error = refused(|s| {
         tracking(s);
-        s.tool = None;
+        s.systems[0].tool = None;
     });
     assert!(matches!(error, SimulationError::NeedsTool));
     let error = refused(|s| {
         let tool = tracking(s);
         track_alone(s, ComputedTorque::new(tool, 100.0, 20.0));
-        s.tool = None;
+        s.systems[0].tool = None;
     });
     assert!(matches!(error, SimulationError::NeedsTool));
     let error = refused(|s| {
         let tool = tracking(s);
         track_alone(s, ComputedTorque::new(tool, 100.0, 20.0));
-        s.tool = Some(0);
+        s.systems[0].tool = Some(0);
     });
     assert!(matches!(error, SimulationError::OtherTool { .. }), "{error}");
 }
@@ -164,7 +164,7 @@ fn gains_and_frames_that_cannot_work() {
 /// Regression: unchecked indices caused a panic.
 #[test]
 fn frames_the_robot_does_not_have() {
-    let error = refused(|s| s.tool = Some(99));
+    let error = refused(|s| s.systems[0].tool = Some(99));
     assert!(matches!(error, SimulationError::UnknownFrame { frame: 99, .. }), "{error}");
     let error = refused(|s| {
         tracking(s);
@@ -177,7 +177,7 @@ fn frames_the_robot_does_not_have() {
 fn a_reference_with_an_offset_at_the_start_is_reported() {
     let error = refused(|s| {
         tracking(s);
-        s.reference_start_tolerance = [0.05, 0.1];
+        s.systems[0].reference_start_tolerance = [0.05, 0.1];
     });
     let SimulationError::ReferenceStartsAway { position, angle, .. } = error else { panic!("{error}") };
     assert!(position > 0.05 || angle > 0.1);
@@ -202,7 +202,11 @@ fn an_effect_given_twice_is_refused() {
     assert!(is(twice(vec![Arc::new(DifferentialGravity::default())]), "gravity"));
     let ball = |body: usize| {
         let surface = Surface::cannonball(1.0, 2.2, 1.3).unwrap();
-        Surfaces::new(vec![Covering { body: body.into(), surface }], &[sound().model.nodes().len()]).unwrap()
+        Surfaces::new(
+            vec![Covering { body: body.into(), surface }],
+            &[sound().systems[0].model.nodes().len()],
+        )
+        .unwrap()
     };
     let air = || Arc::new(ConstantAtmosphere::new(1e-12).unwrap());
     let drag = |body| -> Arc<dyn Effect> { Arc::new(Drag::new(air(), ball(body))) };
@@ -255,5 +259,5 @@ fn the_rows_before_the_ground_are_kept() {
     let SimulationError::Environment { time, .. } = failure.error else { panic!("{failure}") };
     let height = |t: f64| orbit.state(t).unwrap().position.norm() - 0.996 * 6_378_137.0;
     assert!(height(time) < 0.0 && height(time - 1.0) > 0.0, "{time} s");
-    assert!((failure.trace.time.last().unwrap() - time).abs() <= 1.0);
+    assert!((failure.recording.systems[0].time.last().unwrap() - time).abs() <= 1.0);
 }

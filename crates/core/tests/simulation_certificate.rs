@@ -15,7 +15,7 @@ use onorbit_core::spatial::{Quat, Vec3, exp_so3, log_so3};
 use std::sync::Arc;
 
 fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration).unwrap()
+    simulation.run(duration).unwrap().only()
 }
 
 fn random_simulation(seed: u64) -> Simulation {
@@ -47,7 +47,7 @@ fn honest_free_motion_of_random_robots_is_green() {
             let mut simulation = random_simulation(seed);
             simulation.time_step = time_step;
             let trace = run(&mut simulation, 2.0);
-            let certificate = certify(&simulation.model, &trace);
+            let certificate = certify(&simulation.systems[0].model, &trace);
             println!("seed {seed}, step {time_step}: {:?}", certificate.checks());
             assert!(certificate.passed(), "seed {seed}: {certificate:#?}");
             assert_eq!(certificate.checks().len(), 9);
@@ -60,7 +60,7 @@ fn honest_pushed_runs_are_green_switches_included() {
     for switched in [false, true] {
         let mut simulation = pushed(switched);
         let trace = run(&mut simulation, 2.0);
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         println!("switched {switched}: {:?}", certificate.checks());
         assert!(certificate.passed(), "{certificate:#?}");
     }
@@ -148,7 +148,7 @@ fn the_magnus_series_is_of_fifth_order_per_step() {
 #[test]
 fn an_omitted_wrench_is_red() {
     let trace = run(&mut pushed(false), 2.0);
-    let model = pushed(false).model;
+    let model = std::sync::Arc::clone(&pushed(false).systems[0].model);
     let mut without = pushed(false);
     without.effects.pop();
     let unpushed = run(&mut without, 2.0);
@@ -183,8 +183,8 @@ fn an_end_off_the_grid_does_not_shrink_the_residual_of_a_missing_force() {
         simulation.effects.push(Arc::new(push));
         let trace = run(&mut simulation, duration);
         let missing = Trace { impulse: vec![0.0; trace.impulse.len()], ..trace.clone() };
-        assert_eq!(failed(&certify(&simulation.model, &trace)), [""; 0]);
-        let certificate = certify(&simulation.model, &missing);
+        assert_eq!(failed(&certify(&simulation.systems[0].model, &trace)), [""; 0]);
+        let certificate = certify(&simulation.systems[0].model, &missing);
         assert!(failed(&certificate).contains(&"base_rows_residual_rel"), "{duration}: {certificate:#?}");
         certificate.base_rows_residual_rel.unwrap()
     };
@@ -198,11 +198,11 @@ fn an_end_off_the_grid_does_not_shrink_the_residual_of_a_missing_force() {
 fn velocities_that_do_not_follow_from_the_wrenches_are_red() {
     let mut simulation = random_simulation(3);
     let mut trace = run(&mut simulation, 1.0);
-    let nv = simulation.model.nv();
+    let nv = simulation.systems[0].model.nv();
     for (k, v) in trace.v.chunks_exact_mut(nv).enumerate() {
         v[4] += 1e-3 * (k as f64 * 1e-3); // as if 1e-3 rad/s² had no cause
     }
-    let red = failed(&certify(&simulation.model, &trace));
+    let red = failed(&certify(&simulation.systems[0].model, &trace));
     assert!(red.contains(&"base_rows_residual_rel") && red.contains(&"attitude_consistency"), "{red:?}");
 }
 
@@ -214,7 +214,7 @@ fn a_center_of_mass_that_leaves_its_path_is_red() {
     for (k, c) in trace.center_of_mass.chunks_exact_mut(3).enumerate() {
         c[0] += 1e-9 * k as f64; // 1 µm/s
     }
-    assert_eq!(failed(&certify(&simulation.model, &trace)), ["center_of_mass_error_rel"]);
+    assert_eq!(failed(&certify(&simulation.systems[0].model, &trace)), ["center_of_mass_error_rel"]);
 }
 
 #[test]
@@ -222,7 +222,7 @@ fn a_first_order_integrator_is_not_certified_at_a_millisecond() {
     let mut simulation = random_simulation(5);
     simulation.integrator = Integrator::SemiImplicitEuler;
     let trace = run(&mut simulation, 2.0);
-    let red = failed(&certify(&simulation.model, &trace));
+    let red = failed(&certify(&simulation.systems[0].model, &trace));
     assert!(red.contains(&"energy_balance_error_rel") && red.contains(&"attitude_consistency"), "{red:?}");
     assert!(!red.contains(&"linear_momentum_drift_rel"), "{red:?}");
 }
@@ -232,10 +232,10 @@ fn a_first_order_integrator_is_not_certified_at_a_millisecond() {
 fn sparse_rows_evaluate_every_step_and_nan_is_red() {
     let mut simulation = pushed(true);
     let trace = run(&mut simulation, 1.0);
-    let dense = certify(&simulation.model, &trace);
+    let dense = certify(&simulation.systems[0].model, &trace);
     simulation.record_every = 10;
     let trace = run(&mut simulation, 1.0);
-    let certificate = certify(&simulation.model, &trace);
+    let certificate = certify(&simulation.systems[0].model, &trace);
     assert!(certificate.passed(), "{certificate:#?}");
     assert_eq!(dense.checks().len(), certificate.checks().len());
     for (dense, sparse) in dense.checks().iter().zip(certificate.checks()) {
@@ -245,9 +245,9 @@ fn sparse_rows_evaluate_every_step_and_nan_is_red() {
     let mut broken = trace;
     broken.kinetic_energy[5] = f64::NAN;
     broken.momentum[12] = f64::NAN;
-    let red = failed(&certify(&simulation.model, &broken));
+    let red = failed(&certify(&simulation.systems[0].model, &broken));
     assert_eq!(red, ["linear_momentum_drift_rel", "energy_balance_error_rel"]);
-    assert!(certify(&simulation.model, &Trace::default()).passed()); // neither passed nor failed
+    assert!(certify(&simulation.systems[0].model, &Trace::default()).passed()); // neither passed nor failed
 }
 
 /// Negative control: what is red with every step a row is red with every hundredth.
@@ -257,7 +257,7 @@ fn a_first_order_integrator_is_red_with_sparse_rows_too() {
     simulation.integrator = Integrator::SemiImplicitEuler;
     simulation.record_every = 100;
     let trace = run(&mut simulation, 2.0);
-    let red = failed(&certify(&simulation.model, &trace));
+    let red = failed(&certify(&simulation.systems[0].model, &trace));
     assert!(red.contains(&"center_of_mass_error_rel") == red.contains(&"attitude_consistency"), "{red:?}");
     assert!(red.contains(&"attitude_consistency") && red.contains(&"joint_step_doubling_rel"), "{red:?}");
 }
@@ -322,7 +322,7 @@ fn a_push_through_the_centre_of_mass_is_green() {
     simulation.effects.push(Arc::new(push));
     simulation.time_step = 0.01;
     let trace = run(&mut simulation, 1.0);
-    let certificate = certify(&simulation.model, &trace);
+    let certificate = certify(&simulation.systems[0].model, &trace);
     assert!(certificate.passed(), "{certificate:#?}");
 }
 
@@ -336,7 +336,7 @@ fn a_step_too_long_for_the_spin_is_red() {
         let mut simulation = Simulation::new(Arc::new(body), q, vec![0.0, 0.0, 0.0, 0.03, 3.0, 0.03]);
         simulation.time_step = time_step;
         let trace = run(&mut simulation, 200.0);
-        certify(&simulation.model, &trace)
+        certify(&simulation.systems[0].model, &trace)
     };
     let (coarse, fine) = (spin(0.02), spin(1e-3));
     let estimate = |certificate: &Certificate| certificate.attitude_step_doubling_rad.unwrap();

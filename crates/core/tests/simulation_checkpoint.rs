@@ -38,9 +38,9 @@ fn simulation(integrator: Integrator, record_every: usize) -> Simulation {
     simulation.orbit = Some(Arc::new(Kepler::from_state(r, u, MU_EARTH).unwrap()));
     simulation.effects = vec![Arc::new(GravityGradient), Arc::new(push.during(0.2503, 1.1007).unwrap())];
     let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, 100.0, 20.0)), line.into());
-    simulation.controls = vec![Control::on_all_joints(&model, law)];
-    simulation.tool = Some(tool);
-    simulation.control_period = Some(2.5e-3);
+    simulation.systems[0].controls = vec![Control::on_all_joints(&model, law)];
+    simulation.systems[0].tool = Some(tool);
+    simulation.systems[0].control_period = Some(2.5e-3);
     simulation.integrator = integrator;
     simulation.record_every = record_every;
     simulation
@@ -54,13 +54,13 @@ fn a_resumed_run_has_the_bits_of_an_uninterrupted_one() {
         (Integrator::SemiImplicitEuler, 1),
         (Integrator::DormandPrince, 1),
     ] {
-        let whole = simulation(integrator, every).run(DURATION).unwrap();
+        let whole = simulation(integrator, every).run(DURATION).unwrap().only();
         for stop in [0.1, 0.4, 0.77] {
             let (checkpoint, rows) = stopped(&mut simulation(integrator, every), DURATION, stop);
             let mut second = simulation(integrator, every);
             let rest = resumed(&mut second, DURATION, &checkpoint, rows).unwrap();
             assert_same_bits(&rest, &whole);
-            assert_eq!(certify(&second.model, &rest), certify(&second.model, &whole));
+            assert_eq!(certify(&second.systems[0].model, &rest), certify(&second.systems[0].model, &whole));
         }
     }
 }
@@ -70,19 +70,19 @@ fn a_resumed_run_has_the_bits_of_an_uninterrupted_one() {
 fn joint_modes_and_step_sizes_are_resumed() {
     let make = |integrator| {
         let mut simulation = simulation(integrator, 1);
-        simulation.model = Arc::new(humanoid_with(|joint| {
+        simulation.systems[0].model = Arc::new(humanoid_with(|joint| {
             let at = START[joint.name[4..].parse::<usize>().unwrap() - 1];
             joint.limits.position = Some((at - 0.2, at + 0.2));
             joint.friction = 1e-3;
         }));
-        simulation.v[6..].copy_from_slice(&[1.0, -0.8, 0.9, 1.1, -0.7, 1.0, -1.2]);
-        simulation.controls = Vec::new();
-        simulation.tool = None;
-        simulation.stops = Some(0.5);
+        simulation.systems[0].v[6..].copy_from_slice(&[1.0, -0.8, 0.9, 1.1, -0.7, 1.0, -1.2]);
+        simulation.systems[0].controls = Vec::new();
+        simulation.systems[0].tool = None;
+        simulation.systems[0].stops = Some(0.5);
         simulation
     };
     for integrator in [Integrator::Rk4, Integrator::DormandPrince] {
-        let whole = make(integrator).run(DURATION).unwrap();
+        let whole = make(integrator).run(DURATION).unwrap().only();
         assert!(*whole.dissipated.last().unwrap() > 0.0);
         let (checkpoint, rows) = stopped(&mut make(integrator), DURATION, 0.3);
         let rest = resumed(&mut make(integrator), DURATION, &checkpoint, rows).unwrap();
@@ -121,7 +121,7 @@ impl Controller for Summing {
 /// The reach with six joints, which are then held; the seventh driven by a PID, then by a user's controller.
 fn several_controls(integrator: Integrator, forgets: bool) -> Simulation {
     let mut simulation = simulation(integrator, 3);
-    let law = simulation.controls.remove(0).law;
+    let law = simulation.systems[0].controls.remove(0).law;
     let hold = |q: &[f64]| Arc::new(JointHold::new(q.to_vec()).unwrap());
     let arm: Vec<usize> = (0..6).collect();
     let mut reach = Control::new("reach", arm.clone(), law);
@@ -136,13 +136,13 @@ fn several_controls(integrator: Integrator, forgets: bool) -> Simulation {
     let own = Law::User(Box::new(Summing { sum: 0.0, forgets }), None);
     let mut own = Control::new("own", vec![6], own);
     own.begin = Begin::At(0.9013);
-    simulation.controls = vec![reach, stay, wrist, own];
+    simulation.systems[0].controls = vec![reach, stay, wrist, own];
     simulation
 }
 
 /// Returns the whole run, and one that was stopped and resumed.
 fn whole_and_continued(make: impl Fn() -> Simulation, stop: f64) -> (Trace, Trace) {
-    let whole = make().run(DURATION).unwrap();
+    let whole = make().run(DURATION).unwrap().only();
     let (checkpoint, rows) = stopped(&mut make(), DURATION, stop);
     let rest = resumed(&mut make(), DURATION, &checkpoint, rows).unwrap();
     (whole, rest)
@@ -167,8 +167,8 @@ fn controls_are_resumed() {
 fn a_users_controller_is_resumed_if_it_saves_its_state() {
     let alone = |forgets| {
         let mut simulation = simulation(Integrator::Rk4, 1);
-        simulation.controls = vec![Control::on_all_joints(
-            &simulation.model,
+        simulation.systems[0].controls = vec![Control::on_all_joints(
+            &simulation.systems[0].model,
             Law::User(Box::new(Summing { sum: 0.0, forgets }), None),
         )];
         simulation
@@ -189,7 +189,7 @@ fn a_users_controller_is_resumed_if_it_saves_its_state() {
 fn a_checkpoint_at_the_very_end_is_the_whole_run() {
     let make = || moving(slider(0.0, 0.1, None, 0.3), 0.2, Integrator::Rk4, 1e-3);
     let duration = 0.128;
-    let whole = make().run(duration).unwrap();
+    let whole = make().run(duration).unwrap().only();
     let (checkpoint, rows) = stopped(&mut make(), duration, duration);
     assert!(checkpoint.time() == duration && checkpoint.rows() + 1 == whole.rows());
     let rest = resumed(&mut make(), duration, &checkpoint, rows);
@@ -199,11 +199,11 @@ fn a_checkpoint_at_the_very_end_is_the_whole_run() {
 #[test]
 fn one_bit_of_the_state_shows() {
     // negative control: the comparison above would see the last bit of one number
-    let whole = simulation(Integrator::Rk4, 1).run(DURATION).unwrap();
+    let whole = simulation(Integrator::Rk4, 1).run(DURATION).unwrap().only();
     let (checkpoint, rows) = stopped(&mut simulation(Integrator::Rk4, 1), DURATION, 0.4);
     let mut value: serde_json::Value = serde_json::from_str(&checkpoint.to_json()).unwrap();
-    let q = value["progress"]["state"]["systems"][0]["q"][0].as_f64().unwrap();
-    value["progress"]["state"]["systems"][0]["q"][0] = f64::from_bits(q.to_bits() + 1).into();
+    let q = value["groups"][0]["progress"]["state"]["trees"][0]["q"][0].as_f64().unwrap();
+    value["groups"][0]["progress"]["state"]["trees"][0]["q"][0] = f64::from_bits(q.to_bits() + 1).into();
     let bent = Checkpoint::from_json(&value.to_string()).unwrap();
     let mut second = simulation(Integrator::Rk4, 1);
     let rest = resumed(&mut second, DURATION, &bent, rows).unwrap();
@@ -245,7 +245,7 @@ fn a_certificate_that_is_missing_or_of_another_form_is_refused() {
     let (checkpoint, rows) = stopped(&mut simulation(Integrator::Rk4, 7), DURATION, 0.4);
     let resume = |change: fn(&mut serde_json::Value)| {
         let mut value: serde_json::Value = serde_json::from_str(&checkpoint.to_json()).unwrap();
-        change(&mut value["progress"]["systems"][0]);
+        change(&mut value["groups"][0]["progress"]["trees"][0]);
         let changed = Checkpoint::from_json(&value.to_string()).map_err(SimulationError::from)?;
         resumed(&mut simulation(Integrator::Rk4, 7), DURATION, &changed, rows.clone())
     };
@@ -279,23 +279,32 @@ fn the_state_of_step_doubling_is_checked_on_resuming() {
     };
     let changes: [(Change, &str); 6] = [
         (
-            |value| value["progress"]["systems"][0]["errors"]["jumps"]["ended"] = vec![0.0; 9].into(),
+            |value| {
+                value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["ended"] = vec![0.0; 9].into()
+            },
             "has 9 joints with jumps",
         ),
         (
-            |value| value["progress"]["systems"][0]["errors"]["jumps"]["jumps"] = vec![0.0; 0].into(),
+            |value| {
+                value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["jumps"] = vec![0.0; 0].into()
+            },
             "has 0 joints with jumps",
         ),
         (
-            |value| value["progress"]["systems"][0]["errors"]["jumps"]["fastest"] = vec![0.0; 1].into(),
+            |value| {
+                value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["fastest"] = vec![0.0; 1].into()
+            },
             "has 1 joints with jumps",
         ),
-        (|value| value["progress"]["steps"] = 1.into(), "a run cannot have 1 steps"),
+        (|value| value["groups"][0]["progress"]["steps"] = 1.into(), "a run cannot have 1 steps"),
         (
-            |value| value["progress"]["steps"] = u64::MAX.into(),
+            |value| value["groups"][0]["progress"]["steps"] = u64::MAX.into(),
             "a run cannot have 18446744073709551615 steps",
         ),
-        (|value| value["progress"]["idle_steps"] = u64::MAX.into(), "18446744073709551615 idle steps"),
+        (
+            |value| value["groups"][0]["progress"]["idle_steps"] = u64::MAX.into(),
+            "18446744073709551615 idle steps",
+        ),
     ];
     for (change, said) in changes {
         match resume(change) {

@@ -55,14 +55,14 @@ fn pushed(fails_at: Option<usize>) -> Simulation {
 }
 
 fn run(simulation: &mut Simulation) -> Trace {
-    simulation.run(3.0).expect("a run")
+    simulation.run(3.0).expect("a run").only()
 }
 
 #[test]
 fn a_run_with_another_engine_is_certified() {
     let mut simulation = pushed(None);
     let trace = run(&mut simulation);
-    let model = Arc::clone(&simulation.model);
+    let model = Arc::clone(&simulation.systems[0].model);
     let (last, mass) = (trace.rows() - 1, BASE + SLIDER);
     // the initial momentum is that of the block, m r, plus one second of the force
     let momentum = SLIDER * 0.2 + FORCE;
@@ -88,9 +88,9 @@ fn an_error_of_the_engine_leaves_complete_rows() {
     let mut simulation = pushed(Some(4));
     let failure = simulation.run(3.0).unwrap_err();
     assert!(matches!(failure.error, SimulationError::Engine(_)), "{failure}");
-    assert_eq!(failure.trace.rows(), 4);
+    assert_eq!(failure.recording.systems[0].rows(), 4);
     let widths = [("q", 8), ("v", 7), ("acceleration", 7), ("momentum", 6)];
-    for (name, column) in failure.trace.columns() {
+    for (name, column) in failure.recording.systems[0].columns() {
         if let Some((_, width)) = widths.iter().find(|(known, _)| *known == name) {
             assert_eq!(column.len(), 4 * width, "{name}");
         }
@@ -111,5 +111,5 @@ fn without_the_impulse_of_the_engine_the_certificate_fails() {
     let outside = simulation.outside();
     simulation.engine = Some(Box::new(Silent(ClosedForm { outside, steps: 0, fails_at: None })));
     let trace = run(&mut simulation);
-    assert!(!onorbit_core::simulation::certify(&simulation.model, &trace).passed());
+    assert!(!onorbit_core::simulation::certify(&simulation.systems[0].model, &trace).passed());
 }

@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
 
 fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration).unwrap()
+    simulation.run(duration).unwrap().only()
 }
 
 fn low_orbit() -> Arc<Kepler> {
@@ -34,10 +34,10 @@ fn holding(kp: f64, kd: f64) -> Simulation {
     let mut v = vec![0.0; model.nv()];
     v[6..].copy_from_slice(&[0.05; 7]);
     let mut simulation = Simulation::new(Arc::new(model), q, v);
-    simulation.tool = Some(tool);
+    simulation.systems[0].tool = Some(tool);
     let hold = Hold::new(pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra()).unwrap();
     let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, kp, kd)), hold.into());
-    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
+    simulation.systems[0].controls = vec![Control::on_all_joints(&simulation.systems[0].model, law)];
     simulation.orbit = Some(low_orbit());
     simulation.effects.push(Arc::new(GravityGradient));
     simulation
@@ -86,16 +86,18 @@ fn control_runs_at_its_period_and_its_torque_is_held() {
     let times = Arc::new(Mutex::new(Vec::new()));
     let model = humanoid();
     let mut simulation = Simulation::new(Arc::new(model.clone()), start(&model), vec![0.0; 13]);
-    simulation.controls =
-        vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Clock(Arc::clone(&times))), None))];
+    simulation.systems[0].controls = vec![Control::on_all_joints(
+        &simulation.systems[0].model,
+        Law::User(Box::new(Clock(Arc::clone(&times))), None),
+    )];
     simulation.time_step = 0.01;
-    simulation.control_period = Some(0.04);
+    simulation.systems[0].control_period = Some(0.04);
     let trace = run(&mut simulation, 0.1);
     assert_eq!(*times.lock().unwrap(), [0.0, 0.04, 0.08]); // not at the end, which is not a tick
     let first: Vec<f64> = trace.tau.iter().step_by(7).map(|tau| (tau * 1e4).round()).collect();
     assert_eq!(first, [1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0, 3.0, 3.0]);
     // faster than the step: steps are shortened
-    simulation.control_period = Some(0.004);
+    simulation.systems[0].control_period = Some(0.004);
     let trace = run(&mut simulation, 0.02);
     assert_eq!(times.lock().unwrap().len(), 6);
     assert_eq!(trace.rows(), 7); // 0, 4, 8, 10, 12, 16 and 20 ms
@@ -126,7 +128,7 @@ fn bits(trace: &Trace) -> Vec<u64> {
 fn every_run_starts_from_the_given_state_and_gives_the_same_bits() {
     let mut simulation = holding(100.0, 20.0);
     let first = run(&mut simulation, 0.5);
-    assert_eq!(first.q[..14], simulation.q);
+    assert_eq!(first.q[..14], simulation.systems[0].q);
     assert_eq!(first.rows(), 501);
     let again = run(&mut simulation, 0.5);
     let elsewhere = std::thread::spawn(|| run(&mut holding(100.0, 20.0), 0.5)).join().unwrap();
@@ -146,15 +148,15 @@ fn a_diverging_run_reports_time_and_state_and_keeps_its_trace() {
     let mut hard = holding(1e9, 1e6);
     hard.time_step = 0.01;
     let mut stiff = holding(0.0, 0.0);
-    stiff.model = Arc::new(humanoid_with(|joint| joint.damping = 1e3));
-    stiff.controls = Vec::new();
+    stiff.systems[0].model = Arc::new(humanoid_with(|joint| joint.damping = 1e3));
+    stiff.systems[0].controls = Vec::new();
     stiff.time_step = 0.01;
     for mut simulation in [hard, stiff] {
         let failure = simulation.run(100.0).unwrap_err();
         let SimulationError::Diverged { time, q, v } = &failure.error else { panic!("{failure}") };
         assert!(q.iter().chain(v).all(|x| x.is_finite()) && q.len() == 14 && v.len() == 13);
         assert!(*time > 0.0 && *time < 100.0, "{failure}");
-        let trace = &failure.trace;
+        let trace = &failure.recording.systems[0];
         assert!(trace.rows() > 1 && trace.time.last().unwrap() <= time);
         assert_eq!(trace.acceleration.len(), 13 * trace.rows());
         assert!(trace.q.iter().chain(&trace.v).all(|x| x.is_finite()));
@@ -175,7 +177,7 @@ fn an_interrupted_run_keeps_its_trace_up_to_there() {
     assert!(advanced.unwrap().is_break());
     let time = stepper.time();
     assert!(time > 0.2 && time < 0.3 && calls > 1);
-    let trace = stepper.finish().unwrap();
+    let trace = stepper.finish().unwrap().only();
     drop(stepper);
     assert_eq!(trace.time.last(), Some(&time));
     assert_eq!(trace.acceleration.len(), 13 * trace.rows());
@@ -200,12 +202,12 @@ impl Controller for Failing {
 #[test]
 fn an_error_of_a_controller_is_returned_unchanged_with_the_rows_so_far() {
     let mut simulation = holding(100.0, 20.0);
-    simulation.controls =
-        vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Failing(0)), None))];
+    simulation.systems[0].controls =
+        vec![Control::on_all_joints(&simulation.systems[0].model, Law::User(Box::new(Failing(0)), None))];
     let failure = simulation.run(1.0).unwrap_err();
     let SimulationError::Control(ControlError::User(error)) = failure.error else { panic!("{failure}") };
     assert!(error.is::<OutOfCoffee>());
-    assert_eq!(failure.trace.rows(), 2);
+    assert_eq!(failure.recording.systems[0].rows(), 2);
 }
 
 /// A controller that returns a torque that is not finite.
@@ -221,7 +223,8 @@ impl Controller for Broken {
 #[test]
 fn a_torque_that_is_not_finite_is_refused() {
     let mut simulation = holding(100.0, 20.0);
-    simulation.controls = vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Broken), None))];
+    simulation.systems[0].controls =
+        vec![Control::on_all_joints(&simulation.systems[0].model, Law::User(Box::new(Broken), None))];
     let failure = simulation.run(1.0).unwrap_err();
     let text = failure.to_string();
     assert!(text.contains("joint 'arm_4'") && text.contains("finite"), "{text}");

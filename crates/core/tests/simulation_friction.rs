@@ -37,7 +37,7 @@ fn a_slider_stops_at_the_closed_form_time_and_place_and_stays() {
         // the base receives all momentum: P/(M + m)
         assert!((v[0] - SLIDER * rate / (BASE + SLIDER)).abs() < 1e-14);
         let lost = 0.5 * REDUCED * rate * rate;
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         if integrator != Integrator::SemiImplicitEuler {
             assert!((trace.dissipated[rows - 1] - lost).abs() < 1e-12);
             assert!((trace.work[rows - 1] + lost).abs() < 1e-12);
@@ -82,7 +82,7 @@ fn it_breaks_away_within_a_step_when_the_spin_is_fast_enough() {
             .push(Arc::new(BodyWrench::new(0, Vector3::zeros(), Vector3::z() * torque).unwrap()));
         let trace = run(&mut simulation, time + 1.0);
         let first = trace.time.iter().zip(trace.v.chunks(7)).find(|(_, v)| v[6] != 0.0).unwrap();
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         let off = trace.time.iter().map(|t| (t - time).abs()).fold(f64::INFINITY, f64::min);
         println!("{integrator:?}: breaks away at {time}, row {off:e} s off, moves at {}", first.0);
         assert!(*first.0 > time && *first.0 < time + 0.051);
@@ -111,7 +111,7 @@ fn a_stick_slip_run_is_certified_and_does_not_chatter() {
     for integrator in [Integrator::Rk4, Integrator::DormandPrince] {
         let mut simulation = sticking(integrator);
         let trace = run(&mut simulation, 8.0);
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         let changes: usize = (0..7)
             .map(|j| {
                 let mode = |v: &[f64]| if v[6 + j] == 0.0 { 0 } else { v[6 + j].signum() as i8 };
@@ -154,7 +154,7 @@ fn stick_slip_has_the_order_of_the_integrator() {
 fn a_rollout_sticks_as_a_simulation_does() {
     let mut simulation = sticking(Integrator::Rk4);
     let trace = run(&mut simulation, 2.0);
-    let (model, stop) = (Arc::clone(&simulation.model), AtomicBool::new(false));
+    let (model, stop) = (Arc::clone(&simulation.systems[0].model), AtomicBool::new(false));
     let rollout = Rollout {
         steps: 2000,
         time_step: 1e-3,
@@ -164,7 +164,7 @@ fn a_rollout_sticks_as_a_simulation_does() {
         threads: Some(1),
         stop: &stop,
     };
-    let (q0, v0) = ([&simulation.q[..]; 9].concat(), [&simulation.v[..]; 9].concat());
+    let (q0, v0) = ([&simulation.systems[0].q[..]; 9].concat(), [&simulation.systems[0].v[..]; 9].concat());
     let (mut q, mut v) = (vec![0.0; 9 * 14], vec![0.0; 9 * 13]);
     rollout.run(&model, &q0, &v0, &mut q, &mut v).unwrap();
     let last = &trace.q[trace.q.len() - 14..];

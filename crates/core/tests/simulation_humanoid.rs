@@ -31,9 +31,9 @@ fn reach(duration: f64) -> Trace {
     let mut simulation = Simulation::new(Arc::clone(&model), q, v);
     let law = ComputedTorque { damping: 0.0, ..ComputedTorque::new(tool, 100.0, 20.0) };
     let law = Law::TaskComputedTorque(Box::new(law), line.unwrap().into());
-    simulation.controls = vec![Control::on_all_joints(&simulation.model, law)];
-    simulation.tool = Some(tool);
-    let trace = simulation.run(duration).unwrap();
+    simulation.systems[0].controls = vec![Control::on_all_joints(&simulation.systems[0].model, law)];
+    simulation.systems[0].tool = Some(tool);
+    let trace = simulation.run(duration).unwrap().only();
     let certificate = certify(&model, &trace);
     assert!(certificate.passed(), "{certificate:#?}");
     trace

@@ -14,7 +14,7 @@ fn a_slider_bounces_as_in_the_closed_form() {
     for integrator in INTEGRATORS {
         for e in [0.0, 0.5, 1.0] {
             let mut simulation = moving(slider(0.0, 0.0, Some((-limit, limit)), 0.3), rate, integrator, 0.01);
-            simulation.stops = Some(e);
+            simulation.systems[0].stops = Some(e);
             let trace = run(&mut simulation, 2.0);
             // q = u t; then back and forth, with the rate reduced by 1 − e at each impact
             for (k, t) in trace.time.iter().enumerate() {
@@ -31,7 +31,7 @@ fn a_slider_bounces_as_in_the_closed_form() {
                 assert!(off < 1e-11, "{integrator:?} {e} at {t}: {off:e}");
                 assert!(trace.q[8 * k + 7].abs() <= limit + 1e-9);
             }
-            let certificate = certify(&simulation.model, &trace);
+            let certificate = certify(&simulation.systems[0].model, &trace);
             let lost = trace.dissipated[trace.rows() - 1];
             println!("{integrator:?}, restitution {e}: {lost} J lost, {:?}", certificate.checks());
             assert!(certificate.passed(), "{certificate:#?}");
@@ -53,9 +53,9 @@ fn a_stop_is_unilateral() {
             let model = slider(friction, 0.0, Some((-1.0, 0.1)), 0.3);
             let mut simulation =
                 driven(moving(model, 0.0, integrator, 0.01), |t| if t < 1.995 { 3.0 } else { -3.0 });
-            simulation.stops = Some(0.4);
+            simulation.systems[0].stops = Some(0.4);
             let trace = run(&mut simulation, 2.5);
-            let certificate = certify(&simulation.model, &trace);
+            let certificate = certify(&simulation.systems[0].model, &trace);
             let at = |t: f64| trace.time.iter().position(|x| *x > t).unwrap();
             for k in at(1.5)..at(1.99) {
                 assert!(trace.v[7 * k + 6] == 0.0 && trace.q[8 * k + 7] == 0.1, "{integrator:?} {friction}");
@@ -89,9 +89,9 @@ fn an_arm_between_its_stops_keeps_its_balances() {
         let (q, mut v) = (start(&model), vec![0.0; model.nv()]);
         v[6..].copy_from_slice(&[1.0, -0.8, 0.9, 1.1, -0.7, 1.0, -1.2]);
         let mut simulation = Simulation::new(Arc::new(model), q.clone(), v);
-        (simulation.stops, simulation.integrator) = (Some(e), integrator);
+        (simulation.systems[0].stops, simulation.integrator) = (Some(e), integrator);
         let trace = run(&mut simulation, 5.0);
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         let beyond = trace.q.chunks(14).flat_map(|row| (7..14).map(|j| (row[j] - q[j]).abs() - 0.3));
         let beyond = beyond.fold(f64::NEG_INFINITY, f64::max);
         println!(
@@ -109,14 +109,14 @@ fn an_arm_between_its_stops_keeps_its_balances() {
 #[test]
 fn a_start_outside_a_limit_is_refused() {
     let mut simulation = moving(slider(0.0, 0.0, Some((-0.1, 0.1)), 0.3), 0.0, Integrator::Rk4, 0.01);
-    simulation.q[7] = 0.2;
+    simulation.systems[0].q[7] = 0.2;
     simulation.check().unwrap(); // limits are enforced only on request
-    simulation.stops = Some(0.0);
+    simulation.systems[0].stops = Some(0.0);
     let error = simulation.check().unwrap_err();
     assert!(
         matches!(&error, SimulationError::OutsideLimits { joint, value, .. } if joint == "slide" && *value == 0.2)
     );
     assert!(error.to_string().contains("-0.1 to 0.1"), "{error}");
-    simulation.stops = Some(1.5);
+    simulation.systems[0].stops = Some(1.5);
     assert!(matches!(simulation.check(), Err(SimulationError::Restitution { .. })));
 }

@@ -115,7 +115,7 @@ impl Case {
         }
         simulation.time_step = 1.0;
         simulation.record_every = 60;
-        simulation.run(28_800.0).unwrap()
+        simulation.run(28_800.0).unwrap().only()
     }
 
     /// The same by an independent integration in absolute coordinates.

@@ -30,7 +30,7 @@ fn simulated(model: &Model, integrator: Integrator, steps: usize) -> Vec<f64> {
     simulation.integrator = integrator;
     simulation.time_step = DURATION / steps as f64;
     simulation.record_every = steps;
-    let trace = simulation.run(DURATION).unwrap();
+    let trace = simulation.run(DURATION).unwrap().only();
     trace.q[trace.q.len() - model.nq()..].to_vec()
 }
 

@@ -46,7 +46,7 @@ fn rigid() -> Arc<Model> {
 }
 
 fn go(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration).unwrap()
+    simulation.run(duration).unwrap().only()
 }
 
 /// Returns the distance of the base from a Kepler orbit with the same initial state, m.

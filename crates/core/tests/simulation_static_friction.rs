@@ -41,7 +41,7 @@ fn a_slider_is_held_by_the_static_friction_and_slips_against_the_kinetic_one() {
         if integrator != Integrator::SemiImplicitEuler {
             let way = trace.q[8 * last + 7];
             assert!((trace.dissipated[last] - KINETIC * way).abs() < 1e-12);
-            assert!(certify(&loaded.model, &trace).passed());
+            assert!(certify(&loaded.systems[0].model, &trace).passed());
         }
     }
     // negative control: with the kinetic friction only it would move at once
@@ -66,7 +66,7 @@ fn static_friction_decides_when_a_slider_breaks_away_within_a_step() {
     let jump = trace.acceleration[7 * row + 6];
     println!("breaks away {off:e} s off, at {jump} m/s²");
     assert!(off < 1e-9 && (jump - (STATIC - KINETIC) / REDUCED).abs() < 1e-3, "{off:e} {jump}");
-    let error = certify(&simulation.model, &trace).energy_balance_error_rel;
+    let error = certify(&simulation.systems[0].model, &trace).energy_balance_error_rel;
     assert!(error < 1e-8, "{error:e}");
 }
 
@@ -88,8 +88,8 @@ const SPEED: f64 = 0.05;
 
 fn pulled(change: impl Fn(&mut Joint), time_step: f64, duration: f64) -> (Simulation, Trace) {
     let mut simulation = moving(slider_with(change, 0.3), 0.0, Integrator::Rk4, time_step);
-    simulation.controls = vec![Control::on_all_joints(
-        &simulation.model,
+    simulation.systems[0].controls = vec![Control::on_all_joints(
+        &simulation.systems[0].model,
         Law::User(Box::new(Pull { stiffness: STIFFNESS, speed: SPEED }), None),
     )];
     let trace = run(&mut simulation, duration);
@@ -119,7 +119,7 @@ fn a_block_pulled_by_a_spring_sticks_and_slips_with_the_period_of_the_closed_for
         assert!((times[0] - STATIC / (STIFFNESS * SPEED)).abs() <= 1.01 * time_step);
         // the dissipated energy is the kinetic friction times the distance, and the balance closes
         assert!((trace.dissipated[last] - KINETIC * trace.q[8 * last + 7]).abs() < 1e-11);
-        let certificate = certify(&simulation.model, &trace);
+        let certificate = certify(&simulation.systems[0].model, &trace);
         assert!(certificate.energy_balance_error_rel < 1e-9, "{certificate:#?}");
         println!("h {time_step}: period {measured} s, {period} s expected");
         (measured / period - 1.0).abs()

@@ -37,30 +37,30 @@ fn passive(integrator: Integrator) -> Simulation {
 /// The same with a reach, whose control is slower than the steps and no multiple of them.
 fn reaching(integrator: Integrator) -> Simulation {
     let mut simulation = passive(integrator);
-    let model = Arc::clone(&simulation.model);
+    let model = Arc::clone(&simulation.systems[0].model);
     let tool = model.frame("tool").unwrap();
     let mut data = Data::new(&model);
-    positions(&model, &mut data, &simulation.q);
-    let pose = frame_pose(&model, &data, &simulation.q, tool);
+    positions(&model, &mut data, &simulation.systems[0].q);
+    let pose = frame_pose(&model, &data, &simulation.systems[0].q, tool);
     let (rot, from) = (pose.rot_wf.to_nalgebra(), pose.pos_w.to_nalgebra());
     let line = LineParabola::new(rot, from, Vector3::x() * 0.2, Vector3::z() * 0.1, 0.5).unwrap();
     let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, 100.0, 20.0)), line.into());
-    simulation.controls = vec![Control::on_all_joints(&model, law)];
-    simulation.tool = Some(tool);
-    simulation.control_period = Some(2.5e-3);
+    simulation.systems[0].controls = vec![Control::on_all_joints(&model, law)];
+    simulation.systems[0].tool = Some(tool);
+    simulation.systems[0].control_period = Some(2.5e-3);
     simulation
 }
 
 /// Joints that stick, slip and hit stops.
 fn with_stops(integrator: Integrator) -> Simulation {
     let mut simulation = passive(integrator);
-    simulation.model = Arc::new(humanoid_with(|joint| {
+    simulation.systems[0].model = Arc::new(humanoid_with(|joint| {
         let at = START[joint.name[4..].parse::<usize>().unwrap() - 1];
         joint.limits.position = Some((at - 0.1, at + 0.1));
         joint.friction = 1e-3;
     }));
-    simulation.v[6..].copy_from_slice(&[1.0, -0.8, 0.9, 1.1, -0.7, 1.0, -1.2]);
-    simulation.stops = Some(0.5);
+    simulation.systems[0].v[6..].copy_from_slice(&[1.0, -0.8, 0.9, 1.1, -0.7, 1.0, -1.2]);
+    simulation.systems[0].stops = Some(0.5);
     simulation
 }
 
@@ -69,7 +69,7 @@ fn in_pieces(stepper: &mut Stepper<'_>, dt: f64, end: f64) {
     let (mut q, mut v) = ([0.0; 14], [0.0; 13]);
     while stepper.time() < end {
         stepper.advance_to((stepper.time() + dt).min(end)).unwrap();
-        stepper.read_state(&mut q, &mut v).unwrap();
+        stepper.read_state(0, &mut q, &mut v).unwrap();
         assert!(q.iter().chain(&v).all(|x| x.is_finite()));
     }
 }
@@ -84,13 +84,13 @@ fn pieces_have_the_bits_of_one_call() {
                     simulation.record_every = record_every;
                     simulation
                 };
-                let whole = simulation().run(DURATION).unwrap();
+                let whole = simulation().run(DURATION).unwrap().only();
                 for dt in [0.02, 0.00717, 0.35] {
                     let mut simulation = simulation();
                     let mut stepper = simulation.start(Some(DURATION)).unwrap();
                     in_pieces(&mut stepper, dt, DURATION);
-                    assert_same_bits(&stepper.trace().unwrap(), &whole);
-                    assert_same_bits(&stepper.finish().unwrap(), &whole);
+                    assert_same_bits(&stepper.recording().unwrap().only(), &whole);
+                    assert_same_bits(&stepper.finish().unwrap().only(), &whole);
                 }
             }
         }
@@ -101,11 +101,11 @@ fn pieces_have_the_bits_of_one_call() {
 fn without_a_planned_end_fixed_steps_have_the_same_bits_too() {
     for make in [passive, reaching, with_stops] {
         for integrator in [Integrator::Rk4, Integrator::SemiImplicitEuler] {
-            let mut whole = make(integrator).run(DURATION).unwrap();
+            let mut whole = make(integrator).run(DURATION).unwrap().only();
             let mut simulation = make(integrator);
             let mut stepper = simulation.start(None).unwrap();
             in_pieces(&mut stepper, 0.02, DURATION);
-            let trace = stepper.trace().unwrap();
+            let trace = stepper.recording().unwrap().only();
             // the estimates of the error depend on how many steps are planned
             whole.attitude_step_doubling = trace.attitude_step_doubling;
             whole.step_doubling = trace.step_doubling.clone();
@@ -122,14 +122,14 @@ fn the_state_within_a_step_is_that_of_the_motion() {
         for integrator in INTEGRATORS {
             let mut fine = make(integrator);
             (fine.integrator, fine.time_step) = (Integrator::DormandPrince, 1e-4);
-            let fine = fine.run(DURATION).unwrap();
+            let fine = fine.run(DURATION).unwrap().only();
             let mut simulation = make(integrator);
             let mut stepper = simulation.start(Some(DURATION)).unwrap();
             let (mut q, mut v) = ([0.0; 14], [0.0; 13]);
             for t in [0.0312, 0.2005, 0.3337] {
                 stepper.advance_to(t).unwrap();
                 assert_eq!(stepper.time(), t);
-                stepper.read_state(&mut q, &mut v).unwrap();
+                stepper.read_state(0, &mut q, &mut v).unwrap();
                 let row = fine.time.iter().position(|time| (time - t).abs() < 1e-9).unwrap();
                 let off = |a: &[f64], b: &[f64]| {
                     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0_f64, f64::max)
@@ -142,7 +142,7 @@ fn the_state_within_a_step_is_that_of_the_motion() {
                     off(&q, at_q),
                     off(&v, at_v)
                 );
-                let trace = stepper.trace().unwrap();
+                let trace = stepper.recording().unwrap().only();
                 assert_eq!(trace.time.last(), Some(&t));
                 assert!(off(&trace.q[trace.q.len() - 14..], &q) == 0.0);
             }
@@ -154,12 +154,12 @@ fn the_state_within_a_step_is_that_of_the_motion() {
 fn a_checkpoint_within_a_step_resumes_with_the_same_bits() {
     for make in [passive, reaching, with_stops] {
         for integrator in INTEGRATORS {
-            let whole = make(integrator).run(DURATION).unwrap();
+            let whole = make(integrator).run(DURATION).unwrap().only();
             for stop in [0.2, 0.30047, 0.4321] {
                 let mut simulation = make(integrator);
                 let mut stepper = simulation.start(Some(DURATION)).unwrap();
                 stepper.advance_to(stop).unwrap();
-                let (checkpoint, rows) = (stepper.checkpoint().unwrap(), stepper.rows().clone());
+                let (checkpoint, rows) = (stepper.checkpoint().unwrap(), stepper.rows(0).clone());
                 assert!((checkpoint.time() - stop).abs() < 1e-12);
                 let rest = resumed(&mut make(integrator), DURATION, &checkpoint, rows).unwrap();
                 assert_same_bits(&rest, &whole);
@@ -194,18 +194,18 @@ fn commands_have_the_bits_of_a_controller_that_gives_them() {
     for make in [passive, with_stops] {
         for (integrator, period) in [(Integrator::Rk4, 0.02), (Integrator::SemiImplicitEuler, 0.0125)] {
             let mut controlled = make(integrator);
-            controlled.controls = vec![scripted((0..7).collect())];
-            controlled.control_period = Some(period);
-            let whole = controlled.run(DURATION).unwrap();
+            controlled.systems[0].controls = vec![scripted((0..7).collect())];
+            controlled.systems[0].control_period = Some(period);
+            let whole = controlled.run(DURATION).unwrap().only();
 
             let mut simulation = make(integrator);
             let mut stepper = simulation.start(Some(DURATION)).unwrap();
             for k in 0..(DURATION / period).round() as usize {
-                stepper.command(&torques(stepper.time()).map(Some)).unwrap();
+                stepper.command(0, &torques(stepper.time()).map(Some)).unwrap();
                 stepper.advance_to(((k + 1) as f64 * period).min(DURATION)).unwrap();
             }
-            stepper.command(&torques(DURATION).map(Some)).unwrap();
-            let trace = stepper.finish().unwrap();
+            stepper.command(0, &torques(DURATION).map(Some)).unwrap();
+            let trace = stepper.finish().unwrap().only();
             assert_eq!(trace.time, whole.time);
             for (a, b) in [(&trace.q, &whole.q), (&trace.v, &whole.v), (&trace.tau, &whole.tau)] {
                 assert!(a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits()));
@@ -223,20 +223,20 @@ fn a_command_works_beside_controllers_of_other_joints() {
     };
     let period = 0.02;
     let mut controlled = passive(Integrator::Rk4);
-    controlled.controls = vec![hold(), scripted(vec![4, 5, 6])];
-    controlled.control_period = Some(period);
-    let whole = controlled.run(DURATION).unwrap();
+    controlled.systems[0].controls = vec![hold(), scripted(vec![4, 5, 6])];
+    controlled.systems[0].control_period = Some(period);
+    let whole = controlled.run(DURATION).unwrap().only();
 
     let mut simulation = passive(Integrator::Rk4);
-    simulation.controls = vec![hold()];
-    simulation.control_period = Some(period);
+    simulation.systems[0].controls = vec![hold()];
+    simulation.systems[0].control_period = Some(period);
     let mut stepper = simulation.start(Some(DURATION)).unwrap();
     for k in 0..30 {
         let tau = torques(stepper.time());
-        stepper.command(&std::array::from_fn::<_, 7, _>(|j| (j > 3).then_some(tau[j]))).unwrap();
+        stepper.command(0, &std::array::from_fn::<_, 7, _>(|j| (j > 3).then_some(tau[j]))).unwrap();
         stepper.advance_to(((k + 1) as f64 * period).min(DURATION)).unwrap();
     }
-    let trace = stepper.finish().unwrap();
+    let trace = stepper.finish().unwrap().only();
     let off = trace.q.iter().zip(&whole.q).map(|(a, b)| (a - b).abs()).fold(0.0_f64, f64::max);
     assert!(off < 1e-9, "{off:e}"); // torque-controlled joints take no part in the solution of the others
     assert!(trace.tau.chunks_exact(7).any(|tau| tau[0] != 0.0) && trace.tau[4] == torques(0.0)[4]);
@@ -257,18 +257,19 @@ impl Controller for Counting {
 fn a_controller_is_updated_once_per_tick_however_often_the_run_is_looked_at() {
     for integrator in INTEGRATORS {
         let mut simulation = passive(integrator);
-        simulation.controls = vec![Control::new("count", vec![0], Law::User(Box::new(Counting(0.0)), None))];
-        simulation.control_period = Some(0.05);
+        simulation.systems[0].controls =
+            vec![Control::new("count", vec![0], Law::User(Box::new(Counting(0.0)), None))];
+        simulation.systems[0].control_period = Some(0.05);
         let mut stepper = simulation.start(Some(DURATION)).unwrap();
         let (mut q, mut v) = ([0.0; 14], [0.0; 13]);
         for k in 1..=24 {
             for _ in 0..3 {
-                stepper.read_state(&mut q, &mut v).unwrap();
-                let _ = stepper.trace().unwrap();
+                stepper.read_state(0, &mut q, &mut v).unwrap();
+                let _ = stepper.recording().unwrap().only();
             }
             stepper.advance_to((k as f64 * 0.025).min(DURATION)).unwrap();
         }
-        let trace = stepper.finish().unwrap();
+        let trace = stepper.finish().unwrap().only();
         let last = trace.tau[trace.tau.len() - 7];
         assert!((last - 13e-6).abs() < 1e-12, "{last}"); // at 0, 0.05, …, 0.6
     }
@@ -277,8 +278,8 @@ fn a_controller_is_updated_once_per_tick_however_often_the_run_is_looked_at() {
 #[test]
 fn bad_input_leaves_the_run_as_it_was() {
     let mut simulation = passive(Integrator::Rk4);
-    let whole = simulation.run(DURATION).unwrap();
-    simulation.controls.clear();
+    let whole = simulation.run(DURATION).unwrap().only();
+    simulation.systems[0].controls.clear();
     let mut stepper = simulation.start(Some(DURATION)).unwrap();
     stepper.advance(0.1).unwrap();
     for dt in [0.0, -0.1, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
@@ -292,14 +293,17 @@ fn bad_input_leaves_the_run_as_it_was() {
     }
     assert!(matches!(stepper.advance(DURATION), Err(SimulationError::AfterEnd { .. })));
     let wrong = [Some(0.0); 6];
-    assert!(matches!(stepper.command(&wrong), Err(SimulationError::WrongLength { name: "tau", .. })));
+    assert!(matches!(stepper.command(0, &wrong), Err(SimulationError::WrongLength { name: "tau", .. })));
     let mut tau = [Some(0.0); 7];
     tau[3] = Some(f64::NAN);
-    assert!(matches!(stepper.command(&tau), Err(SimulationError::NotFinite { name: "tau", index: 3, .. })));
+    assert!(matches!(
+        stepper.command(0, &tau),
+        Err(SimulationError::NotFinite { name: "tau", index: 3, .. })
+    ));
     stepper.advance_to(0.1).unwrap(); // the present: nothing to do
     stepper.advance_to(DURATION).unwrap();
     assert!(matches!(stepper.advance(0.1), Err(SimulationError::AfterEnd { .. })));
-    assert_same_bits(&stepper.finish().unwrap(), &whole);
+    assert_same_bits(&stepper.finish().unwrap().only(), &whole);
 }
 
 #[test]
@@ -307,16 +311,16 @@ fn a_joint_of_an_active_control_takes_no_command() {
     let mut simulation = passive(Integrator::Rk4);
     let mut later = scripted(vec![1]);
     (later.name, later.begin) = ("later".to_owned(), Begin::At(0.3));
-    simulation.controls = vec![scripted(vec![0]), later];
+    simulation.systems[0].controls = vec![scripted(vec![0]), later];
     let mut stepper = simulation.start(Some(DURATION)).unwrap();
     let only = |j: usize| std::array::from_fn::<_, 7, _>(|k| (k == j).then_some(1e-3));
     for t in [0.0, 0.2, 0.3, 0.4] {
         stepper.advance_to(t).unwrap();
-        let refused = stepper.command(&only(0)).unwrap_err();
+        let refused = stepper.command(0, &only(0)).unwrap_err();
         assert!(refused.to_string().contains("joint 'arm_1' is driven by control 'script'"), "{refused}");
-        assert_eq!(stepper.command(&only(1)).is_ok(), t < 0.3, "{t}");
+        assert_eq!(stepper.command(0, &only(1)).is_ok(), t < 0.3, "{t}");
     }
-    let trace = stepper.trace().unwrap();
+    let trace = stepper.recording().unwrap().only();
     let tau = |t: f64| trace.tau[7 * trace.time.iter().position(|time| *time >= t).unwrap() + 1];
     assert_eq!(tau(0.1), 1e-3);
     assert_eq!(tau(0.35), torques(0.35)[1]); // the control has taken the joint over
@@ -325,14 +329,14 @@ fn a_joint_of_an_active_control_takes_no_command() {
 #[test]
 fn a_run_that_failed_has_its_rows_and_goes_no_further() {
     let mut simulation = passive(Integrator::Rk4);
-    simulation.v[6] = 1e5;
+    simulation.systems[0].v[6] = 1e5;
     simulation.time_step = 1e-2;
     let mut stepper = simulation.start(None).unwrap();
     let error = stepper.advance(100.0).unwrap_err();
     assert!(matches!(error, SimulationError::Diverged { .. }), "{error}");
     assert!(matches!(stepper.advance(1.0), Err(SimulationError::Ended)));
-    assert!(matches!(stepper.command(&[None; 7]), Err(SimulationError::Ended)));
+    assert!(matches!(stepper.command(0, &[None; 7]), Err(SimulationError::Ended)));
     assert!(matches!(stepper.checkpoint(), Err(SimulationError::Ended)));
-    assert!(matches!(stepper.trace(), Err(SimulationError::Ended)));
-    assert!(stepper.finish().unwrap().rows() >= 1);
+    assert!(matches!(stepper.recording(), Err(SimulationError::Ended)));
+    assert!(stepper.finish().unwrap().only().rows() >= 1);
 }

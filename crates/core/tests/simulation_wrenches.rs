@@ -29,7 +29,7 @@ fn run(record_every: usize, record_wrenches: bool) -> (Arc<Model>, Trace) {
     simulation.time_step = 0.01;
     simulation.record_every = record_every;
     simulation.record_wrenches = record_wrenches;
-    let trace = simulation.run(0.5).expect("a run");
+    let trace = simulation.run(0.5).expect("a run").only();
     (model, trace)
 }
 

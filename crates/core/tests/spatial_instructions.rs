@@ -40,7 +40,7 @@ fn use_everything(model: Model) -> f64 {
         stop: &stop,
     };
     rollout.run(&model, &q, &v, &mut to_q, &mut to_v).unwrap();
-    let run = Simulation::new(Arc::new(model), q, v).run(0.002).unwrap();
+    let run = Simulation::new(Arc::new(model), q, v).run(0.002).unwrap().only();
     a[0] + to_q[0] + run.time.len() as f64
 }
 

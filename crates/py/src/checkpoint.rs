@@ -55,44 +55,66 @@ impl PyCheckpoint {
 }
 
 impl PyCheckpoint {
-    /// Returns the checkpoint of the core.
-    pub(crate) fn read(&self, py: Python<'_>) -> PyResult<(simulation::Checkpoint, Trace)> {
+    /// Returns the checkpoint of the core, and the rows of the systems with these names.
+    pub(crate) fn read(
+        &self,
+        py: Python<'_>,
+        names: &[String],
+    ) -> PyResult<(simulation::Checkpoint, Vec<Trace>)> {
         let refuse =
             |error: simulation::CheckpointError| SimulationError::from(error).into_python_with(py, None);
         let checkpoint = simulation::Checkpoint::from_json(&self.state).map_err(refuse)?;
+        let rows = names.iter().map(|name| self.rows_of(py, &prefix(name, names.len())));
+        Ok((checkpoint, rows.collect::<PyResult<_>>()?))
+    }
+
+    /// Returns the rows in the columns whose names begin with `prefix`.
+    fn rows_of(&self, py: Python<'_>, prefix: &str) -> PyResult<Trace> {
         let (mut rows, columns) = (Trace::default(), self.columns.bind(py));
         for (name, values) in columns {
             let name: String = name.extract()?;
+            let Some(name) = name.strip_prefix(prefix) else { continue };
             for (kind, named) in [(&TRACKING, &mut rows.tracking), (&WRENCHES, &mut rows.wrenches)] {
-                if let Some(name) = kind.owner_of(&name) {
+                if let Some(name) = kind.owner_of(name) {
                     let width = Input::new(&values, name)?.shape().get(1).copied().unwrap_or(1);
                     named.push(NamedColumn { name: name.to_owned(), width, values: Vec::new() });
                 }
             }
         }
         for (name, column) in rows.columns_mut() {
-            if let Some(values) = columns.get_item(&*name)? {
+            if let Some(values) = columns.get_item(format!("{prefix}{name}"))? {
                 column.extend_from_slice(Input::new(&values, &name)?.data());
             }
         }
-        Ok((checkpoint, rows))
+        Ok(rows)
     }
 }
 
-/// Returns the rows of a trace from `since` on, as a dict of columns.
+/// Returns what precedes the names of the columns of a system in a run of `count` systems.
+fn prefix(system: &str, count: usize) -> String {
+    if count == 1 { String::new() } else { format!("{system}/") }
+}
+
+/// Returns the rows of the systems with these names from `since` on, as a dict of columns.
 pub(crate) fn columns_since<'py>(
     py: Python<'py>,
-    trace: &Trace,
+    stepper: &Stepper<'_>,
+    names: &[String],
     since: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (columns, rows) = (PyDict::new(py), trace.rows());
-    if since > rows {
-        let message = format!("since is {since}, but the run has {}", count(rows, "row"));
-        return Err(raise(py, "InputError", &message, &fields!(py, "name": "since", "got": since)));
-    }
-    for (name, column) in trace.columns().filter(|(_, column)| !column.is_empty()) {
-        let width = column.len() / rows;
-        columns.set_item(name, array_of(py, &[rows - since, width], &column[since * width..]))?;
+    let columns = PyDict::new(py);
+    for (system, name) in names.iter().enumerate() {
+        let (trace, prefix) = (stepper.rows(system), prefix(name, names.len()));
+        let rows = trace.rows();
+        if since > rows {
+            let message = format!("since is {since}, but the run has {}", count(rows, "row"));
+            return Err(raise(py, "InputError", &message, &fields!(py, "name": "since", "got": since)));
+        }
+        for (name, column) in trace.columns().filter(|(_, column)| !column.is_empty()) {
+            let width = column.len() / rows;
+            let values = array_of(py, &[rows - since, width], &column[since * width..]);
+            columns.set_item(format!("{prefix}{name}"), values)?;
+        }
     }
     Ok(columns)
 }
@@ -101,6 +123,7 @@ pub(crate) fn columns_since<'py>(
 pub(crate) fn checkpoint_of(
     py: Python<'_>,
     stepper: &Stepper<'_>,
+    names: &[String],
     since: usize,
     wall_s: f64,
 ) -> PyResult<PyCheckpoint> {
@@ -115,13 +138,15 @@ pub(crate) fn checkpoint_of(
         }
         error => error.into_python_with(py, None),
     })?;
-    let columns = columns_since(py, stepper.rows(), since)?.unbind();
+    let columns = columns_since(py, stepper, names, since)?.unbind();
     Ok(PyCheckpoint { state: checkpoint.to_json(), columns, wall_s })
 }
 
 /// Python callback that receives checkpoints at regular intervals of wall-clock time.
 pub(crate) struct CheckpointCallback {
     to: Option<Py<PyAny>>,
+    /// Names of the systems.
+    names: Vec<String>,
     every: Duration,
     last: Instant,
     /// Rows that the callback has accepted.
@@ -129,8 +154,8 @@ pub(crate) struct CheckpointCallback {
 }
 
 impl CheckpointCallback {
-    pub(crate) fn new(to: Py<PyAny>, every: Duration, rows: usize) -> Self {
-        Self { to: Some(to), every, last: Instant::now(), rows }
+    pub(crate) fn new(to: Py<PyAny>, names: Vec<String>, every: Duration, rows: usize) -> Self {
+        Self { to: Some(to), names, every, last: Instant::now(), rows }
     }
 
     /// Passes a checkpoint to the callback if one is due.
@@ -142,7 +167,7 @@ impl CheckpointCallback {
     /// checkpoints.
     pub(crate) fn save(&mut self, py: Python<'_>, stepper: &Stepper<'_>, wall_s: f64) -> PyResult<()> {
         let Some(to) = &self.to else { return Ok(()) };
-        let checkpoint = match checkpoint_of(py, stepper, self.rows, wall_s) {
+        let checkpoint = match checkpoint_of(py, stepper, &self.names, self.rows, wall_s) {
             Ok(checkpoint) => checkpoint,
             Err(error) => {
                 self.to = None;
@@ -153,7 +178,7 @@ impl CheckpointCallback {
         let answer = to.call1(py, (checkpoint,))?;
         self.last = Instant::now();
         if !answer.bind(py).is(PyBool::new(py, false)) {
-            self.rows = stepper.rows().rows(); // if it was not stored, the next one contains its rows again
+            self.rows = stepper.rows(0).rows(); // if it was not stored, the next one contains its rows again
         }
         Ok(())
     }

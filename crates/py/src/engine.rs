@@ -66,7 +66,7 @@ pub(crate) struct PythonEngine {
 impl PythonEngine {
     /// Wraps the engine of a simulation, to which all effects must have been added before.
     pub(crate) fn new(engine: &Bound<'_, PyAny>, simulation: &Simulation) -> PyResult<Self> {
-        let model = &simulation.model;
+        let model = &simulation.systems[0].model;
         let sizes = [model.nq(), model.nv(), model.nodes().len()];
         let query = Mutex::new((simulation.outside(), (0.0, 0.0)));
         let wrenches = Py::new(engine.py(), PyWrenches { query, sizes })?;

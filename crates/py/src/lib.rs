@@ -22,6 +22,7 @@ mod shared_run;
 mod simulation;
 mod stepper;
 mod trace;
+mod world;
 
 use onorbit_core::spatial::InstructionSet;
 use pyo3::exceptions::PyImportError;
@@ -74,6 +75,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<simulation::PySimulation>()?;
     m.add_class::<stepper::PyStepper>()?;
     m.add_class::<trace::PyTrace>()?;
+    world::add_classes(m)?;
     columns::add(m)?;
     m.add_class::<checkpoint::PyCheckpoint>()?;
     batch::add_functions(m)?;

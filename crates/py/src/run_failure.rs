@@ -1,7 +1,6 @@
 //! Exceptions of runs that end early.
 
 use crate::errors::{SimulationErrorExt, fields, raise};
-use crate::trace::PyTrace;
 use onorbit_core::control::ControlError;
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::SimulationError;
@@ -10,7 +9,12 @@ use pyo3::prelude::*;
 
 /// Returns the exception for a run that an error ended. A Ctrl-C in a Python controller, in another engine, or
 /// pending while the run failed becomes `RunInterrupted`, with the error as its context.
-pub(crate) fn run_failure(py: Python<'_>, error: SimulationError, trace: PyTrace) -> PyErr {
+pub(crate) fn run_failure(
+    py: Python<'_>,
+    error: SimulationError,
+    last: Option<f64>,
+    trace: Option<Py<PyAny>>,
+) -> PyErr {
     let ctrl_c = match &error {
         SimulationError::Control(ControlError::User(source)) | SimulationError::Engine(source) => source
             .downcast_ref::<PyErr>()
@@ -21,9 +25,8 @@ pub(crate) fn run_failure(py: Python<'_>, error: SimulationError, trace: PyTrace
             checked => checked.err(),
         },
     };
-    let last = trace.trace.time.last().copied();
     let (Some(ctrl_c), Some(time)) = (ctrl_c, last) else {
-        return error.into_python_with(py, Py::new(py, trace).ok());
+        return error.into_python_with(py, trace);
     };
     let interrupted = run_interrupted(py, ctrl_c, time, trace);
     interrupted.set_context(py, Some(error.into_python_with(py, None)));
@@ -31,7 +34,7 @@ pub(crate) fn run_failure(py: Python<'_>, error: SimulationError, trace: PyTrace
 }
 
 /// Returns the exception for an error raised between two steps: Ctrl-C becomes `RunInterrupted`.
-pub(crate) fn interrupted(py: Python<'_>, error: PyErr, time: f64, trace: PyTrace) -> PyErr {
+pub(crate) fn interrupted(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyAny>>) -> PyErr {
     if error.is_instance_of::<PyKeyboardInterrupt>(py) {
         run_interrupted(py, error, time, trace)
     } else {
@@ -40,9 +43,9 @@ pub(crate) fn interrupted(py: Python<'_>, error: PyErr, time: f64, trace: PyTrac
 }
 
 /// Returns `RunInterrupted` with the signal as its cause.
-fn run_interrupted(py: Python<'_>, signal: PyErr, time: f64, trace: PyTrace) -> PyErr {
+fn run_interrupted(py: Python<'_>, signal: PyErr, time: f64, trace: Option<Py<PyAny>>) -> PyErr {
     let message = format!("the run was interrupted at t = {} s", short(time));
-    let fields = fields!(py, "time": time, "trace": Py::new(py, trace).ok());
+    let fields = fields!(py, "time": time, "trace": trace);
     let error = raise(py, "RunInterrupted", &message, &fields);
     error.set_cause(py, Some(signal));
     error

@@ -59,7 +59,7 @@ impl SharedRun {
         &self,
         py: Python<'_>,
         duration: Option<f64>,
-        from: Option<(Checkpoint, Trace)>,
+        from: Option<(Checkpoint, Vec<Trace>)>,
         wall_s: f64,
     ) -> PyResult<u64> {
         let mut runs = self.lock(py)?;

@@ -5,7 +5,7 @@ use crate::checkpoint::{CheckpointCallback, PyCheckpoint};
 use crate::control::{Robot, controls_of};
 use crate::earth::PyEarth;
 use crate::engine::PythonEngine;
-use crate::environment::effects;
+use crate::environment::{PyEffect, effects};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
 use crate::gravity::gravity_of;
 use crate::interrupt::{period, prepare};
@@ -14,26 +14,29 @@ use crate::orbit::PyOrbit;
 use crate::reference;
 use crate::shared_run::SharedRun;
 use crate::stepper::PyStepper;
-use crate::trace::PyTrace;
+use crate::world::{PyWorld, Systems};
 use onorbit_core::environment::GravityMode;
 use onorbit_core::model::Model;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::simulation::{Integrator, Simulation, SimulationError};
+use onorbit_core::world::System;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Simulation of one robot: model, initial state, environment, controllers and integrator settings.
+/// Simulation of one robot, or of a world: initial states, environment, controllers and integrator settings.
 ///
 /// Parameters
 /// ----------
-/// model : Model
-///     Robot.
-/// q : (nq,) array
-///     Initial configuration, m and rad.
-/// v : (nv,) array
-///     Initial velocity, m/s and rad/s.
+/// model : Model or World
+///     Robot, or a world of systems. A world has its own initial states, environment and controllers; only
+///     ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be given with it.
+/// q : (nq,) array, optional
+///     Initial configuration, m and rad; required for a robot.
+/// v : (nv,) array, optional
+///     Initial velocity, m/s and rad/s; required for a robot.
 /// orbit : Orbit, optional
 ///     Reference orbit, on which the origin of W moves. An orbit around a planet adds gravity on every body.
 /// earth : Earth, optional
@@ -91,7 +94,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     run: SharedRun,
-    model: Arc<Model>,
+    systems: Arc<Systems>,
     orbit: Option<Arc<dyn Orbit>>,
 }
 
@@ -99,16 +102,16 @@ pub(crate) struct PySimulation {
 impl PySimulation {
     #[new]
     #[pyo3(signature = (
-        model, q, v, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
+        model, q=None, v=None, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
         tolerance=1e-9, enforce_limits=false, restitution=0.0, record_wrenches=false,
         rereference_beyond=1e5, engine=None,
     ))]
     fn new(
         py: Python<'_>,
-        model: &PyModel,
-        q: Any<'_, '_>,
-        v: Any<'_, '_>,
+        model: Any<'_, '_>,
+        q: Option<Any<'_, '_>>,
+        v: Option<Any<'_, '_>>,
         orbit: Option<&Bound<'_, PyOrbit>>,
         earth: Option<&Bound<'_, PyEarth>>,
         gravity_mode: &str,
@@ -128,44 +131,70 @@ impl PySimulation {
         rereference_beyond: f64,
         engine: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
-        let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
-        let core = Arc::clone(&model.model);
-        for (input, name, n) in [(&q, "q", core.nq()), (&v, "v", core.nv())] {
-            if input.shape().len() != 1 {
-                return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
+        let mut simulation = if let Ok(world) = model.cast::<PyWorld>() {
+            let given = [
+                ("q", q.is_some()),
+                ("v", v.is_some()),
+                ("orbit", orbit.is_some()),
+                ("earth", earth.is_some()),
+                ("gravity_mode", gravity_mode != "true"),
+                ("environment", environment.is_some()),
+                ("controller", controller.is_some()),
+                ("reference", reference.is_some()),
+                ("tool", tool.is_some()),
+                ("control_period", control_period.is_some()),
+                ("reference_start_tolerance", reference_start_tolerance.is_some()),
+                ("enforce_limits", enforce_limits),
+                ("restitution", restitution != 0.0),
+                ("rereference_beyond", rereference_beyond != 1e5),
+            ];
+            if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
+                return Err(PyTypeError::new_err(format!(
+                    "{name} belongs to the world or to its systems; give it to World or to System, not to Simulation"
+                )));
             }
-        }
-        let mut simulation = Simulation::new(Arc::clone(&core), q.data().to_vec(), v.data().to_vec());
-        simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
-        simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
-        simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
-        set_environment(py, &mut simulation, environment)?;
-        if let Some(tolerance) = reference_start_tolerance {
-            simulation.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
-        }
-        simulation.tool = tool.map(|tool| model.frame(tool)).transpose()?;
-        if let Some(controller) = controller {
-            let robot = Robot { model: &core, orbit: simulation.orbit.as_ref(), tool: simulation.tool };
-            simulation.controls = controls_of(controller, reference, &robot)?;
-            let tracked = simulation.controls.iter().find_map(|control| control.law.task());
-            simulation.tool = simulation.tool.or(tracked.map(|(frame, _)| frame));
-        } else if let Some(reference) = reference {
-            simulation.reference = Some(reference::extract(reference, simulation.orbit.as_ref())?);
-        }
+            world.get().simulation(py)?
+        } else {
+            let Ok(model) = model.cast::<PyModel>() else {
+                let message = "the first argument of Simulation must be a Model or a World";
+                return Err(PyTypeError::new_err(message));
+            };
+            let (Some(q), Some(v)) = (q, v) else {
+                return Err(PyTypeError::new_err("a Simulation of a robot needs its initial q and v"));
+            };
+            let (q, v) = initial_state(py, &model.get().model, q, v)?;
+            let settings = Robotics {
+                controller,
+                reference,
+                tool,
+                control_period,
+                enforce_limits,
+                restitution,
+                reference_start_tolerance,
+            };
+            let core = &model.get().model;
+            let mut simulation = Simulation::new(Arc::clone(core), q, v);
+            simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+            simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
+            simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
+            set_environment(py, &mut simulation, &effects(environment)?)?;
+            let orbit = simulation.orbit.clone();
+            settings.apply(model.get(), orbit.as_ref(), &mut simulation.systems[0])?;
+            simulation.rereference_beyond = rereference_beyond;
+            simulation
+        };
         simulation.time_step = time_step;
-        simulation.control_period = control_period;
         simulation.integrator = integrator_named(py, integrator)?;
         simulation.record_every = record_every;
         simulation.tolerance = tolerance;
         simulation.record_wrenches = record_wrenches;
-        simulation.rereference_beyond = rereference_beyond;
-        simulation.stops = enforce_limits.then_some(restitution);
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         if let Some(engine) = engine {
             simulation.engine = Some(Box::new(PythonEngine::new(engine, &simulation)?));
         }
         let orbit = simulation.orbit.clone();
-        Ok(Self { run: SharedRun::new(simulation), model: core, orbit })
+        let systems = Arc::new(Systems::of(&simulation));
+        Ok(Self { run: SharedRun::new(simulation), systems, orbit })
     }
 
     /// Simulate from the initial state and return the trace.
@@ -205,11 +234,12 @@ impl PySimulation {
         checkpoint: Option<Py<PyAny>>,
         checkpoint_every: f64,
         resume: Option<&Bound<'_, PyCheckpoint>>,
-    ) -> PyResult<PyTrace> {
+    ) -> PyResult<Py<PyAny>> {
         let every = period(py, "checkpoint_every", checkpoint_every)?;
         let stepper = self.start(py, Some(duration), resume)?;
         let rows = stepper.row_count(py)?; // those of the checkpoint
-        let mut saver = checkpoint.map(|to| CheckpointCallback::new(to, every, rows));
+        let mut saver =
+            checkpoint.map(|to| CheckpointCallback::new(to, self.systems.names.clone(), every, rows));
         stepper.run_to_end(py, duration, &mut |py, stepper, wall_s| {
             let called = py.check_signals().and_then(|()| match &progress {
                 Some(progress) => progress.call1(py, (stepper.time(), duration)).map(|_| ()),
@@ -260,29 +290,91 @@ impl PySimulation {
             let checked = SimulationError::check_positive("duration", duration);
             checked.map_err(|error| error.into_python_with(py, None))?; // before the current run ends
         }
-        let from = resume.map(|checkpoint| checkpoint.get().read(py)).transpose()?;
+        let from = resume.map(|checkpoint| checkpoint.get().read(py, &self.systems.names)).transpose()?;
         let begin = from.as_ref().map_or(0.0, |from| from.0.time());
         if let Some(orbit) = &self.orbit {
             prepare(py, &**orbit, &[begin])?; // can be interrupted by Ctrl-C
         }
         let wall_s = resume.map_or(0.0, |checkpoint| checkpoint.get().wall_s);
         let number = self.run.start(py, duration, from, wall_s)?;
-        Ok(PyStepper::new(self.run.clone(), number, Arc::clone(&self.model)))
+        Ok(PyStepper::new(self.run.clone(), number, Arc::clone(&self.systems)))
     }
 }
 
-/// Sets the effects on the robot and the gravity field; orbit and Earth must have been set before.
-fn set_environment(
+/// Settings of one robot that come from Python.
+pub(crate) struct Robotics<'a, 'py> {
+    pub(crate) controller: Option<Any<'a, 'py>>,
+    pub(crate) reference: Option<Any<'a, 'py>>,
+    pub(crate) tool: Option<Any<'a, 'py>>,
+    pub(crate) control_period: Option<f64>,
+    pub(crate) enforce_limits: bool,
+    pub(crate) restitution: f64,
+    pub(crate) reference_start_tolerance: Option<Any<'a, 'py>>,
+}
+
+impl Robotics<'_, '_> {
+    /// Sets controls, reference, tool and stops of a system.
+    pub(crate) fn apply(
+        &self,
+        model: &PyModel,
+        orbit: Option<&Arc<dyn Orbit>>,
+        system: &mut System,
+    ) -> PyResult<()> {
+        if let Some(tolerance) = self.reference_start_tolerance {
+            system.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
+        }
+        system.tool = self.tool.map(|tool| model.frame(tool)).transpose()?;
+        if let Some(controller) = self.controller {
+            let robot = Robot { model: &model.model, orbit, tool: system.tool };
+            system.controls = controls_of(controller, self.reference, &robot)?;
+            let tracked = system.controls.iter().find_map(|control| control.law.task());
+            system.tool = system.tool.or(tracked.map(|(frame, _)| frame));
+        } else if let Some(reference) = self.reference {
+            system.reference = Some(reference::extract(reference, orbit)?);
+        }
+        system.control_period = self.control_period;
+        system.stops = self.enforce_limits.then_some(self.restitution);
+        Ok(())
+    }
+}
+
+/// Reads an initial configuration and velocity.
+pub(crate) fn initial_state(
+    py: Python<'_>,
+    model: &Model,
+    q: Any<'_, '_>,
+    v: Any<'_, '_>,
+) -> PyResult<(Vec<f64>, Vec<f64>)> {
+    let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
+    for (input, name, n) in [(&q, "q", model.nq()), (&v, "v", model.nv())] {
+        if input.shape().len() != 1 {
+            return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
+        }
+    }
+    Ok((q.data().to_vec(), v.data().to_vec()))
+}
+
+/// Sets the effects and the gravity field; orbit and Earth must have been set before. In a world of several systems,
+/// effects that belong to bodies of one robot are refused.
+pub(crate) fn set_environment(
     py: Python<'_>,
     simulation: &mut Simulation,
-    environment: Option<&Bound<'_, PyAny>>,
+    environment: &[Bound<'_, PyEffect>],
 ) -> PyResult<()> {
-    let environment = effects(environment)?;
-    let on_robot = environment.iter().filter_map(|effect| effect.get().on(py, &simulation.model).transpose());
+    let is_world = simulation.systems.len() > 1;
+    if let Some(effect) = environment.iter().find(|effect| is_world && effect.get().has_bodies()) {
+        let message = format!(
+            "{} acts on named bodies of one robot and cannot be used in a world of several systems yet; leave it out",
+            effect.repr()?
+        );
+        return Err(raise(py, "WorldError", &message, &fields!(py, "name": "environment")));
+    }
+    let model = Arc::clone(&simulation.systems[0].model);
+    let on_robot = environment.iter().filter_map(|effect| effect.get().on(py, &model).transpose());
     simulation.effects = on_robot.collect::<PyResult<_>>()?;
     let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
     let of_orbit = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());
-    let given = gravity_of(py, &environment, mu, simulation.earth.as_ref())?;
+    let given = gravity_of(py, environment, mu, simulation.earth.as_ref())?;
     if let (Some(orbit), Some(earth)) = (&simulation.orbit, &simulation.earth) {
         earth.check_orbit(orbit.axes(), orbit.epoch()).map_err(|error| error.into_python(py))?;
     }
@@ -294,7 +386,7 @@ fn set_environment(
     Ok(())
 }
 
-fn gravity_mode_named(py: Python<'_>, name: &str) -> PyResult<GravityMode> {
+pub(crate) fn gravity_mode_named(py: Python<'_>, name: &str) -> PyResult<GravityMode> {
     match name {
         "true" => Ok(GravityMode::True),
         "carried" => Ok(GravityMode::Carried),

@@ -6,11 +6,10 @@ use crate::errors::{SimulationErrorExt, fields, plain, raise};
 use crate::interrupt::{PACE, period};
 use crate::run_failure::{interrupted, run_failure};
 use crate::shared_run::{Runs, SharedRun};
-use crate::trace::PyTrace;
+use crate::world::{PySystemStepper, Systems};
 use numpy::{PyArrayDyn, PyArrayMethods};
-use onorbit_core::model::Model;
 use onorbit_core::number_text::short;
-use onorbit_core::simulation::{Layout, RunFailure, SimulationError, Stepper, Trace};
+use onorbit_core::simulation::{Recording, RunFailure, SimulationError, Stepper};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::ControlFlow;
@@ -29,8 +28,7 @@ type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResul
 pub(crate) struct PyStepper {
     run: SharedRun,
     number: u64,
-    model: Arc<Model>,
-    layout: Layout,
+    systems: Arc<Systems>,
 }
 
 #[pymethods]
@@ -51,14 +49,14 @@ impl PyStepper {
     /// joint positions, rad or m.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.state(py).map(|(q, _)| constant(py, &q))
+        self.state(py, self.only(py, "q")?).map(|(q, _)| constant(py, &q))
     }
 
     /// Velocity at the current time, a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
     /// rates, rad/s or m/s.
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.state(py).map(|(_, v)| constant(py, &v))
+        self.state(py, self.only(py, "v")?).map(|(_, v)| constant(py, &v))
     }
 
     /// Advance the run by a time interval.
@@ -130,8 +128,31 @@ impl PyStepper {
     /// ControlError
     ///     If an active controller drives one of the joints.
     fn command(&self, py: Python<'_>, tau: &Bound<'_, PyAny>) -> PyResult<()> {
-        let tau = self.torques(tau)?;
-        self.try_with(py, |stepper| stepper.command(&tau))
+        let system = self.only(py, "command")?;
+        self.command_system(system, tau)
+    }
+
+    /// Trigger an event that happens on command, at the current time.
+    ///
+    /// The current time becomes the end of a step; the event happens at the start of the next one.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the event.
+    ///
+    /// Raises
+    /// ------
+    /// WorldError
+    ///     If there is no such event, it has happened, or it does not happen on command; the run is unchanged.
+    fn trigger(&self, py: Python<'_>, name: &str) -> PyResult<()> {
+        self.try_with(py, |stepper| stepper.trigger(name))
+    }
+
+    /// Return the view of one system of the world.
+    fn __getitem__(this: &Bound<'_, Self>, name: &str) -> PyResult<PySystemStepper> {
+        let system = this.get().systems.find(this.py(), name)?;
+        Ok(PySystemStepper { stepper: this.clone().unbind(), system })
     }
 
     /// Return the trace so far, with its last row at the current time.
@@ -140,11 +161,11 @@ impl PyStepper {
     /// -------
     /// Trace
     ///     A copy, which does not change when the run continues.
-    fn trace(&self, py: Python<'_>) -> PyResult<PyTrace> {
-        let trace = self.try_with(py, |stepper| stepper.trace())?;
+    fn trace(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        let recording = self.try_with(py, |stepper| stepper.recording())?;
         let wall_s = self.run.lock(py)?.wall_s;
         let is_complete = self.with(py, |stepper| Some(stepper.time()) == stepper.duration())?;
-        Ok(self.wrap(trace, is_complete, wall_s))
+        self.systems.wrap(py, recording, is_complete, wall_s)
     }
 
     /// End the run at the current time and return its trace, without copying the rows.
@@ -152,7 +173,7 @@ impl PyStepper {
     /// Returns
     /// -------
     /// Trace
-    fn finish(&self, py: Python<'_>) -> PyResult<PyTrace> {
+    fn finish(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let is_complete =
             self.with(py, |stepper| stepper.duration().is_none_or(|end| stepper.time() == end))?;
         self.end(py, &mut self.run.lock(py)?, is_complete)
@@ -177,7 +198,7 @@ impl PyStepper {
     ) -> PyResult<Py<PyDict>> {
         let columns = self.with(py, |stepper| match stepper.has_ended() {
             true => Err(ended(py)),
-            false => columns_since(py, stepper.rows(), since),
+            false => columns_since(py, stepper, &self.systems.names, since),
         })??;
         Ok(columns.unbind())
     }
@@ -204,7 +225,7 @@ impl PyStepper {
         #[pyo3(from_py_with = first_row)] since: usize,
     ) -> PyResult<PyCheckpoint> {
         let wall_s = self.run.lock(py)?.wall_s;
-        self.with(py, |stepper| checkpoint_of(py, stepper, since, wall_s))?
+        self.with(py, |stepper| checkpoint_of(py, stepper, &self.systems.names, since, wall_s))?
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -217,13 +238,23 @@ impl PyStepper {
 }
 
 impl PyStepper {
-    pub(crate) fn new(run: SharedRun, number: u64, model: Arc<Model>) -> Self {
-        let layout = Layout::new([(model.name(), &*model)]);
-        Self { run, number, model, layout }
+    pub(crate) fn new(run: SharedRun, number: u64, systems: Arc<Systems>) -> Self {
+        Self { run, number, systems }
+    }
+
+    /// Returns the number of the only system, whose attribute `what` was asked for.
+    fn only(&self, py: Python<'_>, what: &str) -> PyResult<usize> {
+        self.systems.only(py, "stepper", what).map(|()| 0)
+    }
+
+    /// Sets the torques of a system.
+    pub(crate) fn command_system(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<()> {
+        let torques = self.torques(system, tau)?;
+        self.try_with(tau.py(), |stepper| stepper.command(system, &torques))
     }
 
     /// Runs to the end and returns the whole trace; `pause` is called at intervals.
-    pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<PyTrace> {
+    pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<Py<PyAny>> {
         let mut runs = self.run.lock(py)?;
         if let Err(error) = self.advance_locked(py, &mut runs, duration, None, pause) {
             runs.end(self.number);
@@ -233,13 +264,13 @@ impl PyStepper {
     }
 
     /// Ends the run and returns its trace.
-    fn end(&self, py: Python<'_>, runs: &mut MutexGuard<'_, Runs>, is_complete: bool) -> PyResult<PyTrace> {
+    fn end(&self, py: Python<'_>, runs: &mut MutexGuard<'_, Runs>, is_complete: bool) -> PyResult<Py<PyAny>> {
         let finished = runs.with(self.number, |stepper| py.detach(|| stepper.finish()));
         let wall_s = runs.wall_s;
         runs.end(self.number);
         match finished.ok_or_else(|| ended(py))? {
-            Ok(trace) => Ok(self.wrap(trace, is_complete, wall_s)),
-            Err(RunFailure { error, trace }) => Err(run_failure(py, error, self.wrap(*trace, false, wall_s))),
+            Ok(recording) => self.systems.wrap(py, recording, is_complete, wall_s),
+            Err(RunFailure { error, recording }) => Err(self.ended_early(py, error, *recording, wall_s)),
         }
     }
 
@@ -291,15 +322,29 @@ impl PyStepper {
         if !stepper.has_failed() {
             return error.into_python_with(py, None);
         }
-        let trace = stepper.finish().unwrap_or_default();
-        run_failure(py, error, self.wrap(trace, false, wall_s))
+        let recording = stepper.finish().unwrap_or_default();
+        self.ended_early(py, error, recording, wall_s)
+    }
+
+    /// Returns the exception for an error that ended the run, with its rows.
+    fn ended_early(
+        &self,
+        py: Python<'_>,
+        error: SimulationError,
+        recording: Recording,
+        wall_s: f64,
+    ) -> PyErr {
+        let last = recording.systems.first().and_then(|trace| trace.time.last().copied());
+        run_failure(py, error, last, self.systems.wrap(py, recording, false, wall_s).ok())
     }
 
     /// Returns the exception for a signal or an error of a callback between two steps.
     fn stopped(&self, py: Python<'_>, stepper: &mut Stepper<'_>, error: PyErr, wall_s: f64) -> PyErr {
         let time = stepper.time();
-        match stepper.trace() {
-            Ok(trace) => interrupted(py, error, time, self.wrap(trace, false, wall_s)),
+        match stepper.recording() {
+            Ok(recording) => {
+                interrupted(py, error, time, self.systems.wrap(py, recording, false, wall_s).ok())
+            }
             Err(failure) => self.failed(py, stepper, failure, wall_s),
         }
     }
@@ -308,14 +353,9 @@ impl PyStepper {
         self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
     }
 
-    /// Wraps a trace of the run.
-    fn wrap(&self, trace: Trace, is_complete: bool, wall_s: f64) -> PyTrace {
-        PyTrace { trace, model: Arc::clone(&self.model), is_complete, wall_s }
-    }
-
     /// Returns the number of rows recorded so far.
     pub(crate) fn row_count(&self, py: Python<'_>) -> PyResult<usize> {
-        self.with(py, |stepper| stepper.rows().rows())
+        self.with(py, |stepper| stepper.rows(0).rows())
     }
 
     /// Calls `work`, in which a Python controller may run, and converts its error.
@@ -332,16 +372,18 @@ impl PyStepper {
         result.ok_or_else(|| ended(py))?
     }
 
-    fn state(&self, py: Python<'_>) -> PyResult<(Vec<f64>, Vec<f64>)> {
-        let (mut q, mut v) = (vec![0.0; self.model.nq()], vec![0.0; self.model.nv()]);
-        self.try_with(py, |stepper| stepper.read_state(&mut q, &mut v))?;
+    /// Returns the configuration and the velocity of a system at the current time.
+    pub(crate) fn state(&self, py: Python<'_>, system: usize) -> PyResult<(Vec<f64>, Vec<f64>)> {
+        let model = &self.systems.models[system];
+        let (mut q, mut v) = (vec![0.0; model.nq()], vec![0.0; model.nv()]);
+        self.try_with(py, |stepper| stepper.read_state(system, &mut q, &mut v))?;
         Ok((q, v))
     }
 
-    /// Reads the torques of a command.
-    fn torques(&self, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
-        let (py, place) = (tau.py(), &self.layout.systems()[0]); // a simulation has one robot
-        let n = place.joints.len();
+    /// Reads the torques of a command to a system.
+    fn torques(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
+        let (py, model) = (tau.py(), &self.systems.models[system]);
+        let n = model.joint_count();
         let Ok(by_name) = tau.cast::<PyDict>() else {
             let input = Input::new(tau, "tau")?;
             if input.shape() != [n] {
@@ -352,10 +394,10 @@ impl PyStepper {
         let mut torques = vec![None; n];
         for (name, value) in by_name {
             let name = name.str()?.to_string();
-            let Some(joint) = place.joint(&name) else {
+            let Ok(joint) = model.joint(&name) else {
                 let message = format!(
                     "tau contains the unknown joint '{name}'; the joints are {}",
-                    place.joints.join(", ")
+                    model.joint_names().collect::<Vec<_>>().join(", ")
                 );
                 return Err(raise(py, "InputError", &message, &fields!(py, "name": "tau", "got": name)));
             };
@@ -376,7 +418,7 @@ fn ended(py: Python<'_>) -> PyErr {
 }
 
 /// Returns a read-only array.
-fn constant<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
+pub(crate) fn constant<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
     let array = array_of(py, &[values.len()], values);
     let _ = array.readwrite().make_nonwriteable();
     array

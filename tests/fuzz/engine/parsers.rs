@@ -220,7 +220,7 @@ fn stopped() -> Result<(Checkpoint, Trace), String> {
     let mut simulation = turning()?;
     let mut stepper = simulation.start(Some(DURATION)).map_err(message)?;
     stepper.advance(DURATION / 2.0).map_err(message)?;
-    Ok((stepper.checkpoint().map_err(message)?, stepper.rows().clone()))
+    Ok((stepper.checkpoint().map_err(message)?, stepper.rows(0).clone()))
 }
 
 /// Inputs that depend on the version of the engine, beside those in the corpus.
@@ -233,7 +233,7 @@ fn read_checkpoint(bytes: &[u8]) -> Outcome {
     let checkpoint = Checkpoint::from_json(&text(bytes)).map_err(message)?;
     let (_, rows) = stopped()?;
     let mut simulation = turning()?;
-    let mut stepper = simulation.resume(Some(DURATION), checkpoint, rows).map_err(message)?;
+    let mut stepper = simulation.resume(Some(DURATION), checkpoint, vec![rows]).map_err(message)?;
     stepper.advance_to(DURATION).map_err(message)?;
     stepper.finish().map_err(|failure| message(failure.error)).map(drop)
 }

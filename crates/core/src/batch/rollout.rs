@@ -7,9 +7,10 @@ use crate::control::{ComputedTorque, ComputedTorqueWork, computed_torque};
 use crate::model::{Model, neutral};
 use crate::reference::TaskReference;
 use crate::simulation::{
-    EquationsOfMotion, Integrator, NoLoads, State, StepMethod, StepSettings, TreeState, only, only_mut,
+    EquationsOfMotion, Integrator, NoLoads, State, StepMethod, StepSettings, Tree, TreeState, only, only_mut,
 };
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 /// Control of the joints in a rollout.
@@ -153,7 +154,7 @@ struct Lanes<'a, S> {
 
 impl<'a, S: Real> Lanes<'a, S> {
     fn new(settings: &'a Rollout<'a>, model: &'a Model) -> Self {
-        let mut equations = EquationsOfMotion::new(&[model], NoLoads, None);
+        let mut equations = EquationsOfMotion::new(vec![Tree::new(Cow::Borrowed(model), None)], NoLoads);
         let q = neutral(model).into_iter().map(S::of).collect();
         let state = State::at(&mut equations.trees, [(q, vec![S::of(0.0); model.nv()])]);
         let Rollout { integrator, time_step, .. } = *settings;
@@ -178,7 +179,7 @@ impl<'a, S: Real> Lanes<'a, S> {
                 }
             },
         );
-        *state = TreeState::at(tree.model, &mut tree.data, q, v);
+        *state = TreeState::at(&tree.model, &mut tree.data, q, v);
         self.stepper.reset();
     }
 
@@ -243,7 +244,7 @@ impl<'a, S: Real> Lanes<'a, S> {
                 let (data, command) = (&mut tree.data, &mut tree.command);
                 let is_relative = reference.is_relative_to_base();
                 let (q, v) = (&state.q, &state.v);
-                computed_torque(law, tree.model, data, q, v, &desired, is_relative, work, command);
+                computed_torque(law, &tree.model, data, q, v, &desired, is_relative, work, command);
                 work.desired_accelerations(law, tree.modes.requested_mut());
             }
         }

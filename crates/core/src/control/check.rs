@@ -56,6 +56,7 @@ fn check_window(i: usize, controls: &[Control]) -> Result<(), ControlError> {
     let name = || control.name.clone();
     let begin = match control.begin {
         Begin::At(start) => start,
+        Begin::AfterEvent(_) => 0.0,
         Begin::After(other) if other >= controls.len() => {
             return Err(ControlError::NoSuchControl { control: name(), after: other.to_string() });
         }

@@ -36,6 +36,8 @@ pub enum Begin {
     At(f64),
     /// Start when the control with this index ends or its goal is decided; that control is then stopped.
     After(usize),
+    /// Start when the event with this number happens.
+    AfterEvent(usize),
 }
 
 impl Control {

@@ -50,6 +50,16 @@ impl Model {
         builder.build()
     }
 
+    /// Returns this robot with `prefix` prepended to the names of all links, joints and frames.
+    ///
+    /// # Errors
+    /// [`ModelError`] if the description is not valid.
+    pub fn prefixed(&self, prefix: &str) -> Result<Self, ModelError> {
+        let mut builder = ModelBuilder::from_description(self.description().clone().prefixed(prefix))?;
+        builder.keep_notes(self);
+        builder.build()
+    }
+
     /// Returns a description whose root link is fixed to the frame `name`, with the pose of the frame in that link.
     fn rooted_below(&self, name: &str) -> Result<(Description, Isometry3<f64>), ModelError> {
         let frame = &self.frames[self.frame(name)?];

@@ -3,12 +3,12 @@
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
+use super::estimates::Estimates;
 use super::every_step::{EveryStep, SavedChecks};
 use super::integrator::{FirstStage, Stages};
 use super::mover::Mover;
 use super::state::State;
 use super::step_doubling::{Errors, StepDoubling};
-use super::trace::Trace;
 use super::tree::Tree;
 use super::tree_state::TreeState;
 use crate::model::Model;
@@ -29,6 +29,16 @@ pub(super) struct Accuracy<S> {
 impl<S: Scalar> Accuracy<S> {
     pub(super) fn new(doubling: Option<StepDoubling<S>>, every_step: Vec<EveryStep>) -> Self {
         Self { doubling, every_step, is_recorded: false }
+    }
+
+    /// Returns true if step doubling measures the errors of steps.
+    pub(super) fn has_doubling(&self) -> bool {
+        self.doubling.is_some()
+    }
+
+    /// Returns true if the checks of the certificate are evaluated at every step.
+    pub(super) fn checks_every_step(&self) -> bool {
+        !self.every_step.is_empty()
     }
 
     /// Returns the errors and checks of a tree accumulated so far.
@@ -73,7 +83,7 @@ impl<S: Scalar> Accuracy<S> {
     ) -> Result<(), SimulationError> {
         let is_due = self.doubling.as_ref().is_some_and(|doubling| doubling.is_due(step));
         self.is_recorded = is_due && !self.every_step.is_empty();
-        let EquationsOfMotion { trees, loads } = equations;
+        let EquationsOfMotion { trees, loads, .. } = equations;
         for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, trees)) {
             if is_due {
                 every_step.record_start(interval.0, state, tree, loads)?;
@@ -130,7 +140,7 @@ impl<S: Scalar> Accuracy<S> {
         end.copy_from(state);
         equations.project_momentum(end);
         equations.apply_loads(interval.1, interval, end)?;
-        let EquationsOfMotion { trees, loads } = equations;
+        let EquationsOfMotion { trees, loads, .. } = equations;
         for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(end, trees)) {
             every_step.record_end(interval.1, state, tree, loads)?;
         }
@@ -148,26 +158,20 @@ impl<S: Scalar> Accuracy<S> {
     ) {
         let firsts = stages.first.iter().zip(&equations.trees);
         for (every_step, (first, tree)) in self.every_step.iter_mut().zip(firsts) {
-            complete(every_step, tree.model, first);
+            complete(every_step, &tree.model, first);
         }
     }
 
-    /// Writes the error estimates of a tree after `steps` steps to its trace. `rotation_error` is the accumulated
-    /// attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator.
-    pub(super) fn conclude(
-        &self,
-        number: usize,
-        steps: usize,
-        rotation_error: Option<f64>,
-        trace: &mut Trace,
-    ) {
-        trace.pair_checks = self.every_step.get(number).map(EveryStep::checks);
-        trace.attitude_step_doubling = rotation_error;
-        if let Some(doubling) = &self.doubling {
-            let errors = &doubling.errors[number];
-            trace.attitude_step_doubling = Some(errors.turn(steps));
-            trace.step_doubling = (0..errors.drifts.len()).map(|i| errors.drift(i, steps)).collect();
-        }
+    /// Returns the error estimates of a tree after `steps` steps. `rotation_error` is the accumulated attitude error of
+    /// an adaptive integrator, rad; `None` for a fixed-step integrator.
+    pub(super) fn estimates(&self, number: usize, steps: usize, rotation_error: Option<f64>) -> Estimates {
+        let checks = self.every_step.get(number).map(EveryStep::checks);
+        let Some(doubling) = &self.doubling else {
+            return Estimates { turn: rotation_error, drifts: Vec::new(), checks };
+        };
+        let errors = &doubling.errors[number];
+        let drifts = (0..errors.drifts.len()).map(|i| errors.drift(i, steps)).collect();
+        Estimates { turn: Some(errors.turn(steps)), drifts, checks }
     }
 }
 

@@ -7,6 +7,7 @@ use super::settings::Simulation;
 use super::state_range::{UNIT_NORM, attitude_norm, check_range};
 use crate::control::check_controls;
 use crate::model::{BASE_NQ, Model};
+use crate::world::{System, check_events, check_names};
 
 /// Range of accepted time steps, s; a value outside this range is probably given in a wrong unit.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
@@ -21,10 +22,10 @@ impl Simulation {
     /// requires; an Earth whose epoch or axes differ from those of the orbit; invalid controls; a reference that has no
     /// tool or starts too far from it.
     pub fn check(&self) -> Result<(), SimulationError> {
-        check_state(&self.model, &self.q, &self.v)?;
-        let periods = [("time_step", Some(self.time_step)), ("control_period", self.control_period)];
-        for (name, value) in periods {
-            value.map_or(Ok(()), |value| SimulationError::check_positive(name, value))?;
+        self.systems.iter().try_for_each(|system| check_state(&system.model, &system.q, &system.v))?;
+        SimulationError::check_positive("time_step", self.time_step)?;
+        for period in self.systems.iter().filter_map(|system| system.control_period) {
+            SimulationError::check_positive("control_period", period)?;
         }
         if !STEPS.contains(&self.time_step) {
             return Err(SimulationError::TimeStep { value: self.time_step });
@@ -35,7 +36,7 @@ impl Simulation {
         if self.rereference_beyond.is_nan() || self.rereference_beyond < 1.0 {
             return Err(SimulationError::RereferenceBeyond { value: self.rereference_beyond });
         }
-        self.check_stops()?;
+        self.systems.iter().try_for_each(check_stops)?;
         if self.record_every == 0 {
             return Err(SimulationError::RecordEvery);
         }
@@ -52,69 +53,80 @@ impl Simulation {
         if let (Some(orbit), Some(earth)) = (&self.orbit, &self.earth) {
             earth.check_orbit(orbit.axes(), orbit.epoch())?;
         }
-        self.check_controls()?;
-        match (self.tool, &self.reference) {
-            (None, Some(_)) => Err(SimulationError::NeedsTool),
-            (Some(tool), Some(reference)) => {
-                check_reference(&self.model, &self.q, tool, reference, self.reference_start_tolerance)
-            }
-            _ => Ok(()),
+        check_names(&self.systems)?;
+        check_events(&self.systems, &self.events)?;
+        if self.engine.is_some() && self.systems.len() > 1 {
+            return Err(SimulationError::EngineOfWorld);
         }
-    }
-
-    /// Checks the controls, the frames that they track and the initial values of their references.
-    fn check_controls(&self) -> Result<(), SimulationError> {
-        let count = self.model.frames().len();
-        let tracked = || self.controls.iter().filter_map(|control| Some((control, control.law.task()?.0)));
-        let frames = tracked().map(|(_, frame)| frame);
-        if let Some(frame) = self.tool.into_iter().chain(frames).find(|&frame| frame >= count) {
-            return Err(SimulationError::UnknownFrame { frame, count });
-        }
-        check_controls(&self.controls, &self.model)?;
-        for (_, frame) in tracked().filter(|(control, _)| !control.has_column) {
-            let tool = self.tool.ok_or(SimulationError::NeedsTool)?;
-            if tool != frame {
-                let name = |frame: usize| self.model.frames()[frame].name.clone();
-                return Err(SimulationError::OtherTool { controller: name(frame), tool: name(tool) });
-            }
-        }
-        check_control_references(&self.model, &self.q, &self.controls, self.reference_start_tolerance)
+        self.systems.iter().try_for_each(check_system)
     }
 
     /// Rejects two effects that would count twice on a body, including the gravity that an orbit around a planet
     /// adds.
     fn check_duplicate_effects(&self) -> Result<(), SimulationError> {
-        let effects = self.all_effects();
+        let (effects, model) = (self.all_effects(), &self.systems[0].model);
         for (k, effect) in effects.iter().enumerate() {
             let before = effects[..k].iter().filter(|before| before.name() == effect.name());
             for before in before {
                 let both = |body: &usize| {
                     before.counts_once_on((*body).into()) && effect.counts_once_on((*body).into())
                 };
-                if let Some(body) = (0..self.model.nodes().len()).find(both) {
-                    let (effect, body) = (effect.name().to_owned(), self.model.body_frame(body).name.clone());
+                if let Some(body) = (0..model.nodes().len()).find(both) {
+                    let (effect, body) = (effect.name().to_owned(), model.body_frame(body).name.clone());
                     return Err(SimulationError::EffectTwice { effect, body });
                 }
             }
         }
         Ok(())
     }
+}
 
-    /// Checks the restitution, and checks that the joints start within their limits.
-    fn check_stops(&self) -> Result<(), SimulationError> {
-        let Some(restitution) = self.stops else { return Ok(()) };
-        if !(0.0..=1.0).contains(&restitution) {
-            return Err(SimulationError::Restitution { value: restitution });
+/// Checks the controls and the reference of a system.
+fn check_system(system: &System) -> Result<(), SimulationError> {
+    check_system_controls(system)?;
+    match (system.tool, &system.reference) {
+        (None, Some(_)) => Err(SimulationError::NeedsTool),
+        (Some(tool), Some(reference)) => {
+            check_reference(&system.model, &system.q, tool, reference, system.reference_start_tolerance)
         }
-        for (joint, &value) in self.model.joints().iter().zip(&self.q[BASE_NQ..]) {
-            let Some((lower, upper)) = joint.limits.position else { continue };
-            if value < lower - AT_LIMIT || value > upper + AT_LIMIT {
-                let joint = joint.name.clone();
-                return Err(SimulationError::OutsideLimits { joint, value, lower, upper });
-            }
-        }
-        Ok(())
+        _ => Ok(()),
     }
+}
+
+/// Checks the controls of a system, the frames that they track and the initial values of their references.
+fn check_system_controls(system: &System) -> Result<(), SimulationError> {
+    let System { model, q, controls, .. } = system;
+    let count = model.frames().len();
+    let tracked = || controls.iter().filter_map(|control| Some((control, control.law.task()?.0)));
+    let frames = tracked().map(|(_, frame)| frame);
+    if let Some(frame) = system.tool.into_iter().chain(frames).find(|&frame| frame >= count) {
+        return Err(SimulationError::UnknownFrame { frame, count });
+    }
+    check_controls(controls, model)?;
+    for (_, frame) in tracked().filter(|(control, _)| !control.has_column) {
+        let tool = system.tool.ok_or(SimulationError::NeedsTool)?;
+        if tool != frame {
+            let name = |frame: usize| model.frames()[frame].name.clone();
+            return Err(SimulationError::OtherTool { controller: name(frame), tool: name(tool) });
+        }
+    }
+    check_control_references(model, q, controls, system.reference_start_tolerance)
+}
+
+/// Checks the restitution, and checks that the joints start within their limits.
+fn check_stops(system: &System) -> Result<(), SimulationError> {
+    let Some(restitution) = system.stops else { return Ok(()) };
+    if !(0.0..=1.0).contains(&restitution) {
+        return Err(SimulationError::Restitution { value: restitution });
+    }
+    for (joint, &value) in system.model.joints().iter().zip(&system.q[BASE_NQ..]) {
+        let Some((lower, upper)) = joint.limits.position else { continue };
+        if value < lower - AT_LIMIT || value > upper + AT_LIMIT {
+            let joint = joint.name.clone();
+            return Err(SimulationError::OutsideLimits { joint, value, lower, upper });
+        }
+    }
+    Ok(())
 }
 
 fn check_state(model: &Model, q: &[f64], v: &[f64]) -> Result<(), SimulationError> {

@@ -1,18 +1,23 @@
 //! Checkpoints: the state of a run between two steps, from which the run can resume with bit-identical results.
 
 use super::checkpoint_error::CheckpointError;
+use super::connections::SavedMembers;
+use super::estimates::Estimates;
+use super::events::EventState;
 use super::every_step::SavedChecks;
 use super::integrator::StepControl;
-use super::layout::{Layout, SystemPlace};
 use super::local_reference::LocalReference;
 use super::modes::SavedModes;
+use super::recording::{EventRecord, Ledger};
 use super::schedule::{Cursor, Schedule};
 use super::state::State;
 use super::state_range::{UNIT_NORM, attitude_norm};
 use super::step_doubling::Errors;
 use super::tree_state::TreeState;
 use crate::control::ControlMemory;
+use crate::model::BASE_NV;
 use crate::spatial::InstructionSet;
+use crate::world::{Layout, SystemPlace};
 use serde::{Deserialize, Serialize};
 
 /// Largest number of steps of a run; twice as many can be counted without overflow.
@@ -26,12 +31,19 @@ pub struct Checkpoint {
     version: String,
     /// Instruction set of the run; another instruction set rounds differently.
     instruction_set: String,
+    /// One entry per group of systems.
+    groups: Vec<GroupCheckpoint>,
+}
+
+/// State of one group of systems.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct GroupCheckpoint {
     /// Time of the checkpoint, s.
-    time: f64,
-    schedule: Schedule,
-    progress: Progress,
-    local_reference: Option<LocalReference>,
-    controllers: SavedControllers,
+    pub(super) time: f64,
+    pub(super) schedule: Schedule,
+    pub(super) progress: Progress,
+    pub(super) local_reference: Option<LocalReference>,
+    pub(super) controllers: SavedControllers,
 }
 
 /// State of everything that a step changes, except the controllers.
@@ -44,8 +56,19 @@ pub(super) struct Progress {
     pub(super) step_control: Option<StepControl>,
     /// Number of consecutive idle steps.
     pub(super) idle_steps: usize,
+    /// One entry per tree.
+    pub(super) trees: Vec<TreeProgress>,
     /// One entry per system.
     pub(super) systems: Vec<SystemProgress>,
+    pub(super) world: WorldProgress,
+}
+
+/// Quantities of one tree that a step changes, except its state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct TreeProgress {
+    pub(super) modes: SavedModes,
+    pub(super) errors: Option<Errors>,
+    pub(super) checks: Option<SavedChecks>,
 }
 
 /// Quantities of one system that a step changes, except its state and its controllers.
@@ -53,11 +76,18 @@ pub(super) struct Progress {
 pub(super) struct SystemProgress {
     /// Rows recorded so far.
     pub(super) rows: usize,
-    pub(super) modes: SavedModes,
-    pub(super) errors: Option<Errors>,
-    pub(super) checks: Option<SavedChecks>,
     /// Sum of the magnitudes of the work of each step, J.
     pub(super) work_done: f64,
+    pub(super) settled: Option<Estimates>,
+}
+
+/// Connections and events of a group of systems.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct WorldProgress {
+    pub(super) members: SavedMembers,
+    pub(super) events: Vec<EventState>,
+    pub(super) records: Vec<EventRecord>,
+    pub(super) ledger: Ledger,
 }
 
 /// State of the controllers and torques of a run.
@@ -87,31 +117,26 @@ fn own_instruction_set() -> &'static str {
 }
 
 impl Checkpoint {
-    pub(super) fn new(
-        time: f64,
-        schedule: Schedule,
-        progress: Progress,
-        local_reference: Option<LocalReference>,
-        controllers: SavedControllers,
-    ) -> Self {
+    pub(super) fn new(groups: Vec<GroupCheckpoint>) -> Self {
         let (version, instruction_set) =
             (env!("CARGO_PKG_VERSION").to_owned(), own_instruction_set().to_owned());
-        Self { version, instruction_set, time, schedule, progress, local_reference, controllers }
+        Self { version, instruction_set, groups }
     }
 
     /// Returns the time of the checkpoint, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.groups.first().map_or(0.0, |group| group.time)
     }
 
     /// Returns the planned end of the run, s; `None` for an open-ended run.
     pub fn duration(&self) -> Option<f64> {
-        self.schedule.duration()
+        self.groups.first().and_then(|group| group.schedule.duration())
     }
 
     /// Returns the number of rows that were recorded before the checkpoint.
     pub fn rows(&self) -> usize {
-        self.progress.systems.first().map_or(0, |system| system.rows)
+        let first = self.groups.first().and_then(|group| group.progress.systems.first());
+        first.map_or(0, |system| system.rows)
     }
 
     /// Returns the checkpoint as JSON; reading it back gives bit-identical numbers.
@@ -136,28 +161,34 @@ impl Checkpoint {
         }
     }
 
-    /// Returns the time, s, the progress, the local reference orbit and the controllers, for a run that resumes.
-    pub(super) fn into_parts(self) -> (f64, Progress, Option<LocalReference>, SavedControllers) {
-        (self.time, self.progress, self.local_reference, self.controllers)
+    /// Returns the checkpoints of `count` groups, for a run that resumes on this machine.
+    pub(super) fn into_groups(self, count: usize) -> Result<Vec<GroupCheckpoint>, CheckpointError> {
+        let own = own_instruction_set();
+        if self.instruction_set != own {
+            let (found, own) = (self.instruction_set, own.to_owned());
+            return Err(CheckpointError::OtherInstructionSet { found, own });
+        }
+        check_each([("groups of systems", self.groups.len(), count)])?;
+        Ok(self.groups)
     }
+}
 
-    /// Checks that a run with this layout, this schedule and this number of recorded rows can resume from the
-    /// checkpoint on this machine.
+impl GroupCheckpoint {
+    /// Checks that a run with this layout, this schedule, these numbers of recorded rows and this number of events can
+    /// resume from the checkpoint.
     pub(super) fn check(
         &self,
         layout: &Layout,
         schedule: &Schedule,
-        rows: usize,
+        rows: &[usize],
+        events: usize,
     ) -> Result<(), CheckpointError> {
-        let own = own_instruction_set();
-        if self.instruction_set != own {
-            let (found, own) = (self.instruction_set.clone(), own.to_owned());
-            return Err(CheckpointError::OtherInstructionSet { found, own });
+        for (system, &got) in self.progress.systems.iter().zip(rows) {
+            if got != system.rows {
+                return Err(CheckpointError::MissingRows { got, expected: system.rows });
+            }
         }
-        if let Some(got) = self.progress.systems.iter().map(|system| system.rows).find(|got| *got != rows) {
-            return Err(CheckpointError::MissingRows { got: rows, expected: got });
-        }
-        self.check_sizes(layout)?;
+        self.check_sizes(layout, events)?;
         self.check_counts()?;
         self.check_state()?;
         if !self.schedule.has_cuts_of(schedule) {
@@ -195,33 +226,38 @@ impl Checkpoint {
         Err(CheckpointError::Unreadable { reason: reason.to_owned() })
     }
 
-    fn check_sizes(&self, layout: &Layout) -> Result<(), CheckpointError> {
+    fn check_sizes(&self, layout: &Layout, events: usize) -> Result<(), CheckpointError> {
         let Self { progress, controllers, .. } = self;
-        let count = layout.systems().len();
+        let (count, trees) = (layout.systems().len(), progress.trees.len());
         let scales = progress.step_control.as_ref().map(|control| control.trees.len());
         check_each([
-            ("systems", progress.state.trees.len(), count),
-            ("systems with modes", progress.systems.len(), count),
+            ("systems", progress.systems.len(), count),
             ("systems with controllers", controllers.systems.len(), count),
-            ("systems with error scales", scales.unwrap_or(count), count),
+            ("events", progress.world.events.len(), events),
+            ("trees with states", progress.state.trees.len(), trees),
+            ("trees with error scales", scales.unwrap_or(trees), trees),
         ])?;
-        let systems = progress.systems.iter().zip(&controllers.systems);
-        for ((place, state), (progress, controllers)) in
-            layout.systems().iter().zip(&progress.state.trees).zip(systems)
-        {
-            check_each([
-                ("coordinates", state.q.len(), place.q.len()),
-                ("velocities", state.v.len(), place.v.len()),
-            ])?;
-            controllers.check_sizes(place)?;
-            progress.check_sizes(place)?;
+        controllers
+            .systems
+            .iter()
+            .zip(layout.systems())
+            .try_for_each(|(saved, place)| saved.check_sizes(place))
+    }
+
+    /// Checks the sizes of the states of trees with these numbers of coordinates and velocities.
+    pub(super) fn check_trees(&self, sizes: &[(usize, usize)]) -> Result<(), CheckpointError> {
+        let progress = &self.progress;
+        check_each([("trees", progress.trees.len(), sizes.len())])?;
+        for ((state, tree), (nq, nv)) in progress.state.trees.iter().zip(&progress.trees).zip(sizes) {
+            check_each([("coordinates", state.q.len(), *nq), ("velocities", state.v.len(), *nv)])?;
+            tree.check_sizes(nv - BASE_NV)?;
         }
         Ok(())
     }
 
     fn check_counts(&self) -> Result<(), CheckpointError> {
-        let Progress { steps, idle_steps, systems, .. } = &self.progress;
-        let errors = systems.iter().filter_map(|system| system.errors.as_ref());
+        let Progress { steps, idle_steps, trees, .. } = &self.progress;
+        let errors = trees.iter().filter_map(|tree| tree.errors.as_ref());
         let probed = errors.map(|errors| errors.step).max().unwrap_or(0);
         if probed > *steps || *steps.max(idle_steps) > MOST_STEPS {
             let reason = format!(
@@ -233,9 +269,8 @@ impl Checkpoint {
     }
 }
 
-impl SystemProgress {
-    fn check_sizes(&self, place: &SystemPlace) -> Result<(), CheckpointError> {
-        let n = place.tau.len();
+impl TreeProgress {
+    fn check_sizes(&self, n: usize) -> Result<(), CheckpointError> {
         check_each([
             ("locked joints", self.modes.locked.len(), n),
             ("directions of slip", self.modes.direction.len(), n),

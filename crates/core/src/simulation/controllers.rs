@@ -37,7 +37,7 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         state: &TreeState<S>,
         system: &Tree<'_, S>,
     ) -> Result<Option<(&TaskSample<f64>, bool)>, SimulationError> {
-        self.set.update_errors(t, system.model, &system.data, &state.q, &state.v)?;
+        self.set.update_errors(t, &system.model, &system.data, &state.q, &state.v)?;
         if let Some(reference) = self.reference {
             let sample = reference.sample(t, 0.0);
             let sample = sample.map_err(|source| SimulationError::Reference { time: t, source })?;

@@ -4,6 +4,7 @@ use super::body_states::{LoadedSystem, bodies_of};
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
 use super::local_reference::{LocalReference, Shift};
+use super::members::{Members, Place};
 use super::reference_cache::{Instant, ReferenceCache};
 use super::state::State;
 use super::tree::Tree;
@@ -205,7 +206,8 @@ impl EnvironmentLoads {
 impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
     fn apply(
         &mut self,
-        systems: &mut [Tree<'_, S>],
+        trees: &mut [Tree<'_, S>],
+        members: &mut Members<'_, S>,
         state: &State<S>,
         t: f64,
         interval: (f64, f64),
@@ -213,14 +215,26 @@ impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
         if self.effects.is_empty() {
             return Ok(());
         }
-        for (number, (system, state)) in systems.iter_mut().zip(&state.trees).enumerate() {
-            system.loaded(&state.q).gather_bodies(number, self.reads_velocities, &mut self.bodies);
+        members.follow(trees, &state.trees);
+        let Members { places, parts } = members;
+        for (number, place) in places.iter().enumerate() {
+            let system = match *place {
+                Place::Tree(tree) => trees[tree].loaded(&state.trees[tree].q),
+                Place::Part(part) => parts[part].loaded(),
+            };
+            system.gather_bodies(number, self.reads_velocities, &mut self.bodies);
         }
         self.interval = interval;
         self.sum_effects(t, 0..self.effects.len())?;
-        for (number, (system, state)) in systems.iter_mut().zip(&state.trees).enumerate() {
-            system.loaded(&state.q).scatter_wrenches(number, &self.wrenches);
+        for (number, place) in places.iter().enumerate() {
+            let mut system = match *place {
+                Place::Tree(tree) => trees[tree].loaded(&state.trees[tree].q),
+                Place::Part(part) => parts[part].loaded(),
+            };
+            system.scatter_wrenches(number, &self.wrenches);
         }
+        parts.iter().for_each(|part| trees[part.tree].data.clear_external());
+        parts.iter().for_each(|part| part.add_wrenches_to(&mut trees[part.tree]));
         Ok(())
     }
 

@@ -20,7 +20,7 @@ pub struct EnvironmentQuery {
 impl Simulation {
     /// Returns a query of the environment of the run, for an [`Engine`](super::Engine).
     pub fn outside(&self) -> EnvironmentQuery {
-        let model = Arc::clone(&self.model);
+        let model = Arc::clone(&self.systems[0].model);
         EnvironmentQuery { data: Data::new(&model), loads: self.environment_loads(), model }
     }
 }

@@ -3,11 +3,12 @@
 
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
+use super::latch::Latch;
+use super::members::Members;
 use super::state::{Rate, State};
 use super::tree::Tree;
-use crate::dynamics::Data;
-use crate::model::Model;
-use crate::spatial::Real;
+use crate::dynamics::{Data, center_of_mass};
+use crate::spatial::{Real, Vec3};
 
 /// Equations of motion of all trees under external loads and constant joint torques.
 ///
@@ -16,14 +17,17 @@ use crate::spatial::Real;
 pub(crate) struct EquationsOfMotion<'a, S, W> {
     /// The trees, in the order of the run.
     pub(crate) trees: Vec<Tree<'a, S>>,
+    /// Places of the systems in the trees.
+    pub(crate) members: Members<'a, S>,
+    /// Latches that have not closed.
+    pub(super) latches: Vec<Latch>,
     pub(crate) loads: W,
 }
 
 impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
-    /// Returns the equations of motion of `models`. `restitution` is that of the stops at the position limits of
-    /// joints; `None` means no stops.
-    pub(crate) fn new(models: &[&'a Model], loads: W, restitution: Option<f64>) -> Self {
-        Self { trees: models.iter().map(|model| Tree::new(model, restitution)).collect(), loads }
+    /// Returns the equations of motion of systems each of which is one of `trees`.
+    pub(crate) fn new(trees: Vec<Tree<'a, S>>, loads: W) -> Self {
+        Self { members: Members::alone(trees.len()), trees, latches: Vec::new(), loads }
     }
 
     /// Computes the kinematics of `state` and projects every base twist onto the momentum of its tree.
@@ -55,7 +59,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         interval: (f64, f64),
         state: &State<S>,
     ) -> Result<(), SimulationError> {
-        self.loads.apply(&mut self.trees, state, t, interval)
+        self.loads.apply(&mut self.trees, &mut self.members, state, t, interval)
     }
 
     /// Computes the rates at `state`. Expects its kinematics and loads in the trees.
@@ -64,6 +68,25 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         for ((tree, state), rate) in self.trees.iter_mut().zip(&state.trees).zip(&mut rate.trees) {
             tree.rates(state, is_loaded, rate);
         }
+        if is_loaded && self.trees.len() > 1 {
+            rate.orbital = self.orbital_moment(state, rate);
+        }
+    }
+
+    /// Returns the moment of the external forces, acting at the centres of mass of the trees, about the common centre of
+    /// mass: `Σ (c_i − c) × F_i`, W axes, N m.
+    fn orbital_moment(&self, state: &State<S>, rate: &Rate<S>) -> Vec3<S> {
+        let trees = || self.trees.iter().zip(&state.trees);
+        let centers: Vec<_> = trees().map(|(tree, state)| center_of_mass(&tree.data, &state.q)).collect();
+        let (mut mass, mut first_moment) = (S::of(0.0), Vec3::zero());
+        for (tree, center) in self.trees.iter().zip(&centers) {
+            mass += S::of(tree.model.mass());
+            first_moment += *center * S::of(tree.model.mass());
+        }
+        let common = first_moment * (S::of(1.0) / mass);
+        let moments = centers.iter().zip(&rate.trees);
+        let moments = moments.map(|(center, rate)| (*center - common).cross(rate.wrench.linear));
+        moments.fold(Vec3::zero(), |sum, moment| sum + moment)
     }
 
     /// Computes the kinematics, loads and rates of a stage after the first.
@@ -82,9 +105,20 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         Ok(())
     }
 
-    /// Returns true if a joint of any tree has friction or stops.
+    /// Returns true if a joint of any tree has friction or stops, or a latch may close.
     pub(crate) fn has_modes(&self) -> bool {
-        self.trees.iter().any(|tree| tree.modes.is_active())
+        !self.latches.is_empty() || self.trees.iter().any(|tree| tree.modes.is_active())
+    }
+
+    /// Returns the smallest margin of the latches at `state` to their next change; writes the kinematics of `state`,
+    /// relative to W, to the trees if there are latches.
+    pub(super) fn latch_margin(&mut self, state: &State<S>) -> f64 {
+        if self.latches.is_empty() {
+            return f64::INFINITY;
+        }
+        self.update_kinematics(state);
+        let margin = |latch: &Latch| latch.margin(latch.inside(&self.trees, &state.trees));
+        self.latches.iter().map(margin).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns true if a joint of any tree is locked.

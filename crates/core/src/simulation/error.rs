@@ -1,14 +1,16 @@
 //! Errors of simulations.
 
 use super::checkpoint_error::CheckpointError;
-use super::trace::Trace;
+use super::recording::Recording;
 use crate::control::ControlError;
 use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
 use crate::gravity::GravityError;
+use crate::model::ModelError;
 use crate::number_text::{count, short, unlike};
 use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
+use crate::world::WorldError;
 use thiserror::Error;
 
 /// Error that prevents the start of a run or ends it early.
@@ -135,6 +137,14 @@ pub enum SimulationError {
     EngineAttitude { time: f64, length: f64 },
     #[error(transparent)]
     Control(ControlError),
+    #[error(transparent)]
+    World(#[from] WorldError),
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    #[error(
+        "an external engine moves one robot; a world of several systems needs the native equations of motion"
+    )]
+    EngineOfWorld,
 }
 
 impl From<ControlError> for SimulationError {
@@ -153,8 +163,8 @@ pub struct RunFailure {
     /// Error that ended the run.
     #[source]
     pub error: SimulationError,
-    /// Rows recorded before the error.
-    pub trace: Box<Trace>,
+    /// Rows and events recorded before the error.
+    pub recording: Box<Recording>,
 }
 
 impl SimulationError {
@@ -170,14 +180,17 @@ impl SimulationError {
 impl RunFailure {
     /// Returns the failure of a run that could not start and thus has no rows.
     pub(super) fn at_start(error: SimulationError) -> Self {
-        Self { error, trace: Box::default() }
+        Self { error, recording: Box::default() }
     }
 }
 
 impl std::fmt::Debug for RunFailure {
     /// Writes the error and the number of rows instead of the rows, of which there can be millions.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("RunFailure").field("error", &self.error).field("rows", &self.trace.rows()).finish()
+        f.debug_struct("RunFailure")
+            .field("error", &self.error)
+            .field("rows", &self.recording.rows())
+            .finish()
     }
 }
 

@@ -113,7 +113,7 @@ impl EveryStep {
         loads: &mut EnvironmentLoads,
     ) -> Result<(), SimulationError> {
         self.rows.record_state(t, state, system, None, None);
-        self.rows.record_wrenches(system.model, loads, t)
+        self.rows.record_wrenches(&system.model, loads, t)
     }
 
     /// Completes the row at the start of the step with the acceleration of the first stage.

@@ -1,6 +1,7 @@
 //! External loads on the trees: the interface between the equations of motion and the environment.
 
 use super::error::SimulationError;
+use super::members::Members;
 use super::state::State;
 use super::tree::Tree;
 
@@ -11,6 +12,7 @@ pub(crate) trait ExternalLoads<S> {
     fn apply(
         &mut self,
         trees: &mut [Tree<'_, S>],
+        members: &mut Members<'_, S>,
         state: &State<S>,
         t: f64,
         interval: (f64, f64),
@@ -27,6 +29,7 @@ impl<S> ExternalLoads<S> for NoLoads {
     fn apply(
         &mut self,
         _: &mut [Tree<'_, S>],
+        _: &mut Members<'_, S>,
         _: &State<S>,
         _: f64,
         _: (f64, f64),

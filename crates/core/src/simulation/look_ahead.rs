@@ -2,12 +2,12 @@
 //! steps do not depend on the times at which the run is evaluated.
 
 use super::checkpoint::Progress;
+use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
-use super::only::only;
+use super::recording::GroupRecording;
 use super::run_state::RunState;
 use super::schedule::{Cursor, Interval};
 use super::stepper::Monitor;
-use super::trace::Trace;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
 
@@ -67,11 +67,12 @@ impl<S: Scalar> RunState<'_, S> {
         work: impl FnOnce(&mut Self) -> Result<R, SimulationError>,
     ) -> Result<R, SimulationError> {
         let before: Progress = self.progress();
-        let controllers_updated = self.controllers_updated || self.schedule.is_control_tick();
+        let controllers_updated = self.controllers_updated || self.schedule.is_any_tick();
         self.records_before = records_before;
         let result = work(self);
         self.records_before = f64::INFINITY;
-        self.restore(before);
+        self.has_event = false;
+        self.restore(before)?;
         self.controllers_updated = controllers_updated;
         result
     }
@@ -86,8 +87,13 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Writes the configuration and the velocity at the current time, relative to W, to `q` and `v`.
-    pub(super) fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
+    /// Writes the configuration and the velocity of a system at the current time, relative to W, to `q` and `v`.
+    pub(super) fn read_state(
+        &mut self,
+        system: usize,
+        q: &mut [f64],
+        v: &mut [f64],
+    ) -> Result<(), SimulationError> {
         if self.schedule.is_later(self.time, self.schedule.now()) {
             self.peek(f64::NEG_INFINITY, |run| {
                 run.step_to_current_time().map(|is_dense| run.copy_state(is_dense))
@@ -98,11 +104,13 @@ impl<S: Scalar> RunState<'_, S> {
         let Self { equations, mover, row_buffers: (state, _), time, .. } = self;
         mover.kinematics(equations, state);
         mover.resolve_impacts(equations, state);
-        let (state, model) = (only(&state.trees), only(&equations.trees).model);
+        let EquationsOfMotion { trees, members, loads, .. } = equations;
+        members.follow(trees, &state.trees);
+        let (state, tree) = members.system(system, trees, &state.trees);
         for (to, from) in [(&mut *q, &state.q), (&mut *v, &state.v)] {
             to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
         }
-        if let Some(shift) = equations.loads.shift(*time, model.mass())? {
+        if let Some(shift) = loads.shift(*time, tree.model.mass())? {
             shift.transform_state(q, v);
         }
         Ok(())
@@ -141,12 +149,16 @@ impl<S: Scalar> RunState<'_, S> {
         if crossed? { self.record_within(self.time) } else { self.record_end() }
     }
 
-    /// Returns the trace with the rows recorded so far and one at the current time, as if the run ended there.
-    pub(super) fn trace(&mut self) -> Result<Trace, SimulationError> {
+    /// Returns the rows recorded so far and one at the current time, as if the run ended there.
+    pub(super) fn recording(&mut self) -> Result<GroupRecording, SimulationError> {
         self.peek(f64::INFINITY, |run| {
             run.record_current_time()?;
             run.conclude();
-            Ok(only(&run.systems).recorder.trace.clone())
+            Ok(GroupRecording {
+                systems: run.systems.iter().map(|system| system.recorder.trace.clone()).collect(),
+                events: run.events.records.clone(),
+                group: run.group.clone(),
+            })
         })
     }
 }

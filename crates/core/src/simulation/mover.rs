@@ -86,6 +86,14 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
+    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`; `None` for an external engine.
+    pub(super) fn first_acceleration(&self, number: usize) -> Option<&[S]> {
+        match self {
+            Self::Native(method) => Some(&method.integration.stages.first[number].acceleration),
+            Self::External(_) => None,
+        }
+    }
+
     /// Adds the acceleration at the start of the last step to the row of a tree; removes the row if an external
     /// engine returned no acceleration.
     pub(super) fn complete_row(&self, number: usize, recorder: &mut Recorder, model: &Model) {

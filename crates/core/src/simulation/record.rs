@@ -3,26 +3,26 @@
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
-use super::integrator::Stages;
+use super::members::{Part, Place};
 use super::mover::Mover;
 use super::run_state::RunState;
 use super::run_system::RunSystem;
 use super::schedule::Interval;
-use super::state::State;
+use super::tree_state::TreeState;
 use crate::spatial::Scalar;
 
 impl<S: Scalar> RunState<'_, S> {
     /// Returns true if a row is due at the start of `interval`. If every step is recorded, this includes the steps
-    /// that start at an event, so that discontinuities coincide with rows.
+    /// that start at an event, so that discontinuities coincide with rows. A capture or a release always has a row.
     pub(super) fn is_row_due(&self, interval: &Interval) -> bool {
         let is_due = |step: usize| step.is_multiple_of(self.record_every);
         interval.start < self.records_before
-            && (self.has_every_step || interval.grid_step.is_some_and(is_due))
+            && (self.has_every_step || self.has_event || interval.grid_step.is_some_and(is_due))
     }
 
     /// Adds a row of every system for the current state, whose kinematics are in the equations of motion.
     pub(super) fn record(&mut self, t: f64) -> Result<(), SimulationError> {
-        add_rows(&mut self.systems, &mut self.equations, t, &self.state)
+        self.add_rows(t, false)
     }
 
     /// Adds the rows whose times lie within the last step, before the current cut.
@@ -40,14 +40,14 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Adds a row at `t` within the last step, from the dense output of the adaptive integrator.
     pub(super) fn record_within(&mut self, t: f64) -> Result<(), SimulationError> {
-        let Self { equations, mover, systems, row_buffers: (state, stages), .. } = self;
+        let Self { equations, mover, row_buffers: (state, _), .. } = self;
         if let Some(integration) = mover.integration() {
             integration.interpolate(t, state);
         }
         equations.project_momentum(state);
         equations.apply_loads(t, (t, t), state)?;
-        add_rows(systems, equations, t, state)?;
-        add_accelerations(systems, equations, state, stages);
+        self.add_rows(t, true)?;
+        self.add_accelerations(true);
         Ok(())
     }
 
@@ -59,13 +59,18 @@ impl<S: Scalar> RunState<'_, S> {
             return Ok(());
         }
         if self.has_every_step && t < self.records_before {
-            self.equations.apply_loads(t, interval, &self.state)?;
-            self.record(t)?;
-            let Self { state, equations, row_buffers: (_, stages), systems, .. } = self;
-            add_accelerations(systems, equations, state, stages);
-            equations.project_momentum(state);
+            self.record_before_jump(t, interval)?;
         }
         self.mover.resolve_impacts(&mut self.equations, &mut self.state);
+        Ok(())
+    }
+
+    /// Adds a row before a jump of the velocities at the current cut.
+    pub(super) fn record_before_jump(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
+        self.equations.apply_loads(t, interval, &self.state)?;
+        self.record(t)?;
+        self.add_accelerations(false);
+        self.equations.project_momentum(&mut self.state);
         Ok(())
     }
 
@@ -73,63 +78,81 @@ impl<S: Scalar> RunState<'_, S> {
     pub(super) fn record_end(&mut self) -> Result<(), SimulationError> {
         let t = self.schedule.now();
         let following = self.schedule.following().map(|(interval, _)| interval.end);
-        let interval = Interval {
-            start: t,
-            end: following.unwrap_or(t),
-            is_control_tick: self.schedule.is_control_tick(),
-            grid_step: None,
-            is_event: false,
-        };
+        let interval = Interval { start: t, end: following.unwrap_or(t), grid_step: None, is_event: false };
         let begun = self.begin(&interval, t);
         begun.map_err(|error| self.name_divergence(error, t))?;
+        self.has_event = false;
         self.record(t)?;
-        let Self { state, equations, mover, row_buffers: (_, stages), systems, .. } = self;
-        if mover.is_external() {
+        if self.mover.is_external() {
+            let Self { state, equations, mover, systems, row_states, .. } = self;
             let asked = mover.advance(equations, state, (t, t)); // a step of zero length
-            complete_rows(systems, mover, equations);
+            complete_rows(systems, mover, equations, row_states);
             return asked.map(|_| ());
         }
-        add_accelerations(systems, equations, state, stages);
+        self.add_accelerations(false);
         Ok(())
+    }
+
+    /// Adds a row of every system, without its acceleration, for the current state, or for that of the row buffer if
+    /// `is_within_step`. Expects its kinematics in the equations of motion.
+    fn add_rows(&mut self, t: f64, is_within_step: bool) -> Result<(), SimulationError> {
+        let Self { systems, equations, state, row_buffers, row_states, .. } = self;
+        let state = if is_within_step { &row_buffers.0 } else { &*state };
+        let EquationsOfMotion { trees, members, loads, .. } = equations;
+        let orbit = loads.reference_state(t)?;
+        if !members.parts.is_empty() {
+            members.follow(trees, &state.trees);
+            members.parts.iter_mut().for_each(Part::update_balance);
+            row_states.clone_from(&state.trees);
+        }
+        for (number, run) in systems.iter_mut().enumerate() {
+            let (state, system) = members.system(number, trees, &state.trees);
+            run.add_row(t, state, system, loads, orbit)?;
+        }
+        self.add_group_row(t, is_within_step);
+        Ok(())
+    }
+
+    /// Completes the last rows with the accelerations at the current state, or at that of the row buffer if
+    /// `is_within_step`. Expects its kinematics and loads in the equations of motion.
+    fn add_accelerations(&mut self, is_within_step: bool) {
+        let Self { systems, equations, state, row_buffers: (buffer, stages), row_states, .. } = self;
+        stages.evaluate_first(equations, if is_within_step { buffer } else { state });
+        let EquationsOfMotion { trees, members, .. } = equations;
+        for (number, run) in systems.iter_mut().enumerate() {
+            let tree = members.tree_at(members.places[number]);
+            let first = &stages.first[tree].acceleration;
+            match members.places[number] {
+                Place::Tree(_) => run.recorder.record_acceleration(&trees[tree].model, first),
+                Place::Part(part) => {
+                    let part = &members.parts[part];
+                    let own = part.acceleration(&trees[tree], &row_states[tree], first);
+                    run.recorder.record_acceleration(&part.own.model, &own);
+                }
+            }
+        }
     }
 }
 
-/// Adds the accelerations to the rows at the start of the last step.
+/// Adds the accelerations to the rows at the start of the last step; `row_states` are the states of the trees in these
+/// rows, if systems share trees.
 pub(super) fn complete_rows<S: Scalar>(
     systems: &mut [RunSystem<'_, S>],
     mover: &Mover<'_, S>,
     equations: &EquationsOfMotion<'_, S, EnvironmentLoads>,
+    row_states: &[TreeState<S>],
 ) {
-    for (number, (run, system)) in systems.iter_mut().zip(&equations.trees).enumerate() {
-        mover.complete_row(number, &mut run.recorder, system.model);
-    }
-}
-
-/// Adds a row of every system, without its acceleration, for a state whose kinematics are in the equations of motion.
-fn add_rows<S: Scalar>(
-    systems: &mut [RunSystem<'_, S>],
-    equations: &mut EquationsOfMotion<'_, S, EnvironmentLoads>,
-    t: f64,
-    state: &State<S>,
-) -> Result<(), SimulationError> {
-    let EquationsOfMotion { trees: moved, loads } = equations;
-    let orbit = loads.reference_state(t)?;
-    for ((run, system), state) in systems.iter_mut().zip(moved).zip(&state.trees) {
-        run.add_row(t, state, system, loads, orbit)?;
-    }
-    Ok(())
-}
-
-/// Completes the last rows with the accelerations at `state`. Expects its kinematics and loads in the equations of
-/// motion.
-fn add_accelerations<S: Scalar>(
-    systems: &mut [RunSystem<'_, S>],
-    equations: &mut EquationsOfMotion<'_, S, EnvironmentLoads>,
-    state: &State<S>,
-    stages: &mut Stages<S>,
-) {
-    stages.evaluate_first(equations, state);
-    for ((run, system), first) in systems.iter_mut().zip(&equations.trees).zip(&stages.first) {
-        run.recorder.record_acceleration(system.model, &first.acceleration);
+    let EquationsOfMotion { trees, members, .. } = equations;
+    for (number, run) in systems.iter_mut().enumerate() {
+        match members.places[number] {
+            Place::Tree(tree) => mover.complete_row(tree, &mut run.recorder, &trees[tree].model),
+            Place::Part(part) => {
+                let part = &members.parts[part];
+                let tree = part.tree;
+                let Some(first) = mover.first_acceleration(tree) else { continue };
+                let own = part.acceleration(&trees[tree], &row_states[tree], first);
+                run.recorder.record_acceleration(&part.own.model, &own);
+            }
+        }
     }
 }

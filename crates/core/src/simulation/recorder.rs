@@ -187,7 +187,7 @@ impl Recorder {
             let compensations = system.modes.compensations();
             trace.friction_compensation.extend(compensations.map(|torque| torque.unwrap_or(0.0)));
         }
-        let (h, energy, com) = momentum_energy_com(system.model, data, q, v);
+        let (h, energy, com) = momentum_energy_com(&system.model, data, q, v);
         push_vector(&mut trace.momentum, h.linear);
         push_vector(&mut trace.momentum, h.angular);
         push_vector(&mut trace.impulse, state.impulse.linear);
@@ -197,7 +197,7 @@ impl Recorder {
         trace.dissipated.push(state.dissipated.value());
         push_vector(&mut trace.center_of_mass, com);
         if let Some(tool) = self.options.tool {
-            let pose = frame_pose(system.model, data, q, tool);
+            let pose = frame_pose(&system.model, data, q, tool);
             push_pose(&mut trace.tool_pose, &pose.rot_wf, pose.pos_w);
             if self.options.has_reference {
                 let desired = desired.map(|(desired, is_relative)| {

@@ -1,22 +1,29 @@
 //! State of a run between two steps. A run restored to this state continues with bit-identical results.
 
 use super::accuracy::Accuracy;
-use super::checkpoint::{Checkpoint, Progress, SavedControllers, SystemProgress};
+use super::checkpoint::{
+    GroupCheckpoint, Progress, SavedControllers, SystemProgress, TreeProgress, WorldProgress,
+};
 use super::checkpoint_error::CheckpointError;
+use super::connections::Connections;
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
-use super::integrator::Stages;
-use super::layout::Layout;
+use super::estimates::Estimates;
+use super::events::Events;
+use super::integrator::{Stages, StepSettings};
+use super::members::Place;
 use super::mover::Mover;
-use super::only::only_mut;
+use super::recording::{GroupRows, Ledger};
 use super::run_system::RunSystem;
 use super::schedule::Schedule;
 use super::state::State;
 use super::trace::Trace;
 use super::tree::Tree;
+use super::tree_state::TreeState;
 use crate::earth::Earth;
 use crate::spatial::Scalar;
+use crate::world::Layout;
 use std::sync::Arc;
 
 /// State of a run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at
@@ -24,12 +31,20 @@ use std::sync::Arc;
 pub(super) struct RunState<'a, S> {
     /// Names of the systems and of their joints; all lists with one entry per system have this order.
     pub(super) layout: Layout,
+    /// Number in the world of each system.
+    pub(super) numbers: Vec<usize>,
     /// State at the current cut, the instant at which the current step begins.
     pub(super) state: State<S>,
     pub(super) equations: EquationsOfMotion<'a, S, EnvironmentLoads>,
     /// Controllers and recorder of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
+    pub(super) connections: Connections,
+    pub(super) events: Events,
+    pub(super) ledger: Ledger,
+    /// Balance of the group; no rows if it has a single system.
+    pub(super) group: GroupRows,
     pub(super) mover: Mover<'a, S>,
+    pub(super) step_settings: StepSettings,
     pub(super) schedule: Schedule,
     pub(super) record_every: usize,
     /// True if every step is recorded as a row of the trace.
@@ -41,10 +56,14 @@ pub(super) struct RunState<'a, S> {
     pub(super) time: f64,
     /// True if the controllers have been updated at the current cut.
     pub(super) controllers_updated: bool,
+    /// True if an event has happened at the current cut, whose row is then due.
+    pub(super) has_event: bool,
     /// Only rows before this time are recorded, s; infinity except while [`RunState::peek`] takes trial steps.
     pub(super) records_before: f64,
     /// Buffers for the state and the stages of rows that are not at the start of a step.
     pub(super) row_buffers: (State<S>, Stages<S>),
+    /// States of the trees in the last row, if systems share trees.
+    pub(super) row_states: Vec<TreeState<S>>,
     /// Distance of the base from the origin of W beyond which a system changes to a local reference orbit, m.
     pub(super) rereference_beyond: f64,
     pub(super) earth: Option<Arc<Earth>>,
@@ -54,12 +73,13 @@ impl<S: Scalar> RunState<'_, S> {
     /// Returns the state of everything that a step changes, except the controllers.
     pub(super) fn progress(&self) -> Progress {
         let (step_control, idle_steps) = self.mover.save();
-        let systems = self.systems.iter().zip(&self.equations.trees).enumerate();
-        let progress = |(number, (run, system)): (usize, (&RunSystem<'_, S>, &Tree<'_, S>))| {
+        let tree = |(number, tree): (usize, &Tree<'_, S>)| {
             let (errors, checks) = self.accuracy.save(number);
+            TreeProgress { modes: tree.modes.save(), errors, checks }
+        };
+        let system = |run: &RunSystem<'_, S>| {
             let trace = &run.recorder.trace;
-            let (rows, work_done) = (trace.rows(), trace.work_done);
-            SystemProgress { rows, modes: system.modes.save(), errors, checks, work_done }
+            SystemProgress { rows: trace.rows(), work_done: trace.work_done, settled: run.settled.clone() }
         };
         Progress {
             steps: self.steps,
@@ -67,56 +87,109 @@ impl<S: Scalar> RunState<'_, S> {
             state: self.state.map(|x| x.value()),
             step_control,
             idle_steps,
-            systems: systems.map(progress).collect(),
+            trees: self.equations.trees.iter().enumerate().map(tree).collect(),
+            systems: self.systems.iter().map(system).collect(),
+            world: WorldProgress {
+                members: self.save_members(),
+                events: self.events.states.clone(),
+                records: self.events.records.clone(),
+                ledger: self.ledger,
+            },
         }
     }
 
     /// Restores the state that [`RunState::progress`] returned and removes the rows recorded since then.
-    pub(super) fn restore(&mut self, progress: Progress) {
+    pub(super) fn restore(&mut self, progress: Progress) -> Result<(), SimulationError> {
+        self.restore_world(progress.world)?;
         self.state = progress.state.map(|x| S::of(*x));
         self.schedule.set_cursor(progress.cursor);
         self.steps = progress.steps;
         self.mover.restore((progress.step_control, progress.idle_steps));
-        let systems = self.systems.iter_mut().zip(&mut self.equations.trees);
-        for (number, (saved, (run, system))) in progress.systems.into_iter().zip(systems).enumerate() {
-            system.modes.restore(&saved.modes);
+        for (number, (saved, tree)) in progress.trees.into_iter().zip(&mut self.equations.trees).enumerate() {
+            tree.modes.restore(&saved.modes);
             self.accuracy.restore(number, (saved.errors, saved.checks));
+        }
+        for (saved, run) in progress.systems.into_iter().zip(&mut self.systems) {
+            self.group.truncate(saved.rows);
             run.recorder.truncate(saved.rows);
             run.recorder.trace.work_done = saved.work_done;
+            run.settled = saved.settled;
         }
+        Ok(())
+    }
+
+    /// Restores the connections and the events.
+    fn restore_world(&mut self, world: WorldProgress) -> Result<(), SimulationError> {
+        self.restore_members(world.members)?;
+        if !self.events.list.is_empty() {
+            (self.events.states, self.events.records) = (world.events, world.records);
+            self.ledger = world.ledger;
+            self.events_changed();
+            self.find_latches();
+        }
+        Ok(())
+    }
+
+    /// Tells the schedule and the controllers which events have happened or are due.
+    pub(super) fn events_changed(&mut self) {
+        self.schedule.set_due(self.events.due_times());
+        let happened = self.events.happened();
+        self.systems.iter_mut().for_each(|run| run.controllers.set.set_events(&happened));
     }
 
     /// Returns a checkpoint of the current state. The rows recorded so far are not part of it.
-    pub(super) fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
-        let systems = self.systems.iter().zip(&self.equations.trees);
-        let systems = systems.map(|(run, system)| run.save_controllers(system)).collect::<Result<_, _>>()?;
-        let controllers = SavedControllers { controllers_updated: self.controllers_updated, systems };
-        let local_reference = self.equations.loads.local_reference().cloned();
-        Ok(Checkpoint::new(self.time, self.schedule.clone(), self.progress(), local_reference, controllers))
+    pub(super) fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError> {
+        let EquationsOfMotion { trees, members, loads, .. } = &self.equations;
+        let systems = self.systems.iter().enumerate();
+        let systems = systems
+            .map(|(number, run)| run.save_controllers(members.system(number, trees, &self.state.trees).1));
+        let systems = systems.collect::<Result<_, _>>()?;
+        Ok(GroupCheckpoint {
+            time: self.time,
+            schedule: self.schedule.clone(),
+            progress: self.progress(),
+            local_reference: loads.local_reference().cloned(),
+            controllers: SavedControllers { controllers_updated: self.controllers_updated, systems },
+        })
     }
 
-    /// Restores the state of a checkpoint; `trace` holds the rows recorded before it.
-    pub(super) fn resume(&mut self, from: Checkpoint, trace: Trace) -> Result<(), SimulationError> {
-        from.check(&self.layout, &self.schedule, trace.rows())?;
-        let (time, progress, local_reference, saved) = from.into_parts();
+    /// Restores the state of a checkpoint; `rows` holds the rows of each system recorded before it.
+    pub(super) fn resume(&mut self, from: GroupCheckpoint, rows: Vec<Trace>) -> Result<(), SimulationError> {
+        let counts: Vec<usize> = rows.iter().map(Trace::rows).collect();
+        from.check(&self.layout, &self.schedule, &counts, self.events.list.len())?;
+        self.restore_members(from.progress.world.members.clone())?;
+        from.check_trees(
+            &self.state.trees.iter().map(|tree| (tree.q.len(), tree.v.len())).collect::<Vec<_>>(),
+        )?;
+        let GroupCheckpoint { time, progress, local_reference, controllers: saved, .. } = from;
         self.check_estimates(&progress)?;
-        only_mut(&mut self.systems).recorder.resume(trace)?;
-        self.restore(progress);
+        for (run, rows) in self.systems.iter_mut().zip(rows) {
+            run.recorder.resume(rows)?;
+        }
+        self.restore_group();
+        self.restore(progress)?;
         self.time = time;
         if let Some(local) = local_reference {
             self.equations.loads.set_local_reference(local)?;
         }
         self.controllers_updated = saved.controllers_updated;
-        let systems = self.systems.iter_mut().zip(&mut self.equations.trees);
-        for (saved, (run, system)) in saved.systems.into_iter().zip(systems) {
-            run.load_controllers(saved, system)?;
+        let EquationsOfMotion { trees, members, .. } = &mut self.equations;
+        for (number, (saved, run)) in saved.systems.into_iter().zip(&mut self.systems).enumerate() {
+            match members.places[number] {
+                Place::Tree(tree) => run.load_controllers(saved, &mut trees[tree])?,
+                Place::Part(part) => {
+                    let part = &mut members.parts[part];
+                    run.load_controllers(saved, &mut part.own)?;
+                    part.drive(&mut trees[part.tree]);
+                }
+            }
         }
         Ok(())
     }
 
     /// Checks that the checkpoint contains error estimates if, and only if, this run computes them.
     fn check_estimates(&self, progress: &Progress) -> Result<(), CheckpointError> {
-        for (number, saved) in progress.systems.iter().enumerate() {
+        for (number, saved) in progress.trees.iter().enumerate() {
             let (errors, checks) = self.accuracy.save(number);
             if errors.is_some() != saved.errors.is_some() || checks.is_some() != saved.checks.is_some() {
                 let (name, expected) = ("sets of error estimates", usize::from(errors.is_some()));
@@ -129,16 +202,43 @@ impl<S: Scalar> RunState<'_, S> {
     /// Adds to the traces the results that do not follow from the rows: error estimates, changes of the reference
     /// orbit and outcomes of goals.
     pub(super) fn conclude(&mut self) {
-        let control = self.mover.save().0;
         let local = self.equations.loads.local_reference();
-        let systems = self.systems.iter_mut().zip(&self.equations.trees);
-        for (number, (run, system)) in systems.enumerate() {
-            let rotation_error = control.as_ref().map(|control| control.trees[number].rotation_error);
-            let results = run.goal_results(system.model);
+        let rereferenced = local.map_or_else(Vec::new, |local| local.times.clone());
+        for number in 0..self.systems.len() {
+            let estimates = self.estimates(number);
+            let EquationsOfMotion { trees, members, .. } = &self.equations;
+            let model = &members.system(number, trees, &self.state.trees).1.model;
+            let run = &mut self.systems[number];
+            let results = run.goal_results(model);
             let trace = &mut run.recorder.trace;
-            self.accuracy.conclude(number, self.steps, rotation_error, trace);
-            trace.rereferenced = local.map_or_else(Vec::new, |local| local.times.clone());
-            trace.results = results;
+            estimates.write(trace);
+            (trace.rereferenced, trace.results) = (rereferenced.clone(), results);
+        }
+    }
+
+    /// Returns the error estimates of a system over the whole run.
+    fn estimates(&self, number: usize) -> Estimates {
+        let members = &self.equations.members;
+        let place = members.places[number];
+        let tree = members.tree_at(place);
+        let control = self.mover.save().0;
+        let rotation_error = control.map(|control| control.trees[tree].rotation_error);
+        let estimates = self.accuracy.estimates(tree, self.steps, rotation_error);
+        let estimates = match place {
+            Place::Tree(_) => estimates,
+            Place::Part(part) => estimates.of_part(&members.parts[part].member.joints),
+        };
+        match &self.systems[number].settled {
+            Some(settled) => estimates.after(settled),
+            None => estimates,
+        }
+    }
+
+    /// Keeps the error estimates of the current trees, before they change.
+    pub(super) fn conclude_trees(&mut self) {
+        for number in 0..self.systems.len() {
+            let estimates = self.estimates(number);
+            self.systems[number].settled = Some(estimates);
         }
     }
 }

@@ -4,6 +4,7 @@ use super::checkpoint::SystemControllers;
 use super::controllers::Controllers;
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
+use super::estimates::Estimates;
 use super::recorder::Recorder;
 use super::trace::GoalResult;
 use super::tree::Tree;
@@ -16,6 +17,8 @@ use crate::spatial::Scalar;
 pub(super) struct RunSystem<'a, S> {
     pub(super) controllers: Controllers<'a, S>,
     pub(super) recorder: Recorder,
+    /// Error estimates of the trees that contained the system before; `None` if its tree never changed.
+    pub(super) settled: Option<Estimates>,
 }
 
 impl<S: Scalar> RunSystem<'_, S> {
@@ -29,10 +32,10 @@ impl<S: Scalar> RunSystem<'_, S> {
         loads: &mut EnvironmentLoads,
         orbit: Option<OrbitState>,
     ) -> Result<(), SimulationError> {
-        let Self { controllers, recorder } = self;
+        let Self { controllers, recorder, .. } = self;
         recorder.record_state(t, state, system, orbit, controllers.desired(t, state, system)?);
         recorder.record_tracking(&controllers.set);
-        recorder.record_wrenches(system.model, loads, t)
+        recorder.record_wrenches(&system.model, loads, t)
     }
 
     /// Returns the state of the controllers and the torques of `system`.

@@ -15,8 +15,6 @@ pub(super) struct Interval {
     pub(super) start: f64,
     /// End of the interval, s.
     pub(super) end: f64,
-    /// True if the controllers are updated at the start of the interval.
-    pub(super) is_control_tick: bool,
     /// Number of the grid step that begins at the start of the interval; `None` if the start is not a grid point.
     pub(super) grid_step: Option<usize>,
     /// True if an event occurs at the start of the interval: wrenches or torques may be discontinuous there.
@@ -30,41 +28,52 @@ pub(super) struct Schedule {
     time_step: f64,
     /// Planned end of the run, s.
     duration: Option<f64>,
-    control_period: f64,
+    /// Clocks of the controllers of each system.
+    clocks: Vec<Clock>,
     events: Vec<f64>,
+    /// Instants of events that became known during the run, s.
+    due: Vec<f64>,
     /// True if steps end at the grid points.
     cuts_at_grid: bool,
-    /// Instants at which the controllers are updated in addition to the regular ticks, s.
-    switches: Vec<f64>,
     at: Cursor,
 }
 
-/// Current position in a schedule: the current cut, s, and the numbers of the next grid point, control tick and
-/// event.
+/// Instants at which the controllers of one system are updated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Clock {
+    /// Time between two regular ticks, s.
+    pub(super) period: f64,
+    /// Additional instants, s, at which controls start or stop.
+    pub(super) switches: Vec<f64>,
+}
+
+/// Current position in a schedule: the current cut, s, and the numbers of the next grid point and event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Cursor {
     now: f64,
     next_grid: usize,
-    next_tick: usize,
     next_event: usize,
 }
 
 impl Schedule {
+    /// Returns a schedule with events at these instants, s. The clocks tick at least at time zero; their switches are
+    /// cuts too.
     pub(super) fn new(
         time_step: f64,
         duration: Option<f64>,
-        control_period: Option<f64>,
+        clocks: Vec<Clock>,
         mut events: Vec<f64>,
     ) -> Self {
+        events.extend(clocks.iter().flat_map(|clock| &clock.switches));
         events.retain(|t| t.is_finite());
         events.sort_by(f64::total_cmp);
         Self {
             time_step,
             duration,
-            control_period: control_period.unwrap_or(time_step),
+            clocks,
             events,
+            due: Vec::new(),
             cuts_at_grid: true,
-            switches: Vec::new(),
             at: Cursor::default(),
         }
     }
@@ -74,13 +83,9 @@ impl Schedule {
         Self { cuts_at_grid: false, ..self }
     }
 
-    /// Returns the schedule with additional instants, s, at which controls start or stop. They are cuts at which the
-    /// controllers are updated.
-    pub(super) fn with_switches(mut self, switches: Vec<f64>) -> Self {
-        self.events.extend(&switches);
-        self.events.sort_by(f64::total_cmp);
-        self.switches = switches;
-        self
+    /// Sets the instants of events that became known during the run, s.
+    pub(super) fn set_due(&mut self, due: Vec<f64>) {
+        self.due = due;
     }
 
     /// Returns the current cut, the instant at which the current step begins, s.
@@ -106,7 +111,7 @@ impl Schedule {
 
     /// Returns true if another schedule has the same cuts; the current positions may differ.
     pub(super) fn has_cuts_of(&self, other: &Self) -> bool {
-        *self == Self { at: self.at, ..other.clone() }
+        *self == Self { at: self.at, due: self.due.clone(), ..other.clone() }
     }
 
     /// Returns the names of the settings, joined by "and", in which two schedules differ.
@@ -114,13 +119,21 @@ impl Schedule {
         let names = [
             ("duration", self.duration != other.duration),
             ("time_step", self.time_step != other.time_step),
-            ("control_period", self.control_period != other.control_period),
-            ("the events", self.events != other.events && self.switches == other.switches),
-            ("the times of the controls", self.switches != other.switches),
+            ("control_period", self.periods().ne(other.periods())),
+            ("the events", self.events != other.events && self.switches().eq(other.switches())),
+            ("the times of the controls", self.switches().ne(other.switches())),
             ("the integrators", self.cuts_at_grid != other.cuts_at_grid),
         ];
         let names: Vec<_> = names.into_iter().filter(|(_, differ)| *differ).map(|(name, _)| name).collect();
         names.join(" and ")
+    }
+
+    fn periods(&self) -> impl Iterator<Item = f64> {
+        self.clocks.iter().map(|clock| clock.period)
+    }
+
+    fn switches(&self) -> impl Iterator<Item = f64> {
+        self.clocks.iter().flat_map(|clock| clock.switches.iter().copied())
     }
 
     /// Returns the number of grid steps of a run with a planned end; the last step may be shorter.
@@ -130,10 +143,9 @@ impl Schedule {
 
     /// Returns an upper bound of the number of intervals of a run with a planned end.
     pub(super) fn intervals(&self) -> Option<usize> {
-        let ticks = |duration: f64| {
-            if self.control_period == self.time_step { 0.0 } else { duration / self.control_period }
-        };
-        let ticks = ticks(self.duration?).ceil() as usize;
+        let duration = self.duration?;
+        let ticks = |period: f64| if period == self.time_step { 0.0 } else { (duration / period).ceil() };
+        let ticks = self.periods().map(ticks).sum::<f64>() as usize;
         Some(self.grid_steps()?.saturating_add(ticks).saturating_add(self.events.len()))
     }
 
@@ -153,18 +165,28 @@ impl Schedule {
         t > other + self.tolerance()
     }
 
-    /// Returns true if a control tick is due at the current cut.
-    pub(super) fn is_control_tick(&self) -> bool {
-        self.is_regular_tick() || self.switches.iter().any(|&t| self.is_now(t))
+    /// Returns true if the controllers of a system are due at `t`, s.
+    pub(super) fn is_tick(&self, system: usize, t: f64) -> bool {
+        let Clock { period, switches } = &self.clocks[system];
+        let is_now = |instant: f64| (instant - t).abs() <= self.tolerance();
+        is_now((t / period).round() * period) || switches.iter().any(|&switch| is_now(switch))
     }
 
-    fn is_regular_tick(&self) -> bool {
-        self.is_now(self.at.next_tick as f64 * self.control_period)
+    /// Returns true if the controllers of any system are due at the current cut.
+    pub(super) fn is_any_tick(&self) -> bool {
+        (0..self.clocks.len()).any(|system| self.is_tick(system, self.at.now))
+    }
+
+    /// Returns the first regular tick of a clock after the current cut, s.
+    fn next_tick(&self, period: f64) -> f64 {
+        let count = (self.at.now / period).round(); // a product, so that rounding errors do not accumulate
+        let nearest = count * period;
+        if nearest > self.at.now + self.tolerance() { nearest } else { (count + 1.0) * period }
     }
 
     /// Returns true if the counters match the current cut and `t` lies in the interval that begins there.
     pub(super) fn is_consistent(&self, t: f64) -> bool {
-        let Cursor { now, next_grid, next_tick, next_event } = self.at;
+        let Cursor { now, next_grid, next_event } = self.at;
         let is_next = |count: usize, period: f64| {
             let before = count.checked_sub(1).map(|before| before as f64 * period);
             count as f64 * period >= now - self.tolerance()
@@ -175,7 +197,6 @@ impl Schedule {
             && now >= 0.0
             && self.duration.is_none_or(|duration| now <= duration + self.tolerance())
             && is_next(next_grid, self.time_step)
-            && (self.control_period == f64::MAX || is_next(next_tick, self.control_period))
             && next_event <= self.events.len()
             && t >= now - self.tolerance()
             && t <= last + self.tolerance()
@@ -183,15 +204,13 @@ impl Schedule {
 
     /// Returns the interval that begins at the current cut and the position at its end; `None` at the planned end.
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {
-        let Cursor { now, mut next_grid, mut next_tick, mut next_event } = self.at;
+        let Cursor { now, mut next_grid, mut next_event } = self.at;
         if self.duration.is_some_and(|duration| now >= duration - self.tolerance()) {
             return None;
         }
         let grid = next_grid as f64 * self.time_step; // a product, so that rounding errors do not accumulate
         let grid_step = self.is_now(grid).then_some(next_grid);
         next_grid += usize::from(grid_step.is_some());
-        let is_control_tick = self.is_control_tick();
-        next_tick += usize::from(self.is_regular_tick());
         let events_before = next_event;
         while self.events.get(next_event).is_some_and(|&t| t <= now + self.tolerance()) {
             next_event += 1;
@@ -199,8 +218,9 @@ impl Schedule {
         let last = self.duration.unwrap_or(now + LONGEST_INTERVAL * self.time_step);
         let grid = if self.cuts_at_grid { next_grid as f64 * self.time_step } else { last };
         let mut end = grid.min(last);
-        let cuts = [Some(next_tick as f64 * self.control_period), self.events.get(next_event).copied()];
-        for cut in cuts.into_iter().flatten() {
+        let due = self.due.iter().copied().filter(|t| *t > now + self.tolerance());
+        let ticks = self.periods().map(|period| self.next_tick(period));
+        for cut in ticks.chain(self.events.get(next_event).copied()).chain(due) {
             if cut < end - self.tolerance() {
                 end = cut;
             }
@@ -208,9 +228,9 @@ impl Schedule {
         if self.duration.is_some_and(|duration| (duration - end).abs() <= self.tolerance()) {
             end = last;
         }
-        let is_event = next_event > events_before;
-        let interval = Interval { start: now, end, is_control_tick, grid_step, is_event };
-        Some((interval, Cursor { now: end, next_grid, next_tick, next_event }))
+        let is_event = next_event > events_before || self.due.iter().any(|&t| self.is_now(t));
+        let interval = Interval { start: now, end, grid_step, is_event };
+        Some((interval, Cursor { now: end, next_grid, next_event }))
     }
 
     /// Ends the current interval at `t`, which becomes the current cut.
@@ -231,7 +251,11 @@ impl Schedule {
 
 #[cfg(test)]
 mod tests {
-    use super::{Interval, Schedule};
+    use super::{Clock, Interval, Schedule};
+
+    fn schedule(time_step: f64, duration: Option<f64>, period: f64, events: Vec<f64>) -> Schedule {
+        Schedule::new(time_step, duration, vec![Clock { period, switches: vec![] }], events)
+    }
 
     fn intervals(mut schedule: Schedule) -> impl Iterator<Item = Interval> {
         std::iter::from_fn(move || {
@@ -242,15 +266,13 @@ mod tests {
     }
 
     fn ticks(schedule: Schedule) -> Vec<f64> {
-        intervals(schedule)
-            .filter(|interval| interval.is_control_tick)
-            .map(|interval| interval.start)
-            .collect()
+        let starts: Vec<f64> = intervals(schedule.clone()).map(|interval| interval.start).collect();
+        starts.into_iter().filter(|&t| schedule.is_tick(0, t)).collect()
     }
 
     #[test]
     fn events_are_hit_exactly_and_the_grid_does_not_drift() {
-        let schedule = Schedule::new(0.1, Some(1.0), None, vec![0.25, 0.3, 7.0, -1.0]);
+        let schedule = schedule(0.1, Some(1.0), 0.1, vec![0.25, 0.3, 7.0, -1.0]);
         assert_eq!(schedule.grid_steps(), Some(10));
         let ends: Vec<f64> = intervals(schedule).map(|interval| interval.end).collect();
         assert_eq!(ends.len(), 11);
@@ -259,20 +281,21 @@ mod tests {
 
     #[test]
     fn control_has_its_own_rate() {
-        assert_eq!(ticks(Schedule::new(0.1, Some(1.0), Some(0.25), vec![])), [0.0, 0.25, 0.5, 0.75]);
-        assert_eq!(ticks(Schedule::new(0.1, Some(0.2), Some(0.05), vec![])).len(), 4);
+        assert_eq!(ticks(schedule(0.1, Some(1.0), 0.25, vec![])), [0.0, 0.25, 0.5, 0.75]);
+        assert_eq!(ticks(schedule(0.1, Some(0.2), 0.05, vec![])).len(), 4);
     }
 
     #[test]
     fn a_switch_is_a_cut_and_a_tick() {
-        let schedule = Schedule::new(0.1, Some(1.0), Some(0.5), vec![]).with_switches(vec![0.73, 0.1]);
+        let clock = Clock { period: 0.5, switches: vec![0.73, 0.1] };
+        let schedule = Schedule::new(0.1, Some(1.0), vec![clock], vec![]);
         assert_eq!(ticks(schedule), [0.0, 0.1, 0.5, 0.73]);
     }
 
     #[test]
     fn rounding_late_in_a_run_makes_no_slivers() {
         // 10 000 s at 1 ms: k · 0.003 and 3k · 0.001 differ by more than a billionth of a step
-        let schedule = Schedule::new(1e-3, Some(1e4), Some(3e-3), vec![9000.0003]);
+        let schedule = schedule(1e-3, Some(1e4), 3e-3, vec![9000.0003]);
         let lengths = || intervals(schedule.clone()).map(|interval| interval.end - interval.start);
         let shortest = lengths().fold(f64::INFINITY, f64::min);
         assert!(shortest > 0.2e-3, "{shortest}");
@@ -281,18 +304,18 @@ mod tests {
 
     #[test]
     fn a_duration_that_is_no_multiple_ends_with_a_shorter_step() {
-        let schedule = Schedule::new(0.3, Some(1.0), None, vec![]);
+        let schedule = schedule(0.3, Some(1.0), 0.3, vec![]);
         assert_eq!(schedule.grid_steps(), Some(4));
         assert_eq!(intervals(schedule).last().map(|interval| interval.end), Some(1.0));
     }
 
     #[test]
     fn without_a_planned_end_the_cuts_before_it_are_the_same() {
-        let schedule = |duration| Schedule::new(0.1, duration, Some(0.25), vec![0.33]);
-        let open: Vec<_> = intervals(schedule(None)).take(14).collect();
-        let planned: Vec<_> = intervals(schedule(Some(1.0))).collect();
-        assert_eq!(open[..planned.len()], planned);
-        let adaptive = intervals(schedule(None).without_grid_steps()).nth(3).expect("an interval");
+        let planned = |duration| schedule(0.1, duration, 0.25, vec![0.33]);
+        let open: Vec<_> = intervals(planned(None)).take(14).collect();
+        let closed: Vec<_> = intervals(planned(Some(1.0))).collect();
+        assert_eq!(open[..closed.len()], closed);
+        let adaptive = intervals(planned(None).without_grid_steps()).nth(3).expect("an interval");
         assert_eq!((adaptive.start, adaptive.end), (0.5, 0.75));
     }
 }

@@ -2,19 +2,24 @@
 
 use super::tree::Tree;
 use super::tree_state::{TreeRate, TreeState};
-use crate::spatial::Real;
+use crate::spatial::{Real, Vec3};
 use serde::{Deserialize, Serialize};
 
 /// State of all trees of a run, in the order of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State<S> {
     pub(crate) trees: Vec<TreeState<S>>,
+    /// Time integral of the moments of the external forces, acting at the centres of mass of the trees, about the common
+    /// centre of mass, W axes, N m s; zero for a single tree.
+    pub(crate) orbital: Vec3<S>,
 }
 
 /// Time derivatives of all trees at one stage.
 #[derive(Clone, Debug)]
 pub(crate) struct Rate<S> {
     pub(crate) trees: Vec<TreeRate<S>>,
+    /// Time derivative of [`State::orbital`], N m.
+    pub(crate) orbital: Vec3<S>,
 }
 
 impl<S: Real> State<S> {
@@ -22,8 +27,8 @@ impl<S: Real> State<S> {
     /// [`TreeState::at`].
     pub(crate) fn at(trees: &mut [Tree<'_, S>], starts: impl IntoIterator<Item = (Vec<S>, Vec<S>)>) -> Self {
         let pairs = trees.iter_mut().zip(starts);
-        let at = |(tree, (q, v)): (&mut Tree<'_, S>, _)| TreeState::at(tree.model, &mut tree.data, q, v);
-        Self { trees: pairs.map(at).collect() }
+        let at = |(tree, (q, v)): (&mut Tree<'_, S>, _)| TreeState::at(&tree.model, &mut tree.data, q, v);
+        Self { trees: pairs.map(at).collect(), orbital: Vec3::zero() }
     }
 
     /// Returns true if configurations and velocities are finite in every lane.
@@ -33,7 +38,7 @@ impl<S: Real> State<S> {
 
     /// Returns the state with `f` applied to every number.
     pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> State<T> {
-        State { trees: self.trees.iter().map(|tree| tree.map(&f)).collect() }
+        State { trees: self.trees.iter().map(|tree| tree.map(&f)).collect(), orbital: self.orbital.map(&f) }
     }
 
     /// Copies `from` without allocating.
@@ -41,6 +46,7 @@ impl<S: Real> State<S> {
         for (to, from) in self.trees.iter_mut().zip(&from.trees) {
             to.copy_from(from);
         }
+        self.orbital = from.orbital;
     }
 
     /// Writes `from ⊕ h rate`; see [`TreeState::move_from`].
@@ -49,13 +55,16 @@ impl<S: Real> State<S> {
         for ((to, from), rate) in self.trees.iter_mut().zip(&from.trees).zip(&rate.trees) {
             to.move_from(from, rate, h);
         }
+        if self.trees.len() > 1 {
+            self.orbital = rate.orbital.scale_add(h, from.orbital);
+        }
     }
 }
 
 impl<S: Real> Rate<S> {
     /// Returns zero rates with the dimensions of `state`.
     pub(crate) fn of(state: &State<S>) -> Self {
-        Self { trees: state.trees.iter().map(|state| TreeRate::new(state.v.len())).collect() }
+        Self { trees: state.trees.iter().map(TreeRate::of).collect(), orbital: Vec3::zero() }
     }
 
     /// `self += s · other`, for weighted sums of stages.
@@ -64,6 +73,9 @@ impl<S: Real> Rate<S> {
         for (sum, other) in self.trees.iter_mut().zip(&other.trees) {
             sum.accumulate(other, s);
         }
+        if self.trees.len() > 1 {
+            self.orbital = other.orbital.scale_add(s, self.orbital);
+        }
     }
 
     /// Copies `from` without allocating.
@@ -71,11 +83,13 @@ impl<S: Real> Rate<S> {
         for (to, from) in self.trees.iter_mut().zip(&from.trees) {
             to.copy_from(from);
         }
+        self.orbital = from.orbital;
     }
 
     /// Sets the rates that `accumulate` sums to zero.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         self.trees.iter_mut().for_each(TreeRate::clear);
+        self.orbital = Vec3::zero();
     }
 }

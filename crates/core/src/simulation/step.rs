@@ -2,9 +2,9 @@
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
+use super::members::{Part, Place};
 use super::record::complete_rows;
 use super::run_state::RunState;
-use super::run_system::RunSystem;
 use super::schedule::Interval;
 use crate::control::ControlError;
 use crate::spatial::{Scalar, Vec3};
@@ -25,12 +25,13 @@ impl<S: Scalar> RunState<'_, S> {
 
     fn order_of_execution(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
         self.begin(interval, end)?;
-        // 6 row at the start of the step
+        // 7 row at the start of the step
         let is_row = self.is_row_due(interval);
+        self.has_event = false;
         if is_row {
             self.record(interval.start)?;
         }
-        // 7 integration, 8 location of the first change of a joint's mode
+        // 8 integration, 9 location of the first change of a mode: of a joint or of a latch
         let reached = self.integrate(interval, end, is_row)?;
         self.schedule.cut_at(reached);
         (self.steps, self.controllers_updated) = (self.steps + 1, false);
@@ -47,12 +48,17 @@ impl<S: Scalar> RunState<'_, S> {
             return Err(self.diverged(t));
         }
         self.accuracy.end_step(t, &self.state, &self.equations);
-        // 2 impacts of joints at their stops
+        // 2 events: captures and releases
+        self.happen(t, (t, end))?;
+        // 3 impacts of joints at their stops
         self.impacts(t, (t, end))?;
-        // 3 loads of the environment, 4 controllers that are due
+        self.equations.members.follow(&self.equations.trees, &self.state.trees);
+        // 4 loads of the environment, 5 controllers that are due
         self.loads_and_controllers(interval, end)?;
-        // 5 which joints stick, slip or rest at a stop during the step
+        // 6 which joints stick, slip or rest at a stop during the step
         self.mover.solve_modes(&mut self.equations, &self.state);
+        let EquationsOfMotion { trees, members, .. } = &mut self.equations;
+        members.parts.iter_mut().for_each(|part| part.take_modes(&trees[part.tree]));
         Ok(())
     }
 
@@ -61,7 +67,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
-        let is_due = interval.is_control_tick && !self.controllers_updated;
+        let is_due = !self.controllers_updated && self.is_any_due(t);
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
         if is_due {
@@ -78,15 +84,42 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Updates the controllers of those systems whose value of `compensates_environment` equals the argument.
+    /// Returns true if the controllers of any system are due at `t`, s.
+    fn is_any_due(&self, t: f64) -> bool {
+        (0..self.systems.len()).any(|number| self.is_due(number, t))
+    }
+
+    /// Returns true if the controllers of a system are due at `t`, s: at its own ticks, and when an event starts one of
+    /// them.
+    fn is_due(&self, number: usize, t: f64) -> bool {
+        self.schedule.is_tick(number, t)
+            || self.has_event && self.systems[number].controllers.set.is_started_by_event()
+    }
+
+    /// Updates the controllers that are due of those systems whose value of `compensates_environment` equals the
+    /// argument.
     fn update_controllers(&mut self, t: f64, compensates_environment: bool) -> Result<(), SimulationError> {
-        let parts = self.systems.iter_mut().zip(&mut self.equations.trees).zip(&self.state.trees);
-        for ((RunSystem { controllers, .. }, system), state) in parts {
-            if controllers.set.compensates_environment() == compensates_environment {
-                if !compensates_environment {
-                    system.data.clear_external();
+        for number in 0..self.systems.len() {
+            let set = &self.systems[number].controllers.set;
+            if set.compensates_environment() != compensates_environment || !self.is_due(number, t) {
+                continue;
+            }
+            let EquationsOfMotion { trees, members, .. } = &mut self.equations;
+            let controllers = &mut self.systems[number].controllers;
+            let (state, system) = match members.places[number] {
+                Place::Tree(tree) => (&self.state.trees[tree], &mut trees[tree]),
+                Place::Part(part) => {
+                    let Part { state, own, .. } = &mut members.parts[part];
+                    (&*state, own)
                 }
-                controllers.update(t, state, system)?;
+            };
+            if !compensates_environment {
+                system.data.clear_external();
+            }
+            controllers.update(t, state, system)?;
+            if let Place::Part(part) = members.places[number] {
+                let part = &members.parts[part];
+                part.drive(&mut trees[part.tree]);
             }
         }
         Ok(())
@@ -100,11 +133,12 @@ impl<S: Scalar> RunState<'_, S> {
         accuracy.start_step(self.steps, span, state, equations, mover)?;
         let result = mover.advance(equations, state, span);
         if is_row {
-            complete_rows(systems, mover, equations);
+            complete_rows(systems, mover, equations, &self.row_states);
         }
         let reached = result?;
-        for (number, (run, state)) in systems.iter_mut().zip(&state.trees).enumerate() {
-            run.recorder.trace.work_done += mover.work_of_step(number, state).abs();
+        for (run, &place) in systems.iter_mut().zip(&equations.members.places) {
+            let tree = equations.members.tree_at(place);
+            run.recorder.trace.work_done += mover.work_of_step(tree, &state.trees[tree]).abs();
         }
         let is_smooth = !interval.is_event && !equations.has_modes();
         accuracy.measure_step(
@@ -120,7 +154,7 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Changes to a new local reference orbit if a system has drifted far from its current reference orbit.
     pub(super) fn rereference_if_far(&mut self, t: f64) -> Result<(), SimulationError> {
-        let EquationsOfMotion { trees, loads } = &mut self.equations;
+        let EquationsOfMotion { trees, loads, .. } = &mut self.equations;
         for (number, (tree, state)) in trees.iter_mut().zip(&mut self.state.trees).enumerate() {
             if Vec3::from_slice(&state.q).norm().value() > self.rereference_beyond {
                 tree.rereference(loads, t, state)?;

@@ -114,7 +114,7 @@ impl<S: Scalar> StepDoubling<S> {
         Self {
             whole: state.clone(),
             halved: state.clone(),
-            start: trees.iter().map(|tree| Data::new(tree.model)).collect(),
+            start: trees.iter().map(|tree| Data::new(&tree.model)).collect(),
             every,
             changes: vec![0.0; trees.len()],
             errors: trees.iter().map(|tree| Errors::new(tree.model.joint_count())).collect(),

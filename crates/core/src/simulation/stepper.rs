@@ -1,11 +1,14 @@
 //! Stepper: a run that the caller advances.
 
-use super::checkpoint::Checkpoint;
+use super::checkpoint::{Checkpoint, GroupCheckpoint};
+use super::equations::EquationsOfMotion;
 use super::error::{RunFailure, SimulationError};
-use super::only::{only, only_mut};
+use super::members::Place;
+use super::recording::{GroupRecording, Recording};
 use super::run_state::RunState;
 use super::trace::Trace;
 use crate::spatial::Scalar;
+use crate::world::WorldError;
 use std::ops::ControlFlow;
 
 /// Callback that receives the time reached, s, at intervals during an advance. Returning `Break` stops the advance at
@@ -17,9 +20,22 @@ pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 /// The steps are those of [`Simulation::run`](super::Simulation::run), regardless of the times to which the run is
 /// advanced.
 pub struct Stepper<'a> {
-    run: Box<dyn Steps + 'a>,
+    groups: Vec<Group<'a>>,
+    /// Group of each system, and number of the system in the group.
+    places: Vec<(usize, usize)>,
+    /// Length of a regular step, s.
+    time_step: f64,
     status: Status,
 }
+
+/// Systems that may interact, and their run. Systems of different groups never interact.
+pub(super) struct Group<'a> {
+    pub(super) numbers: Vec<usize>,
+    pub(super) run: Box<dyn Steps + 'a>,
+}
+
+/// Number of regular steps by which the groups of a run with several groups advance in turn.
+const STEPS_IN_TURN: f64 = 64.0;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Status {
@@ -28,37 +44,48 @@ enum Status {
     Finished,
 }
 
-/// Interface of a run, independent of its scalar type.
+/// Interface of the run of a group, independent of its scalar type. Systems are given by their number in the group.
 pub(super) trait Steps: Send {
     fn time(&self) -> f64;
     fn duration(&self) -> Option<f64>;
     fn check_time(&self, t: f64) -> Result<(), SimulationError>;
     fn advance_to(&mut self, t: f64, monitor: Monitor<'_>) -> Result<ControlFlow<()>, SimulationError>;
-    fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError>;
-    fn check_command(&self, tau: &[Option<f64>]) -> Result<(), SimulationError>;
-    fn command(&mut self, tau: &[Option<f64>]) -> Result<(), SimulationError>;
-    fn checkpoint(&self) -> Result<Checkpoint, SimulationError>;
-    fn rows(&self) -> &Trace;
-    fn trace(&mut self) -> Result<Trace, SimulationError>;
+    fn read_state(&mut self, system: usize, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError>;
+    fn check_command(&self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError>;
+    fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError>;
+    /// Returns the names of the events.
+    fn events(&self) -> Vec<String>;
+    /// Returns the number of the event with this name if it can be triggered; `None` if there is none.
+    fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError>;
+    fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;
+    fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
+    fn rows(&self, system: usize) -> &Trace;
+    fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
     /// Adds a row at the current time.
     fn record_current_time(&mut self) -> Result<(), SimulationError>;
     /// Removes and returns the rows recorded so far, with the error estimates and the outcomes of goals.
-    fn take_rows(&mut self) -> Trace;
+    fn take_rows(&mut self) -> GroupRecording;
 }
 
 impl<'a> Stepper<'a> {
-    pub(super) fn new(run: impl Steps + 'a) -> Self {
-        Self { run: Box::new(run), status: Status::Running }
+    pub(super) fn new(groups: Vec<Group<'a>>, time_step: f64) -> Self {
+        let count = groups.iter().map(|group| group.numbers.len()).sum();
+        let mut places = vec![(0, 0); count];
+        for (number, group) in groups.iter().enumerate() {
+            group.numbers.iter().enumerate().for_each(|(local, &system)| places[system] = (number, local));
+        }
+        Self { groups, places, time_step, status: Status::Running }
     }
 
     /// Returns the current time, s.
     pub fn time(&self) -> f64 {
-        self.run.time()
+        // the groups differ only after an advance that the monitor stopped
+        self.groups.iter().map(|group| group.run.time()).fold(f64::INFINITY, f64::min)
     }
 
     /// Returns the planned end of the run, s; `None` for an open-ended run.
     pub fn duration(&self) -> Option<f64> {
-        self.run.duration()
+        self.groups[0].run.duration()
     }
 
     /// Advances the run by `dt`, s.
@@ -99,32 +126,72 @@ impl<'a> Stepper<'a> {
         monitor: Monitor<'_>,
     ) -> Result<ControlFlow<()>, SimulationError> {
         self.check()?;
-        self.run.check_time(t)?;
-        let result = self.run.advance_to(t, monitor);
+        self.groups.iter().try_for_each(|group| group.run.check_time(t))?;
+        let result = self.advance_groups(t, monitor);
         self.ended_by(result)
     }
 
-    /// Writes the configuration `(nq,)` and the velocity `(nv,)` at the current time to `q` and `v`.
+    /// Advances all groups, several in turn by a few steps each.
+    fn advance_groups(&mut self, t: f64, monitor: Monitor<'_>) -> Result<ControlFlow<()>, SimulationError> {
+        if let [group] = &mut self.groups[..] {
+            return group.run.advance_to(t, monitor);
+        }
+        let turn = STEPS_IN_TURN * self.time_step;
+        while self.time() < t {
+            let next = (((self.time() / turn).floor() + 1.0) * turn).min(t);
+            for group in self.groups.iter_mut().filter(|group| group.run.time() < next) {
+                let _ = group.run.advance_to(next, &mut |_| ControlFlow::Continue(()))?;
+            }
+            if next < t && monitor(next).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Writes the configuration `(nq,)` and the velocity `(nv,)` of a system at the current time to `q` and `v`.
     ///
     /// # Errors
     /// The errors of a step, which end the run; [`SimulationError::Ended`] if the run has ended.
-    pub fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
+    pub fn read_state(&mut self, system: usize, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
         self.check()?;
-        let result = self.run.read_state(q, v);
+        let (group, system) = self.places[system];
+        let result = self.groups[group].run.read_state(system, q, v);
         self.ended_by(result)
     }
 
-    /// Sets the joint torques `tau`, `(n,)`, N m (N), which are held from the current time on; `None` leaves the
+    /// Sets the joint torques `tau`, `(n,)`, N m (N), of a system, which are held from the current time on; `None` leaves the
     /// torque of a joint unchanged. The current step ends at the current time.
     ///
     /// # Errors
     /// [`SimulationError::WrongLength`], [`SimulationError::NotFinite`] and, for a joint of an active control,
     /// [`SimulationError::CommandedJoint`] leave the run unchanged. The errors of a step end the run.
-    pub fn command(&mut self, tau: &[Option<f64>]) -> Result<(), SimulationError> {
+    pub fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.check()?;
-        self.run.check_command(tau)?;
-        let result = self.run.command(tau);
+        let (group, system) = self.places[system];
+        let run = &mut self.groups[group].run;
+        run.check_command(system, tau)?;
+        let result = run.command(system, tau);
         self.ended_by(result)
+    }
+
+    /// Triggers an event that happens on command, at the current time. The current step ends there.
+    ///
+    /// # Errors
+    /// [`SimulationError::World`] for an event that does not exist, has happened, or does not happen on command; the run
+    /// is unchanged. The errors of a step end the run.
+    pub fn trigger(&mut self, name: &str) -> Result<(), SimulationError> {
+        self.check()?;
+        for group in 0..self.groups.len() {
+            let run = &mut self.groups[group].run;
+            if let Some(event) = run.check_trigger(name)? {
+                let result = run.trigger(event);
+                return self.ended_by(result);
+            }
+        }
+        let known: Vec<String> = self.groups.iter().flat_map(|group| group.run.events()).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
     }
 
     /// Returns a checkpoint, from which the run can be resumed together with the rows of [`Stepper::rows`].
@@ -133,40 +200,43 @@ impl<'a> Stepper<'a> {
     /// The error of a user-defined controller whose state cannot be saved; it leaves the run unchanged.
     pub fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
         self.check()?;
-        self.run.checkpoint()
+        let groups = self.groups.iter().map(|group| group.run.checkpoint());
+        Ok(Checkpoint::new(groups.collect::<Result<_, _>>()?))
     }
 
-    /// Returns the rows recorded so far, which do not include a row at the current time.
-    pub fn rows(&self) -> &Trace {
-        self.run.rows()
+    /// Returns the rows of a system recorded so far, which do not include a row at the current time.
+    pub fn rows(&self, system: usize) -> &Trace {
+        let (group, system) = self.places[system];
+        self.groups[group].run.rows(system)
     }
 
-    /// Returns the trace that the run would have if it ended now, with the last row at the current time.
+    /// Returns the recording that the run would have if it ended now, with the last rows at the current time.
     ///
     /// # Errors
     /// The errors of a step, which end the run; [`SimulationError::Ended`] if the run has ended.
-    pub fn trace(&mut self) -> Result<Trace, SimulationError> {
+    pub fn recording(&mut self) -> Result<Recording, SimulationError> {
         self.check()?;
-        let result = self.run.trace();
-        self.ended_by(result)
+        let parts: Result<Vec<_>, _> = self.groups.iter_mut().map(|group| group.run.recording()).collect();
+        let parts = self.ended_by(parts)?;
+        Ok(Recording::of(self.groups.iter().map(|group| &group.numbers[..]).zip(parts)))
     }
 
-    /// Ends the run at the current time and returns its trace; after an error, the trace has the rows recorded before
-    /// it.
+    /// Ends the run at the current time and returns its recording; after an error, it has the rows recorded before it.
     ///
     /// # Errors
     /// An error in computing the last row, with the rows before it; [`SimulationError::Ended`] if called a second time.
-    pub fn finish(&mut self) -> Result<Trace, RunFailure> {
+    pub fn finish(&mut self) -> Result<Recording, RunFailure> {
         let last_row = match self.status {
-            Status::Running => self.run.record_current_time(),
+            Status::Running => self.groups.iter_mut().try_for_each(|group| group.run.record_current_time()),
             Status::Failed => Ok(()),
             Status::Finished => Err(SimulationError::Ended),
         };
         self.status = Status::Finished;
-        let trace = self.run.take_rows();
+        let parts = self.groups.iter_mut().map(|group| (&group.numbers[..], group.run.take_rows()));
+        let recording = Recording::of(parts);
         match last_row {
-            Ok(()) => Ok(trace),
-            Err(error) => Err(RunFailure { error, trace: Box::new(trace) }),
+            Ok(()) => Ok(recording),
+            Err(error) => Err(RunFailure { error, recording: Box::new(recording) }),
         }
     }
 
@@ -223,17 +293,17 @@ impl<S: Scalar> Steps for RunState<'_, S> {
         RunState::advance_to(self, t, monitor)
     }
 
-    fn read_state(&mut self, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
-        RunState::read_state(self, q, v)
+    fn read_state(&mut self, system: usize, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
+        RunState::read_state(self, system, q, v)
     }
 
-    fn check_command(&self, tau: &[Option<f64>]) -> Result<(), SimulationError> {
-        let place = only(self.layout.systems());
+    fn check_command(&self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
+        let place = &self.layout.systems()[system];
         let (got, expected) = (tau.len(), place.joints.len());
         if got != expected {
             return Err(SimulationError::WrongLength { name: "tau", expected, got });
         }
-        let set = &only(&self.systems).controllers.set;
+        let set = &self.systems[system].controllers.set;
         for (index, value) in tau.iter().enumerate().filter_map(|(j, tau)| Some((j, (*tau)?))) {
             if !value.is_finite() {
                 return Err(SimulationError::NotFinite { name: "tau", index, value });
@@ -246,38 +316,64 @@ impl<S: Scalar> Steps for RunState<'_, S> {
         Ok(())
     }
 
-    fn command(&mut self, tau: &[Option<f64>]) -> Result<(), SimulationError> {
+    fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.cut_at_current_time()?;
-        let (set, system) =
-            (&mut only_mut(&mut self.systems).controllers.set, only_mut(&mut self.equations.trees));
+        let EquationsOfMotion { trees, members, .. } = &mut self.equations;
+        let set = &mut self.systems[system].controllers.set;
+        let moved = match members.places[system] {
+            Place::Tree(tree) => &mut trees[tree],
+            Place::Part(part) => &mut members.parts[part].own,
+        };
         set.command(tau);
         for (j, tau) in tau.iter().enumerate() {
             // a control may have become active in the step that ended here
             if let Some(tau) = tau.filter(|_| set.driver_of(j, self.time).is_none()) {
-                system.command[j] = S::of(tau);
+                moved.command[j] = S::of(tau);
             }
+        }
+        if let Place::Part(part) = members.places[system] {
+            let part = &members.parts[part];
+            part.drive(&mut trees[part.tree]);
         }
         Ok(())
     }
 
-    fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
+    fn events(&self) -> Vec<String> {
+        self.events.list.iter().map(|event| event.name.clone()).collect()
+    }
+
+    fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError> {
+        let Some(number) = self.events.find(name) else { return Ok(None) };
+        self.events.check_trigger(number).map(|()| Some(number))
+    }
+
+    fn trigger(&mut self, event: usize) -> Result<(), SimulationError> {
+        self.cut_at_current_time()?;
+        self.events.states[event].due = Some(self.time);
+        self.events_changed();
+        Ok(())
+    }
+
+    fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError> {
         RunState::checkpoint(self)
     }
 
-    fn rows(&self) -> &Trace {
-        &only(&self.systems).recorder.trace
+    fn rows(&self, system: usize) -> &Trace {
+        &self.systems[system].recorder.trace
     }
 
-    fn trace(&mut self) -> Result<Trace, SimulationError> {
-        RunState::trace(self)
+    fn recording(&mut self) -> Result<GroupRecording, SimulationError> {
+        RunState::recording(self)
     }
 
     fn record_current_time(&mut self) -> Result<(), SimulationError> {
         RunState::record_current_time(self)
     }
 
-    fn take_rows(&mut self) -> Trace {
+    fn take_rows(&mut self) -> GroupRecording {
         self.conclude();
-        std::mem::take(&mut only_mut(&mut self.systems).recorder.trace)
+        let systems = self.systems.iter_mut().map(|run| std::mem::take(&mut run.recorder.trace)).collect();
+        let (events, group) = (std::mem::take(&mut self.events.records), std::mem::take(&mut self.group));
+        GroupRecording { systems, events, group }
     }
 }

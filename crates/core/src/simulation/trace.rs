@@ -4,6 +4,7 @@ use super::certificate::PairChecks;
 use super::columns::{Column, TRACKING, WRENCHES};
 use crate::control::Outcome;
 use crate::model::{BASE_NQ, Model};
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Declares the trace with a field for each row of the table of columns.
@@ -92,7 +93,7 @@ impl NamedColumn {
 }
 
 /// Difference of one coordinate between steps and halved steps, summed over a run; m, or rad for a revolute joint.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateDrift {
     /// Difference of the position, m or rad.
     pub position: f64,
@@ -103,6 +104,18 @@ pub struct CoordinateDrift {
     /// `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration from the end of a step of length
     /// `h` to the start of the next.
     pub jumps: f64,
+}
+
+impl CoordinateDrift {
+    /// Returns the difference over an interval that follows another one.
+    pub(super) fn after(&self, before: &Self) -> Self {
+        Self {
+            position: self.position + before.position,
+            rate: self.rate + before.rate,
+            fastest: self.fastest.max(before.fastest),
+            jumps: self.jumps + before.jumps,
+        }
+    }
 }
 
 /// Outcome of a goal.

@@ -4,15 +4,16 @@ use super::body_states::LoadedSystem;
 use super::modes::JointModes;
 use super::tree_state::{TreeRate, TreeState};
 use crate::dynamics::{
-    Data, Momentum, base_rotation, center_of_mass_b, forward_dynamics_recursion, kinematics,
-    locked_dynamics_recursion, projected_base_twist,
+    Data, Momentum, base_rotation, center_of_mass, center_of_mass_b, forward_dynamics_recursion, kinematics,
+    kinetic_energy, locked_dynamics_recursion, momentum, projected_base_twist,
 };
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Motion, Real, Vec3};
+use std::borrow::Cow;
 
 /// Equations of motion of one tree under constant joint torques and the external wrenches in `data`.
 pub(crate) struct Tree<'a, S> {
-    pub(crate) model: &'a Model,
+    pub(crate) model: Cow<'a, Model>,
     pub(crate) data: Data<S>,
     /// Commanded joint torques, `(n,)`, N m (N), without the compensation of Coulomb friction.
     pub(crate) command: Vec<S>,
@@ -28,23 +29,32 @@ pub(crate) struct Tree<'a, S> {
     pub(crate) modes: JointModes,
     /// True if any joint has damping or friction.
     is_lossy: bool,
+    /// Joints of each member; empty if the tree has a single member.
+    pub(super) shares: Vec<Vec<usize>>,
 }
 
 impl<'a, S: Real> Tree<'a, S> {
     /// Returns the equations of motion of `model`. `restitution` is that of the stops at the position limits of
     /// joints; `None` means no stops.
-    pub(crate) fn new(model: &'a Model, restitution: Option<f64>) -> Self {
+    pub(crate) fn new(model: Cow<'a, Model>, restitution: Option<f64>) -> Self {
+        let modes = JointModes::new(&model, restitution);
+        Self::with_modes(model, modes)
+    }
+
+    /// Returns the equations of motion of `model`, whose joints have these modes.
+    pub(super) fn with_modes(model: Cow<'a, Model>, modes: JointModes) -> Self {
         let (n, zero) = (model.joint_count(), S::of(0.0));
         Self {
-            model,
-            data: Data::new(model),
+            data: Data::new(&model),
             command: vec![zero; n],
             forces: vec![zero; model.nv()],
             scratch: vec![zero; model.nv()],
             frame_velocity: Vec3::zero(),
             mass: S::of(model.mass()),
-            modes: JointModes::new(model, restitution),
+            modes,
+            shares: Vec::new(),
             is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0),
+            model,
         }
     }
 
@@ -52,8 +62,17 @@ impl<'a, S: Real> Tree<'a, S> {
     /// `v_b = Mbb⁻¹ (h − Mbm q̇)`.
     ///
     /// The momentum `h` is integrated from the external wrenches alone, so without them it is conserved to rounding,
-    /// whereas the integrated base twist has a truncation error. Called once per step.
+    /// whereas the integrated base twist has a truncation error. In a run with several trees, the base is also shifted so
+    /// that the centre of mass is the integral of its velocity `P/m`. Called once per step.
     pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
+        self.project_twist(state);
+        if let Some(center) = state.center {
+            let shift = center - center_of_mass(&self.data, &state.q);
+            (Vec3::from_slice(&state.q) + shift).write(&mut state.q);
+        }
+    }
+
+    fn project_twist(&mut self, state: &mut TreeState<S>) {
         // relative to the velocity of the base's origin, so that a speed of km/s in W costs no precision
         let frame_velocity = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
         Vec3::zero().write(&mut state.v);
@@ -72,15 +91,28 @@ impl<'a, S: Real> Tree<'a, S> {
         );
     }
 
+    /// Changes the velocity of `state` by `change`, adds the change of its momentum to its impulse and that of its
+    /// kinetic energy to its work, and computes its kinematics. Expects the kinematics before the change.
+    pub(super) fn jump(&mut self, state: &mut TreeState<S>, change: &[f64]) {
+        let energy = |tree: &Self, state: &TreeState<S>| kinetic_energy(&tree.model, &tree.data, &state.v);
+        let before = energy(self, state);
+        state.v.iter_mut().zip(change).for_each(|(v, change)| *v += S::of(*change));
+        self.update_kinematics(state);
+        state.work += energy(self, state) - before;
+        let h = momentum(&self.data, &state.q);
+        let start = &state.initial_momentum;
+        state.impulse = Momentum { linear: h.linear - start.linear, angular: h.angular - start.angular };
+    }
+
     /// Computes the kinematics of `state` in W.
     pub(crate) fn update_kinematics(&mut self, state: &TreeState<S>) {
         self.frame_velocity = Vec3::zero();
-        kinematics(self.model, &mut self.data, &state.q, &state.v);
+        kinematics(&self.model, &mut self.data, &state.q, &state.v);
     }
 
     /// Computes the kinematics of a later stage of a step, whose velocity is relative to the frame of the step.
     pub(super) fn update_stage_kinematics(&mut self, stage: &TreeState<S>) {
-        kinematics(self.model, &mut self.data, &stage.q, &stage.v);
+        kinematics(&self.model, &mut self.data, &stage.q, &stage.v);
     }
 
     /// Restores kinematics and loads at the start of a step, which a trial step has overwritten.
@@ -114,6 +146,11 @@ impl<'a, S: Real> Tree<'a, S> {
         self.frame_velocity
     }
 
+    /// Sets the velocity of the frame relative to which the velocities are expressed, W axes, m/s.
+    pub(super) fn follow_frame(&mut self, velocity: Vec3<S>) {
+        self.frame_velocity = velocity;
+    }
+
     /// Returns the parts of the tree that loads read and write; `q` is the configuration whose kinematics are in
     /// `data`.
     pub(super) fn loaded<'s>(&'s mut self, q: &'s [S]) -> LoadedSystem<'s, S> {
@@ -125,13 +162,16 @@ impl<'a, S: Real> Tree<'a, S> {
     pub(crate) fn rates(&mut self, state: &TreeState<S>, is_loaded: bool, rate: &mut TreeRate<S>) {
         let (q, v) = (&state.q[..], &state.v[..]);
         self.update_joint_forces(v);
-        let Self { model, data, forces, modes, frame_velocity, is_lossy, .. } = self;
+        let Self { model, data, forces, modes, frame_velocity, is_lossy, shares, mass, .. } = self;
         let loaded = if is_loaded { model.nodes().len() } else { 0 };
         match modes.locked() {
             Some(locked) => locked_dynamics_recursion(model, data, v, forces, locked, &mut rate.a),
             None => forward_dynamics_recursion(model, data, v, forces, &mut rate.a),
         }
         rate.v.copy_from_slice(v);
+        if state.center.is_some() {
+            rate.center_velocity = state.momentum().linear * (S::of(1.0) / *mass);
+        }
         S::enter(
             #[inline(always)]
             || base_rates(data, loaded, q, v, *frame_velocity, forces, rate),
@@ -141,6 +181,9 @@ impl<'a, S: Real> Tree<'a, S> {
                 #[inline(always)]
                 || modes.loss(model, v),
             );
+            for (share, joints) in rate.shares.iter_mut().zip(shares) {
+                *share = modes.loss_of(model, v, joints.iter().copied());
+            }
         }
     }
 

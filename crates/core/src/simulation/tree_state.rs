@@ -20,6 +20,11 @@ pub(crate) struct TreeState<S> {
     pub(crate) work: S,
     /// Energy dissipated by damping, friction and stops of the joints so far, J.
     pub(crate) dissipated: S,
+    /// Position of the centre of mass in W, the integral of `P/m`, m; `None` in a run with a single tree. The base is
+    /// shifted to it once per step, so that the angular momentum of several trees about a common point is exact.
+    pub(crate) center: Option<Vec3<S>>,
+    /// Part of `dissipated` in the joints of each member, J; empty for a tree with a single member.
+    pub(crate) shares: Vec<S>,
 }
 
 /// Time derivatives of a tree at one stage.
@@ -42,11 +47,15 @@ pub(crate) struct TreeRate<S> {
     pub(crate) power: S,
     /// Power dissipated by damping and friction, W.
     pub(crate) loss: S,
+    /// Velocity of the centre of mass, `P/m`, W axes, m/s; zero in a run with a single tree.
+    pub(crate) center_velocity: Vec3<S>,
+    /// Part of `loss` in the joints of each member, W; empty for a tree with a single member.
+    pub(crate) shares: Vec<S>,
 }
 
 impl<S: Real> TreeRate<S> {
-    pub(crate) fn new(nv: usize) -> Self {
-        let zeros = vec![S::of(0.0); nv];
+    pub(crate) fn of(state: &TreeState<S>) -> Self {
+        let zeros = vec![S::of(0.0); state.v.len()];
         Self {
             base_velocity: Vec3::zero(),
             base_acceleration: Vec3::zero(),
@@ -56,6 +65,8 @@ impl<S: Real> TreeRate<S> {
             wrench: Momentum::default(),
             power: S::of(0.0),
             loss: S::of(0.0),
+            center_velocity: Vec3::zero(),
+            shares: vec![S::of(0.0); state.shares.len()],
         }
     }
 
@@ -68,7 +79,9 @@ impl<S: Real> TreeRate<S> {
         self.wrench.angular = other.wrench.angular.scale_add(s, self.wrench.angular);
         self.power = other.power.mul_add(s, self.power);
         self.loss = other.loss.mul_add(s, self.loss);
-        for (to, from) in [(&mut self.v, &other.v), (&mut self.a, &other.a)] {
+        self.center_velocity = other.center_velocity.scale_add(s, self.center_velocity);
+        let shares = (&mut self.shares, &other.shares);
+        for (to, from) in [(&mut self.v, &other.v), (&mut self.a, &other.a), shares] {
             for (to, from) in to.iter_mut().zip(from) {
                 *to = from.mul_add(s, *to);
             }
@@ -83,6 +96,8 @@ impl<S: Real> TreeRate<S> {
         (self.wrench, self.power, self.loss) = (wrench, power, loss);
         self.v.copy_from_slice(&from.v);
         self.a.copy_from_slice(&from.a);
+        self.center_velocity = from.center_velocity;
+        self.shares.copy_from_slice(&from.shares);
     }
 
     /// Sets the rates that `accumulate` sums to zero.
@@ -93,6 +108,8 @@ impl<S: Real> TreeRate<S> {
         (self.power, self.loss) = (S::of(0.0), S::of(0.0));
         self.v.fill(S::of(0.0));
         self.a.fill(S::of(0.0));
+        self.center_velocity = Vec3::zero();
+        self.shares.fill(S::of(0.0));
     }
 }
 
@@ -110,6 +127,8 @@ impl<S: Real> TreeState<S> {
             impulse: Momentum::default(),
             work: S::of(0.0),
             dissipated: S::of(0.0),
+            center: None,
+            shares: Vec::new(),
         }
     }
 
@@ -134,6 +153,8 @@ impl<S: Real> TreeState<S> {
             impulse: momentum(&self.impulse),
             work: f(&self.work),
             dissipated: f(&self.dissipated),
+            center: self.center.map(|center| center.map(&f)),
+            shares: self.shares.iter().map(&f).collect(),
         }
     }
 
@@ -143,6 +164,8 @@ impl<S: Real> TreeState<S> {
         self.v.copy_from_slice(&from.v);
         (self.initial_momentum, self.impulse) = (from.initial_momentum, from.impulse);
         (self.work, self.dissipated) = (from.work, from.dissipated);
+        self.center = from.center;
+        self.shares.copy_from_slice(&from.shares);
     }
 
     /// Writes `from ⊕ h rate`: increments are added to positions and velocities, and the attitude is multiplied by
@@ -163,5 +186,9 @@ impl<S: Real> TreeState<S> {
         self.impulse.angular = rate.wrench.angular.scale_add(h, from.impulse.angular);
         self.work = rate.power.mul_add(h, from.work);
         self.dissipated = rate.loss.mul_add(h, from.dissipated);
+        self.center = from.center.map(|center| rate.center_velocity.scale_add(h, center));
+        for ((to, from), rate) in self.shares.iter_mut().zip(&from.shares).zip(&rate.shares) {
+            *to = rate.mul_add(h, *from);
+        }
     }
 }

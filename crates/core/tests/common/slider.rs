@@ -54,7 +54,7 @@ pub fn moving(model: Model, rate: f64, integrator: Integrator, time_step: f64) -
 }
 
 pub fn run(simulation: &mut Simulation, duration: f64) -> Trace {
-    simulation.run(duration).unwrap()
+    simulation.run(duration).unwrap().only()
 }
 
 /// Controller with a force at the joint, N, as a function of time.
@@ -68,8 +68,8 @@ impl Controller for Force {
 }
 
 pub fn driven(mut simulation: Simulation, force: fn(f64) -> f64) -> Simulation {
-    simulation.controls =
-        vec![Control::on_all_joints(&simulation.model, Law::User(Box::new(Force(force)), None))];
+    simulation.systems[0].controls =
+        vec![Control::on_all_joints(&simulation.systems[0].model, Law::User(Box::new(Force(force)), None))];
     simulation
 }
 

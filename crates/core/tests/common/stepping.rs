@@ -1,6 +1,6 @@
 //! Runs that stop and resume.
 
-use onorbit_core::simulation::{Checkpoint, Simulation, SimulationError, Trace};
+use onorbit_core::simulation::{Checkpoint, Recording, Simulation, SimulationError, Trace};
 
 /// Advances a run of `duration` to `stop`; returns a checkpoint, written and read back, and the rows so far.
 pub fn stopped(simulation: &mut Simulation, duration: f64, stop: f64) -> (Checkpoint, Trace) {
@@ -9,7 +9,7 @@ pub fn stopped(simulation: &mut Simulation, duration: f64, stop: f64) -> (Checkp
     let checkpoint = stepper.checkpoint().unwrap();
     let read = Checkpoint::from_json(&checkpoint.to_json()).unwrap();
     assert_eq!(read, checkpoint);
-    (read, stepper.rows().clone())
+    (read, stepper.rows(0).clone())
 }
 
 /// Resumes a run of `duration` and returns its whole trace.
@@ -19,9 +19,9 @@ pub fn resumed(
     from: &Checkpoint,
     rows: Trace,
 ) -> Result<Trace, SimulationError> {
-    let mut stepper = simulation.resume(Some(duration), from.clone(), rows)?;
+    let mut stepper = simulation.resume(Some(duration), from.clone(), vec![rows])?;
     stepper.advance_to(duration)?;
-    stepper.finish().map_err(|failure| failure.error)
+    stepper.finish().map(Recording::only).map_err(|failure| failure.error)
 }
 
 /// Asserts that two traces have the same bits.

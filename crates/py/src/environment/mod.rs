@@ -111,6 +111,11 @@ impl PyEffect {
         matches!(self.kind, Kind::GravityField(_) | Kind::ThirdBody(_))
     }
 
+    /// Returns true if the effect acts on named bodies or surfaces of one robot.
+    pub(crate) fn has_bodies(&self) -> bool {
+        matches!(self.kind, Kind::BodyWrench { .. } | Kind::Drag { .. } | Kind::RadiationPressure { .. })
+    }
+
     /// Returns the effect on a given robot; `None` if it is part of gravity.
     pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Option<Arc<dyn Effect>>> {
         Ok(Some(match &self.kind {

@@ -8,6 +8,7 @@ mod gravity;
 mod model;
 mod orbit;
 mod simulation;
+mod world;
 
 pub(crate) use simulation::SimulationErrorExt;
 

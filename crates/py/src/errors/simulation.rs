@@ -1,18 +1,17 @@
 //! Errors of runs, some with the partial trace.
 
 use super::{IntoPython, fields, plain, raise, shape_error};
-use crate::trace::PyTrace;
 use onorbit_core::control::ControlError;
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
 
 /// Converts the error of a run to its class and attaches the partial trace, if there is one.
 pub(crate) trait SimulationErrorExt {
-    fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyTrace>>) -> PyErr;
+    fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyAny>>) -> PyErr;
 }
 
 impl SimulationErrorExt for SimulationError {
-    fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyTrace>>) -> PyErr {
+    fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyAny>>) -> PyErr {
         let message = self.to_string();
         match self {
             Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
@@ -106,6 +105,9 @@ impl SimulationErrorExt for SimulationError {
                 let fields = fields!(py, "name": "q", "got": length, "expected": 1.0);
                 with_trace(py, raise(py, "EngineError", &message, &fields), time, trace)
             }
+            Self::World(source) => source.into_python(py),
+            Self::Model(source) => source.into_python(py),
+            Self::EngineOfWorld => plain(py, "EngineError", &message),
             Self::Engine(source) => match source.downcast::<PyErr>() {
                 Ok(raised) => {
                     let _ = raised.value(py).setattr("trace", trace);
@@ -118,7 +120,7 @@ impl SimulationErrorExt for SimulationError {
 }
 
 /// Adds the time and the partial trace to an error.
-fn with_trace(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyTrace>>) -> PyErr {
+fn with_trace(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyAny>>) -> PyErr {
     let value = error.value(py);
     let _ = value.setattr("time", time);
     let _ = value.setattr("trace", trace);

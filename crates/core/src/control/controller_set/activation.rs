@@ -12,7 +12,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// Evaluates the goals, then stops and starts the controls that are due at `t`. Returns true if anything
     /// changed.
     pub(super) fn activate(&mut self, t: f64, model: &Model) -> Result<bool, ControlError> {
-        let Self { controls, states, same_instant, .. } = self;
+        let Self { controls, states, same_instant, events, .. } = self;
         let now = t + *same_instant;
         let mut has_changed = false;
         for (control, state) in controls.iter().zip(states.iter_mut()) {
@@ -34,6 +34,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         for i in 0..controls.len() {
             let is_due = match controls[i].begin {
                 Begin::At(start) => start <= now,
+                Begin::AfterEvent(event) => events.contains(&event),
                 Begin::After(before) => {
                     let before = &states[before].memory;
                     before.phase == Phase::Over || before.outcome.is_decided()

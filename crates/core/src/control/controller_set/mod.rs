@@ -51,6 +51,8 @@ pub struct ControllerSet<'a, S> {
     /// External torque commands, `(n,)`, N m (N), for joints that no active control drives.
     commanded: Vec<Option<f64>>,
     jacobian: Vec<f64>,
+    /// Numbers of the events that have happened.
+    events: Vec<usize>,
     /// Efforts and rates of a group, and workspace of its law.
     group: [Vec<f64>; 3],
 }
@@ -96,6 +98,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             tau: zeros(n),
             commanded: vec![None; n],
             jacobian: zeros(ROWS * n),
+            events: Vec::new(),
             group: [zeros(n), zeros(n), zeros(n)],
         })
     }
@@ -130,6 +133,21 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             is_active && control.joints.contains(&j)
         };
         self.controls.iter().zip(&self.states).find(drives).map(|(control, _)| control)
+    }
+
+    /// Sets the numbers of the events that have happened.
+    pub fn set_events(&mut self, happened: &[usize]) {
+        self.events.clear();
+        self.events.extend_from_slice(happened);
+    }
+
+    /// Returns true if an event that has happened starts a control that still waits.
+    pub fn is_started_by_event(&self) -> bool {
+        let starts = |(control, state): (&Control, &ControlState)| {
+            let event = matches!(control.begin, Begin::AfterEvent(event) if self.events.contains(&event));
+            event && state.is_waiting()
+        };
+        self.controls.iter().zip(&self.states).any(starts)
     }
 
     /// Returns the external torque commands, `(n,)`, N m (N).

@@ -1,5 +1,7 @@
 //! The certificate, its checks and their gates.
 
+use serde::{Deserialize, Serialize};
+
 /// Largest relative drift of momentum that passes: the rounding of millions of steps.
 pub(super) const MOMENTUM: f64 = 1e-11;
 /// Largest relative error of the energy balance that passes: that of a fourth-order integrator that resolves the
@@ -63,7 +65,7 @@ pub struct Certificate {
 }
 
 /// Results of the checks that compare neighbouring steps, evaluated during the run; see [`Certificate`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairChecks {
     /// Value of [`Certificate::center_of_mass_error_rel`].
     pub center_of_mass_error_rel: f64,
@@ -73,6 +75,19 @@ pub struct PairChecks {
     pub base_rows_gate: f64,
     /// Value of [`Certificate::attitude_consistency`].
     pub attitude_consistency: f64,
+}
+
+impl PairChecks {
+    /// Returns the larger errors of two intervals; of the base rows, those that are closer to their gate.
+    pub(in crate::simulation) fn worse(&self, other: &Self) -> Self {
+        let ratio = |checks: &Self| checks.base_rows_residual_rel * (1.0 / checks.base_rows_gate);
+        let rows = if ratio(self) >= ratio(other) { self } else { other };
+        Self {
+            center_of_mass_error_rel: self.center_of_mass_error_rel.max(other.center_of_mass_error_rel),
+            attitude_consistency: self.attitude_consistency.max(other.attitude_consistency),
+            ..*rows
+        }
+    }
 }
 
 /// One check of a certificate.

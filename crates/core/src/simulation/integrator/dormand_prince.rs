@@ -176,14 +176,17 @@ mod tests {
     use crate::simulation::external_loads::NoLoads;
     use crate::simulation::only::only;
     use crate::simulation::state::State;
+    use crate::simulation::tree::Tree;
     use nalgebra::{Matrix3, Vector3};
+    use std::borrow::Cow;
 
     /// Returns the configuration of a tumbling spacecraft after 8 s; `weight` is that of attitude and angular rate in
     /// the error.
     fn tumble(tolerance: f64, weight: f64) -> Vec<f64> {
         let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
         let model = Model::rigid_body(10.0, inertia).unwrap();
-        let mut equations = EquationsOfMotion::<f64, _>::new(&[&model], NoLoads, None);
+        let mut equations =
+            EquationsOfMotion::<f64, _>::new(vec![Tree::new(Cow::Borrowed(&model), None)], NoLoads);
         let v = vec![0.1, 0.0, -0.2, 0.7, 0.9, -0.4];
         let mut state = State::at(&mut equations.trees, [(neutral(&model), v)]);
         let mut stages = Stages::new(&state);

@@ -84,6 +84,13 @@ impl<S: Real> Integration<S> {
         self.dormand_prince.as_ref().map(|method| &method.control)
     }
 
+    /// Continues with the step size of another step control, whose trees differed.
+    pub(crate) fn continue_from(&mut self, before: StepControl) {
+        if let Some(method) = &mut self.dormand_prince {
+            (method.control.step, method.control.error) = (before.step, before.error);
+        }
+    }
+
     /// Restores the state of the step control.
     pub(crate) fn set_control(&mut self, control: StepControl) {
         if let Some(method) = &mut self.dormand_prince {

@@ -20,13 +20,13 @@ impl<S: Real> Tree<'_, S> {
     ///
     /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj`: the momentum does not change, and the dissipated energy is
     /// `−½ (1 − e) λ q̇_j`. Joints that rest at their stops stay locked as long as their stops push against them.
-    /// Friction exerts no impulse.
-    pub(crate) fn resolve_impacts(&mut self, state: &mut TreeState<S>, restitution: f64) {
+    /// Friction exerts no impulse. If `is_endless`, joints do not rebound, which ends an infinite sequence of bounces.
+    pub(crate) fn resolve_impacts(&mut self, state: &mut TreeState<S>, is_endless: bool) {
         let n = self.model.joint_count();
         for round in 0..4 * n + 4 {
             let Some(j) = self.first_impact(state) else { break };
             let rate = state.v[BASE_NV + j].lane(0);
-            let e = if round < 2 * n { restitution } else { 0.0 };
+            let e = if round < 2 * n && !is_endless { self.modes.restitution[j] } else { 0.0 };
             let response = self.impulse_response(j, -rate.signum(), state);
             let impulse = -(1.0 + e) * rate / response;
             for (v, change) in state.v.iter_mut().zip(&self.scratch) {
@@ -36,6 +36,9 @@ impl<S: Real> Tree<'_, S> {
             let lost = S::of(-0.5 * (1.0 - e) * impulse * rate);
             state.work += -lost;
             state.dissipated += lost;
+            if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {
+                state.shares[share] += lost;
+            }
             self.project_momentum(state);
         }
     }
@@ -55,7 +58,7 @@ impl<S: Real> Tree<'_, S> {
         let mut locked: Vec<bool> =
             (0..n).map(|i| i != j && stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0).collect();
         for _ in 0..=n {
-            locked_dynamics_recursion(self.model, &mut self.data, &at_rest, &impulse, &locked, &mut a);
+            locked_dynamics_recursion(&self.model, &mut self.data, &at_rest, &impulse, &locked, &mut a);
             // a stop can only push: a joint that the stop would have to pull is released
             let pulls =
                 |i: &usize| locked[*i] && self.data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;

@@ -38,8 +38,8 @@ pub(crate) struct JointModes {
     requested: Vec<Option<f64>>,
     /// Lower and upper position limit of each joint, rad (m); infinite without stops.
     limits: Vec<(f64, f64)>,
-    /// Coefficient of restitution of the stops.
-    pub(super) restitution: f64,
+    /// Coefficient of restitution of the stops of each joint.
+    pub(super) restitution: Vec<f64>,
     is_active: bool,
     locked: Vec<bool>,
     any_locked: bool,
@@ -73,12 +73,52 @@ impl JointModes {
             static_friction,
             requested: vec![None; n],
             limits,
-            restitution: restitution.unwrap_or(0.0),
+            restitution: vec![restitution.unwrap_or(0.0); n],
             is_active,
             locked: vec![false; n],
             any_locked: false,
             direction: vec![0.0; n],
         }
+    }
+
+    /// Returns the modes of a tree with `count` joints; each entry of `parts` is the modes of some of its joints and
+    /// their indices in the tree.
+    pub(in crate::simulation) fn joined<'m>(
+        count: usize,
+        parts: impl Iterator<Item = (&'m Self, &'m [usize])>,
+    ) -> Self {
+        let (zeros, free) = (vec![0.0; count], (f64::NEG_INFINITY, f64::INFINITY));
+        let mut all = Self {
+            friction: zeros.clone(),
+            static_friction: zeros.clone(),
+            requested: vec![None; count],
+            limits: vec![free; count],
+            restitution: zeros.clone(),
+            is_active: false,
+            locked: vec![false; count],
+            any_locked: false,
+            direction: zeros,
+        };
+        for (part, joints) in parts {
+            for (own, &joint) in joints.iter().enumerate() {
+                all.friction[joint] = part.friction[own];
+                all.static_friction[joint] = part.static_friction[own];
+                all.requested[joint] = part.requested[own];
+                (all.limits[joint], all.restitution[joint]) = (part.limits[own], part.restitution[own]);
+                (all.locked[joint], all.direction[joint]) = (part.locked[own], part.direction[own]);
+            }
+            all.is_active |= part.is_active;
+        }
+        all.any_locked = all.locked.contains(&true);
+        all
+    }
+
+    /// Takes the modes in a step from those of a tree; `joints` are the indices of the joints in the tree.
+    pub(in crate::simulation) fn take(&mut self, tree: &Self, joints: &[usize]) {
+        for (own, &joint) in joints.iter().enumerate() {
+            (self.locked[own], self.direction[own]) = (tree.locked[joint], tree.direction[joint]);
+        }
+        self.any_locked = self.locked.contains(&true);
     }
 
     /// Returns which joints are locked and in which direction the others slip, `(n,)` each.
@@ -208,9 +248,20 @@ impl JointModes {
     /// Returns the power that damping and friction dissipate, `Σ (b q̇ + f s) q̇`, W.
     #[inline(always)]
     pub(in crate::simulation) fn loss<S: Real>(&self, model: &Model, v: &[S]) -> S {
+        self.loss_of(model, v, 0..model.joint_count())
+    }
+
+    /// Returns the power that damping and friction of some joints dissipate, W.
+    #[inline(always)]
+    pub(in crate::simulation) fn loss_of<S: Real>(
+        &self,
+        model: &Model,
+        v: &[S],
+        joints: impl Iterator<Item = usize>,
+    ) -> S {
         let mut sum = S::of(0.0);
-        for (j, joint) in model.joints().iter().enumerate() {
-            let torque = v[BASE_NV + j] * S::of(joint.damping) + S::of(self.drag(j));
+        for j in joints {
+            let torque = v[BASE_NV + j] * S::of(model.joints()[j].damping) + S::of(self.drag(j));
             sum += torque * v[BASE_NV + j];
         }
         sum

@@ -57,8 +57,7 @@ impl<S: Real> StepMethod<S> {
         let is_endless = self.idle_steps > MOST_IDLE_STEPS;
         for (tree, state) in equations.trees.iter_mut().zip(&mut state.trees) {
             if tree.modes.is_active() {
-                let restitution = if is_endless { 0.0 } else { tree.modes.restitution };
-                tree.resolve_impacts(state, restitution);
+                tree.resolve_impacts(state, is_endless);
             }
         }
     }
@@ -128,7 +127,8 @@ impl<S: Real> StepMethod<S> {
             return Ok(1.0);
         }
         state.copy_from(&self.start);
-        let (mut low, mut before) = (0.0, self.least_margin(equations, state));
+        let latches = equations.latch_margin(state);
+        let (mut low, mut before) = (0.0, self.least_margin(equations, state).min(latches));
         // the margin of a joint that starts to slip is zero at first: either it soon becomes positive, or the joint
         // is locked for this step
         let mut fraction = 1.0;
@@ -192,7 +192,7 @@ impl<S: Real> StepMethod<S> {
         state: &State<S>,
         interval: (f64, f64),
     ) -> Result<f64, SimulationError> {
-        let mut least = self.least_margin(equations, state);
+        let mut least = self.least_margin(equations, state).min(equations.latch_margin(state));
         if equations.any_locked() && self.idle_steps < MOST_IDLE_STEPS {
             self.settled.copy_from(state);
             equations.project_momentum(&mut self.settled);

@@ -1,0 +1,45 @@
+//! Error estimates of a system over a run in which its tree may change.
+
+use super::certificate::PairChecks;
+use super::trace::{CoordinateDrift, Trace};
+use serde::{Deserialize, Serialize};
+
+/// Error estimates of a tree or of a system.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Estimates {
+    /// Attitude error, rad.
+    pub(super) turn: Option<f64>,
+    /// Differences between steps and halved steps: of the base's origin, then of every joint.
+    pub(super) drifts: Vec<CoordinateDrift>,
+    /// Checks that need every step.
+    pub(super) checks: Option<PairChecks>,
+}
+
+impl Estimates {
+    /// Returns the estimates of a system from those of its tree; `joints` are its joints in the tree.
+    pub(super) fn of_part(self, joints: &[usize]) -> Self {
+        if self.drifts.is_empty() {
+            return self;
+        }
+        let coordinates = std::iter::once(0).chain(joints.iter().map(|joint| joint + 1));
+        Self { drifts: coordinates.map(|i| self.drifts[i]).collect(), ..self }
+    }
+
+    /// Returns the estimates of an interval that follows another one.
+    pub(super) fn after(self, before: &Self) -> Self {
+        let sum = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a + b);
+        let drifts = self.drifts.iter().zip(&before.drifts);
+        Self {
+            turn: sum(self.turn, before.turn),
+            drifts: drifts.map(|(now, before)| now.after(before)).collect(),
+            checks: self.checks.zip(before.checks).map(|(now, before)| now.worse(&before)),
+        }
+    }
+
+    /// Writes the estimates to a trace.
+    pub(super) fn write(self, trace: &mut Trace) {
+        trace.pair_checks = self.checks;
+        trace.attitude_step_doubling = self.turn;
+        trace.step_doubling = self.drifts;
+    }
+}

@@ -1,0 +1,88 @@
+//! Events of a run: which are due, and what they change.
+
+use super::error::SimulationError;
+use super::recording::EventRecord;
+use super::schedule::Schedule;
+use crate::world::{Event, When, WorldError};
+use serde::{Deserialize, Serialize};
+
+/// Progress of one event.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct EventState {
+    /// Time at which the event happened, s. A release of what is not connected happens without effect.
+    pub(super) happened: Option<f64>,
+    /// Time at which the event is due, s, once it is known.
+    pub(super) due: Option<f64>,
+    /// True while the conditions of a latch hold.
+    pub(super) is_held: bool,
+}
+
+/// Events of a group of systems, with their progress.
+#[derive(Debug, Default)]
+pub(super) struct Events {
+    pub(super) list: Vec<Event>,
+    /// Number of each event in the world.
+    pub(super) numbers: Vec<usize>,
+    pub(super) states: Vec<EventState>,
+    pub(super) records: Vec<EventRecord>,
+}
+
+impl Events {
+    /// Returns the events at the start of a run.
+    pub(super) fn new(list: Vec<Event>, numbers: Vec<usize>) -> Self {
+        let due = |event: &Event| match event.when {
+            When::At(t) => Some(t),
+            _ => None,
+        };
+        let states = list.iter().map(|event| EventState { due: due(event), ..EventState::default() });
+        Self { states: states.collect(), list, numbers, records: Vec::new() }
+    }
+
+    /// Returns the first event, in the order of declaration, that is due at `t`, s.
+    pub(super) fn next_due(&self, t: f64, schedule: &Schedule) -> Option<usize> {
+        let is_due = |state: &EventState| {
+            state.happened.is_none() && state.due.is_some_and(|due| !schedule.is_later(due, t))
+        };
+        self.states.iter().position(is_due)
+    }
+
+    /// Notes that an event happened at `t`, s: the events that wait for it become due.
+    pub(super) fn happen(&mut self, number: usize, t: f64) {
+        self.states[number].happened = Some(t);
+        for (event, state) in self.list.iter().zip(&mut self.states) {
+            if let When::After { event, delay } = event.when
+                && event == number
+            {
+                state.due = Some(t + delay);
+            }
+        }
+    }
+
+    /// Returns the times at which events that have not happened are due, s.
+    pub(super) fn due_times(&self) -> Vec<f64> {
+        let open = self.states.iter().filter(|state| state.happened.is_none());
+        open.filter_map(|state| state.due).collect()
+    }
+
+    /// Returns the numbers in the world of the events that have happened.
+    pub(super) fn happened(&self) -> Vec<usize> {
+        let states = self.states.iter().zip(&self.numbers);
+        states.filter(|(state, _)| state.happened.is_some()).map(|(_, number)| *number).collect()
+    }
+
+    /// Returns the number of the event with this name; `None` if this group has no such event.
+    pub(super) fn find(&self, name: &str) -> Option<usize> {
+        self.list.iter().position(|event| event.name == name)
+    }
+
+    /// Checks that an event can be triggered.
+    pub(super) fn check_trigger(&self, number: usize) -> Result<(), SimulationError> {
+        let (event, state) = (&self.list[number], &self.states[number]);
+        let reason = match event.when {
+            _ if state.happened.is_some() => "it has already happened",
+            When::OnCommand => return Ok(()),
+            _ => "it does not happen on command; set on_command",
+        };
+        Err(WorldError::NotTriggered { name: event.name.clone(), reason }.into())
+    }
+}

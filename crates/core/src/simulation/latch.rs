@@ -1,0 +1,51 @@
+//! Latches: captures that happen once two frames are close to each other and slow relative to each other.
+
+use super::tree::Tree;
+use super::tree_state::TreeState;
+use crate::dynamics::{frame_pose, frame_velocity};
+use crate::spatial::{Real, log_rotation};
+use crate::world::Envelope;
+
+/// Tolerance, relative to the envelope, within which its conditions hold.
+const ROUNDING: f64 = 1e-9;
+
+/// A latch that has not closed.
+#[derive(Clone, Debug)]
+pub(crate) struct Latch {
+    /// Number of the event.
+    pub(super) event: usize,
+    /// Tree and frame of the capturing and of the captured frame.
+    pub(super) frames: [(usize, usize); 2],
+    pub(super) envelope: Envelope,
+    /// True while the conditions hold.
+    pub(super) is_held: bool,
+}
+
+impl Latch {
+    /// Returns the margin of the condition that is closest to its bound, relative to the bound: positive inside the
+    /// envelope. Expects the kinematics of `states`, relative to W, in `trees`.
+    ///
+    /// `min(1 − d/d_max, 1 − θ/θ_max, 1 − v/v_max, 1 − ω/ω_max)`
+    pub(super) fn inside<S: Real>(&self, trees: &[Tree<'_, S>], states: &[TreeState<S>]) -> f64 {
+        let [by, of] = self.frames.map(|(tree, frame)| {
+            let (tree, q) = (&trees[tree], &states[tree].q);
+            (frame_pose(&tree.model, &tree.data, q, frame), frame_velocity(&tree.model, &tree.data, q, frame))
+        });
+        let offset = (of.0.pos_w - by.0.pos_w).norm().lane(0);
+        let turn = log_rotation(&(by.0.rot_wf.transpose() * of.0.rot_wf)).norm().lane(0);
+        let rates = of.1 - by.1;
+        let values = [offset, turn, rates.linear.norm().lane(0), rates.angular.norm().lane(0)];
+        let bounds = [self.envelope.within, self.envelope.slower_than].concat();
+        values.iter().zip(bounds).map(|(value, bound)| 1.0 - value / bound).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns true if the conditions hold, within rounding.
+    pub(super) fn holds(inside: f64) -> bool {
+        inside >= -ROUNDING
+    }
+
+    /// Returns the margin to the next change of the latch: negative if it should already have changed.
+    pub(super) fn margin(&self, inside: f64) -> f64 {
+        if self.is_held { inside + 2.0 * ROUNDING } else { -inside }
+    }
+}

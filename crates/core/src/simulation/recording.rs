@@ -1,0 +1,180 @@
+//! Result of a run: the traces of its systems, the events, and the balances of groups of systems.
+
+use super::certificate::Check;
+use super::trace::Trace;
+use crate::dynamics::Momentum;
+use serde::{Deserialize, Serialize};
+
+/// Result of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Recording {
+    /// Trace of each system, in the order of the systems.
+    pub systems: Vec<Trace>,
+    /// Events that happened, in order of time.
+    pub events: Vec<EventRecord>,
+    /// Balances of the groups that have several systems.
+    pub groups: Vec<GroupRows>,
+}
+
+impl Recording {
+    /// Returns the trace of the only system of a run of one robot.
+    ///
+    /// # Panics
+    /// If the run has several systems.
+    pub fn only(self) -> Trace {
+        let mut systems = self.systems;
+        assert_eq!(systems.len(), 1, "the run has several systems; take one of `systems`");
+        systems.remove(0)
+    }
+
+    /// Returns the number of rows of the first system.
+    pub fn rows(&self) -> usize {
+        self.systems.first().map_or(0, Trace::rows)
+    }
+}
+
+/// Kind of an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum EventKind {
+    /// Two systems were connected.
+    Capture,
+    /// A connection was removed.
+    Release,
+}
+
+impl EventKind {
+    /// Returns the name of the kind.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Capture => "capture",
+            Self::Release => "release",
+        }
+    }
+}
+
+/// An event that happened, with its audit.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EventRecord {
+    /// Name of the event.
+    pub name: String,
+    /// Kind of the event.
+    pub kind: EventKind,
+    /// Time, s.
+    pub time: f64,
+    /// Numbers of the two systems, the capturing one first.
+    pub systems: [usize; 2],
+    /// Impulse on the second system and on what it carried, axes of W: linear, N s, then angular about `point`, N m s.
+    pub impulse: [f64; 6],
+    /// Point at which the impulse acts, in W, m.
+    pub point: [f64; 3],
+    /// Kinetic energy lost, J; negative if a spring added energy.
+    pub energy_lost: f64,
+    /// Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes of the
+    /// momenta of its bodies.
+    pub momentum_error: [f64; 2],
+    /// Relative velocity, m/s, and relative angular velocity, rad/s, of the connected frames after a capture, relative
+    /// to those before it.
+    pub twist_left: [f64; 2],
+    /// Difference between `energy_lost` and the change of the kinetic energy, relative to the kinetic energy before.
+    pub energy_error: f64,
+}
+
+/// Largest error of the audit of an event that passes.
+pub const AUDIT: f64 = 1e-11;
+
+impl EventRecord {
+    /// Returns the checks of the audit.
+    pub fn checks(&self) -> Vec<Check> {
+        let lines = [
+            ("linear_momentum_error_rel", self.momentum_error[0]),
+            ("angular_momentum_error_rel", self.momentum_error[1]),
+            ("relative_velocity_left_rel", self.twist_left[0]),
+            ("relative_rotation_left_rel", self.twist_left[1]),
+            ("energy_error_rel", self.energy_error),
+        ];
+        lines.into_iter().map(|(name, value)| Check { name, value, gate: AUDIT }).collect()
+    }
+
+    /// Returns true if momentum and energy balance, and the connected frames do not move relative to each other.
+    pub fn passed(&self) -> bool {
+        self.checks().iter().all(Check::passed)
+    }
+}
+
+/// Balance of momentum and energy of a group of several systems, one row per recorded step.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GroupRows {
+    /// Numbers of the systems.
+    pub systems: Vec<usize>,
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// Linear momentum, N s, and angular momentum about the centre of mass of the group, N m s, axes of W, `(T, 6)`.
+    pub momentum: Vec<f64>,
+    /// Time integral of the external forces and of their moments about the centre of mass of the group, `(T, 6)`.
+    pub impulse: Vec<f64>,
+    /// Kinetic energy, J.
+    pub kinetic_energy: Vec<f64>,
+    /// Work done on the group by motors, external wrenches and springs, less the energy lost in joints and captures, J.
+    pub work: Vec<f64>,
+    /// Energy lost in joints and captures, J.
+    pub dissipated: Vec<f64>,
+    /// Sum of the magnitudes of the momenta of the bodies: linear, N s, relative to the centre of mass of the group, and
+    /// angular about it, N m s, `(T, 2)`.
+    pub scales: Vec<f64>,
+}
+
+impl GroupRows {
+    /// Returns the number of rows.
+    pub fn rows(&self) -> usize {
+        self.time.len()
+    }
+
+    pub(super) fn truncate(&mut self, rows: usize) {
+        for (column, width) in [
+            (&mut self.time, 1),
+            (&mut self.momentum, 6),
+            (&mut self.impulse, 6),
+            (&mut self.kinetic_energy, 1),
+            (&mut self.work, 1),
+            (&mut self.dissipated, 1),
+            (&mut self.scales, 2),
+        ] {
+            column.truncate(rows * width);
+        }
+    }
+}
+
+/// Rows and events of one group.
+#[derive(Clone, Debug, Default)]
+pub(super) struct GroupRecording {
+    pub(super) systems: Vec<Trace>,
+    pub(super) events: Vec<EventRecord>,
+    pub(super) group: GroupRows,
+}
+
+impl Recording {
+    /// Returns the recording of a run whose groups have these systems.
+    pub(super) fn of<'g>(parts: impl Iterator<Item = (&'g [usize], GroupRecording)>) -> Self {
+        let (mut systems, mut all) = (Vec::new(), Self::default());
+        for (numbers, GroupRecording { systems: traces, events, group }) in parts {
+            systems.extend(numbers.iter().copied().zip(traces));
+            all.events.extend(events);
+            if numbers.len() > 1 {
+                all.groups.push(GroupRows { systems: numbers.to_vec(), ..group });
+            }
+        }
+        systems.sort_by_key(|(number, _)| *number);
+        all.systems = systems.into_iter().map(|(_, trace)| trace).collect();
+        all.events.sort_by(|a, b| a.time.total_cmp(&b.time));
+        all
+    }
+}
+
+/// Amounts of a group that the current trees do not contain, because their values started when the trees were made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Ledger {
+    /// Time integral of the external forces and of their moments about the centres of mass of the trees.
+    pub(super) impulse: Momentum<f64>,
+    pub(super) work: f64,
+    pub(super) dissipated: f64,
+}

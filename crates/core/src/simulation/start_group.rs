@@ -1,0 +1,256 @@
+//! Creates the run of a group of systems from the settings of a simulation.
+
+use super::accuracy::Accuracy;
+use super::connections::Connections;
+use super::controllers::Controllers;
+use super::engine::{Engine, ExternalEngine};
+use super::environment_loads::EnvironmentLoads;
+use super::equations::EquationsOfMotion;
+use super::error::SimulationError;
+use super::events::Events;
+use super::every_step::EveryStep;
+use super::integrator::{Integrator, Stages, StepSettings};
+use super::modes::StepMethod;
+use super::mover::Mover;
+use super::recorder::{RecordOptions, Recorder};
+use super::recording::{GroupRows, Ledger};
+use super::run_state::RunState;
+use super::run_system::RunSystem;
+use super::schedule::{Clock, LONGEST_INTERVAL, Schedule};
+use super::state::State;
+use super::step_doubling::StepDoubling;
+use super::tree::Tree;
+use crate::control::Control;
+use crate::earth::Earth;
+use crate::environment::{Effect, GravityMode};
+use crate::gravity::Gravity;
+use crate::model::Model;
+use crate::orbit::Orbit;
+use crate::spatial::Scalar;
+use crate::world::{Action, Event, FrameIndex, Layout, System, When, systems_of};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// Number of rows for which a run without a planned end reserves memory.
+const ROWS_OF_OPEN_RUN: usize = 1024;
+
+/// Settings that all systems of a simulation share.
+pub(super) struct Shared {
+    pub(super) orbit: Option<Arc<dyn Orbit>>,
+    /// Gravity field of the run; `None` without a planet.
+    pub(super) gravity: Option<Arc<Gravity>>,
+    pub(super) earth: Option<Arc<Earth>>,
+    pub(super) gravity_mode: GravityMode,
+    /// Effects, including gravity.
+    pub(super) effects: Vec<Arc<dyn Effect>>,
+    pub(super) time_step: f64,
+    pub(super) has_engine: bool,
+    pub(super) integrator: Integrator,
+    pub(super) tolerance: f64,
+    pub(super) rereference_beyond: f64,
+    pub(super) record_wrenches: bool,
+    pub(super) record_every: usize,
+}
+
+impl Shared {
+    /// Returns the run, at its initial state, of the systems with these numbers.
+    pub(super) fn run_state<'a, S: Scalar>(
+        &self,
+        duration: Option<f64>,
+        numbers: &[usize],
+        systems: Vec<&'a mut System>,
+        events: &[Event],
+        engine: Option<&'a mut (dyn Engine + 'static)>,
+    ) -> Result<RunState<'a, S>, SimulationError> {
+        let schedule = self.schedule(duration, &systems, events);
+        let rows = self.row_count(&schedule);
+        let (is_native, is_adaptive) = (engine.is_none(), self.is_adaptive());
+        let has_every_step = self.record_every == 1 && !is_adaptive;
+        let rereference_beyond = self.local_reference_distance(&systems);
+        let Self { integrator, tolerance, time_step, .. } = *self;
+        let horizon = duration.unwrap_or(LONGEST_INTERVAL * time_step);
+        let step_settings = StepSettings { integrator, tolerance, time_step, duration: horizon };
+
+        let layout = Layout::new(systems.iter().map(|system| (&*system.name, &*system.model)));
+        let events = events_of(numbers, events);
+        let named = systems.iter().map(|system| (&*system.name, &*system.model));
+        let connections = Connections::new(named, !events.list.is_empty())?;
+        let numbers_of = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
+        let starts: Vec<_> =
+            systems.iter().map(|system| (numbers_of(&system.q), numbers_of(&system.v))).collect();
+        let (mut trees, mut members, mut models) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, system) in systems.into_iter().enumerate() {
+            let System { model, controls, tool, reference, stops, .. } = system;
+            let model: &'a Model = model;
+            let stops = stops.filter(|_| is_native); // an external engine has its own
+            trees.push(Tree::new(Cow::Borrowed(model), stops));
+            let options = self.record_options(model, controls, *tool, reference.is_some());
+            let recorder = Recorder::new(rows, (number, model), options, controls, has_every_step)?;
+            let mut controllers = Controllers::new(controls, (*tool, reference.as_ref()), model, time_step)?;
+            if !is_native {
+                controllers.set.assume_creeping_friction();
+            }
+            members.push(RunSystem { controllers, recorder, settled: None });
+            models.push(model);
+        }
+        let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(&models));
+        let state = State::at(&mut equations.trees, starts);
+        let is_fixed = is_native && !is_adaptive;
+        let doubling = is_fixed.then(|| StepDoubling::new(&equations.trees, &state, schedule.grid_steps()));
+        let checked = equations.trees.iter().filter(|_| is_fixed && !has_every_step).enumerate();
+        let every_step = checked.map(|(number, tree)| EveryStep::new(number, &tree.model));
+        let every_step = every_step.collect::<Result<_, _>>()?;
+        let mover = match engine {
+            None => Mover::Native(StepMethod::new(&state, &step_settings)),
+            Some(engine) => Mover::External(ExternalEngine::new(engine, models[0])),
+        };
+        let mut run = RunState {
+            layout,
+            numbers: numbers.to_vec(),
+            row_buffers: (state.clone(), Stages::new(&state)),
+            row_states: Vec::new(),
+            accuracy: Accuracy::new(doubling, every_step),
+            state,
+            equations,
+            systems: members,
+            connections,
+            events,
+            ledger: Ledger::default(),
+            group: GroupRows::default(),
+            mover,
+            step_settings,
+            schedule,
+            record_every: self.record_every,
+            has_every_step,
+            steps: 0,
+            time: 0.0,
+            controllers_updated: false,
+            has_event: false,
+            records_before: f64::INFINITY,
+            rereference_beyond,
+            earth: self.earth.clone(),
+        };
+        run.follow_centers();
+        run.row_buffers.0.copy_from(&run.state);
+        run.find_latches();
+        Ok(run)
+    }
+
+    /// Returns the loads of the environment on the bodies of systems with these models.
+    pub(super) fn environment_loads(&self, models: &[&Model]) -> EnvironmentLoads {
+        EnvironmentLoads::new(
+            models,
+            self.effects.clone(),
+            self.orbit.clone(),
+            self.gravity.clone(),
+            self.earth.clone(),
+            self.gravity_mode,
+        )
+    }
+
+    /// Returns the options for the quantities that the run records in addition to the state of a system.
+    fn record_options(
+        &self,
+        model: &Model,
+        controls: &[Control],
+        tool: Option<usize>,
+        has_reference: bool,
+    ) -> RecordOptions {
+        let compensates_friction = controls.iter().any(|control| control.law.compensates_friction());
+        let mut frames = controls.iter().filter_map(|control| control.law.task());
+        let tracks_tool = frames.any(|(frame, _)| Some(frame) == tool);
+        RecordOptions {
+            tool,
+            has_reference: has_reference || tracks_tool,
+            effects: if self.record_wrenches { column_names(&self.effects) } else { Vec::new() },
+            has_orbit: self.orbit.is_some(),
+            compensates_friction: compensates_friction && model.has_friction() && !self.has_engine,
+            records_residual: self.gravity.is_some() && self.gravity_mode == GravityMode::Carried,
+        }
+    }
+
+    /// Returns the distance from the origin of W beyond which a system changes to a local reference orbit, m; infinity
+    /// if it must keep the reference orbit of the run.
+    fn local_reference_distance(&self, systems: &[&mut System]) -> f64 {
+        let is_allowed = self.gravity_mode == GravityMode::True
+            && self.gravity.is_some()
+            && !self.has_engine
+            && systems.len() == 1
+            && !systems.iter().any(|system| tracks_world(system));
+        if is_allowed { self.rereference_beyond } else { f64::INFINITY }
+    }
+
+    fn is_adaptive(&self) -> bool {
+        self.integrator == Integrator::DormandPrince
+    }
+
+    /// Returns the schedule of the run. Steps of an adaptive integrator do not end at grid points nor, without
+    /// controls, at control ticks.
+    fn schedule(&self, duration: Option<f64>, systems: &[&mut System], events: &[Event]) -> Schedule {
+        // in `Carried` mode the acceleration of the reference orbit, and with it its jumps, does not act on the robot
+        let orbit = self.orbit.iter().filter(|_| self.gravity_mode == GravityMode::True);
+        let jumps = orbit.flat_map(|orbit| orbit.event_times());
+        let times = events.iter().filter_map(|event| match event.when {
+            When::At(t) => Some(t),
+            _ => None,
+        });
+        let effects = self.effects.iter().flat_map(|effect| effect.event_times());
+        let clock = |system: &&mut System| {
+            let has_ticks = !self.is_adaptive() || !system.controls.is_empty();
+            let period = if has_ticks { system.control_period.unwrap_or(self.time_step) } else { f64::MAX };
+            Clock { period, switches: system.controls.iter().flat_map(Control::switch_times).collect() }
+        };
+        let clocks = systems.iter().map(clock).collect();
+        let schedule =
+            Schedule::new(self.time_step, duration, clocks, effects.chain(jumps).chain(times).collect());
+        if self.is_adaptive() { schedule.without_grid_steps() } else { schedule }
+    }
+
+    /// Returns the number of rows for which the recorder reserves memory.
+    fn row_count(&self, schedule: &Schedule) -> usize {
+        let steps = match self.record_every {
+            1 => schedule.intervals(),
+            every => schedule.grid_steps().map(|steps| steps / every),
+        };
+        steps.map_or(ROWS_OF_OPEN_RUN, |steps| steps.saturating_add(2))
+    }
+}
+
+/// Returns true if a control depends on the position of the robot in W.
+fn tracks_world(system: &System) -> bool {
+    system.reference.is_some()
+        || system.controls.iter().any(|control| control.law.joint_reference().is_none())
+}
+
+/// Returns the events of the systems with these numbers, in which systems and events have the numbers of the group.
+fn events_of(numbers: &[usize], events: &[Event]) -> Events {
+    let local = |system: usize| numbers.iter().position(|number| *number == system);
+    let is_own = |event: &usize| systems_of(events, *event).iter().all(|system| local(*system).is_some());
+    let own: Vec<usize> = (0..events.len()).filter(is_own).collect();
+    let event_number = |event: usize| own.iter().position(|number| *number == event).unwrap_or(0);
+    let place = |place: FrameIndex| FrameIndex { system: local(place.system).unwrap_or(0), ..place };
+    let renumbered = |number: &usize| {
+        let mut event = events[*number].clone();
+        if let When::After { event: other, .. } = &mut event.when {
+            *other = event_number(*other);
+        }
+        match &mut event.action {
+            Action::Capture { by, of } => (*by, *of) = (place(*by), place(*of)),
+            Action::Release { capture, .. } => *capture = event_number(*capture),
+        }
+        event
+    };
+    Events::new(own.iter().map(renumbered).collect(), own.clone())
+}
+
+/// Returns a unique column name for each effect: its name, with `_2`, `_3`, … appended where the name is taken.
+fn column_names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(effects.len());
+    for effect in effects {
+        let name = effect.name().replace(' ', "_");
+        let is_taken = |name: &String| names.contains(name);
+        let numbered = (2..).map(|k| format!("{name}_{k}")).find(|name| !is_taken(name));
+        names.push(if is_taken(&name) { numbered.unwrap_or_default() } else { name });
+    }
+    names
+}

@@ -1,0 +1,63 @@
+//! Momentum and energy of one system, from its own model, for the audit of an event.
+
+use crate::dynamics::{Data, base_rotation, kinematics, kinetic_energy};
+use crate::model::Model;
+use crate::spatial::{Force, Vec3};
+
+/// Momentum of a system, and the scales to which its errors are relative.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Balance {
+    /// Linear momentum, N s, and angular momentum about a point, N m s, in W axes.
+    pub momentum: Force<f64>,
+    /// Sum of the magnitudes of the momenta of the bodies, N s and N m s.
+    pub scales: [f64; 2],
+}
+
+impl Balance {
+    /// Returns the momentum of a system about `point` in W.
+    pub fn of(model: &Model, q: &[f64], v: &[f64], point: Vec3<f64>) -> Self {
+        let mut data = Data::<f64>::new(model);
+        kinematics(model, &mut data, q, v);
+        let (rot_wb, origin) = (base_rotation(q), Vec3::from_slice(q));
+        let mut all = Self::default();
+        for body in &data.bodies {
+            let h = body.inertia.momentum(body.velocity);
+            let lever = rot_wb * body.pos_b + origin - point;
+            let h = Force::at(rot_wb * h.linear, rot_wb * h.angular, lever);
+            all.momentum += h;
+            all.scales[0] += h.linear.norm();
+            all.scales[1] += h.angular.norm();
+        }
+        all
+    }
+
+    /// Adds the momentum of another system about the same point.
+    pub fn add(&mut self, other: &Self) {
+        self.momentum += other.momentum;
+        self.scales = [0, 1].map(|i| self.scales[i] + other.scales[i]);
+    }
+
+    /// Returns the differences of both momenta from those of `before`, relative to the scales.
+    pub fn error_since(&self, before: &Self) -> [f64; 2] {
+        let change = self.momentum - before.momentum;
+        let sizes = [change.linear.norm(), change.angular.norm()];
+        let scales = [0, 1].map(|i| self.scales[i].max(before.scales[i]));
+        [0, 1].map(|i| if sizes[i] == 0.0 { 0.0 } else { sizes[i] / scales[i] })
+    }
+}
+
+/// Returns the kinetic energy, J, of the change of a system's velocity from `before` to `after` at `q`.
+///
+/// For an impulse on motions that the connection forbids, the energy lost is that of the change:
+/// `T⁻ − T⁺ = ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺)`, summed over the systems.
+pub fn energy_of_change(model: &Model, q: &[f64], before: &[f64], after: &[f64]) -> f64 {
+    let change: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
+    energy(model, q, &change)
+}
+
+/// Returns the kinetic energy of a system, J.
+pub fn energy(model: &Model, q: &[f64], v: &[f64]) -> f64 {
+    let mut data = Data::<f64>::new(model);
+    kinematics(model, &mut data, q, v);
+    kinetic_energy(model, &data, v)
+}

@@ -1,0 +1,162 @@
+//! Checks of the systems and events of a world before a run.
+
+use super::error::WorldError;
+use super::event::{Action, Event, FrameIndex, When};
+use super::groups::Union;
+use super::system::System;
+
+/// Names that a path or a frame of a reference already uses.
+const RESERVED: [&str; 4] = ["world", "lvlh", "base", "path"];
+
+/// Checks the names of the systems of a world. A single system may have any name.
+///
+/// # Errors
+/// [`WorldError::NoSystems`], [`WorldError::SystemName`], [`WorldError::SystemTwice`].
+pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
+    if systems.is_empty() {
+        return Err(WorldError::NoSystems);
+    }
+    if systems.len() == 1 {
+        return Ok(());
+    }
+    for (i, System { name, .. }) in systems.iter().enumerate() {
+        let is_allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        let starts_well = name.starts_with(|c: char| c.is_ascii_alphabetic());
+        if !starts_well || !name.chars().all(is_allowed) || RESERVED.contains(&name.as_str()) {
+            return Err(WorldError::SystemName { name: name.clone() });
+        }
+        if systems[..i].iter().any(|before| before.name == *name) {
+            return Err(WorldError::SystemTwice { name: name.clone() });
+        }
+    }
+    Ok(())
+}
+
+/// Checks the events of a world.
+///
+/// # Errors
+/// A [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a capture
+/// within one system, captures that would close a loop, numbers outside their range, or events that wait for each other.
+pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldError> {
+    for (i, event) in events.iter().enumerate() {
+        if events[..i].iter().any(|before| before.name == event.name) {
+            return Err(WorldError::EventTwice { name: event.name.clone() });
+        }
+        check_action(systems, events, event)?;
+        check_when(events, event)?;
+    }
+    check_circles(events)?;
+    check_loops(systems.len(), events)
+}
+
+fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(), WorldError> {
+    let name = || event.name.clone();
+    match &event.action {
+        Action::Capture { by, of } => {
+            for FrameIndex { system, frame } in [by, of] {
+                let count = systems.len();
+                let owner = systems.get(*system);
+                let owner =
+                    owner.ok_or(WorldError::UnknownSystem { event: name(), system: *system, count })?;
+                let count = owner.model.frames().len();
+                if *frame >= count {
+                    let (system, frame) = (owner.name.clone(), *frame);
+                    return Err(WorldError::UnknownFrame { event: name(), system, frame, count });
+                }
+            }
+            if by.system == of.system {
+                return Err(WorldError::OwnSystem { event: name(), system: systems[by.system].name.clone() });
+            }
+            Ok(())
+        }
+        Action::Release { capture, impulse } => {
+            let reason = match events.get(*capture).map(|event| &event.action) {
+                Some(Action::Capture { .. }) => "",
+                Some(Action::Release { .. }) => "is not a capture",
+                None => "does not exist",
+            };
+            if !reason.is_empty() {
+                return Err(WorldError::UnknownEvent { event: name(), other: *capture, reason });
+            }
+            let value = impulse.iter().copied().find(|x| !x.is_finite());
+            let wrong = |value| WorldError::Number {
+                event: name(),
+                what: "the impulse",
+                value,
+                unit: "N s or N m s",
+                expected: "finite",
+            };
+            value.map_or(Ok(()), |value| Err(wrong(value)))
+        }
+    }
+}
+
+fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
+    let name = || event.name.clone();
+    let check = |what, value: f64, unit, expected, is_valid: bool| match is_valid {
+        true => Ok(()),
+        false => Err(WorldError::Number { event: name(), what, value, unit, expected }),
+    };
+    let is_time = |t: f64| t.is_finite() && t >= 0.0;
+    const LATER: &str = "zero or positive, and finite";
+    match event.when {
+        When::At(t) => check("the time", t, "s", LATER, is_time(t)),
+        When::After { event: other, delay } => {
+            if other >= events.len() {
+                return Err(WorldError::UnknownEvent { event: name(), other, reason: "does not exist" });
+            }
+            check("the delay", delay, "s", LATER, is_time(delay))
+        }
+        When::OnCommand => Ok(()),
+        When::Latch(envelope) => {
+            if !matches!(event.action, Action::Capture { .. }) {
+                return Err(WorldError::LatchWithoutCapture { event: name() });
+            }
+            let bounds = [envelope.within, envelope.slower_than].concat();
+            let units = ["m", "rad", "m/s", "rad/s"];
+            for (bound, unit) in bounds.into_iter().zip(units) {
+                check("a bound of the latch", bound, unit, "positive", bound > 0.0)?;
+            }
+            check("held_for", envelope.held_for, "s", LATER, is_time(envelope.held_for))
+        }
+    }
+}
+
+/// Checks that no event waits, through others, for itself.
+fn check_circles(events: &[Event]) -> Result<(), WorldError> {
+    for start in 0..events.len() {
+        let (mut at, mut path) = (start, Vec::new());
+        while let When::After { event, .. } = events[at].when {
+            path.push(events[at].name.as_str());
+            if event == start {
+                return Err(WorldError::Circle { names: path.join(", ") });
+            }
+            if path.len() > events.len() {
+                break; // a circle that does not contain `start`
+            }
+            at = event;
+        }
+    }
+    Ok(())
+}
+
+/// Checks that captures that no event releases do not connect the same systems twice.
+fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
+    let is_released = |number: usize| {
+        let releases =
+            |event: &Event| matches!(event.action, Action::Release { capture, .. } if capture == number);
+        events.iter().any(releases)
+    };
+    let (mut union, mut names) = (Union::new(systems), Vec::new());
+    for (number, event) in events.iter().enumerate() {
+        let Action::Capture { by, of } = event.action else { continue };
+        if is_released(number) {
+            continue;
+        }
+        names.push(event.name.as_str());
+        if !union.join(by.system, of.system) {
+            return Err(WorldError::Loop { names: names.join(", ") });
+        }
+    }
+    Ok(())
+}

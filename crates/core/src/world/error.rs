@@ -1,0 +1,52 @@
+//! Errors of the systems and events of a world.
+
+use crate::number_text::short;
+use thiserror::Error;
+
+/// Invalid system or event of a world.
+#[derive(Debug, Error, PartialEq)]
+#[allow(missing_docs)] // the fields are what the messages say
+pub enum WorldError {
+    #[error("the world has no systems; give at least one")]
+    NoSystems,
+    #[error(
+        "'{name}' is not a name of a system; it must start with a letter, contain only letters, digits, '_' and '-', \
+         and differ from world, lvlh, base and path"
+    )]
+    SystemName { name: String },
+    #[error("two systems have the name '{name}'; give each its own name")]
+    SystemTwice { name: String },
+    #[error("two events have the name '{name}'; give each its own name")]
+    EventTwice { name: String },
+    #[error(
+        "the event '{event}' captures '{system}' by itself; the two frames must belong to different systems"
+    )]
+    OwnSystem { event: String, system: String },
+    #[error("the event '{event}' refers to system {system}; the world has {count} systems")]
+    UnknownSystem { event: String, system: usize, count: usize },
+    #[error("the event '{event}' refers to frame {frame} of '{system}', which has {count} frames")]
+    UnknownFrame { event: String, system: String, frame: usize, count: usize },
+    #[error("the event '{event}' refers to event {other}, which {reason}")]
+    UnknownEvent { event: String, other: usize, reason: &'static str },
+    #[error("the events {names} wait for each other; let one of them happen at a time or on command")]
+    Circle { names: String },
+    #[error("{what} of the event '{event}' is {value} {unit}; it must be {expected}", value = short(*value))]
+    Number { event: String, what: &'static str, value: f64, unit: &'static str, expected: &'static str },
+    #[error("the event '{event}' has a latch, but only a capture can have one; use at, after or on_command")]
+    LatchWithoutCapture { event: String },
+    #[error(
+        "the captures {names} would connect the same systems twice, which closes a loop; closed loops are not \
+         supported yet; release one of them first"
+    )]
+    Loop { names: String },
+    #[error(
+        "at t = {time} s the event '{event}' would connect '{first}' and '{second}', which are already connected; \
+         closed loops are not supported yet; release one of the captures first",
+        time = short(*time)
+    )]
+    AlreadyConnected { event: String, time: f64, first: String, second: String },
+    #[error("the world has no event '{name}'; the events are: {known}")]
+    NoSuchEvent { name: String, known: String },
+    #[error("the event '{name}' cannot be triggered: {reason}")]
+    NotTriggered { name: String, reason: &'static str },
+}

@@ -1,0 +1,97 @@
+//! Events that change how the systems of a world are connected.
+
+use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// Index of a frame of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FrameIndex {
+    /// Number of the system in the world.
+    pub system: usize,
+    /// Index of the frame in the model of the system.
+    pub frame: usize,
+}
+
+/// An event: what happens, and when. Each event happens at most once in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Name, unique among the events.
+    pub name: String,
+    /// Condition under which the event happens.
+    pub when: When,
+    /// What happens.
+    pub action: Action,
+}
+
+/// Condition under which an event happens.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// At this time, s.
+    At(f64),
+    /// A delay, s, after another event.
+    After {
+        /// Number of the other event.
+        event: usize,
+        /// Delay, s.
+        delay: f64,
+    },
+    /// When the caller of the stepper triggers it.
+    OnCommand,
+    /// When the two frames of a capture have been within an envelope for long enough.
+    Latch(Envelope),
+}
+
+/// Envelope of a latch: the frames must be close to each other and slow relative to each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Envelope {
+    /// Largest distance and angle between the frames, m and rad.
+    pub within: [f64; 2],
+    /// Largest relative speed of their origins and largest relative angular speed, m/s and rad/s.
+    pub slower_than: [f64; 2],
+    /// Time for which all conditions must hold, s.
+    pub held_for: f64,
+}
+
+/// What an event does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Action {
+    /// Connects two frames rigidly at their relative pose of that instant.
+    Capture {
+        /// Capturing frame, whose tree keeps its base.
+        by: FrameIndex,
+        /// Captured frame.
+        of: FrameIndex,
+    },
+    /// Removes the connection that a capture made.
+    Release {
+        /// Number of the capture among the events.
+        capture: usize,
+        /// Impulse of a spring on the system of the captured frame, in the axes of the capturing frame at its origin,
+        /// N s and N m s; the opposite impulse acts on the other system.
+        impulse: [f64; 6],
+    },
+}
+
+/// Rigid connection of two frames of different systems.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Weld {
+    /// Number of the capture that made the connection, among the events.
+    pub capture: usize,
+    /// Capturing frame.
+    pub by: FrameIndex,
+    /// Captured frame.
+    pub of: FrameIndex,
+    /// Rotation from the axes of the captured frame to those of the capturing frame, as a quaternion (x, y, z, w).
+    pub rotation: [f64; 4],
+    /// Origin of the captured frame in the capturing frame, m.
+    pub position: [f64; 3],
+}
+
+impl Weld {
+    /// Returns the pose of the captured frame in the capturing frame.
+    pub fn pose(&self) -> Isometry3<f64> {
+        let [x, y, z, w] = self.rotation;
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+        Isometry3::from_parts(Vector3::from(self.position).into(), rotation)
+    }
+}

@@ -1,0 +1,65 @@
+//! Groups: systems that may interact during a run. Systems of different groups never do, so each group is a run of its
+//! own.
+
+use super::event::{Action, Event, When};
+
+/// Sets of numbers that are joined one pair at a time.
+pub(super) struct Union {
+    parent: Vec<usize>,
+}
+
+impl Union {
+    pub(super) fn new(count: usize) -> Self {
+        Self { parent: (0..count).collect() }
+    }
+
+    /// Returns the smallest number of the set that contains `i`.
+    pub(super) fn first(&self, mut i: usize) -> usize {
+        while self.parent[i] != i {
+            i = self.parent[i];
+        }
+        i
+    }
+
+    /// Joins the sets of two numbers; returns false if they are already in the same set.
+    pub(super) fn join(&mut self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.first(a), self.first(b));
+        self.parent[a.max(b)] = a.min(b);
+        a != b
+    }
+}
+
+/// Returns the systems that an event involves; for an event after another one, also those of the other.
+pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
+    let (mut all, mut at) = (Vec::new(), number);
+    for _ in 0..=events.len() {
+        let capture = match events[at].action {
+            Action::Release { capture, .. } => capture,
+            Action::Capture { .. } => at,
+        };
+        if let Action::Capture { by, of } = events[capture].action {
+            all.extend([by.system, of.system]);
+        }
+        match events[at].when {
+            When::After { event, .. } => at = event,
+            _ => break,
+        }
+    }
+    all
+}
+
+/// Returns the groups of `count` systems, each with its systems in order; `links` are further pairs of systems that
+/// interact.
+pub fn groups(count: usize, events: &[Event], links: &[(usize, usize)]) -> Vec<Vec<usize>> {
+    let mut union = Union::new(count);
+    for number in 0..events.len() {
+        systems_of(events, number).windows(2).for_each(|pair| _ = union.join(pair[0], pair[1]));
+    }
+    links.iter().for_each(|(a, b)| _ = union.join(*a, *b));
+    let mut groups: Vec<Vec<usize>> = vec![Vec::new(); count];
+    for system in 0..count {
+        groups[union.first(system)].push(system);
+    }
+    groups.retain(|group| !group.is_empty());
+    groups
+}

@@ -1,0 +1,67 @@
+//! Impulses: the velocity of systems at the instant at which they are connected, and after a push.
+
+use super::assembly::Member;
+use crate::dynamics::{
+    Data, FrameWrench, apply_external, base_rotation, forward_dynamics_recursion, kinematics, positions,
+};
+use crate::model::{BASE_NV, Model};
+use crate::spatial::{Force, Vec3};
+
+/// A system in motion, with its place in a tree.
+pub struct Moving<'a> {
+    /// Place of the system in the tree.
+    pub member: &'a Member,
+    /// Model of the system alone.
+    pub model: &'a Model,
+    /// Configuration, `(nq,)`, m and rad.
+    pub q: &'a [f64],
+    /// Velocity, `(nv,)`, m/s and rad/s.
+    pub v: &'a [f64],
+}
+
+/// Returns the velocity `(nv,)` of a tree at `q` at the instant at which its systems are rigidly connected; the first
+/// system is the root.
+///
+/// The impulses of the connections do no work on motions that the tree permits, so its generalized momentum is that of
+/// the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By Gauss's principle, `v⁺` is the motion of
+/// the tree closest to the motion before in the metric of the kinetic energy; with `Λ = (J M⁻¹ Jᵀ)⁻¹` of the relative
+/// twist `J v` at the connection it equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻`.
+pub fn connected_velocity(tree: &Model, q: &[f64], systems: &[Moving<'_>]) -> Vec<f64> {
+    let mut data = Data::<f64>::new(tree);
+    positions(tree, &mut data, q);
+    let rot_bw = base_rotation(q).transpose();
+    // relative to the velocity of the root, so that a common velocity costs no precision
+    let common = base_rotation(systems[0].q) * Vec3::from_slice(systems[0].v);
+    let mut momentum = vec![0.0; tree.nv()];
+    for Moving { member, model, q, v } in systems {
+        let rot_wb = base_rotation::<f64>(q);
+        let mut relative = v.to_vec();
+        (Vec3::from_slice(v) - rot_wb.transpose_mul(common)).write(&mut relative);
+        let mut own = Data::<f64>::new(model);
+        kinematics(model, &mut own, q, &relative);
+        let to_tree = rot_bw * rot_wb;
+        for (body, place) in own.bodies.iter().zip(&member.bodies) {
+            let (h, to) = (body.inertia.momentum(body.velocity), &mut data.bodies[place.body]);
+            to.external += Force::at(to_tree * h.linear, to_tree * h.angular, to.rot_bk * place.pos_kb);
+        }
+        for (joint, &in_tree) in member.joints.iter().enumerate() {
+            momentum[BASE_NV + in_tree] = model.nodes()[joint + 1].rotor_inertia * v[BASE_NV + joint];
+        }
+    }
+    // at zero velocity the bias vanishes, and the wrenches Jᵀ F of ABA are momenta
+    let (at_rest, mut v) = (vec![0.0; tree.nv()], vec![0.0; tree.nv()]);
+    forward_dynamics_recursion(tree, &mut data, &at_rest, &momentum, &mut v);
+    (Vec3::from_slice(&v) + rot_bw * common).write(&mut v);
+    v
+}
+
+/// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i`, of a robot at `q` by an impulse at the origin of a frame,
+/// N s and N m s in the axes of the frame.
+pub fn impulse_response(model: &Model, q: &[f64], frame: usize, impulse: Force<f64>) -> Vec<f64> {
+    let mut data = Data::<f64>::new(model);
+    let (at_rest, mut change) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
+    positions(model, &mut data, q);
+    apply_external(model, &mut data, &[FrameWrench { frame, wrench: impulse }]);
+    forward_dynamics_recursion(model, &mut data, &at_rest, &at_rest, &mut change);
+    change
+}

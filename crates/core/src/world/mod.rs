@@ -1,0 +1,21 @@
+//! Worlds: several systems, their events, and the trees into which welds connect them.
+
+mod assembly;
+mod audit;
+mod check;
+mod error;
+mod event;
+mod groups;
+mod impulse;
+mod layout;
+mod system;
+
+pub use assembly::{Assembly, BodyPlace, Member, assemble};
+pub use audit::{Balance, energy, energy_of_change};
+pub use check::{check_events, check_names};
+pub use error::WorldError;
+pub use event::{Action, Envelope, Event, FrameIndex, Weld, When};
+pub use groups::{groups, systems_of};
+pub use impulse::{Moving, connected_velocity, impulse_response};
+pub use layout::{Layout, SystemPlace};
+pub use system::System;

@@ -1,0 +1,48 @@
+//! A system of a world: one robot with its initial state and its controls.
+
+use crate::control::Control;
+use crate::model::Model;
+use crate::reference::TaskReference;
+use std::sync::Arc;
+
+/// One spacecraft of a world: its model, initial state and controls.
+pub struct System {
+    /// Name, unique in the world.
+    pub name: String,
+    /// The robot.
+    pub model: Arc<Model>,
+    /// Initial configuration, `(nq,)`, m and rad.
+    pub q: Vec<f64>,
+    /// Initial velocity, `(nv,)`, m/s and rad/s.
+    pub v: Vec<f64>,
+    /// Controls of the joints; joints without an active control have no motor torque by default.
+    pub controls: Vec<Control>,
+    /// Time between two updates of the controllers, s; by default the controllers are updated at every step.
+    pub control_period: Option<f64>,
+    /// Index of the frame that is recorded and compared with the reference.
+    pub tool: Option<usize>,
+    /// Reference pose of the tool, recorded for comparison if no control tracks the tool.
+    pub reference: Option<TaskReference>,
+    /// Largest distance and angle between the tool and the start of its reference, m and rad.
+    pub reference_start_tolerance: [f64; 2],
+    /// Coefficient of restitution of rigid stops at the position limits of joints; `None` for no stops.
+    pub stops: Option<f64>,
+}
+
+impl System {
+    /// Returns a system without controls.
+    pub fn new(name: &str, model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
+        Self {
+            name: name.to_owned(),
+            model,
+            q,
+            v,
+            controls: Vec::new(),
+            control_period: None,
+            tool: None,
+            reference: None,
+            reference_start_tolerance: [0.05, 0.1],
+            stops: None,
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! Errors of the systems and events of a world.
+
+use super::{IntoPython, fields, raise};
+use onorbit_core::world::WorldError;
+use pyo3::prelude::*;
+
+impl IntoPython for WorldError {
+    fn into_python(self, py: Python<'_>) -> PyErr {
+        let message = self.to_string();
+        let name = match &self {
+            Self::NoSystems => "systems".to_owned(),
+            Self::SystemName { name } | Self::SystemTwice { name } | Self::EventTwice { name } => {
+                name.clone()
+            }
+            Self::NoSuchEvent { name, .. } | Self::NotTriggered { name, .. } => name.clone(),
+            Self::Circle { names } | Self::Loop { names } => names.clone(),
+            Self::OwnSystem { event, .. }
+            | Self::UnknownSystem { event, .. }
+            | Self::UnknownFrame { event, .. }
+            | Self::UnknownEvent { event, .. }
+            | Self::Number { event, .. }
+            | Self::LatchWithoutCapture { event }
+            | Self::AlreadyConnected { event, .. } => event.clone(),
+        };
+        raise(py, "WorldError", &message, &fields!(py, "name": name))
+    }
+}

@@ -1,0 +1,252 @@
+//! Events of a world: captures and releases.
+
+use crate::arrays::fixed;
+use crate::errors::{IntoPython, fields, raise};
+use onorbit_core::model::Model;
+use onorbit_core::world::{Action, Envelope, FrameIndex, System, When};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// When an event happens, as given in Python.
+#[derive(Clone)]
+struct Condition {
+    at: Option<f64>,
+    after: Option<String>,
+    delay: f64,
+    latch: Option<Envelope>,
+}
+
+impl Condition {
+    /// Returns the condition, of which exactly one must be given.
+    fn new(
+        py: Python<'_>,
+        name: &str,
+        (at, after, delay, on_command): (Option<f64>, Option<String>, f64, bool),
+        latch: Option<Envelope>,
+    ) -> PyResult<Self> {
+        let count = [at.is_some(), after.is_some(), on_command, latch.is_some()]
+            .iter()
+            .filter(|given| **given)
+            .count();
+        let problem = if count != 1 {
+            "needs exactly one of at, after, on_command or (for a capture) within"
+        } else if delay != 0.0 && after.is_none() {
+            "has a delay, which belongs to after"
+        } else {
+            return Ok(Self { at, after, delay, latch });
+        };
+        let message = format!("the event '{name}' {problem}");
+        Err(raise(py, "WorldError", &message, &fields!(py, "name": name)))
+    }
+
+    /// Returns the condition of the core; `names` are the names of all events.
+    fn when(&self, py: Python<'_>, name: &str, names: &[String]) -> PyResult<When> {
+        if let Some(envelope) = self.latch {
+            return Ok(When::Latch(envelope));
+        }
+        match (&self.after, self.at) {
+            (Some(after), _) => {
+                Ok(When::After { event: event_named(py, name, after, names)?, delay: self.delay })
+            }
+            (None, Some(t)) => Ok(When::At(t)),
+            (None, None) => Ok(When::OnCommand),
+        }
+    }
+}
+
+/// Returns the number of the event that `name` refers to as `other`.
+fn event_named(py: Python<'_>, name: &str, other: &str, names: &[String]) -> PyResult<usize> {
+    names.iter().position(|known| known == other).ok_or_else(|| {
+        let message = format!(
+            "the event '{name}' refers to the unknown event '{other}'; the events are: {}",
+            names.join(", ")
+        );
+        raise(py, "WorldError", &message, &fields!(py, "name": name, "got": other))
+    })
+}
+
+/// Returns the frame with the path ``SYSTEM/FRAME``.
+fn frame_at(
+    py: Python<'_>,
+    event: &str,
+    path: &str,
+    systems: &[(String, Arc<Model>)],
+) -> PyResult<FrameIndex> {
+    let wrong = |problem: &str| {
+        let message = format!("the event '{event}' refers to the frame '{path}': {problem}");
+        raise(py, "WorldError", &message, &fields!(py, "name": event, "got": path))
+    };
+    let Some((name, frame)) = path.split_once('/') else {
+        return Err(wrong("give the name of the system and that of the frame, as in 'chaser/tool'"));
+    };
+    let Some(system) = systems.iter().position(|(known, _)| known == name) else {
+        let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
+        return Err(wrong(&format!("there is no system '{name}'; the systems are: {}", known.join(", "))));
+    };
+    let frame = systems[system].1.frame(frame).map_err(|error| error.into_python(py))?;
+    Ok(FrameIndex { system, frame })
+}
+
+/// Capture: connects two frames of different systems rigidly, at their relative pose of that instant.
+///
+/// Exactly one of ``at``, ``after``, ``on_command`` and ``within`` says when.
+///
+/// Parameters
+/// ----------
+/// name : str
+///     Name of the event.
+/// frame_a : str
+///     Capturing frame as ``SYSTEM/FRAME``.
+/// frame_b : str
+///     Captured frame as ``SYSTEM/FRAME``.
+/// at : float, optional
+///     Time, s.
+/// after : str, optional
+///     Name of another event.
+/// delay : float
+///     Time after the other event, s.
+/// on_command : bool
+///     If True, ``Stepper.trigger`` starts the event.
+/// within : (float, float), optional
+///     A latch: largest distance, m, and angle, rad, between the frames.
+/// slower_than : (float, float), optional
+///     Largest relative speed, m/s, and angular speed, rad/s, at which the latch closes; default: any.
+/// held_for : float
+///     Time for which the conditions of the latch must hold, s.
+#[pyclass(name = "Capture", frozen, module = "onorbit_rs")]
+pub(crate) struct PyCapture {
+    /// Name of the event.
+    #[pyo3(get)]
+    pub(super) name: String,
+    /// Capturing frame.
+    #[pyo3(get)]
+    frame_a: String,
+    /// Captured frame.
+    #[pyo3(get)]
+    frame_b: String,
+    condition: Condition,
+}
+
+#[pymethods]
+impl PyCapture {
+    #[new]
+    #[pyo3(signature = (
+        name, frame_a, frame_b, *, at=None, after=None, delay=0.0, on_command=false, within=None, slower_than=None,
+        held_for=0.0,
+    ))]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        frame_a: String,
+        frame_b: String,
+        at: Option<f64>,
+        after: Option<String>,
+        delay: f64,
+        on_command: bool,
+        within: Option<&Bound<'_, PyAny>>,
+        slower_than: Option<&Bound<'_, PyAny>>,
+        held_for: f64,
+    ) -> PyResult<Self> {
+        let within = within.map(|within| fixed(within, "within", &[2])).transpose()?;
+        let slower = slower_than.map(|slower| fixed(slower, "slower_than", &[2])).transpose()?;
+        if within.is_none() && (slower.is_some() || held_for != 0.0) {
+            let message = format!("the event '{name}' has slower_than or held_for, which belong to within");
+            return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
+        }
+        let slower_than = slower.unwrap_or([f64::INFINITY; 2]);
+        let latch = within.map(|within| Envelope { within, slower_than, held_for });
+        let condition = Condition::new(py, &name, (at, after, delay, on_command), latch)?;
+        Ok(Self { name, frame_a, frame_b, condition })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Capture '{}': {} captures {}>", self.name, self.frame_a, self.frame_b)
+    }
+}
+
+/// Release: removes the connection that a capture made.
+///
+/// Exactly one of ``at``, ``after`` and ``on_command`` says when. The release of what is not connected has no effect.
+///
+/// Parameters
+/// ----------
+/// name : str
+///     Name of the event.
+/// capture : str
+///     Name of the capture.
+/// at : float, optional
+///     Time, s.
+/// after : str, optional
+///     Name of another event.
+/// delay : float
+///     Time after the other event, s.
+/// on_command : bool
+///     If True, ``Stepper.trigger`` starts the event.
+/// impulse : (6,) array, optional
+///     Impulse of a spring on the captured system: N s, then N m s, in the axes of the capturing frame at its origin.
+///     The opposite impulse acts on the other system.
+#[pyclass(name = "Release", frozen, module = "onorbit_rs")]
+pub(crate) struct PyRelease {
+    /// Name of the event.
+    #[pyo3(get)]
+    pub(super) name: String,
+    /// Name of the capture.
+    #[pyo3(get)]
+    capture: String,
+    condition: Condition,
+    impulse: [f64; 6],
+}
+
+#[pymethods]
+impl PyRelease {
+    #[new]
+    #[pyo3(signature = (name, capture, *, at=None, after=None, delay=0.0, on_command=false, impulse=None))]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        capture: String,
+        at: Option<f64>,
+        after: Option<String>,
+        delay: f64,
+        on_command: bool,
+        impulse: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let impulse = impulse.map_or(Ok([0.0; 6]), |impulse| fixed(impulse, "impulse", &[6]))?;
+        let condition = Condition::new(py, &name, (at, after, delay, on_command), None)?;
+        Ok(Self { name, capture, condition, impulse })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Release '{}' of '{}'>", self.name, self.capture)
+    }
+}
+
+/// Reads the events of a world.
+pub(super) fn events_of(
+    events: &[Bound<'_, PyAny>],
+    systems: &[System],
+) -> PyResult<Vec<onorbit_core::world::Event>> {
+    let names =
+        events.iter().map(|event| event.getattr("name")?.extract()).collect::<PyResult<Vec<String>>>()?;
+    let systems: Vec<_> =
+        systems.iter().map(|system| (system.name.clone(), Arc::clone(&system.model))).collect();
+    let read = |event: &Bound<'_, PyAny>| {
+        let py = event.py();
+        if let Ok(event) = event.cast::<PyCapture>() {
+            let PyCapture { name, frame_a, frame_b, condition } = event.get();
+            let (by, of) = (frame_at(py, name, frame_a, &systems)?, frame_at(py, name, frame_b, &systems)?);
+            let when = condition.when(py, name, &names)?;
+            return Ok(onorbit_core::world::Event {
+                name: name.clone(),
+                when,
+                action: Action::Capture { by, of },
+            });
+        }
+        let event = event.cast::<PyRelease>()?;
+        let PyRelease { name, capture, condition, impulse } = event.get();
+        let (when, capture) = (condition.when(py, name, &names)?, event_named(py, name, capture, &names)?);
+        let action = Action::Release { capture, impulse: *impulse };
+        Ok(onorbit_core::world::Event { name: name.clone(), when, action })
+    };
+    events.iter().map(read).collect()
+}

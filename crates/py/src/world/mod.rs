@@ -1,0 +1,23 @@
+//! Worlds of several systems.
+
+mod event;
+mod system;
+mod systems;
+mod trace;
+mod world;
+
+pub(crate) use systems::{PySystemStepper, Systems};
+pub(crate) use world::PyWorld;
+
+use pyo3::prelude::*;
+
+/// Adds the classes to the module.
+pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
+    m.add_class::<system::PySystem>()?;
+    m.add_class::<event::PyCapture>()?;
+    m.add_class::<event::PyRelease>()?;
+    m.add_class::<world::PyWorld>()?;
+    m.add_class::<systems::PySystemStepper>()?;
+    m.add_class::<trace::PyWorldTrace>()?;
+    m.add_class::<trace::PyEventRecord>()
+}

@@ -1,0 +1,118 @@
+//! One spacecraft of a world.
+
+use crate::model::PyModel;
+use crate::simulation::{Robotics, initial_state};
+use onorbit_core::orbit::Orbit;
+use onorbit_core::world::System;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// One spacecraft of a world: model, initial state and controllers.
+///
+/// Parameters
+/// ----------
+/// name : str
+///     Name, unique in the world: a letter, then letters, digits, ``_`` and ``-``.
+/// model : Model
+///     Robot.
+/// q : (nq,) array
+///     Initial configuration, m and rad.
+/// v : (nv,) array
+///     Initial velocity, m/s and rad/s.
+/// controller : control law, object or list of Control, optional
+///     Control law for all joints, an object with ``update(t, state)``, or several controls. After a capture they
+///     still use the model of this system alone.
+/// reference : Reference or JointReference, optional
+///     Reference of the controller.
+/// tool : str, optional
+///     Frame of the reference; default: that of the controller.
+/// control_period : float, optional
+///     Time between calls of the controller, s; default: every step.
+/// enforce_limits : bool
+///     If True, position limits of joints are rigid stops.
+/// restitution : float
+///     Coefficient of restitution of the stops, 0 to 1.
+/// reference_start_tolerance : (float, float), optional
+///     Permitted initial deviation of the tool from its reference, m and rad; default: (0.05, 0.1).
+#[pyclass(name = "System", frozen, module = "onorbit_rs")]
+pub(crate) struct PySystem {
+    /// Name of the system.
+    #[pyo3(get)]
+    pub(super) name: String,
+    /// Robot.
+    #[pyo3(get)]
+    pub(super) model: Py<PyModel>,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    controller: Option<Py<PyAny>>,
+    reference: Option<Py<PyAny>>,
+    tool: Option<Py<PyAny>>,
+    control_period: Option<f64>,
+    enforce_limits: bool,
+    restitution: f64,
+    reference_start_tolerance: Option<Py<PyAny>>,
+}
+
+#[pymethods]
+impl PySystem {
+    #[new]
+    #[pyo3(signature = (
+        name, model, q, v, *, controller=None, reference=None, tool=None, control_period=None, enforce_limits=false,
+        restitution=0.0, reference_start_tolerance=None,
+    ))]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        model: Py<PyModel>,
+        q: &Bound<'_, PyAny>,
+        v: &Bound<'_, PyAny>,
+        controller: Option<Py<PyAny>>,
+        reference: Option<Py<PyAny>>,
+        tool: Option<Py<PyAny>>,
+        control_period: Option<f64>,
+        enforce_limits: bool,
+        restitution: f64,
+        reference_start_tolerance: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
+        let (q, v) = initial_state(py, &model.get().model, q, v)?;
+        Ok(Self {
+            name,
+            model,
+            q,
+            v,
+            controller,
+            reference,
+            tool,
+            control_period,
+            enforce_limits,
+            restitution,
+            reference_start_tolerance,
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<System '{}': {}>", self.name, self.model.get().model.name())
+    }
+}
+
+impl PySystem {
+    /// Returns the system of the core; `orbit` is the reference orbit of the world.
+    pub(super) fn system(&self, py: Python<'_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<System> {
+        let bind = |value: &Option<Py<PyAny>>| value.as_ref().map(|value| value.bind(py).clone());
+        let (controller, reference, tool) = (bind(&self.controller), bind(&self.reference), bind(&self.tool));
+        let tolerance = bind(&self.reference_start_tolerance);
+        let settings = Robotics {
+            controller: controller.as_ref(),
+            reference: reference.as_ref(),
+            tool: tool.as_ref(),
+            control_period: self.control_period,
+            enforce_limits: self.enforce_limits,
+            restitution: self.restitution,
+            reference_start_tolerance: tolerance.as_ref(),
+        };
+        let model = self.model.get();
+        let mut system = System::new(&self.name, Arc::clone(&model.model), self.q.clone(), self.v.clone());
+        settings.apply(model, orbit, &mut system)?;
+        Ok(system)
+    }
+}

@@ -1,0 +1,107 @@
+//! Names and models of the systems of a run, and views of one of them.
+
+use super::trace::PyWorldTrace;
+use crate::errors::{fields, raise};
+use crate::stepper::{PyStepper, constant};
+use crate::trace::PyTrace;
+use numpy::PyArrayDyn;
+use onorbit_core::model::Model;
+use onorbit_core::simulation::{Recording, Simulation};
+use pyo3::exceptions::PyAttributeError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// Names and models of the systems of a run.
+pub(crate) struct Systems {
+    pub(crate) names: Vec<String>,
+    pub(crate) models: Vec<Arc<Model>>,
+}
+
+impl Systems {
+    /// Returns the names and models of the systems of a simulation.
+    pub(crate) fn of(simulation: &Simulation) -> Self {
+        let systems = &simulation.systems;
+        Self {
+            names: systems.iter().map(|system| system.name.clone()).collect(),
+            models: systems.iter().map(|system| Arc::clone(&system.model)).collect(),
+        }
+    }
+
+    /// Returns the number of the system with this name.
+    pub(crate) fn find(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
+        self.names.iter().position(|known| known == name).ok_or_else(|| {
+            let message = format!("there is no system '{name}'; the systems are: {}", self.names.join(", "));
+            raise(py, "WorldError", &message, &fields!(py, "name": name))
+        })
+    }
+
+    /// Returns an error unless there is a single system; `attribute` of `owner` belongs to a system.
+    pub(crate) fn only(&self, _: Python<'_>, owner: &str, attribute: &str) -> PyResult<()> {
+        if self.names.len() == 1 {
+            return Ok(());
+        }
+        let examples: Vec<String> =
+            self.names.iter().map(|name| format!("{owner}[\"{name}\"].{attribute}")).collect();
+        Err(PyAttributeError::new_err(format!(
+            "the world has several systems, each with its own {attribute}: {}",
+            examples.join(", ")
+        )))
+    }
+
+    /// Wraps a recording: a trace for a single system, otherwise the trace of a world.
+    pub(crate) fn wrap(
+        &self,
+        py: Python<'_>,
+        recording: Recording,
+        is_complete: bool,
+        wall_s: f64,
+    ) -> PyResult<Py<PyAny>> {
+        let Recording { systems, events, groups } = recording;
+        let traces = systems.into_iter().zip(&self.models);
+        let traces = traces.map(|(trace, model)| {
+            Py::new(py, PyTrace { trace, model: Arc::clone(model), is_complete, wall_s })
+        });
+        let mut traces = traces.collect::<PyResult<Vec<_>>>()?;
+        if traces.len() == 1 {
+            return Ok(traces.remove(0).into_any());
+        }
+        let world =
+            PyWorldTrace::new(py, self.names.clone(), traces, (events, groups), (is_complete, wall_s))?;
+        Ok(Py::new(py, world)?.into_any())
+    }
+}
+
+/// View of one system of a run, as returned by ``stepper[name]``.
+#[pyclass(name = "SystemStepper", frozen, module = "onorbit_rs")]
+pub(crate) struct PySystemStepper {
+    pub(crate) stepper: Py<PyStepper>,
+    pub(crate) system: usize,
+}
+
+#[pymethods]
+impl PySystemStepper {
+    /// Configuration at the current time, a read-only (nq,) array: base position in W, m; base quaternion xyzw;
+    /// joint positions, rad or m.
+    #[getter]
+    fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.stepper.get().state(py, self.system).map(|(q, _)| constant(py, &q))
+    }
+
+    /// Velocity at the current time, a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
+    /// rates, rad/s or m/s.
+    #[getter]
+    fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        self.stepper.get().state(py, self.system).map(|(_, v)| constant(py, &v))
+    }
+
+    /// Set the joint torques of this system, which are held from the current time until the next command.
+    ///
+    /// Parameters
+    /// ----------
+    /// tau : (n,) array or dict of float
+    ///     Torques of all joints, or torques by joint name, N m (N for a prismatic joint). Joints that are not
+    ///     named keep their torques.
+    fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
+        self.stepper.get().command_system(self.system, tau)
+    }
+}

@@ -1,0 +1,221 @@
+//! Result of a run of a world.
+
+use crate::arrays::array_of;
+use crate::errors::{fields, raise};
+use crate::trace::PyTrace;
+use numpy::PyArrayDyn;
+use onorbit_core::number_text::{count, short};
+use onorbit_core::simulation::{EventRecord, GroupRows, certify_group, world_rows};
+use pyo3::exceptions::PyAttributeError;
+use pyo3::prelude::*;
+
+/// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
+///
+/// ``trace["chaser"]`` is the :class:`Trace` of a system. The columns of the world have the times that all systems
+/// share.
+#[pyclass(name = "WorldTrace", frozen, module = "onorbit_rs")]
+pub(crate) struct PyWorldTrace {
+    names: Vec<String>,
+    traces: Vec<Py<PyTrace>>,
+    records: Vec<EventRecord>,
+    groups: Vec<GroupRows>,
+    rows: GroupRows,
+    /// True if the run reached its end.
+    #[pyo3(get)]
+    is_complete: bool,
+    /// Wall-clock time of the simulation loop, s.
+    #[pyo3(get)]
+    wall_s: f64,
+}
+
+impl PyWorldTrace {
+    pub(super) fn new(
+        py: Python<'_>,
+        names: Vec<String>,
+        traces: Vec<Py<PyTrace>>,
+        (records, groups): (Vec<EventRecord>, Vec<GroupRows>),
+        (is_complete, wall_s): (bool, f64),
+    ) -> PyResult<Self> {
+        let pairs: Vec<_> = traces.iter().map(|trace| (&trace.get().trace, &*trace.get().model)).collect();
+        let rows = py.detach(|| world_rows(&pairs));
+        Ok(Self { names, traces, records, groups, rows, is_complete, wall_s })
+    }
+
+    fn column<'py>(&self, py: Python<'py>, values: &[f64], width: usize) -> Bound<'py, PyArrayDyn<f64>> {
+        let rows = self.rows.rows();
+        if width == 1 { array_of(py, &[rows], values) } else { array_of(py, &[rows, width], values) }
+    }
+}
+
+#[pymethods]
+impl PyWorldTrace {
+    /// Return the trace of a system.
+    fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyTrace>> {
+        match self.names.iter().position(|known| known == name) {
+            Some(system) => Ok(self.traces[system].clone_ref(py)),
+            None => {
+                let message =
+                    format!("there is no system '{name}'; the systems are: {}", self.names.join(", "));
+                Err(raise(py, "WorldError", &message, &fields!(py, "name": name)))
+            }
+        }
+    }
+
+    fn __getattr__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
+        let owns = self.traces.first().is_some_and(|trace| trace.bind(py).hasattr(name).unwrap_or(false));
+        Err(PyAttributeError::new_err(if owns {
+            let examples: Vec<String> =
+                self.names.iter().map(|system| format!("trace[\"{system}\"].{name}")).collect();
+            format!("the world has several systems, each with its own {name}: {}", examples.join(", "))
+        } else {
+            format!("the trace of a world has no attribute '{name}'")
+        }))
+    }
+
+    /// Names of the systems.
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        self.names.clone()
+    }
+
+    /// Events that happened, in order of time.
+    #[getter]
+    fn events(&self) -> Vec<PyEventRecord> {
+        let record = |record: &EventRecord| PyEventRecord {
+            systems: record.systems.map(|system| self.names[system].clone()),
+            record: record.clone(),
+        };
+        self.records.iter().map(record).collect()
+    }
+
+    /// Times of the rows that all systems share, (T,), s.
+    #[getter]
+    fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.column(py, &self.rows.time, 1)
+    }
+
+    /// Linear momentum of all systems, N s, and their angular momentum about the common centre of mass, N m s, axes
+    /// of W, (T, 6).
+    #[getter]
+    fn momentum<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.column(py, &self.rows.momentum, 6)
+    }
+
+    /// Kinetic energy of all systems, (T,), J.
+    #[getter]
+    fn kinetic_energy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        self.column(py, &self.rows.kinetic_energy, 1)
+    }
+
+    /// Return the certificate of the groups of systems that may interact: momentum and energy, and the audits of the
+    /// events.
+    ///
+    /// Returns
+    /// -------
+    /// list of tuple
+    ///     ``(name, value, gate, passed)``; the names begin with those of the systems of the group, or with the name of
+    ///     the event. The certificate of one system is ``trace[name].certificate()``.
+    fn certificate(&self) -> Vec<(String, f64, f64, bool)> {
+        let mut all = Vec::new();
+        for group in &self.groups {
+            let names: Vec<&str> = group.systems.iter().map(|system| self.names[*system].as_str()).collect();
+            for check in certify_group(group) {
+                all.push((
+                    format!("{}/{}", names.join("+"), check.name),
+                    check.value,
+                    check.gate,
+                    check.passed(),
+                ));
+            }
+        }
+        for record in &self.records {
+            for check in record.checks() {
+                all.push((
+                    format!("{}/{}", record.name, check.name),
+                    check.value,
+                    check.gate,
+                    check.passed(),
+                ));
+            }
+        }
+        all
+    }
+
+    /// Return the number of rows that all systems share.
+    fn __len__(&self) -> usize {
+        self.rows.rows()
+    }
+
+    fn __repr__(&self) -> String {
+        let end = self.rows.time.last().copied().unwrap_or(0.0);
+        let state = if self.is_complete { "complete" } else { "stopped early" };
+        let events = count(self.records.len(), "event");
+        format!("<WorldTrace of {}: to t = {} s, {events}, {state}>", self.names.join(", "), short(end))
+    }
+}
+
+/// Event that happened, with its audit.
+#[pyclass(name = "EventRecord", frozen, module = "onorbit_rs")]
+pub(crate) struct PyEventRecord {
+    systems: [String; 2],
+    record: EventRecord,
+}
+
+#[pymethods]
+impl PyEventRecord {
+    /// Name of the event.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.record.name
+    }
+
+    /// Kind: ``capture`` or ``release``.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.record.kind.name()
+    }
+
+    /// Time, s.
+    #[getter]
+    fn time(&self) -> f64 {
+        self.record.time
+    }
+
+    /// Names of the two systems, the capturing one first.
+    #[getter]
+    fn systems(&self) -> (String, String) {
+        let [by, of] = self.systems.clone();
+        (by, of)
+    }
+
+    /// Impulse on the second system, with what it carries, (6,): N s, then N m s about ``point``, axes of W.
+    #[getter]
+    fn impulse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        array_of(py, &[6], &self.record.impulse)
+    }
+
+    /// Point at which the impulse acts, in W, (3,), m.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        array_of(py, &[3], &self.record.point)
+    }
+
+    /// Kinetic energy lost, J; negative if a spring added energy.
+    #[getter]
+    fn energy_lost(&self) -> f64 {
+        self.record.energy_lost
+    }
+
+    /// Changes of the linear and of the angular momentum of the group, (2,), relative to the sums of the magnitudes of
+    /// the momenta of its bodies.
+    #[getter]
+    fn momentum_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        array_of(py, &[2], &self.record.momentum_error)
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { systems: [by, of], record } = self;
+        let (kind, name, lost) = (record.kind.name(), &record.name, short(record.energy_lost));
+        format!("<{kind} '{name}' of {of} by {by} at t = {} s: {lost} J lost>", short(record.time))
+    }
+}

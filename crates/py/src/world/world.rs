@@ -1,0 +1,113 @@
+//! Worlds of several spacecraft.
+
+use super::event::events_of;
+use super::system::PySystem;
+use crate::earth::PyEarth;
+use crate::environment::{PyEffect, effects};
+use crate::errors::SimulationErrorExt;
+use crate::orbit::PyOrbit;
+use crate::simulation::{gravity_mode_named, set_environment};
+use onorbit_core::simulation::Simulation;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// World of one or more spacecraft on one reference orbit, with their environment and events.
+///
+/// Parameters
+/// ----------
+/// systems : list of System
+///     Spacecraft.
+/// orbit : Orbit, optional
+///     Reference orbit, on which the origin of W moves. An orbit around a planet adds gravity on every body.
+/// earth : Earth, optional
+///     Epoch and orientation of the Earth.
+/// gravity_mode : {"true", "carried"}
+///     As for ``Simulation``.
+/// environment : list of Effect, optional
+///     Effects on the bodies of all systems.
+/// events : list of Capture and Release, optional
+///     Events that connect and separate systems.
+/// rereference_beyond : float
+///     Distance of a system from the reference orbit, m, beyond which integration continues about a new reference;
+///     systems that events may connect keep the reference orbit.
+///
+/// Raises
+/// ------
+/// WorldError
+///     If a system or an event is not valid.
+#[pyclass(name = "World", frozen, module = "onorbit_rs")]
+pub(crate) struct PyWorld {
+    systems: Vec<Py<PySystem>>,
+    orbit: Option<Py<PyOrbit>>,
+    earth: Option<Py<PyEarth>>,
+    gravity_mode: String,
+    environment: Vec<Py<PyEffect>>,
+    events: Vec<Py<PyAny>>,
+    rereference_beyond: f64,
+}
+
+#[pymethods]
+impl PyWorld {
+    #[new]
+    #[pyo3(signature = (
+        systems, *, orbit=None, earth=None, gravity_mode="true", environment=None, events=None, rereference_beyond=1e5,
+    ))]
+    fn new(
+        py: Python<'_>,
+        systems: Vec<Py<PySystem>>,
+        orbit: Option<Py<PyOrbit>>,
+        earth: Option<Py<PyEarth>>,
+        gravity_mode: &str,
+        environment: Option<&Bound<'_, PyAny>>,
+        events: Option<Vec<Py<PyAny>>>,
+        rereference_beyond: f64,
+    ) -> PyResult<Self> {
+        let environment = effects(environment)?.into_iter().map(Bound::unbind).collect();
+        let world = Self {
+            systems,
+            orbit,
+            earth,
+            gravity_mode: gravity_mode.to_owned(),
+            environment,
+            events: events.unwrap_or_default(),
+            rereference_beyond,
+        };
+        let simulation = world.simulation(py)?;
+        simulation.check().map_err(|error| error.into_python_with(py, None))?;
+        Ok(world)
+    }
+
+    /// Names of the systems.
+    #[getter]
+    fn names(&self) -> Vec<String> {
+        self.systems.iter().map(|system| system.get().name.clone()).collect()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<World: {}>", self.names().join(", "))
+    }
+}
+
+impl PyWorld {
+    /// Returns a simulation of the world with default settings of the integration.
+    pub(crate) fn simulation(&self, py: Python<'_>) -> PyResult<Simulation> {
+        let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));
+        let systems = self.systems.iter().map(|system| system.get().system(py, orbit.as_ref()));
+        let systems = systems.collect::<PyResult<Vec<_>>>()?;
+        let events: Vec<_> = self.events.iter().map(|event| event.bind(py).clone()).collect();
+        let events = events_of(&events, &systems)?;
+        if systems.is_empty() {
+            let error = onorbit_core::world::WorldError::NoSystems;
+            return Err(crate::errors::IntoPython::into_python(error, py));
+        }
+        let mut simulation = Simulation::of(systems);
+        simulation.events = events;
+        simulation.earth = self.earth.as_ref().map(|earth| earth.get().in_axes_of(orbit.as_deref()));
+        simulation.orbit = orbit;
+        simulation.gravity_mode = gravity_mode_named(py, &self.gravity_mode)?;
+        simulation.rereference_beyond = self.rereference_beyond;
+        let environment: Vec<_> = self.environment.iter().map(|effect| effect.bind(py).clone()).collect();
+        set_environment(py, &mut simulation, &environment)?;
+        Ok(simulation)
+    }
+}
