@@ -207,11 +207,11 @@ def main() -> None:
     ):
         longitude, latitude, distance = spherical(jd, position)
         even, odd = (distinct(library) for library in libraries)
-        difference = (longitude - mean + np.pi) % (2 * np.pi) - np.pi
+        offset = (longitude - mean + np.pi) % (2 * np.pi) - np.pi
         of = "F - D + Ω" if body == "Sun" else "F + Ω"
         write(f"{body.lower()}_table.rs", HEAD.format(body=body), [
             rust_series("LONGITUDE", f"Longitude minus `{of}`, arc seconds.",
-                        fit(f"{body}: longitude, arcsec", difference / ARC_SECOND, t, even, sizes[0], 1, slow)),
+                        fit(f"{body}: longitude, arcsec", offset / ARC_SECOND, t, even, sizes[0], 1, slow)),
             rust_series("LATITUDE", "Latitude, arc seconds.",
                         fit(f"{body}: latitude, arcsec", latitude / ARC_SECOND, t, odd, sizes[1], 0)),
             rust_series("DISTANCE", "Distance, km.",

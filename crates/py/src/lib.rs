@@ -34,7 +34,7 @@ use pyo3::types::PyDict;
 /// Returns
 /// -------
 /// dict
-///     ``version`` and ``instruction_set`` (``baseline``, ``avx2+fma`` or ``avx512``).
+///     ``version`` and ``instruction_set`` (``baseline``, ``avx2+fma`` or ``avx512``; on ARM, ``fma``).
 #[pyfunction]
 fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let info = PyDict::new(py);

@@ -9,11 +9,11 @@ use pyo3::prelude::*;
 /// Reduced model of a free-floating manipulator, ``M* q̈ + c* = τ + Q*`` and ``ẍ = Jg q̈ + d``.
 #[pyclass(name = "FreeFloating", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyFreeFloating {
-    /// ``M*``, (n, n) or (B, n, n), kg m².
+    /// ``M*``, (n, n) or (B, n, n), kg m², kg m and kg.
     inertia: Py<PyAny>,
-    /// ``c*``, (n,) or (B, n), N m.
+    /// ``c*``, (n,) or (B, n), N m or N.
     bias: Py<PyAny>,
-    /// ``Q* = Qm - Mbmᵀ Mbb⁻¹ Qb``, (n,) or (B, n), N m.
+    /// ``Q* = Qm - Mbmᵀ Mbb⁻¹ Qb``, (n,) or (B, n), N m or N.
     external: Py<PyAny>,
     /// ``Jg``, (6, n) or (B, 6, n), W axes at the frame's origin, linear rows first.
     jacobian: Py<PyAny>,

@@ -45,7 +45,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// FrameError
 ///     If a frame does not exist.
 /// ModelError
-///     If both robots have a link, joint or frame of the same name.
+///     If both robots have a link, joint or frame of the same name, the pose is invalid, or the file of ``other`` does
+///     not describe a valid robot.
 #[pyfunction]
 #[pyo3(signature = (model, frame, other, other_frame=None, *, pose=None, prefix=""))]
 pub(super) fn attach(

@@ -21,9 +21,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// mass : float, optional
 ///     Mass of the base, kg. Default: the link is massless.
 /// com : (3,) array, optional
-///     Centre of mass in link axes, m.
+///     Centre of mass in link axes, m; only with ``mass``. Default: the origin of the link.
 /// inertia : (3, 3) array, optional
-///     Inertia about the centre of mass in link axes, kg m².
+///     Inertia about the centre of mass in link axes, kg m²; only with ``mass``. Default: zero, a point mass.
 #[pyclass(name = "ModelBuilder", module = "onorbit_rs")]
 pub(crate) struct PyModelBuilder {
     builder: ModelBuilder,
@@ -48,7 +48,8 @@ impl PyModelBuilder {
 
     /// Add a link and the joint that connects it to its parent.
     ///
-    /// Limits are stored but not enforced.
+    /// Position limits are enforced only with ``Simulation(enforce_limits=True)``, rate limits not at all; effort limits
+    /// are the default limits of :class:`JointPid`.
     ///
     /// Parameters
     /// ----------
@@ -61,12 +62,12 @@ impl PyModelBuilder {
     /// kind : {"revolute", "continuous", "prismatic", "fixed"}
     ///     Type of the joint.
     /// axis : (3,) array, optional
-    ///     Joint axis in link axes.
+    ///     Joint axis in link axes, of any length; default: z.
     /// xyz, rpy : (3,) array, optional
     ///     Position, m, and roll, pitch, yaw, rad, of the link frame in the parent's frame at joint position
     ///     zero.
     /// mass : float, optional
-    ///     Mass, kg.
+    ///     Mass, kg. Default: the link is massless.
     /// com : (3,) array, optional
     ///     Centre of mass in link axes, m.
     /// inertia : (3, 3) array, optional
@@ -85,6 +86,13 @@ impl PyModelBuilder {
     ///     Effort limit, N m or N.
     /// static_friction : float, optional
     ///     Largest friction at rest, N m or N; at least ``friction``, the default.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If the parent does not exist.
+    /// ModelError
+    ///     If a name exists already, or a value is invalid.
     #[pyo3(signature = (
         name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
         damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,
@@ -167,6 +175,11 @@ impl PyModelBuilder {
     /// Returns
     /// -------
     /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     If the robot is invalid, such as a joint that moves only massless links.
     fn build(&self, py: Python<'_>) -> PyResult<PyModel> {
         let model = self.builder.clone().build().map_err(|error| error.into_python(py))?;
         PyModel::wrap(py, model, None, &[])

@@ -22,7 +22,7 @@ pub(super) struct PyJoint {
     pose: Matrix4,
     /// Unit vector of the axis in the child link: (3,).
     axis: [f64; 3],
-    /// Point on the axis in the child link, m: (3,). Zero unless ``Model.rerooted`` reversed the joint.
+    /// Point on the axis in the child link, m: (3,). Zero unless ``Model.rerooted`` or ``attach`` reversed the joint.
     anchor: [f64; 3],
     /// Lower position limit, rad or m, or None.
     lower: Option<f64>,

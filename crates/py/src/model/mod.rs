@@ -47,13 +47,13 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 ///
 /// ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad, ``v = [v_body(3), w_body(3), rates(n)]`` in m/s
 /// and rad/s: linear and angular velocity of the base in base axes, then joint rates. W is the world frame
-/// of the simulation. The methods accept one state ``(n,)`` or a batch ``(B, n)`` and return arrays of the
-/// matching shape.
+/// of the simulation. Methods with an argument ``q``, except :meth:`transfer_state`, accept one state ``(n,)`` or a
+/// batch ``(B, n)`` and return arrays of the matching shape.
 ///
 /// Two keyword arguments are common to these methods. ``threads`` is the number of threads for a batch
-/// (default: all cores). ``out`` is a contiguous float64 array for the result, which is then returned; it
-/// avoids the allocation of large arrays. It must not be accessed by other threads during the call, and its
-/// contents are undefined after an error.
+/// (default: all cores). ``out`` receives the result and is then returned, which avoids the allocation of large arrays:
+/// a contiguous float64 array, three of them for the derivatives of the dynamics, or an earlier result of the same
+/// class. It must not be accessed by other threads during the call, and its contents are undefined after an error.
 #[pyclass(name = "Model", frozen, module = "onorbit_rs")]
 pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
@@ -119,7 +119,9 @@ impl PyModel {
     /// Raises
     /// ------
     /// ModelError
-    ///     If the file does not describe a valid robot.
+    ///     If the file does not describe a valid robot, or ``links`` is invalid.
+    /// NotFoundError, ReadError
+    ///     If the file does not exist or cannot be read.
     #[staticmethod]
     #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false, links=None))]
     fn from_urdf(
@@ -142,13 +144,18 @@ impl PyModel {
     /// text : str
     ///     URDF.
     /// folder : path, optional
-    ///     Folder at which relative paths start.
+    ///     Folder to which relative paths of meshes refer.
     /// package_paths : list of path, optional
     ///     As for :meth:`from_urdf`.
     ///
     /// Returns
     /// -------
     /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     If the text does not describe a valid robot.
     #[staticmethod]
     #[pyo3(signature = (text, *, folder=None, package_paths=None))]
     fn from_urdf_string(
@@ -174,6 +181,11 @@ impl PyModel {
     /// Returns
     /// -------
     /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     If the mass or the inertia is not physical.
     #[staticmethod]
     fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<Self> {
         builder::rigid_body(py, mass, inertia)
@@ -235,7 +247,7 @@ impl PyModel {
         reroot::rerooted(slf, link)
     }
 
-    /// Return the state of another model of the same links, such as a :meth:`rerooted` one.
+    /// Convert a state to the coordinates of another model of the same links, such as a :meth:`rerooted` one.
     ///
     /// Parameters
     /// ----------
@@ -726,7 +738,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// float or (B,) array
-    ///     Energy, J.
+    ///     Energy, J; with ``out``, always an array.
     #[pyo3(signature = (q, v, *, threads=None, out=None))]
     fn kinetic_energy<'py>(
         &self,
@@ -802,7 +814,7 @@ impl PyModel {
     /// accelerations.
     ///
     /// Tangent vectors and wrenches are treated as in :meth:`inverse_dynamics_derivatives`. For ``q̈ = 0``
-    /// the result is the derivative of ``c* - Q*`` and ``d``. The derivatives with respect to ``q̈`` are
+    /// the first two are the derivatives of ``c* - Q*`` and ``d``. The derivatives with respect to ``q̈`` are
     /// ``M*`` and ``Jg``; that of ``ẋ`` with respect to ``v`` is :meth:`frame_jacobian`.
     ///
     /// Parameters

@@ -29,6 +29,13 @@ use std::sync::Arc;
 /// ends : {"error", "coast"}
 ///     Behaviour outside the times: ``error`` raises ``PathError``; ``coast`` continues at the velocity and
 ///     angular velocity of the nearest end.
+///
+/// Raises
+/// ------
+/// PathError
+///     If the points are invalid, or successive attitudes differ by more than 2 rad.
+/// OrbitError
+///     If ``mu`` is not positive.
 #[pyclass(name = "CustomPath", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyCustomPath {
     path: Arc<CustomPath>,

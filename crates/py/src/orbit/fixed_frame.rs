@@ -13,14 +13,14 @@ use std::sync::Arc;
 /// Reference at rest in inertial axes.
 ///
 /// It has no local orbital frame; :meth:`frame` returns its attitude. With ``mu``, the robot falls away
-/// from the reference, which stays at rest.
+/// from the reference, which stays at rest, unless the gravity mode of the simulation is ``carried``.
 ///
 /// Parameters
 /// ----------
 /// position : (3,) array, optional
-///     Position from the planet's centre, m.
+///     Position from the planet's centre, m; default: zero.
 /// attitude : (4,) array, optional
-///     Quaternion (x, y, z, w) from the axes of the reference to inertial axes.
+///     Quaternion (x, y, z, w) from the axes of the reference to inertial axes; default: no rotation.
 /// mu : float, optional
 ///     Gravitational parameter, m³/s²; None means that there is no planet.
 #[pyclass(name = "FixedFrame", extends = PyOrbit, frozen, module = "onorbit_rs")]

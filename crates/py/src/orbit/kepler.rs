@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Two-body orbit: an ellipse, a parabola or a hyperbola.
 ///
 /// Give either ``semi_major_axis`` or ``semi_latus_rectum``, and at most one of ``mean_anomaly``,
-/// ``true_anomaly`` and ``periapsis_time``.
+/// ``true_anomaly`` and ``periapsis_time``; without them the orbit is at its periapsis at ``epoch``.
 ///
 /// Parameters
 /// ----------
@@ -42,14 +42,15 @@ use std::sync::Arc;
 ///     If True, the elements are mean elements, and node, periapsis and mean anomaly drift at the secular
 ///     rates due to oblateness. Such an orbit is not in free fall.
 /// j2 : float, optional
-///     Coefficient J2 of the planet; default: that of the Earth.
+///     Coefficient J2 of the planet; default: that of the Earth. Only with ``secular_j2``.
 /// radius : float, optional
-///     Reference radius of ``j2``, m.
+///     Reference radius of ``j2``, m; default: that of the Earth. Only with ``secular_j2``.
 ///
 /// Raises
 /// ------
 /// OrbitError
-///     If the elements are inconsistent, such as a semi-major axis whose sign contradicts the eccentricity.
+///     If the elements are invalid or inconsistent, such as a semi-major axis whose sign contradicts the eccentricity,
+///     or if ``secular_j2`` is set for an open orbit.
 #[pyclass(name = "Kepler", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyKepler {
     kepler: Kepler,
@@ -173,6 +174,11 @@ impl PyKepler {
     /// Returns
     /// -------
     /// Kepler
+    ///
+    /// Raises
+    /// ------
+    /// OrbitError
+    ///     If position and velocity are parallel or zero, or as in the constructor.
     #[staticmethod]
     #[pyo3(signature = (r, v, *, mu=3.986004418e14, secular_j2=false, j2=None, radius=None))]
     fn from_state<'py>(
@@ -224,7 +230,7 @@ impl PyKepler {
     /// Raises
     /// ------
     /// InputError
-    ///     If an orbit is not an ellipse.
+    ///     If an orbit is not an ellipse, or a number is not finite.
     #[staticmethod]
     #[pyo3(signature = (
         t, *, semi_major_axis, eccentricity, inclination, raan, argument_of_periapsis, mean_anomaly,
@@ -297,7 +303,8 @@ impl PyKepler {
         self.kepler.elements().argument_of_periapsis
     }
 
-    /// Mean anomaly at the epoch, rad; None for parabolas and nearly parabolic orbits.
+    /// Mean anomaly at the epoch, or at ``periapsis_time`` if that was given, rad; None for parabolas and nearly parabolic
+    /// orbits.
     #[getter]
     fn mean_anomaly(&self) -> Option<f64> {
         match self.kepler.elements().phase {

@@ -58,7 +58,7 @@ impl PyOrbit {
         self.orbit.mu()
     }
 
-    /// Inertial axes of positions and velocities: ``GCRF``, or ``TEME`` for an element set.
+    /// Inertial axes of positions and velocities: ``GCRF``, or ``TEME`` for an element set and orbits integrated in TEME.
     #[getter]
     fn axes(&self) -> &'static str {
         self.orbit.axes().name()
@@ -83,6 +83,11 @@ impl PyOrbit {
     ///     Position from the planet's centre, inertial axes, m.
     /// v : (3,) or (T, 3) array
     ///     Velocity, inertial axes, m/s.
+    ///
+    /// Raises
+    /// ------
+    /// OrbitError
+    ///     If the orbit has no state at a time. ``Sgp4Error`` and ``PathError`` are subclasses.
     fn state<'py>(
         &self,
         py: Python<'py>,
@@ -115,6 +120,11 @@ impl PyOrbit {
     ///     components.
     /// w : (3,) or (T, 3) array
     ///     Angular velocity of L in its own axes, rad/s.
+    ///
+    /// Raises
+    /// ------
+    /// OrbitError
+    ///     If the reference is at rest or moves along its position vector, or as for :meth:`state`.
     fn lvlh<'py>(
         &self,
         py: Python<'py>,
@@ -138,6 +148,11 @@ impl PyOrbit {
     ///     Rotation from components in the frame to inertial components.
     /// w : (3,) or (T, 3) array
     ///     Angular velocity of the frame in its own axes, rad/s.
+    ///
+    /// Raises
+    /// ------
+    /// OrbitError
+    ///     As for :meth:`lvlh`, without the conditions on the motion if an attitude was given.
     fn frame<'py>(
         &self,
         py: Python<'py>,

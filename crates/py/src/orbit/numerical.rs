@@ -30,16 +30,20 @@ use std::sync::Arc;
 /// environment : list of Effect, optional
 ///     Gravity effects (``GravityField``, ``ThirdBody``); other effects are rejected.
 /// earth : Earth, optional
-///     Orientation of the planet.
+///     Orientation of the planet; required by a ``ThirdBody``, and by a ``GravityField`` of an order above 0.
 /// mu : float, optional
-///     Gravitational parameter without a ``GravityField``, m³/s².
+///     Gravitational parameter, m³/s²; default: that of the ``GravityField``, or of the Earth without one. The value of
+///     a ``GravityField`` is used in any case; the given one may differ from it by at most 1e-5 (relative).
 /// axes : {"GCRF", "TEME"}
 ///     Inertial axes.
 ///
 /// Raises
 /// ------
 /// OrbitError
-///     For times after the orbit enters the planet.
+///     If an effect is not gravity, or the orbit begins inside the planet; its methods raise it for times at which the
+///     orbit is inside the planet.
+/// GravityError, EarthError
+///     If the gravity effects contradict each other or ``mu``, or lack an ``earth`` or its epoch.
 #[pyclass(name = "Numerical", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyNumerical;
 
@@ -82,11 +86,16 @@ impl PyNumerical {
     /// earth : Earth, optional
     ///     Orientation of the planet.
     /// mu : float, optional
-    ///     Gravitational parameter, m³/s²; default: that of ``orbit``.
+    ///     Gravitational parameter, m³/s²; default: that of the ``GravityField``, or of ``orbit`` without one.
     ///
     /// Returns
     /// -------
     /// Numerical
+    ///
+    /// Raises
+    /// ------
+    /// OrbitError, GravityError, EarthError
+    ///     If ``orbit`` has no state at ``t0``, and as in the constructor.
     #[staticmethod]
     #[pyo3(signature = (orbit, *, t0=0.0, environment=None, earth=None, mu=None))]
     fn from_orbit<'py>(

@@ -32,7 +32,8 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// ElementSetError
-///     If a line does not have 69 valid columns or its checksum is wrong; the message names line and column.
+///     If a line does not have 69 valid columns or its checksum is wrong (the message names line and column), the lines
+///     are of two satellites, or an element is out of range.
 ///     Also for a ``Satrec`` with other gravity constants, or in AFSPC mode unless ``propagator`` is
 ///     ``reference``.
 /// Sgp4Error
@@ -165,6 +166,11 @@ impl PySgp4 {
     /// Returns
     /// -------
     /// Sgp4
+    ///
+    /// Raises
+    /// ------
+    /// ElementSetError
+    ///     If the message cannot be read, lacks a keyword, or an entry is invalid.
     #[staticmethod]
     #[pyo3(signature = (message, *, gravity="wgs72", propagator="native"))]
     fn from_omm<'py>(

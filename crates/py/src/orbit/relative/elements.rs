@@ -26,7 +26,7 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// OrbitError
-///     If the chief's orbit is equatorial, or an orbit is open.
+///     If the chief's orbit is equatorial, an orbit is open, or position and velocity are parallel or zero.
 #[pyfunction]
 #[pyo3(signature = (r, v, deputy_r, deputy_v, *, mu=3.986004418e14))]
 pub(super) fn relative_elements<'py>(
@@ -69,6 +69,11 @@ pub(super) fn relative_elements<'py>(
 /// -------
 /// deputy_r, deputy_v : (3,) or (B, 3) array
 ///     State of the deputy, inertial axes, m and m/s.
+///
+/// Raises
+/// ------
+/// OrbitError
+///     If the chief's orbit is equatorial or open, or the elements do not describe an ellipse.
 #[pyfunction]
 #[pyo3(signature = (r, v, elements, *, mu=3.986004418e14))]
 pub(super) fn deputy_state<'py>(

@@ -26,6 +26,11 @@ use pyo3::prelude::*;
 /// (6, 6) or (T, 6, 6) array
 ///     Transition matrix of ``(x, y, z, ẋ, ẏ, ż)`` in Hill's axes (x radial outward, y along track, z
 ///     normal), m and m/s.
+///
+/// Raises
+/// ------
+/// OrbitError
+///     If ``mean_motion`` is not positive, or a number is not finite.
 #[pyfunction]
 pub(super) fn hill_transition<'py>(
     py: Python<'py>,
@@ -62,7 +67,7 @@ pub(super) fn hill_transition<'py>(
 /// Raises
 /// ------
 /// OrbitError
-///     If no such velocity exists, such as at half a period.
+///     If no such velocity exists, such as for zero time or half a period, or ``mean_motion`` is not positive.
 #[pyfunction]
 pub(super) fn intercept_velocity<'py>(
     py: Python<'py>,

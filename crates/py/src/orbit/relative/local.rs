@@ -31,6 +31,11 @@ use pyo3::prelude::*;
 ///     Relative position, axes of the frame, m.
 /// rho_dot : (3,) or (T, 3) array
 ///     Rate of change of the relative position in the rotating frame, m/s.
+///
+/// Raises
+/// ------
+/// OrbitError
+///     As for :meth:`Orbit.lvlh`, or if a number is not finite.
 #[pyfunction]
 #[pyo3(signature = (orbit, t, r, v, *, frame="lvlh"))]
 pub(super) fn to_lvlh<'py>(
@@ -67,6 +72,11 @@ pub(super) fn to_lvlh<'py>(
 ///     Position, inertial axes, m.
 /// v : (3,) or (T, 3) array
 ///     Velocity, inertial axes, m/s.
+///
+/// Raises
+/// ------
+/// OrbitError
+///     As for :func:`to_lvlh`.
 #[pyfunction]
 #[pyo3(signature = (orbit, t, r, v, *, frame="lvlh"))]
 pub(super) fn from_lvlh<'py>(
