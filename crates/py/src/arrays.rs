@@ -77,7 +77,7 @@ impl<'py> FromPyObject<'_, 'py> for Threads {
     }
 }
 
-/// Returns the entries of a list whose entries all have the class `T`; `what` is its name in messages.
+/// Returns the entries of an iterable, but not of text, whose entries all have the class `T`; `what` is its name in messages.
 pub(crate) fn list_of<'py, T: PyClass>(
     value: &Bound<'py, PyAny>,
     name: &str,
@@ -182,7 +182,7 @@ impl<'py> Input<'py> {
     }
 }
 
-/// Returns a vector or matrix of fixed shape.
+/// Returns a vector or matrix of fixed shape with finite entries.
 pub(crate) fn fixed<const N: usize>(
     value: &Bound<'_, PyAny>,
     name: &str,

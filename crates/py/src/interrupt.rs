@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// Wall-clock time between two checks for signals.
 pub(crate) const PACE: Duration = Duration::from_millis(50);
 
-/// Batch size above which the cost of a separate thread, some tens of microseconds, is negligible.
+/// Batch size from which the cost of a separate thread, some tens of microseconds, is negligible.
 pub(crate) const LONG_BATCH: usize = 1 << 16;
 
 /// Steps of an integrated orbit between two checks for signals.

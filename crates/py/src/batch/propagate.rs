@@ -40,7 +40,7 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// ------
 /// OrbitError
 ///     If a state cannot be computed; ``index`` is the index of the orbit. ``Sgp4Error`` and ``PathError``
-///     are subclasses.
+///     are subclasses. An error of an orbit's gravity or Earth is raised as it is.
 #[pyfunction]
 #[pyo3(signature = (orbits, times, *, threads=None, out=None))]
 pub(super) fn propagate<'py>(

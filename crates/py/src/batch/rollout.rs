@@ -58,7 +58,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// SimulationError
 ///     If a state diverges.
 /// ControlError
-///     If only one of ``controller`` and ``reference`` is given.
+///     If only one of ``controller`` and ``reference`` is given, ``tau`` is given as well, the controller is of
+///     another kind or for another robot, or the reference is in the frame ``"lvlh"``.
+/// InputError, ShapeError
+///     If a number is invalid, the integrator is another, or an array has the wrong shape.
 #[pyfunction]
 #[pyo3(signature = (
     model, q0, v0, *, steps, time_step=1e-3, tau=None, controller=None, reference=None, integrator="rk4",

@@ -20,11 +20,12 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// tool : str
 ///     Frame of the robot that tracks the reference.
 /// kp : float, (6,) or (6, 6) array, optional
-///     Position gain, linear rows first, 1/s².
+///     Position gain, linear rows first, 1/s²; default: 100.
 /// kd : float, (6,) or (6, 6) array, optional
-///     Velocity gain, linear rows first, 1/s.
+///     Velocity gain, linear rows first, 1/s; default: 20.
 /// damping : float
-///     Singular value of the generalized Jacobian below which its inverse is damped.
+///     The inverse of the generalized Jacobian ``Jg`` is damped while ``tr[(Jg Jgᵀ)⁻¹]^(-1/2)``, a lower bound
+///     of its smallest singular value, is below this value.
 /// null_space_damping : float
 ///     Damping of joint motion that does not move the tool, 1/s.
 /// compensate_environment : bool
@@ -37,7 +38,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Raises
 /// ------
 /// ControlError, FrameError, ShapeError
-///     If a gain is invalid, the frame does not exist, or a gain has the wrong shape.
+///     If a gain is invalid or fewer than six joints move the tool, the frame does not exist, or a gain has the
+///     wrong shape.
 #[pyclass(name = "ComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,

@@ -13,15 +13,15 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Goal of a control with tolerances, as in the joint trajectory controller of ROS.
 ///
-/// The outcome is in ``trace.results``.
+/// The outcome is in ``trace.results``. After a failure the control holds the current pose or joint positions.
 ///
 /// Parameters
 /// ----------
 /// tolerance : float or array
-///     Permitted error at the end of the reference: (m, rad) for a task, a number or (k,), rad or m, for
-///     joints.
+///     Permitted error at the end of the reference: a number for all components, or (m, rad) for a task, or
+///     (k,) for joints, rad or m (rad/s or m/s where the reference commands rates).
 /// path_tolerance : float or array, optional
-///     Permitted error during the motion; default: unlimited.
+///     Permitted error during the motion, as ``tolerance``; default: unlimited.
 /// time : float, optional
 ///     Time allowed after the end of the reference, s; default: unlimited.
 #[pyclass(name = "Goal", frozen, module = "onorbit_rs")]
@@ -55,11 +55,11 @@ impl PyGoal {
 /// tool : str, optional
 ///     Frame of the reference of a Python controller; default: that of the simulation.
 /// name : str, optional
-///     Name of the control in the trace and the results.
+///     Name of the control in the trace and the results; default: ``control_`` and its index in the list.
 /// start : float
-///     Simulation time at which the control starts, s.
+///     Simulation time at which the control starts, s; not used with ``after``.
 /// end : float, optional
-///     Simulation time at which the control ends, s.
+///     Simulation time at which the control ends, s; default: the end of the run.
 /// after : str, optional
 ///     Name of another control; this one starts when the goal of the other is decided or when the other ends.
 /// goal : Goal, optional

@@ -14,9 +14,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Parameters
 /// ----------
 /// kp : float or (k,) array, optional
-///     Position gain, 1/s².
+///     Position gain, 1/s²; default: 100.
 /// kd : float or (k,) array, optional
-///     Rate gain, 1/s.
+///     Rate gain, 1/s; default: 20.
 /// compensate_environment : bool
 ///     If True, the external wrenches are compensated.
 /// compensate_friction : bool
@@ -26,8 +26,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///
 /// Raises
 /// ------
-/// ControlError
-///     If a gain is invalid.
+/// ControlError, ShapeError
+///     If a gain is invalid or has the wrong shape.
 #[pyclass(name = "JointComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointComputedTorque {
     law: JointComputedTorque,

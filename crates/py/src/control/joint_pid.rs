@@ -11,8 +11,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// PID controller for each joint, as in ROS Control: ``tau = p e + i ∫e dt + d e'``.
 ///
 /// At least one gain is required, except for ``effort``. The integral does not grow further at a limit.
-/// Friction is not compensated: a joint that sticks moves only when the integral term overcomes static
-/// friction.
+/// Friction is not compensated: a joint that sticks moves only once the effort exceeds its static friction.
 ///
 /// Parameters
 /// ----------
@@ -25,12 +24,13 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// i_limit : float or (k,) array, optional
 ///     Limit of the integral term, N m or N.
 /// effort_limit : float or (k,) array, optional
-///     Limit of the effort, N m or N; default: the limits of the URDF; ``inf`` for no limit.
+///     Limit of the effort, N m or N; default: the limits of the URDF, where it has any;
+///     ``inf`` for no limit.
 ///
 /// Raises
 /// ------
-/// ControlError
-///     If the interface is unknown, a value is invalid, or all gains are missing.
+/// ControlError, ShapeError
+///     If the interface is unknown, a value is invalid, all gains are missing, or a value has the wrong shape.
 #[pyclass(name = "JointPid", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointPid {
     law: JointPid,

@@ -24,27 +24,32 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// ----------
 /// epoch : str or datetime, optional
 ///     Time zero: text with its time scale, such as ``2024-03-01T12:00:00 UTC`` (or ``Z``, TAI, TT, TDB), or
-///     an aware ``datetime``.
+///     an aware ``datetime``. ``iau2006`` requires it.
 /// rotation : {"iau2006", "about_z"}
 ///     Precession of IAU 2006 and nutation of 2000A (to 2 mas), or uniform rotation about z. Without an
 ///     epoch, ``about_z`` has no Sun and no Moon.
 /// ut1_minus_utc : float, optional
-///     UT1 - UTC, constant during the run, s.
+///     UT1 - UTC for ``iau2006``, constant during the run, s; default: 0.
 /// polar_motion : (2,) array, optional
-///     Coordinates of the pole, constant during the run, rad.
+///     Coordinates of the pole for ``iau2006``, constant during the run, rad; default: 0.
 /// eop : path or (N, 4) array, optional
-///     Table of Earth orientation parameters: a file (``finals2000A`` or ``eopc04`` of the IERS, or lines
+///     Table of Earth orientation parameters in place of these two: a file (``finals2000A`` or ``eopc04`` of the IERS, or lines
 ///     below ``mjd,x_arcsec,y_arcsec,ut1_minus_utc_s``), or rows of MJD (UTC), coordinates of the pole, rad,
 ///     and UT1 - UTC, s.
 /// angle : float, optional
-///     Rotation angle at time zero for ``about_z``, rad.
+///     Rotation angle at time zero for ``about_z``, rad; default: 0.
 /// rate : float, optional
-///     Angular velocity for ``about_z``, rad/s.
+///     Angular velocity for ``about_z``, rad/s; default: that of the Earth.
 /// ephemeris : path, optional
 ///     SPICE kernel for Sun and Moon, such as ``de440s.bsp``, read by PyPI's jplephem. By default they are
 ///     computed by an analytic series (2″ and 10″ from JPL's DE421 over 1900-2050).
 /// axes : {"GCRF", "TEME"}
 ///     Inertial axes of the methods; a run uses those of its orbit.
+///
+/// Raises
+/// ------
+/// EarthError, NotFoundError, ReadError
+///     If an argument is invalid or does not apply to the rotation, or a file does not exist or cannot be read.
 #[pyclass(name = "Earth", frozen, module = "onorbit_rs")]
 pub(crate) struct PyEarth {
     pub(crate) earth: Arc<Earth>,

@@ -16,13 +16,18 @@ use pyo3::prelude::*;
 /// body : str
 ///     Link or frame; the wrench acts at its origin and is expressed in its axes.
 /// force : (3,) array, optional
-///     Force, N.
+///     Force, N; default: 0.
 /// torque : (3,) array, optional
-///     Torque, N m.
+///     Torque, N m; default: 0.
 /// start : float, optional
 ///     Simulation time at which the wrench begins, s; default: the beginning of the run.
 /// end : float, optional
 ///     Simulation time at which the wrench ends, s; default: the end of the run.
+///
+/// Raises
+/// ------
+/// EffectError
+///     If the interval is empty.
 #[pyclass(name = "BodyWrench", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyBodyWrench;
 

@@ -18,8 +18,9 @@ use std::sync::Arc;
 /// atmosphere : Atmosphere
 ///     Model of the density.
 /// surfaces : Surface or dict of str to Surface, optional
-///     Surfaces of the links: one surface for a robot with a single body, or a dict by link; links that are
-///     not listed have no drag. Default: ``Faces()``, the robot's visual geometry with C_D = 2.2.
+///     Surfaces of the bodies: ``Faces`` for all bodies, any one surface for a robot with a single body, or a
+///     dict by link or frame; bodies that are not listed have no drag. Default: ``Faces()``, the robot's visual
+///     geometry with C_D = 2.2; bodies without visual geometry have no drag, which the simulation warns of.
 #[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyDrag;
 

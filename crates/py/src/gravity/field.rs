@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 /// Gravity field of a planet, without its point mass.
 ///
-/// The ``mu`` of the field replaces that of the run. As an effect of a simulation it acts on every body. The
-/// orientation of the planet is that of the simulation's ``earth``. A field of order 0 does not require an
-/// ``earth``; without one, the axis of the field is z. Positions are from the planet's centre in
-/// planet-fixed axes.
+/// As an effect of a simulation it acts on every body; its ``mu`` is then used in place of the orbit's, from
+/// which it may differ by at most 1e-5 of the value. The orientation of the planet is that of the simulation's
+/// ``earth``. A field of order 0 does not require an ``earth``; without one, the axis of the field is z.
+/// Positions are from the planet's centre in planet-fixed axes.
 ///
 /// Parameters
 /// ----------
@@ -73,17 +73,23 @@ impl PyGravityField {
     /// Parameters
     /// ----------
     /// degree : int, optional
-    ///     Highest degree, 2 to 6, of the Earth's zonal harmonics (EGM2008).
+    ///     Highest degree, 2 to 6, of the Earth's zonal harmonics (EGM2008); default: 6.
     /// j : (k,) array, optional
-    ///     Zonal coefficients J2, J3 and so on, not normalised, in place of ``degree``.
+    ///     Zonal coefficients J2, J3 and so on, at most to J6, not normalised, in place of ``degree``.
     /// mu : float, optional
-    ///     Gravitational parameter of the planet of ``j``, m³/s².
+    ///     Gravitational parameter of the planet of ``j``, m³/s²; required with ``j``.
     /// radius : float, optional
-    ///     Reference radius of ``j``, m.
+    ///     Reference radius of ``j``, m; required with ``j``.
     ///
     /// Returns
     /// -------
     /// GravityField
+    ///
+    /// Raises
+    /// ------
+    /// GravityError
+    ///     If ``degree`` is out of range, a number is invalid, or neither ``degree`` alone nor all of the other
+    ///     three are given.
     #[staticmethod]
     #[pyo3(signature = (degree=None, *, j=None, mu=None, radius=None))]
     fn zonal<'py>(
@@ -130,6 +136,11 @@ impl PyGravityField {
     /// Returns
     /// -------
     /// GravityField
+    ///
+    /// Raises
+    /// ------
+    /// NotFoundError, ReadError, GravityError
+    ///     If there is no such file, it cannot be read, or its content, degree or order is invalid.
     #[staticmethod]
     #[pyo3(signature = (path, *, degree=None, order=None))]
     fn from_gfc<'py>(
@@ -148,7 +159,7 @@ impl PyGravityField {
     /// Parameters
     /// ----------
     /// c, s : (n, n) array
-    ///     Coefficients ``c[degree, order]`` and ``s[degree, order]``; ``c[0, 0]`` is treated as 1.
+    ///     Coefficients ``c[degree, order]`` and ``s[degree, order]`` to degree n - 1; ``c[0, 0]`` is treated as 1.
     /// mu : float
     ///     Gravitational parameter, m³/s².
     /// radius : float
@@ -161,6 +172,11 @@ impl PyGravityField {
     /// Returns
     /// -------
     /// GravityField
+    ///
+    /// Raises
+    /// ------
+    /// GravityError, ShapeError
+    ///     If a number, the degree or the order is invalid, or the arrays are not square and of equal size.
     #[staticmethod]
     #[pyo3(signature = (c, s, *, mu, radius, degree=None, order=None))]
     fn from_coefficients<'py>(
@@ -230,6 +246,11 @@ impl PyGravityField {
     /// -------
     /// (3,) or (N, 3) array
     ///     Acceleration, planet-fixed axes, m/s².
+    ///
+    /// Raises
+    /// ------
+    /// GravityError
+    ///     If a position is inside the planet: below 0.996 of the reference radius.
     fn acceleration<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at_each(py, r, &[3], GravityField::accelerations)
     }
@@ -245,6 +266,11 @@ impl PyGravityField {
     /// -------
     /// (3, 3) or (N, 3, 3) array
     ///     Gradient, planet-fixed axes, 1/s².
+    ///
+    /// Raises
+    /// ------
+    /// GravityError
+    ///     If a position is inside the planet: below 0.996 of the reference radius.
     fn gradient<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at_each(py, r, &[3, 3], GravityField::gradients)
     }

@@ -13,6 +13,11 @@ use pyo3::prelude::*;
 /// ----------
 /// body : {"sun", "moon"}
 ///     Name of the third body.
+///
+/// Raises
+/// ------
+/// EffectError
+///     If the name is another.
 #[pyclass(name = "ThirdBody", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyThirdBody {
     body: Luminary,

@@ -55,10 +55,12 @@ impl PyJointHold {
 /// points : (K, n) array
 ///     Positions, rad or m.
 /// times : (K,) array, optional
-///     Times of the points, s. Default: the shortest times within ``speed`` and ``acceleration``; some joint
-///     then reaches a limit in each piece, or with ``stops=False`` at one point of the path.
+///     Times of the points, s. Default: with stops, the shortest time within ``speed`` and ``acceleration`` for
+///     each piece; with ``stops=False``, these times multiplied by one factor, with which some joint reaches a
+///     limit at one point of the path.
 /// speed, acceleration : float or (n,) array, optional
-///     Limits of the rates, rad/s or m/s, and of the accelerations, rad/s² or m/s².
+///     Limits of the rates, rad/s or m/s, and of the accelerations, rad/s² or m/s²; either these or ``times``
+///     are given.
 /// stops : bool
 ///     If False, the path passes through the points without stopping.
 #[pyclass(name = "JointWaypoints", extends = PyJointReference, frozen, module = "onorbit_rs")]

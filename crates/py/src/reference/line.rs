@@ -11,11 +11,11 @@ use pyo3::prelude::*;
 /// start_pose, end_pose : (4, 4) array
 ///     Initial and final pose of the tool in ``frame``, m.
 /// duration : float, optional
-///     Duration, s. Default: the shortest within the following limits.
+///     Duration, s. Default: the shortest within the following limits, of which at least one is then required.
 /// speed, acceleration : float, optional
 ///     Limits of the origin, m/s and m/s².
 /// angular_speed, angular_acceleration : float, optional
-///     Limits of the attitude, rad/s and rad/s².
+///     Limits of the attitude, rad/s and rad/s². Limits are not accepted together with ``duration``.
 /// frame : {"world", "lvlh", "base"} or Target, optional
 ///     Frame of the reference; default: W.
 #[pyclass(name = "Line", extends = PyReference, frozen, module = "onorbit_rs")]

@@ -1,11 +1,11 @@
-//! Line with a parabola perpendicular to it.
+//! Line with a superimposed parabola.
 
 use super::{Any, PyReference, pose, vector};
 use nalgebra::Vector3;
 use onorbit_core::reference::LineParabola;
 use pyo3::prelude::*;
 
-/// Line with a parabola perpendicular to it, ``p(t) = p0 + s d + s (1 - s) h``, with constant attitude.
+/// Line with a superimposed parabola, ``p(t) = p0 + s d + s (1 - s) h``, with constant attitude.
 ///
 /// ``s`` is the quintic from 0 to 1.
 ///

@@ -76,19 +76,25 @@ impl PyReference {
 
     /// Return pose, velocity and acceleration in W.
     ///
-    /// A reference relative to the base raises ``ControlError``, because its pose in W depends on the robot.
+    /// The reference starts at simulation time zero.
     ///
     /// Parameters
     /// ----------
     /// t : float or (T,) array
     ///     Time since the start of the reference, s.
     /// orbit : Orbit, optional
-    ///     Orbit of a reference in the frame ``"lvlh"``.
+    ///     Orbit of a reference in the frame ``"lvlh"``, which requires it.
     ///
     /// Returns
     /// -------
     /// pose, velocity, acceleration
     ///     As for :meth:`sample`.
+    ///
+    /// Raises
+    /// ------
+    /// ControlError
+    ///     If the reference is relative to the base, because its pose in W then depends on the robot, or it is
+    ///     in the frame ``"lvlh"`` and ``orbit`` is missing.
     #[pyo3(signature = (t, *, orbit=None))]
     fn in_world<'py>(
         &self,

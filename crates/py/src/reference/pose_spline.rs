@@ -12,10 +12,11 @@ use pyo3::prelude::*;
 /// poses : (K, 4, 4) array
 ///     Poses of the tool in ``frame``, m.
 /// times : (K,) array, optional
-///     Times of the poses, s. Default: the shortest times within the limits of :class:`Line`, one of which is
-///     then reached in each piece, or with ``stops=False`` at one point of the path.
+///     Times of the poses, s. Default: with stops, the shortest time within the limits for each piece; with
+///     ``stops=False``, these times multiplied by one factor, with which a limit is reached at one point of the
+///     path.
 /// speed, acceleration, angular_speed, angular_acceleration : float, optional
-///     As for :class:`Line`.
+///     Limits as for :class:`Line`; either these or ``times`` are given.
 /// stops : bool
 ///     If False, the path passes through the poses without stopping.
 /// frame : {"world", "lvlh", "base"} or Target, optional

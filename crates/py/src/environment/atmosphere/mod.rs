@@ -59,9 +59,9 @@ impl PyAtmosphere {
     /// altitude : float or array
     ///     Altitude above WGS84, m.
     /// latitude, longitude : float or array, optional
-    ///     Geodetic coordinates on WGS84, rad.
+    ///     Geodetic coordinates on WGS84, rad; default: 0.
     /// t : float or array, optional
-    ///     Simulation time, s.
+    ///     Simulation time, s; default: 0.
     /// earth : Earth, optional
     ///     Earth with an epoch, required by models that depend on the Sun or the date.
     ///
@@ -69,6 +69,12 @@ impl PyAtmosphere {
     /// -------
     /// float or array
     ///     Density, kg/m³.
+    ///
+    /// Raises
+    /// ------
+    /// EffectError, EarthError, ShapeError
+    ///     If a point is outside the range of the model, the Earth does not cover a time, or the arguments do
+    ///     not broadcast.
     #[pyo3(signature = (altitude, latitude=None, longitude=None, t=None, *, earth=None))]
     fn density<'py>(
         &self,
@@ -100,14 +106,20 @@ impl PyAtmosphere {
     /// r : (3,) or (N, 3) array
     ///     Position from the Earth's centre, inertial axes, m.
     /// t : float or (N,) array, optional
-    ///     Simulation time, s.
+    ///     Simulation time, s; default: 0.
     /// earth : Earth
-    ///     Orientation of the Earth.
+    ///     Orientation of the Earth, with an epoch for models that depend on the Sun or the date.
     ///
     /// Returns
     /// -------
     /// float or (N,) array
     ///     Density, kg/m³.
+    ///
+    /// Raises
+    /// ------
+    /// EffectError, EarthError, ShapeError
+    ///     If a point is outside the range of the model, the Earth does not cover a time, or ``t`` does not
+    ///     match ``r``.
     #[pyo3(signature = (r, t=None, *, earth))]
     fn density_at<'py>(
         &self,

@@ -49,7 +49,7 @@ impl SurfaceAssignment {
         }
     }
 
-    /// Returns the surfaces on a given robot, and a warning if bodies without visual geometry have no faces.
+    /// Returns the surfaces on a given robot; warns if bodies without visual geometry have no faces.
     pub(crate) fn on_with_warning(&self, py: Python<'_>, model: &Model, effect: &str) -> PyResult<Surfaces> {
         let surfaces = self.on(py, model)?;
         let bare = if matches!(self, Self::All(SurfaceKind::Faces { .. })) {

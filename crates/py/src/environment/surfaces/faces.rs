@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::surfaces::Surface;
 use pyo3::prelude::*;
 
-/// Faces of a link's visual geometry.
+/// Faces of a body's visual geometry: that of a link and of all links that are fixed to it.
 ///
 /// Boxes, cylinders and spheres are represented exactly, capsules to 2 %; meshes are rejected.
 ///
