@@ -19,7 +19,7 @@ pub enum RolloutControl<'a> {
     /// No commanded torques; damping and friction of the joints still act.
     #[default]
     Passive,
-    /// Given torques, `(B, steps, n)`, N m.
+    /// Given joint efforts, `(B, steps, n)`, N m or N.
     Torques(&'a [f64]),
     /// Computed torque that tracks one reference in all runs; the reference must not be in an orbital frame.
     ComputedTorque(&'a ComputedTorque, &'a TaskReference),

@@ -33,7 +33,8 @@ impl<S: Real> Workspace<S> {
         }
     }
 
-    /// Returns true if the workspace was allocated for this robot.
+    /// Returns true if the workspace suits this robot: the number of bodies and the base are those it was allocated
+    /// for.
     pub(super) fn fits(&self, model: &Model) -> bool {
         self.kernel_data.data.bodies.len() == model.nodes().len() && self.base == base_of(model)
     }

@@ -7,8 +7,10 @@ use crate::model::Model;
 /// Checks that each control applies to the robot, and that no two of them conflict.
 ///
 /// # Errors
-/// [`ControlError`] for groups that are empty, repeat a joint or overlap while both controls are active;
-/// gains, goals or references that do not fit a group; time windows that are empty.
+/// [`ControlError`] for names that occur twice; groups that are empty, repeat a joint or overlap while both controls
+/// are active; gains, goals or references that are invalid or do not fit a group; goals without a reference; time
+/// windows that are empty; controls that start after one that does not exist or never ends; controls of which only
+/// some compensate the environment.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
     for (i, control) in controls.iter().enumerate() {
         if controls[..i].iter().any(|other| other.name == control.name) {

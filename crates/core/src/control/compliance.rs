@@ -34,7 +34,8 @@ impl Compliance {
     /// Checks the gains.
     ///
     /// # Errors
-    /// [`ControlError`] for gains that are not finite or have a negative diagonal.
+    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, and for negative
+    /// damping.
     pub fn check(&self) -> Result<(), ControlError> {
         check_matrix("stiffness", &self.stiffness)?;
         check_matrix("damping", &self.damping)?;

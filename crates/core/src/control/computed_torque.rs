@@ -32,7 +32,8 @@ pub struct ComputedTorque {
     pub kp: [f64; 36],
     /// Gain `Kd` of the velocity error, row major `(6, 6)`, 1/s.
     pub kd: [f64; 36],
-    /// Singular value `λ₀` of `Jg` below which the pseudo-inverse is damped.
+    /// Limit `λ₀`: the pseudo-inverse of `Jg` is damped while `tr[(Jg Jgᵀ)⁻¹]^(-1/2)`, a lower bound of the smallest
+    /// singular value, is below it.
     pub damping: f64,
     /// Damping `k` of self-motion, 1/s.
     pub null_space_damping: f64,
@@ -89,8 +90,8 @@ impl ComputedTorque {
     /// Checks that the law applies to a robot.
     ///
     /// # Errors
-    /// [`ControlError`] for gains that are not finite or have a negative diagonal, negative damping, or a
-    /// frame that fewer than six joints move.
+    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, negative damping, or
+    /// a frame that does not exist or that fewer than six joints move.
     pub fn check(&self, model: &Model) -> Result<(), ControlError> {
         check_matrix("kp", &self.kp)?;
         check_matrix("kd", &self.kd)?;

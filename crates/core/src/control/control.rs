@@ -61,8 +61,8 @@ impl Control {
         Self { has_column: false, ..Self::new("control", joints, law) }
     }
 
-    /// Returns the length of the tracking error: 6 for a frame (m, rad), one per joint, or 0 without a
-    /// reference.
+    /// Returns the length of the tracking error: 6 for a frame (m, rad), one per joint, or 0 without a reference or if
+    /// the reference commands efforts.
     pub fn width(&self) -> usize {
         match (self.law.task(), self.law.joint_reference()) {
             (Some(_), _) => 6,
@@ -71,13 +71,13 @@ impl Control {
         }
     }
 
-    /// Returns the time after the start of the control at which the reference comes to rest, s.
+    /// Returns the time after the start of the control at which the reference comes to rest, s; 0 without a reference.
     pub(super) fn duration(&self) -> f64 {
         let task = self.law.task().map(|(_, reference)| reference.duration());
         task.or_else(|| self.law.joint_reference().map(|path| path.duration())).unwrap_or(0.0)
     }
 
-    /// Returns the start and end times that are known before the run, s.
+    /// Returns the start and end times after time zero that are known before the run, s.
     pub fn switch_times(&self) -> impl Iterator<Item = f64> {
         let start = if let Begin::At(start) = self.begin { start } else { 0.0 };
         [start, self.end].into_iter().filter(|t| t.is_finite() && *t > 0.0)

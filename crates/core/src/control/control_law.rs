@@ -127,7 +127,7 @@ pub enum Interface {
 /// Damping of the joint accelerations that realise a task.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TaskDamping {
-    /// Singular value `λ₀` of the Jacobian below which its pseudo-inverse is damped.
+    /// Limit `λ₀` of `tr[(J Jᵀ)⁻¹]^(-1/2)` below which the pseudo-inverse of the Jacobian `J` is damped.
     pub(super) pseudo_inverse: f64,
     /// Damping `k` of the self-motion, 1/s.
     pub(super) null_space: f64,

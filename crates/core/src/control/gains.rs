@@ -58,7 +58,7 @@ impl From<f64> for PerJoint {
     }
 }
 
-/// Checks that the numbers are finite and not negative.
+/// Checks that the numbers are finite, not too large and not negative.
 pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     check_size(name, numbers)?;
     match numbers.iter().find(|x| **x < 0.0) {

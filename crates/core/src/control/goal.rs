@@ -6,15 +6,16 @@ use serde::{Deserialize, Serialize};
 
 /// Tolerances of a tracked path, as in the joint trajectory controller of ROS.
 ///
-/// The components of the error are those of the joints of the group, rad or m, or, for a task, the distance, m,
-/// and the angle, rad. If an error exceeds `path` before the end of the path, the goal fails and the control holds
-/// the current joint positions, or the current pose in W (relative to the base if its reference is). After the
-/// end of the path, the goal is reached once all errors are within `tolerance`, and fails after `time`.
+/// The components of the error are those of the joints of the group, rad or m (rad/s or m/s where rates are
+/// commanded), or, for a task, the distance, m, and the angle, rad. The goal fails if an error exceeds `path` before
+/// the end of the path. After the end, it is reached once all errors are within `tolerance`, and fails after `time`.
+/// After a failure the control holds the current joint positions, or the current pose in W (relative to the base if
+/// its reference is).
 #[derive(Clone, Debug)]
 pub struct Goal {
-    /// Largest permitted errors during the path, rad or m; `None` for no limit.
+    /// Largest permitted errors during the path, in units of the error; `None` for no limit.
     pub path: Option<PerJoint>,
-    /// Largest permitted errors at the end, rad or m.
+    /// Largest permitted errors at the end, in units of the error.
     pub tolerance: PerJoint,
     /// Time allowed after the end of the path, s; `None` for no limit.
     pub time: Option<f64>,
@@ -44,7 +45,7 @@ pub struct Miss {
     pub component: usize,
     /// Simulation time, s.
     pub time: f64,
-    /// Error, rad or m.
+    /// Error, rad or m (rad/s or m/s where rates are commanded).
     pub error: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::reference::JointSample;
 ///
 /// The integral increases by `e Δt` at each control tick. Its effort is limited to `±i_limit`, and while the
 /// total effort is at `effort_limit` the integral does not increase further in that direction (anti-windup).
-/// Friction is not compensated: a joint that sticks moves once the integral has grown enough.
+/// Friction is not compensated: a joint that sticks moves only once the effort exceeds its static friction.
 #[derive(Clone, Debug)]
 pub struct JointPid {
     /// Quantity that the reference commands.
@@ -39,8 +39,8 @@ impl JointPid {
     /// Checks the gains for a group of `count` joints.
     ///
     /// # Errors
-    /// [`ControlError`] if the number of gains differs from 1 and `count`, or a gain is negative or not
-    /// finite.
+    /// [`ControlError`] if the number of gains or limits differs from 1 and `count`, a gain is negative, not finite or
+    /// too large, a limit is negative or NaN, or the effort interface has gains.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         for (name, gains) in [("p", &self.p), ("i", &self.i), ("d", &self.d)] {
             gains.check(name, count)?;

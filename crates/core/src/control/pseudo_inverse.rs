@@ -112,7 +112,8 @@ impl<S: Real> PseudoInverse<S> {
     }
 
     /// Computes `D y = (J₀⁺ − J⁺) J y` for joint rates `y`, `(n,)`, with the undamped inverse `J₀⁺`: the part that the
-    /// damping suppresses, zero without damping. `achieved` receives `J⁺ J y`.
+    /// damping suppresses, zero without damping. With damping, `achieved` receives `J⁺ J y`; otherwise it is not
+    /// written.
     #[inline(always)]
     pub(super) fn suppressed(&mut self, jacobian: &[S], y: &[S], achieved: &mut [S], suppressed: &mut [S]) {
         if !self.is_damped {

@@ -17,26 +17,30 @@ pub struct BodyData<S> {
     pub pos_b: Vec3<S>,
     /// Position of the body origin relative to the parent origin, m. Set by [`positions`](super::positions).
     pub offset: Vec3<S>,
-    /// Mass, centre of mass and inertia about the centre of mass. Set by [`positions`](super::positions).
+    /// Mass, centre of mass and inertia about the centre of mass. Set by [`positions`](super::positions); the mass and
+    /// the values of the base by [`Data::new`].
     pub inertia: RigidInertia<S>,
     /// Twist of the body. Set by [`kinematics`](super::kinematics).
     pub velocity: Motion<S>,
-    /// External wrench on the body. Set by [`apply_external`](super::apply_external) or by the simulation;
-    /// every recursion reads it.
+    /// External wrench on the body. Set by [`apply_external`](super::apply_external) or by the simulation; every
+    /// algorithm that computes forces or accelerations reads it.
     pub external: Force<S>,
-    /// Sum of the external wrenches on the subtree. Set by [`free_floating`](super::free_floating).
+    /// Sum of the external wrenches on the subtrees of children, at forks, and on the whole robot, at the base. Set by
+    /// [`free_floating`](super::free_floating).
     pub subtree_external: Force<S>,
     /// Spatial acceleration: the velocity-product part or the complete acceleration, depending on the algorithm that
     /// ran last.
     pub acceleration: Motion<S>,
-    /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for bodies with several children.
+    /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for the base and at forks: bodies with a child
+    /// that is not the next body.
     pub delta_acceleration: Motion<S>,
     /// Force through the joint (RNEA), `I S` (CRBA), or articulated bias force `pA` of a body with a locked joint
     /// (ABA).
     pub force: Force<S>,
-    /// Rigid inertia of the subtree. Set by CRBA and `free_floating`.
+    /// Sum of the rigid inertias of the subtrees of children, at forks, and that of the whole robot, at the base. Set
+    /// by CRBA and `free_floating`.
     pub composite: SpatialInertia<S>,
-    /// Articulated-body inertia `IA`. Set by ABA for the base only.
+    /// Articulated-body inertia `IA` of the base, and, at forks, the sum of the contributions of children. Set by ABA.
     pub articulated: ArticulatedInertia<S>,
     /// `U = IA S`, about the origin of the parent. Set by ABA.
     pub u_force: Force<S>,

@@ -27,7 +27,7 @@ impl Earth {
     /// Computes `rot_fi` (T, 3, 3), row-major, at `times` (T,), s.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`].
+    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`].
     pub fn rotations(&self, times: &[f64], rotations: &mut [f64]) -> Result<(), EarthError> {
         fill_rows::<9>(times, rotations, |_, t| {
             let transposed: Matrix3<f64> = self.checked_rotation(t)?.transpose(); // column major
@@ -40,7 +40,7 @@ impl Earth {
     /// Computes the angular velocities (T, 3) of `F` with respect to `I`, axes of `I`, rad/s.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`].
+    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`].
     pub fn angular_velocities(&self, times: &[f64], rates: &mut [f64]) -> Result<(), EarthError> {
         fill_rows(times, rates, |_, t| self.covers(t).map(|()| self.angular_velocity(t).into()))
     }
@@ -48,7 +48,7 @@ impl Earth {
     /// Computes the positions of the Sun (T, 3), axes of `I`, m.
     ///
     /// # Errors
-    /// The errors of [`Earth::sun`].
+    /// The errors of [`Earth::sun`], and [`EarthError::WrongLength`].
     pub fn suns(&self, times: &[f64], positions: &mut [f64]) -> Result<(), EarthError> {
         fill_rows(times, positions, |_, t| Ok(self.sun(t)?.into()))
     }
@@ -56,7 +56,7 @@ impl Earth {
     /// Computes the positions of the Moon (T, 3), axes of `I`, m.
     ///
     /// # Errors
-    /// The errors of [`Earth::moon`].
+    /// The errors of [`Earth::moon`], and [`EarthError::WrongLength`].
     pub fn moons(&self, times: &[f64], positions: &mut [f64]) -> Result<(), EarthError> {
         fill_rows(times, positions, |_, t| Ok(self.moon(t)?.into()))
     }
@@ -64,7 +64,7 @@ impl Earth {
     /// Transforms positions (T, 3), m, from `I` to `F` axes.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`].
+    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`].
     pub fn to_fixed(&self, times: &[f64], positions: &[f64], fixed: &mut [f64]) -> Result<(), EarthError> {
         check_length("the positions", positions.len(), 3 * times.len())?;
         fill_rows(times, fixed, |k, t| Ok((self.checked_rotation(t)? * row(positions, k)).into()))
@@ -74,7 +74,7 @@ impl Earth {
     /// (T, 3), m.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`] and [`Geodetic::of`].
+    /// The errors of [`Earth::covers`] and [`Geodetic::of`], and [`EarthError::WrongLength`].
     pub fn geodetics(
         &self,
         times: &[f64],

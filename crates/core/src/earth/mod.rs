@@ -73,8 +73,9 @@ impl Earth {
         Ok(earth)
     }
 
-    /// Returns the same Earth with time zero at `epoch`. An Earth with uniform rotation then also has Sun and Moon, in
-    /// GCRF axes.
+    /// Returns the same Earth with time zero at `epoch`, and with the series for Sun and Moon in place of a kernel. An
+    /// Earth with uniform rotation then has GCRF axes; one with IAU 2006 accepts only its own epoch: its rotation is
+    /// not recomputed.
     pub fn with_epoch(mut self, epoch: Epoch) -> Self {
         if let Rotation::AboutZ { inertial, .. } = &mut self.rotation {
             *inertial = Some(Box::new(Orientation::of_axes(epoch, epoch.series_span())));
@@ -85,7 +86,8 @@ impl Earth {
     /// Returns the same Earth with the positions of Sun and Moon from a SPICE kernel.
     ///
     /// # Errors
-    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] if the kernel does not cover eight days from the epoch.
+    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] if the epoch is outside the intervals of eight days that
+    /// the kernel covers.
     pub fn with_kernel(self, kernel: SpiceKernel) -> Result<Self, EarthError> {
         let what = "the SPICE kernel of Sun and Moon";
         let epoch = self.epoch().ok_or(EarthError::NeedsEpoch { what })?;
@@ -94,7 +96,7 @@ impl Earth {
         Ok(Self { sun_moon: Some(sun_moon), ..self })
     }
 
-    /// Returns the same Earth with other inertial axes.
+    /// Returns the same Earth with other inertial axes. A uniform rotation without an epoch fits any axes.
     pub fn in_axes(&self, axes: Axes) -> Self {
         let rotation = match &self.rotation {
             Rotation::AboutZ { angle, rate, inertial } => {
@@ -122,7 +124,8 @@ impl Earth {
     /// Checks that the rotation of the Earth is known at `t` s of simulation; called once before a run.
     ///
     /// # Errors
-    /// [`EarthError::OutsideSpan`] outside the table of parameters or the years 1900 to 2100.
+    /// [`EarthError::NotFinite`]; with an epoch, [`EarthError::OutsideSpan`] outside the table of parameters or the
+    /// years 1900 to 2100.
     pub fn covers(&self, t: f64) -> Result<(), EarthError> {
         if !t.is_finite() {
             return Err(EarthError::NotFinite { name: "time", value: t });
@@ -176,7 +179,7 @@ impl Earth {
     /// Without a kernel, direction and distance are within 2″ and 4e-6 of JPL's DE421 from 1900 to 2050.
     ///
     /// # Errors
-    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] outside 1900 to 2100.
+    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] outside 1900 to 2100 or outside the kernel.
     pub fn sun(&self, t: f64) -> Result<Vector3<f64>, EarthError> {
         let sun_moon = self.sun_moon_at("the position of the Sun", t)?;
         Ok(sun_moon.sun(t, |t| self.rot_ig(t)))

@@ -157,7 +157,11 @@ const MJD_2100: f64 = 88_069.0;
 fn check(row: usize, mjd: f64, ut1_minus_utc: f64, polar_motion: &[f64; 2]) -> Result<(), EarthError> {
     let largest = largest_ut1(mjd);
     if !(-largest..=largest).contains(&ut1_minus_utc) {
-        let expected = "at most 0.9 s (are these milliseconds, or UT1 - TAI?)";
+        let expected = if largest < 1.0 {
+            "at most 0.9 s (are these milliseconds, or UT1 - TAI?)"
+        } else {
+            "at most 60 s before 1972 and from 2035 (are these milliseconds?)"
+        };
         return Err(EarthError::Parameter { name: "UT1 - UTC", value: ut1_minus_utc, row, expected });
     }
     if let Some(&value) = polar_motion.iter().find(|x| !(-FARTHEST_POLE..=FARTHEST_POLE).contains(*x)) {

@@ -11,7 +11,7 @@ impl EarthParameters {
     /// Reads a table in the IERS format `finals2000A` or `eopc04`, or CSV with the header
     /// `mjd,x_arcsec,y_arcsec,ut1_minus_utc_s`.
     ///
-    /// The table ends at the first row of `finals2000A` without UT1.
+    /// The table ends at the first row of `finals2000A` without polar motion or UT1.
     ///
     /// # Errors
     /// [`EarthError::Table`] with the line.

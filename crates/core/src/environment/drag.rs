@@ -20,9 +20,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// relative to an atmosphere that rotates with the Earth, assumed uniform over a face, cylinder or sphere.
 /// Parts do not shadow each other.
 ///
-/// The density is computed at the grid point (128 m, 1/8 s) nearest to the base of the robot and extrapolated with
-/// the scale height up to 160 m from there; the relative error is at most 1e-4 where the model is smooth. For bodies
-/// farther away the model is evaluated at the body. The grid point depends on position and time alone.
+/// The density is computed at the last multiple of 1/8 s and the point of a grid of 128 m that is nearest to the base
+/// of the robot, and extrapolated with the scale height up to 160 m from there; the relative error is at most 1e-4
+/// where the model is smooth. For bodies farther away the model is evaluated at the body. The grid point depends on
+/// position and time alone.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.
 #[derive(Debug)]
@@ -74,7 +75,8 @@ impl Effect for Drag {
     }
 
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::Atmosphere`].
+    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::InsidePlanet`],
+    /// [`EnvironmentError::Atmosphere`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

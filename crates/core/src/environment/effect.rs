@@ -32,7 +32,7 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
     /// Returns the short name for messages and recorded columns.
     fn name(&self) -> &str;
 
-    /// Returns the instants at which the effect is discontinuous, s of simulation; the integrator stops at each.
+    /// Returns the instants at which the effect is discontinuous, s of simulation; the integrator ends a step at each.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -49,7 +49,7 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
 
     /// Returns true if the motion of the reference orbit already includes this effect.
     ///
-    /// In [`GravityMode::Carried`](super::GravityMode::Carried) its common acceleration is then removed.
+    /// [`GravityMode::Carried`](super::GravityMode::Carried) assumes so, and removes its common acceleration.
     fn acts_on_reference(&self) -> bool {
         false
     }
@@ -59,7 +59,7 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Adds the wrench of this effect on each body to `wrenches`; allocates nothing.
+    /// Adds the wrench of this effect on each body to `wrenches`. Must not allocate.
     ///
     /// # Errors
     /// [`EnvironmentError`] where the effect is not defined in this scene.

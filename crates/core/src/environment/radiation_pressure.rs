@@ -138,7 +138,8 @@ impl Effect for RadiationPressure {
     }
 
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::Earth`] without an epoch.
+    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::InsidePlanet`], and
+    /// [`EnvironmentError::Earth`] without an epoch or outside the span of the Sun's positions.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

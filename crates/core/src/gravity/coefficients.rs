@@ -31,7 +31,8 @@ impl Coefficients {
     /// `c[0]` is treated as 1 regardless of its value; entries with `m > n` and `s` of order 0 must be zero.
     ///
     /// # Errors
-    /// [`GravityError`] for wrong lengths, non-finite numbers, non-positive `mu` or `radius`, and coefficients that
+    /// [`GravityError`] for a degree out of range, wrong lengths, non-finite numbers, terms that do not exist, `mu` and
+    /// `radius` that are not positive or whose units do not match, and implausible coefficients, such as those that
     /// are not normalised.
     pub fn new(
         model: &str,

@@ -53,7 +53,7 @@ impl Expansion {
     }
 }
 
-/// Returns true if the positions are near each other in all lanes.
+/// Returns true if the positions are within [`LINEAR_RADIUS`] of each other in all lanes.
 #[inline(always)]
 pub(super) fn is_near<S: Real>(a: Vec3<S>, b: Vec3<S>) -> bool {
     let d = a - b;

@@ -49,7 +49,8 @@ impl GravityField {
     /// (not normalised).
     ///
     /// # Errors
-    /// [`GravityError`] for no or more than five coefficients, non-finite numbers, and non-positive `mu` or `radius`.
+    /// [`GravityError`] for no or more than five coefficients, non-finite numbers, and `mu` and `radius` that are not
+    /// positive or whose units do not match.
     pub fn zonals(mu: f64, radius: f64, j: &[f64]) -> Result<Self, GravityError> {
         let degree = j.len() + 1;
         if j.is_empty() || degree > zonal::HIGHEST {
@@ -69,7 +70,8 @@ impl GravityField {
     /// and order 70.
     ///
     /// # Errors
-    /// [`GravityError::UnknownModel`], [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`].
+    /// [`GravityError::UnknownModel`], [`GravityError::Degree`], [`GravityError::BeyondModel`],
+    /// [`GravityError::OrderAboveDegree`].
     pub fn bundled(name: &str, degree: usize, order: usize) -> Result<Self, GravityError> {
         let Some((name, text)) = BUNDLED.iter().find(|(known, _)| *known == name) else {
             let known = BUNDLED.iter().map(|(known, _)| *known).chain(["zonal"]).collect();
@@ -99,7 +101,8 @@ impl GravityField {
         Self::new(&coefficients, degree, order.unwrap_or(degree))
     }
 
-    /// Returns the field of a model up to `degree` and `order`; zonal fields up to degree 6 use their closed form.
+    /// Returns the field of a model up to `degree` and `order`; zonal fields up to degree 6 and without a
+    /// term of degree 1 use their closed form.
     ///
     /// # Errors
     /// [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`], [`GravityError::Degree`].

@@ -41,7 +41,7 @@ impl Gravity {
     /// about the midpoint between robot and reference, which makes the difference accurate to second order.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`].
+    /// [`GravityError::BelowSurface`], and other errors of the field.
     pub(crate) fn local_field<'a>(
         &'a self,
         point: &FieldPoint,
@@ -66,7 +66,7 @@ impl LocalField<'_> {
     /// Returns `g(r_ref + ρ)`, m/s²; `offset` is `ρ`, the position relative to the reference, one body per lane.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`].
+    /// [`GravityError::BelowSurface`], and errors of third bodies.
     #[inline(always)]
     pub(crate) fn acceleration<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
         let there = Vec3::of(&self.r_ref) + offset;
@@ -88,7 +88,7 @@ impl LocalField<'_> {
     /// `G` at the centre of the expansion.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`].
+    /// [`GravityError::BelowSurface`], and errors of third bodies.
     #[inline(always)]
     pub(crate) fn difference<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
         let there = Vec3::of(&self.r_ref) + offset;
@@ -109,7 +109,7 @@ impl LocalField<'_> {
     /// Returns `∂g/∂r` at `r_ref + ρ`, 1/s².
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`].
+    /// [`GravityError::BelowSurface`], and errors of third bodies.
     #[inline(always)]
     pub(crate) fn gradient<S: Real>(&self, offset: Vec3<S>) -> Result<Sym3<S>, GravityError> {
         let there = Vec3::of(&self.r_ref) + offset;

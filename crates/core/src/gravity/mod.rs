@@ -76,7 +76,8 @@ impl Gravity {
     /// Returns this gravity with the Sun or the Moon.
     ///
     /// # Errors
-    /// [`GravityError::Earth`] without an epoch, [`GravityError::BodyTwice`].
+    /// [`GravityError::Earth`] without an epoch or if the position is not known at time zero,
+    /// [`GravityError::BodyTwice`].
     pub fn with(self, body: Luminary, earth: &Arc<Earth>) -> Result<Self, GravityError> {
         let name = body.name();
         if self.third_bodies.iter().any(|known| known.name() == name) {
@@ -107,7 +108,8 @@ impl Gravity {
         &self.third_bodies
     }
 
-    /// Returns the epoch at time zero, if field or third bodies have one.
+    /// Returns the epoch at time zero: that of the Earth with which the field rotates, or, without a field, that of Sun
+    /// and Moon.
     pub fn epoch(&self) -> Option<Epoch> {
         self.earth.as_ref().and_then(|earth| earth.epoch())
     }

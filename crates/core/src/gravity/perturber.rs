@@ -51,7 +51,7 @@ impl Perturber {
     /// Returns the body with its position relative to `earth`.
     ///
     /// # Errors
-    /// [`GravityError::Earth`] without an epoch.
+    /// [`GravityError::Earth`] without an epoch or if the position is not known at time zero.
     pub fn new(body: Luminary, earth: Arc<Earth>) -> Result<Self, GravityError> {
         let perturber = Self { body, earth };
         perturber.position(0.0).map(|_| perturber)

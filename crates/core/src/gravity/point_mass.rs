@@ -49,7 +49,7 @@ pub(crate) fn tide<S: Real>(mu: f64, r_ref: &Vec3<f64>, offset: Vec3<S>) -> (Vec
 /// Returns true for the Earth's `μ`, m³/s², in any published version including a rounded 4e14; no other planet has a
 /// similar value.
 pub(crate) fn is_earth(mu: f64) -> bool {
-    (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/planet.py
+    (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/visuals/earth_shape.py
 }
 
 /// Smallest accepted distance from a planet's centre, in equatorial radii; the Earth's poles are at 0.9966.

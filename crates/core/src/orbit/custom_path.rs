@@ -12,8 +12,8 @@ pub enum Ends {
     /// [`PathError::TimeOutOfPath`] is returned.
     #[default]
     Error,
-    /// The path continues along a straight line with the last velocity and the last angular velocity. The
-    /// velocity is continuous; the acceleration drops to zero.
+    /// The path continues along a straight line with the velocity and the angular velocity of the nearest end. Both
+    /// are continuous; the acceleration drops to zero.
     Coast,
 }
 
@@ -52,7 +52,8 @@ impl CustomPath {
     /// Builds a path around a planet of parameter `mu`, m³/s², or without a planet.
     ///
     /// # Errors
-    /// [`PathError`] for invalid points, [`OrbitError::NotPositive`] for `mu`.
+    /// [`PathError`] for invalid points; [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and
+    /// [`OrbitError::NotPositive`] for `mu`.
     pub fn new(points: PathPoints, mu: Option<f64>, ends: Ends) -> Result<Self, OrbitError> {
         if let Some(mu) = mu {
             super::error::positive("mu", mu)?;
@@ -117,8 +118,8 @@ impl Orbit for CustomPath {
         "derivative of the path's spline"
     }
 
-    /// Returns the times of all points. The jerk is discontinuous there; where the path begins to coast, so is the
-    /// acceleration.
+    /// Returns the times of all points. A derivative of the acceleration is discontinuous there; where the path begins
+    /// or ceases to coast, so is the acceleration itself.
     fn event_times(&self) -> Vec<f64> {
         self.position.times().to_vec()
     }
@@ -143,7 +144,8 @@ impl Orbit for CustomPath {
         let (inside, beyond) = self.clamped(t)?;
         let (turn, rate, _) = attitude.sample(inside);
         let rot_ip = exp_so3(rate * beyond).product(turn).matrix();
-        let rate_p = rot_ip.transpose_mul(rate); // the angular velocity is parallel to the rotation axis, so both frames give the same
+        // the rotation after the end is about the angular velocity, so its components in both frames are the same
+        let rate_p = rot_ip.transpose_mul(rate);
         Ok(PathFrame { rot_ip: rot_ip.to_nalgebra(), rate_p: rate_p.to_nalgebra() })
     }
 }

@@ -21,7 +21,7 @@ impl FixedFrame {
     /// (m³/s²), or without a planet.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`] and [`OrbitError::NotPositive`].
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], and [`OrbitError::NotPositive`] for `mu`.
     pub fn new(
         position: Vector3<f64>,
         attitude: UnitQuaternion<f64>,

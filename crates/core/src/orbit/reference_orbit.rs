@@ -79,8 +79,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         Ok(state.velocity)
     }
 
-    /// Returns the times at which the acceleration is discontinuous, s of simulation; the integrator ends a step at
-    /// each.
+    /// Returns the times at which the acceleration or one of its derivatives is discontinuous, s of simulation; the
+    /// integrator ends a step at each.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()
     }

@@ -21,8 +21,9 @@ impl JointSpline {
     /// them.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two points, wrong lengths, times that do not increase, or limits
-    /// that do not determine the times.
+    /// [`ReferenceError`] for fewer than two points, wrong lengths, numbers that are not finite, times that do not
+    /// increase, limits that are not positive or do not determine the times, or, with limits, equal neighbouring
+    /// points.
     pub fn waypoints(
         count: usize,
         points: &[f64],
@@ -82,7 +83,8 @@ impl JointSpline {
     /// if known. Outside `times`, the first or last positions are held.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two samples, wrong lengths, or times that do not increase.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, or times that do not
+    /// increase.
     pub fn sampled(
         count: usize,
         times: &[f64],

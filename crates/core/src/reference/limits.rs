@@ -31,7 +31,8 @@ impl RateLimit {
         (PEAK_RATE * distance / self.rate).max((PEAK_ACCELERATION * distance / self.acceleration).sqrt())
     }
 
-    /// Checks that both limits are positive; `names` are those of the rate and the acceleration in messages.
+    /// Checks that both limits are positive, possibly infinite; `names` are those of the rate and the acceleration in
+    /// messages.
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`].

@@ -18,8 +18,8 @@ impl PoseSpline {
     /// scaled by the same factor, so that the whole path respects them.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two poses, times that do not increase, or limits that do not
-    /// determine the times.
+    /// [`ReferenceError`] for fewer than two poses, times that do not increase, neighbouring attitudes half a turn
+    /// apart, limits that are not positive or do not determine the times, or, with limits, equal neighbouring poses.
     pub fn waypoints(
         poses: &[Hold],
         timing: &Timing<Vec<f64>, TaskLimits>,
@@ -58,7 +58,8 @@ impl PoseSpline {
     /// then angular, in the axes of the poses. Outside `times`, the first or last pose is held.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two samples, wrong lengths, or times that do not increase.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, times that do not
+    /// increase, or neighbouring attitudes half a turn apart.
     pub fn sampled(
         times: &[f64],
         poses: &[Hold],

@@ -20,7 +20,7 @@ pub struct Screw {
 }
 
 impl Screw {
-    /// Returns the motion from `start` about the line through `center` (m) along `axis` (any length) by `angle` (rad,
+    /// Returns the motion from `start` about the line through `center` (m) along `axis` (length 1e-9 or more) by `angle` (rad,
     /// right-handed, any size) that also advances by `advance` (m) along the axis. The attitude rotates with the motion
     /// if `turns` is true, and is constant otherwise.
     ///

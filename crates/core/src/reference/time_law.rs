@@ -29,7 +29,7 @@ impl TimeLaw {
     /// `duration` (s).
     ///
     /// # Errors
-    /// The errors of [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a fraction that is not in 0..½.
+    /// The errors of [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a fraction that is not above 0 and at most ½.
     pub fn ramped(duration: f64, ramp: f64) -> Result<Self, ReferenceError> {
         let law = Self::quintic(duration)?;
         if !(ramp > 0.0 && ramp <= 0.5) {
@@ -38,7 +38,8 @@ impl TimeLaw {
         Ok(Self { ramp: Some(ramp), ..law })
     }
 
-    /// Returns the time law for which the path returned by `path_with` has the shortest duration within `limits`;
+    /// Returns the time law for which the path returned by `path_with` has the shortest duration, to 1e-4 of it,
+    /// within `limits`;
     /// `ramp` is that of [`TimeLaw::ramped`], or `None` for the quintic.
     ///
     /// # Errors

@@ -189,7 +189,7 @@ pub fn dexp_inv<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {
     theta.cross(first).scale_add(b, first.scale_add(S::of(0.5), omega))
 }
 
-/// Returns [`dexp_inv`] in closed form, for rotations of up to one turn: `b = (1 − φ/2 cot φ/2)/φ²`,
+/// Returns [`dexp_inv`] in closed form, for rotations of less than one turn: `b = (1 − φ/2 cot φ/2)/φ²`,
 /// `φ = |θ|`.
 #[inline(always)]
 pub fn dexp_inv_exact<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {

@@ -11,7 +11,8 @@ const HALF_TURN_MARGIN: f64 = 1e-6;
 /// Spline `R(t) = Rk exp(φ(t))` between attitudes, where `φ` is the quintic with the given rates and
 /// accelerations at the knots.
 ///
-/// With zero rates at the knots each piece is a geodesic. Outside the knots the first or last attitude is held.
+/// With zero rates and accelerations at the knots each piece is a geodesic. Outside the knots the first or last
+/// attitude is held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RotationSpline {
     times: Vec<f64>,

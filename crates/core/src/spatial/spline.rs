@@ -30,9 +30,10 @@ pub enum SplineError {
 /// End conditions of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    /// Zero velocity and zero acceleration.
+    /// Zero slope and zero curvature.
     Rest,
-    /// Slope equal to that of the cubic through the four points nearest to the end.
+    /// Slope equal to that of the cubic through the four points nearest to the end, or of the polynomial through all
+    /// points if there are fewer.
     Free,
 }
 
@@ -82,7 +83,8 @@ impl Spline {
         Self::new(times, width, values, &zeros, &zeros)
     }
 
-    /// Returns the spline through the points with slopes and curvatures of their C² cubic spline.
+    /// Returns the spline through the points with slopes and curvatures of their C² cubic spline; with [`Ends::Rest`]
+    /// those of the first and the last point are zero.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].

@@ -171,7 +171,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     }
 
     /// Returns the tracking error of a control, desired minus actual, at the last instant evaluated,
-    /// `(width,)`; zeros while the control is not active.
+    /// `(width,)`; zeros while the control is not active or was not evaluated yet.
     pub fn error(&self, control: usize) -> &[f64] {
         &self.states[control].error
     }

@@ -5,7 +5,8 @@
 //! rotation, rad, of the base in base axes; the joints follow. External wrenches are held constant in the
 //! axes of their frames, about the frame origins, so they move with their bodies. Forces in `tau[..6]` are
 //! held constant in base axes. The dynamics are therefore independent of the pose of the base, and the first
-//! six columns of derivatives with respect to `q` are zero.
+//! six columns of derivatives of generalized forces and accelerations with respect to `q` are zero; those of
+//! quantities in W axes are not.
 //!
 //! A change of joint `j` moves its whole subtree `C`. In axes that move with the subtree, only the velocity
 //! `Ψ̇ = v × S` and the acceleration `Ψ̈ = a × S + v × Ψ̇` of the joint axis change the forces. With the composite

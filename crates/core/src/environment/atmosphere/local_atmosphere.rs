@@ -37,7 +37,7 @@ impl LocalAtmosphere {
     /// Returns the density around `centre`, axes of `I`, m.
     ///
     /// # Errors
-    /// Errors of the model at the centre.
+    /// Errors of the model at the centre, or both 100 m above and 100 m below it.
     pub fn new(
         atmosphere: &dyn Atmosphere,
         earth: &Earth,

@@ -34,7 +34,7 @@ impl<'a> AtmospherePoint<'a> {
     /// Returns the point at these coordinates.
     ///
     /// # Errors
-    /// The errors of [`AtmospherePoint::new`]; [`AtmosphereError::Value`] for a latitude outside ±π/2.
+    /// [`AtmosphereError::BelowSurface`]; [`AtmosphereError::Value`] for a latitude outside ±π/2.
     pub fn at(earth: &'a Earth, time: f64, geodetic: Geodetic) -> Result<Self, AtmosphereError> {
         let value = geodetic.latitude;
         if !(-FRAC_PI_2..=FRAC_PI_2).contains(&value) {

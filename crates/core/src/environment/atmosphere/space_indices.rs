@@ -27,7 +27,7 @@ impl SpaceIndices {
     /// Returns these indices after a check of their ranges.
     ///
     /// # Errors
-    /// [`AtmosphereError::Value`] for a flux outside 0 to 999.9 or an `Ap` outside 0 to 400.
+    /// [`AtmosphereError::Value`] unless each flux is above 0 and below 999.9 and each index from 0 to 400.
     pub fn new(f107: f64, f107a: f64, activity: MagneticActivity) -> Result<Self, AtmosphereError> {
         for (name, value) in [("f107", f107), ("f107a", f107a)] {
             if !is_flux(value) {

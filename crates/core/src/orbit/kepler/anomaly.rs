@@ -43,7 +43,7 @@ fn cube_root<S: Real>(x: S) -> S {
         },
     );
     for _ in 0..3 {
-        // y ← y (4 - x y³)/3: the error falls from 3 % to 1e-5 to 2e-10
+        // y ← y (4 - x y³)/3: the error falls from 3 % to 2e-3, 1e-5 and 2e-10
         let cube = inverse * inverse * inverse;
         inverse *= S::of(4.0 / 3.0) - x * cube * S::of(1.0 / 3.0);
     }

@@ -83,8 +83,9 @@ impl Kepler {
     /// Returns the orbit with these elements.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for invalid numbers and sizes beyond the range
-    /// of `f64`; [`OrbitError::OutOfRange`] for anomalies on an ellipse beyond 1e15 rad;
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], [`OrbitError::NotPositive`] for invalid numbers and sizes
+    /// beyond the range of `f64`; [`OrbitError::OutOfRange`] for anomalies on an ellipse beyond 1e15 rad and
+    /// eccentricities beyond 1e20;
     /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`], [`OrbitError::ParabolaHasNoAxis`],
     /// [`OrbitError::ParabolaHasNoMeanAnomaly`], [`OrbitError::Inclination`], [`OrbitError::BeyondAsymptote`]
     /// for inconsistent elements.

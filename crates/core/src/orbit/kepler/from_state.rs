@@ -19,8 +19,8 @@ impl Kepler {
     /// Circular and equatorial orbits are not singular.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `mu` (m³/s²), and
-    /// [`OrbitError::Rectilinear`] if `r` and `v` are parallel or one of them is zero.
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`], [`OrbitError::NotPositive`] for `mu` (m³/s²), and
+    /// [`OrbitError::Rectilinear`] if `r` and `v` are parallel to 1e-10 rad or one of them is zero.
     ///
     /// Source: Battin, AIAA 1999, chapter 3.
     pub fn from_state(r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {

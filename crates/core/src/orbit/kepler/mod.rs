@@ -1,6 +1,6 @@
 //! Two-body motion on any conic: ellipse, parabola, hyperbola.
 //!
-//! `r̈ = -μ r/|r|³`, solved in closed form; [`Kepler::state`] uses no angles, so circular and equatorial
+//! `r̈ = -μ r/|r|³`, solved by Kepler's equation; [`Kepler::state`] uses no angles, so circular and equatorial
 //! orbits are not singular. Source: Battin, An Introduction to the Mathematics and Methods of Astrodynamics,
 //! AIAA 1999, chapters 3 and 4.
 
@@ -131,7 +131,7 @@ impl Kepler {
         OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) }
     }
 
-    /// Returns two perifocal states of an ellipse.
+    /// Returns two perifocal states of an ellipse, at given times after the epoch, s; `None` for an open orbit.
     fn two_perifocal_states(&self, [first, second]: [f64; 2]) -> Option<PerifocalState<Lanes4>> {
         Lanes4::enter(
             #[inline(always)]
@@ -142,8 +142,8 @@ impl Kepler {
         )
     }
 
-    /// Returns the perifocal state of an ellipse, `dt` s after the epoch, on a processor with fused
-    /// multiply-add.
+    /// Returns the perifocal state of an ellipse, `dt` s after the epoch; `None` for an open orbit or on a processor
+    /// without fused multiply-add.
     fn perifocal_state_fused(&self, dt: f64) -> Option<PerifocalState> {
         if InstructionSet::current() == InstructionSet::Baseline {
             return None;

@@ -32,8 +32,8 @@ impl Kepler {
     /// `radius`, m.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`] for `radius`, [`OrbitError::OutOfRange`] for an
-    /// implausible `j2` or radius, [`OrbitError::NotClosed`] for an open orbit.
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], [`OrbitError::NotPositive`] for `radius`,
+    /// [`OrbitError::OutOfRange`] for an implausible `j2` or radius, [`OrbitError::NotClosed`] for an open orbit.
     pub fn with_secular_j2(self, j2: f64, radius: f64) -> Result<SecularJ2, OrbitError> {
         if finite("j2", j2)?.abs() > 0.1 {
             return Err(OrbitError::OutOfRange {

@@ -14,7 +14,7 @@ const SHORTEST: f64 = 1e-9;
 /// Ratio of the next step to the longest permitted step, and smallest and largest ratio of successive steps.
 const SAFETY: f64 = 0.9;
 const CHANGE: (f64, f64) = (0.25, 2.0);
-/// Largest number of steps on either side of the initial state. It covers years of a low orbit and takes 150 MB.
+/// Largest number of steps on either side of the initial state. It covers years of a low orbit and takes 90 MB.
 const MOST_STEPS: usize = 1 << 18;
 
 /// Integration steps of an orbit after and before the initial state.

@@ -16,7 +16,8 @@ use std::sync::Arc;
 ///
 /// The integrator is Lobatto collocation, of order 16 at the ends of steps. Steps are computed from `t₀` outward on
 /// request and stored. They do not depend on the requested times, so the state is a function of `t` alone. Position,
-/// velocity and acceleration are continuous; within a step the relative error of the position is 1e-14.
+/// velocity and acceleration are continuous; within a step the estimated relative error of the position is at most
+/// 1e-14.
 #[derive(Debug)]
 pub struct Numerical {
     gravity: Arc<Gravity>,
@@ -29,7 +30,8 @@ impl Numerical {
     /// `I`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::BeginsBelowSurface`], and the errors of the field.
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], [`OrbitError::BeginsBelowSurface`], and the errors of the
+    /// field.
     pub fn new(r: Vector3<f64>, v: Vector3<f64>, t0: f64, gravity: Arc<Gravity>) -> Result<Self, OrbitError> {
         for (name, x) in [("position", &r), ("velocity", &v)] {
             x.iter().try_for_each(|&c| finite(name, c).map(drop))?;
@@ -86,7 +88,8 @@ impl Orbit for Numerical {
 
     /// # Errors
     /// [`OrbitError::BelowSurface`] from the time at which the orbit enters the planet, [`OrbitError::TooManySteps`]
-    /// too far from `t₀`, and the errors of the field.
+    /// too far from `t₀`, [`OrbitError::StepTooShort`] and [`OrbitError::NotFinite`] where the integration fails, and
+    /// the errors of the field.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         self.arcs.state(finite("time", t)?, |time, r| self.field(time, r))
     }

@@ -99,8 +99,7 @@ impl Step {
         }
     }
 
-    /// Returns the contribution of the last polynomial to the position, m: an upper bound of the truncated
-    /// terms.
+    /// Returns the contribution of the last polynomial to the position, m, an estimate of the truncated terms.
     fn truncation(&self) -> f64 {
         let half = 0.5 * self.length;
         self.spectrum[NODES - 1].norm() * half * half / ((NODES - 1) * (NODES - 1)) as f64

@@ -68,7 +68,8 @@ type Convert =
 /// each.
 ///
 /// # Errors
-/// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+/// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::NotFinite`] for a given state that is not finite;
+/// [`OrbitError::WrongLength`].
 pub fn to_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,
@@ -82,7 +83,7 @@ pub fn to_local_rows(
 /// Computes [`from_local`] at each of `times`; shapes as in [`to_local_rows`].
 ///
 /// # Errors
-/// The errors of [`from_local`] and [`Orbit::state`]; [`OrbitError::WrongLength`].
+/// As for [`to_local_rows`].
 pub fn from_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,

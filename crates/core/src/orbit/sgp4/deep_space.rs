@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Shortest period of deep-space orbits, min.
 const SHORTEST_PERIOD: f64 = 225.0;
-/// Inclination, rad, below which the drift of the node caused by Sun and Moon is neglected.
+/// Inclination, rad, below which, as above π minus it, the drift of the node caused by Sun and Moon is neglected.
 const EQUATORIAL: f64 = 5.235_987_7e-2;
 /// Inclination, rad, below which Lyddane's variables replace node and perigee.
 const LYDDANE: f64 = 0.2;

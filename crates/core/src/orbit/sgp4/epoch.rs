@@ -21,7 +21,8 @@ impl Epoch {
         }
     }
 
-    /// Parses `2024-01-31T12:34:56.789`, with or without a final `Z`; returns `None` for other texts.
+    /// Parses `2024-01-31T12:34:56.789` or `2024-031T12:34:56.789`, with `T` or a blank and with or without a final `Z`;
+    /// returns `None` for other texts.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let (date, time) = text.trim().trim_end_matches('Z').split_once(['T', ' '])?;
         let mut time = time.split(':');
@@ -47,7 +48,7 @@ impl Epoch {
     }
 
     /// Converts a Julian date in two parts, such as a midnight and a fraction of a day. Returns `None` if either is not
-    /// finite or beyond 1e7 days.
+    /// finite, the first is 1e7 days or more from the year 2000, or the second is 1e7 days or more.
     pub fn of_julian_date(whole: f64, part: f64) -> Option<Self> {
         const LONGEST: f64 = 1e7;
         let days = whole - 2_451_544.5;
@@ -114,7 +115,7 @@ fn civil(days: i64) -> (i64, i64, i64) {
 }
 
 impl std::fmt::Display for Epoch {
-    /// Returns ISO 8601 to the microsecond: `2000-06-27T18:50:19.733568Z`.
+    /// Writes ISO 8601 to the microsecond: `2000-06-27T18:50:19.733568Z`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let micros = (self.seconds * 1e6).round() as i64;
         let (year, month, day) = civil(self.day + micros.div_euclid(86_400_000_000));

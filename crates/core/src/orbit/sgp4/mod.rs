@@ -171,10 +171,11 @@ impl Orbit for Sgp4 {
     }
 
     /// # Errors
-    /// [`OrbitError::Sgp4`], and [`OrbitError::TimeOutOfRange`] beyond a hundred years from the epoch.
+    /// [`OrbitError::Sgp4`], [`OrbitError::NotFinite`], and [`OrbitError::TimeOutOfRange`] beyond a hundred years from
+    /// the epoch.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         let (position, velocity) = self.above_surface(t)?;
-        // the step is halved if the propagation fails within 90 s of `t`
+        // a step 16 times shorter, if the propagation fails within 90 s of `t`
         let acceleration = self
             .acceleration(t, &position, STEP)
             .or_else(|_| self.acceleration(t, &position, STEP / 16.0))?;

@@ -9,7 +9,7 @@ use crate::spatial::Real;
 
 /// Perigee height, km, below which the higher-order drag terms are omitted.
 const FINE_PERIGEE: f64 = 220.0;
-/// Eccentricity below which drag is treated as independent of the position in the orbit.
+/// Eccentricity below which `C₃` and the periodic term of the drag in the anomaly are zero.
 const NEARLY_CIRCULAR: f64 = 1e-4;
 
 /// Elements at the epoch and their rates.
@@ -27,7 +27,7 @@ pub(super) struct NearEarth {
     fine: Option<Fine>,
 }
 
-/// Drag terms beyond the first power of time, omitted for low perigees and deep space.
+/// Higher-order and periodic drag terms, omitted for low perigees and deep space.
 #[derive(Clone, Debug)]
 struct Fine {
     eta: f64,

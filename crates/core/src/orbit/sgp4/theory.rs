@@ -12,7 +12,8 @@ pub trait ExternalSgp4: Send + Sync + std::fmt::Debug {
     /// surface.
     ///
     /// # Errors
-    /// The error code of the reference implementation, except for code 6 (decayed), for which the state is returned.
+    /// The error code of the reference implementation, except for code 6 (decayed), for which the state is returned;
+    /// another code if the implementation returns no state.
     fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8>;
 }
 
