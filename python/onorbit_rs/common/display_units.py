@@ -19,7 +19,10 @@ OR = " or "
 
 
 def with_prefix(peak: float, unit: str) -> tuple[float, str]:
-    """Return the factor and the unit, such as ``(1e6, "µm")``, with which ``peak`` is between 1 and 1000."""
+    """Return the factor and the unit, such as ``(1e6, "µm")``, with which ``peak`` is between 1 and 1000.
+
+    Prefixes are from p to M; a peak that is not positive and finite has none.
+    """
     scale, prefix = 1.0, ""
     if math.isfinite(peak) and peak > 0.0:
         fitting = [entry for entry in _PREFIXES if entry[0] <= peak * (1.0 + 1e-9)] or [_PREFIXES[0]]
@@ -44,7 +47,7 @@ def amount(value: float, unit: str) -> str:
 
 
 def round_up(value: float) -> float:
-    """Round up to 1, 2 or 5 times a power of ten; a value above the largest such float is unchanged."""
+    """Round up to 1, 2 or 5 times a power of ten, at least 0; a value above the largest such is unchanged."""
     if not 0.0 < value < math.inf:
         return 0.0 if value <= 0.0 else value
     power = 10.0 ** math.floor(math.log10(value))

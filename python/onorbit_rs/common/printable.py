@@ -78,5 +78,5 @@ def _replaced(error: UnicodeError) -> tuple[str, int]:
 
 
 LACKING = "onorbit_lacking"
-"""Name under which this function is registered as an error handler, for ``errors=`` of a stream."""
+"""Name under which ``_replaced`` is registered as an error handler, for ``errors=`` of a stream."""
 codecs.register_error(LACKING, _replaced)

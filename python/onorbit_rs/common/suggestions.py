@@ -17,7 +17,7 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return ``"; did you mean 'tool'?"``; without a similar name, the list of up to 12 known names."""
+    """Return ``"; did you mean 'tool'?"``; without a similar name, up to 12 known names, or ``""``."""
     known = list(known)
     suggestion = nearest(name, known)
     if suggestion is not None:

@@ -1,8 +1,8 @@
 """``checkpoint/`` in the output folder: the rows so far and the state of the run, from which it can resume.
 
 ``<column>.f64`` holds the rows of a column; new rows are appended. ``state.json`` is replaced atomically and
-contains the number of valid rows and their SHA-256, so the checkpoint is consistent after a kill at any
-instant.
+contains the number of valid rows and the SHA-256 of each column, so the checkpoint is consistent after a kill
+at any instant.
 """
 
 from __future__ import annotations
@@ -120,8 +120,8 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
     Raises
     ------
     CheckpointError
-        If there is no checkpoint, its files were changed or damaged, or it belongs to another scenario,
-        robot or controller.
+        If there is no checkpoint, its files were changed or damaged, or the scenario or a file that it names
+        was changed since.
     """
     path = folder / CHECKPOINT
     if not has_checkpoint(folder):
@@ -161,7 +161,7 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
 
 
 def scenario_digest(scenario: dict[str, Any]) -> str:
-    """Return the digest of a resolved scenario and of the content of every file that it names."""
+    """Return the digest of a resolved scenario and of every readable file that it names by absolute path."""
     digest = hashlib.sha256(json.dumps(scenario, sort_keys=True, default=str).encode())
     for text in _texts(scenario):
         file = Path(text)

@@ -24,11 +24,11 @@ JOINTS = ("joint_step_doubling_rel",)
 """Checks that do not apply to a robot without joints."""
 
 SUSPECT = 0.1
-"""Fraction of its gate above which a step-doubling error suggests that the time step is too long."""
+"""Fraction of its gate from which on a step-doubling error suggests that the time step is too long."""
 
 
 class Check(NamedTuple):
-    """One check; ``holds`` is None if it was not evaluated, and ``gate`` is None if an older run lacks it."""
+    """One check; ``holds`` is None if it was not evaluated, and ``gate`` is None if the summary lacks it."""
 
     key: str
     name: str
@@ -77,7 +77,7 @@ def advice(summary: dict[str, Any]) -> str:
 
 
 def _gate_ratio(check: Check) -> float:
-    """Return the ratio of the value to its gate; infinite if either is unknown."""
+    """Return the ratio of the value to its gate; with either unknown, 0 if the check holds, else infinity."""
     if check.value is None or not check.gate:
         return 0.0 if check.holds else float("inf")
     return check.value / check.gate

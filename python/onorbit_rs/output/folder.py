@@ -38,7 +38,13 @@ class OutputFolder:
     """Folder for the files of one run; a context manager that locks it against other processes."""
 
     def __init__(self, path: Path) -> None:
-        """Lock an existing folder."""
+        """Lock an existing folder and read its manifest.
+
+        Raises
+        ------
+        OutputInUseError, OutputNotWritableError, ReadError
+            If another process has locked the folder, it cannot be written, or its manifest is damaged.
+        """
         self.path = path
         self._unfinished: set[str] = set()
         """Names of temporary files of a process that was killed."""
@@ -63,16 +69,19 @@ class OutputFolder:
         ----------
         path : str or path
         force : bool
-            Replace the files that ``manifest.json`` lists; other files are kept.
+            If True, remove the files that ``manifest.json`` lists; other files are kept.
 
         Raises
         ------
         OutputNotEmptyError
-            If it contains files and ``force`` is not set, or files with names of results that no run wrote.
+            If it contains files and ``force`` is not set, files with names of results that no run wrote, or
+            figures that were edited.
         OutputNotWritableError
             If it is a file, or cannot be created or written.
         OutputInUseError
             If another process writes to it.
+        ReadError
+            If its manifest is damaged.
         """
         folder = Path(path)
         _make(folder)
@@ -106,7 +115,7 @@ class OutputFolder:
 
     @contextmanager
     def replacing(self) -> Iterator[Replacement]:
-        """Yield files that are replaced together at the end; after an error the old files remain.
+        """Yield files that are replaced together at the end; if the block fails, the old files remain.
 
         The manifest is written first: a reader finds either the listed files, or files that do not match it.
         """
@@ -124,7 +133,7 @@ class OutputFolder:
         Raises
         ------
         OutputFolderError
-            If the file cannot be written, or if ``name`` exists and no run wrote it.
+            If the file cannot be written, is an edited figure, or exists although no run wrote it.
         """
         with self.replacing() as files, files.writing(name) as path:
             yield path
@@ -155,9 +164,16 @@ class OutputFolder:
         )  # fmt: skip
 
     def check_replaceable(self, name: str) -> None:
-        """Raise :class:`OutputNotEmptyError` if ``name`` is a link, edited, or not written by a run.
+        """Raise an error if ``name`` may not be replaced.
 
         Edited figures are kept because, unlike results, they cannot be recomputed.
+
+        Raises
+        ------
+        OutputNotEmptyError
+            If it is not a regular file that a run wrote, or is a figure that was edited.
+        OutputFolderError
+            If its folder is a link or not a folder.
         """
         file = self.path / name
         parent = file.parent
@@ -182,7 +198,7 @@ class OutputFolder:
         return _as_partial(name) not in self._unfinished and Entry.of(self.path / name) != entry
 
     def expect_checkpoint(self, names: tuple[str, ...]) -> None:
-        """List the files of the checkpoint in the manifest before they are created."""
+        """Create the folder of the checkpoint, and list its files in the manifest before they are created."""
         self._check_lock()
         manifest = self.manifest or Manifest()
         folder = self.path / CHECKPOINT
@@ -213,7 +229,7 @@ class OutputFolder:
         Raises
         ------
         OutputInUseError
-            If another process has locked the folder because the lock file was removed.
+            If another process locked the folder after the lock file was removed.
         """
         self._check_lock()
         return self.path / f".partial-{self._lock.token}-{_as_partial(name)}"

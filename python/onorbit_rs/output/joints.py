@@ -27,7 +27,7 @@ _ROUNDING = 1e-9
 
 
 def joint_loads(trace: Trace, built: Built) -> Summary:
-    """Return the largest torque and force, and the largest joint rates at the end of the run."""
+    """Return the largest joint torque and force of the run, and the largest joint rates at its end."""
     tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, JOINTS_V])
     loads: Summary = {}
     for is_prismatic, load, rate in (
@@ -41,7 +41,10 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
 
 
 def efforts_at_limit(trace: Trace, built: Built) -> Summary:
-    """Return the joints under PID control whose effort reached the controller's or the robot's limit."""
+    """Return the joints under PID control whose effort reached its limit.
+
+    It is the limit of the controller or, if that has none, of the robot.
+    """
     names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
     pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]
     reached = set()
@@ -101,9 +104,9 @@ def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | Non
 
 
 def single_errors(trace: Trace, built: Built) -> Summary:
-    """Return the largest joint tracking errors of a run with a single position controller.
+    """Return the largest joint tracking errors of a run with a single controller of joint positions.
 
-    Angles are in rad and lengths in m; the result is empty for other controllers.
+    Angles are in rad and lengths in m; the result is empty for other controllers and without joints.
     """
     law = built.scenario.controller
     has_positions = not isinstance(law, JointPidController) or law.interface == "position"

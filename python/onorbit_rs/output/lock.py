@@ -50,7 +50,7 @@ class FolderLock:
     """Lock on a folder, held from construction to :meth:`release`."""
 
     def __init__(self, folder: Path) -> None:
-        """Acquire the lock; raise :class:`OutputInUseError` if another process holds it."""
+        """Acquire the lock; raise :class:`OutputInUseError` if it is held already."""
         self.path = folder / LOCK
         self._descriptor = self._taken(folder)
         _held.add(self._descriptor)
@@ -118,7 +118,7 @@ class FolderLock:
 
 
 def owner_of(folder: Path) -> Owner | None:
-    """Return the running process that holds the lock of a folder; None if there is none or it is unknown."""
+    """Return the running process that holds the lock of a folder; None without one or if it is unreadable."""
     try:
         with open_to_read(folder / LOCK) as stream:
             if _try_lock(stream.fileno(), None):

@@ -84,7 +84,7 @@ def read_manifest(folder: Path) -> Manifest | None:
     Raises
     ------
     ReadError
-        If it is damaged, or lists files that no run writes.
+        If it cannot be read, is damaged, or lists files that no run writes.
     """
     file = folder / MANIFEST
     if not exists(file):

@@ -28,7 +28,8 @@ def read_arrays(stream: BinaryIO) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If the file is not a zip, is compressed, truncated or damaged, or states contradictory sizes.
+        If the file is not a zip of arrays of real numbers, is compressed, truncated or damaged, or states
+        contradictory sizes.
     """
     size = stream.seek(0, 2)
     try:

@@ -39,9 +39,11 @@ class SavedRun:
         Raises
         ------
         NotFoundError
-            If there is no such folder.
+            If there is no such folder, or the path is not a folder.
         ReadError
             If the manifest is damaged.
+        OSError
+            If the path cannot be examined, such as for a name that is too long.
         """
         self.folder = folder
         check_folder(folder)
@@ -56,6 +58,8 @@ class SavedRun:
         ------
         IntegrityError
             If it was changed.
+        ReadError
+            If another process is replacing it.
         FileNotFoundError, OSError
             If it does not exist or cannot be read.
         """
@@ -128,7 +132,7 @@ class SavedRun:
 
         Raises
         ------
-        NotFoundError, ReadError
+        NotFoundError, ReadError, IntegrityError
             If it does not exist, cannot be read, or was changed.
         """
         file = self.folder / SCENARIO
@@ -161,7 +165,7 @@ class SavedRun:
 
 
 def check_folder(folder: Path) -> None:
-    """Raise :class:`NotFoundError` if the folder does not exist or is not a folder."""
+    """Raise :class:`NotFoundError` if the path does not exist or is not a folder."""
     if not folder.is_dir():
         what = (
             f" is {file_kind(folder)}, but the output folder of a run is required"
@@ -177,7 +181,7 @@ def read_trace(folder: Path) -> Trace:
     Raises
     ------
     NotFoundError
-        If there is no such file.
+        If there is no such folder, or no trace in it.
     IntegrityError
         If it was changed after the run.
     ReadError

@@ -34,7 +34,7 @@ class Replacement:
             self._written[name] = temporary, Entry.of(temporary)
 
     def commit(self) -> None:
-        """Add the files to the manifest, then rename them."""
+        """Add the files to the manifest, if the folder has one, then rename them."""
         if not self._written:
             return
         folder = self._folder

@@ -15,7 +15,7 @@ from onorbit_rs.output.columns import row_shape, split_path
 
 @dataclass(frozen=True)
 class SavedTrace:
-    """Columns by path, with the attributes of a :class:`onorbit_rs.Trace`."""
+    """Columns by path; they are attributes with the names of those of a :class:`onorbit_rs.Trace`."""
 
     arrays: Mapping[str, Any]
 

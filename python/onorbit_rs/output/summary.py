@@ -1,4 +1,4 @@
-"""Summary of a run: a flat mapping whose keys end in the unit."""
+"""Summary of a run: a flat mapping; the keys of quantities end in their unit."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ def summarize(
     built : Built
         The scenario and the objects built from it.
     status : str
-        ``complete``, ``interrupted`` (Ctrl-C), ``diverged``, or ``failed``: a custom controller raised an
-        error, or the orbit or environment ended.
+        ``complete``, ``interrupted`` (Ctrl-C or a signal), ``diverged``, or ``failed``: another error ended
+        the run, such as one of a custom controller, the orbit or the environment.
 
     Returns
     -------

@@ -60,7 +60,7 @@ def write_pictures(
     *,
     tell: Callable[[str], None] = lambda doing: None,
 ) -> None:
-    """Write figures and recording; ``tell`` is called with the name of each."""
+    """Write the figures, if the trace has several rows, and the recording; ``tell`` receives each task."""
     # Imported here because matplotlib and rerun take a second to import.
     from onorbit_rs import figures, viewer
 

@@ -144,7 +144,7 @@ impl Orbit for CustomPath {
         let (inside, beyond) = self.clamped(t)?;
         let (turn, rate, _) = attitude.sample(inside);
         let rot_ip = exp_so3(rate * beyond).product(turn).matrix();
-        // the rotation after the end is about the angular velocity, so its components in both frames are the same
+        // the rotation after the end is about the angular velocity, whose components in P therefore stay constant
         let rate_p = rot_ip.transpose_mul(rate);
         Ok(PathFrame { rot_ip: rot_ip.to_nalgebra(), rate_p: rate_p.to_nalgebra() })
     }
