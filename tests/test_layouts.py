@@ -101,11 +101,14 @@ BAD: dict[str, Bad] = {
     "a batch and one": Bad(lambda: there("rbdl", Q, V[0]), "ShapeError", ("single",)),
     "NaN": Bad(lambda: there("spart", Q[0] * np.nan, V[0]), "InputError", ("q", "NaN")),
     "text": Bad(lambda: there("spart", "q", V[0]), "DtypeError", ("q", "numbers")),
-    "no unit quaternion": Bad(
-        lambda: there("mujoco", TURNED, V[0]), "InputError", ("norm", "differs from 1")
-    ),
+    "no unit quaternion": Bad(lambda: there("mujoco", TURNED, V[0]), "InputError", ("norm", "must be 1")),
     "quaternion of the other layout without unit length": Bad(
-        lambda: back("mujoco", np.ones(MODEL.nq), V[0]), "InputError", ("qpos", "norm 2", "differs from 1")
+        lambda: back("mujoco", np.ones(MODEL.nq), V[0]), "InputError", ("qpos", "is 2", "must be 1")
+    ),
+    "no cosine and sine": Bad(
+        lambda: back("pinocchio", [*Q[0][:7], 3.0, 4.0, *Q[0][8:]], V[0], unbounded=[MODEL.joint_names[0]]),
+        "InputError",
+        ("cosine and sine", "is 5", "must be 1"),
     ),
     "no rotation": Bad(
         lambda: back("spart", (2 * np.eye(3), np.zeros(3), Q[0][7:]), (V[0][:6], V[0][6:])),

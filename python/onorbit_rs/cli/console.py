@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def text(value: object) -> str:
-    """Return untrusted text without rich markup and control characters."""
+    """Return untrusted text with rich markup and control characters escaped."""
     return escape(printable(value))
 
 

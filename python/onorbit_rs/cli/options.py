@@ -64,6 +64,8 @@ def reading_options(
     InputError
         If an option has no effect: the robot is bundled, a folder is missing, or the file is not xacro.
         If there is a ``bus``, the message explains where to put the arguments of its xacro file.
+    typer.BadParameter
+        If an argument is not written ``name=value``.
     """
     from onorbit_rs import robots
 
@@ -104,7 +106,7 @@ def as_arguments(robot: str, packages: list[Path] | None, arguments: list[str] |
 
 
 def xacro_arguments(arguments: list[str] | None) -> dict[str, str] | None:
-    """Return xacro arguments, written ``name=value`` or ``name:=value``, as a mapping."""
+    """Return xacro arguments, written ``name=value`` or ``name:=value``, as a mapping; None without any."""
     pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]
     for argument, (name, equals, _) in zip(arguments or [], pairs, strict=True):
         if not equals or not name:

@@ -66,7 +66,7 @@ def show(
 
 
 def open_viewer(folder: Path) -> None:
-    """Open the recording of a run; without a display, print how to open it.
+    """Open the recording of a run, or print that there is none or, without a display, how to open it.
 
     Raises
     ------

@@ -31,7 +31,7 @@ class _Handler:
 
 @contextmanager
 def ending_signals() -> Iterator[None]:
-    """During a block in the main thread, handle SIGTERM and SIGHUP unless they already have handlers."""
+    """In a block in the main thread, handle SIGTERM and SIGHUP unless they have handlers or are ignored."""
     handler, replaced = _Handler(), []
     if threading.current_thread() is threading.main_thread():
         for name in ("SIGTERM", "SIGHUP"):  # Windows has no SIGHUP

@@ -17,7 +17,13 @@ __all__ = ["Mujoco", "versions"]
 
 
 def versions(engine: str) -> dict[str, str]:
-    """Return the name of an engine and, if it is not native, its version, such as ``mujoco_version``."""
+    """Return the name of an engine and, if it is not native, its version, such as ``mujoco_version``.
+
+    Raises
+    ------
+    EngineError
+        If it is not installed.
+    """
     if engine == "native":
         return {"engine": engine}
     for package in (f"{engine}-core", engine):  # the bindings alone, or with viewer and renderer

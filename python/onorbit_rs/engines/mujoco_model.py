@@ -52,7 +52,8 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
     EngineError
         If MuJoCo is not installed.
     ModelError
-        If MuJoCo cannot represent a body or joint, such as a body without mass or inertia.
+        If MuJoCo cannot represent a body or joint, such as a body without mass or inertia, or a joint whose
+        static friction exceeds its kinetic friction.
     """
     mujoco = import_mujoco()
     spec = mujoco.MjSpec()

@@ -33,8 +33,8 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
     NotFoundError, ReadError
         If there is no such file, or it is not a kernel of positions.
     EarthError
-        If ``jplephem`` is not installed, or the kernel lacks Sun, Moon or Earth or has segments of another
-        type.
+        If ``jplephem`` is not installed, or the kernel lacks Sun, Moon or Earth, does not connect them, or
+        has segments of another type.
     """
     try:
         from jplephem.spk import SPK

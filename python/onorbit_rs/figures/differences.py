@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 COLUMNS = 2
 LOWEST = 1e-12
-"""Lower end of a panel, as a fraction of its upper end."""
+"""Smallest value that a panel shows, as a fraction of its largest."""
 
 
 def differences(compared: Comparison) -> Figure:

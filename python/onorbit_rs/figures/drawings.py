@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from onorbit_rs.figures.subject import Subject
 
 WORTH_AN_ORBIT_DEG = 5.0
-"""Smallest angle around the planet for which the orbit is drawn."""
+"""Angle around the planet above which the orbit is drawn."""
 
 
 @dataclass(frozen=True)

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 WORTH_A_PATH = 3.0
-"""Length of the base's path, in sizes of the robot, above which the figure is drawn."""
+"""Extent of the base's path in L, in sizes of the robot, above which the figure is drawn."""
 _SIDES = 1.35
 """Ratio of the width of a panel to its height."""
 _NEAR = 10.0
@@ -48,7 +48,8 @@ def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
     """Draw the paths of base and targets in L of the reference orbit: in its plane, and across it.
 
     The axes of L are radial, along track, and along the orbit normal. On a circular orbit the relative paths
-    of a free base are Hill's ellipses, twice as long as high. All axes have the same scale.
+    of a free base that does not drift are Hill's ellipses, twice as long as high. All axes have the same
+    scale.
     """
     paths = [path[evenly_spaced(len(path), _MOST_ROWS)] for path in paths_in_orbit(trace, targets)]
     points = np.vstack(paths)

@@ -39,7 +39,7 @@ def add_space(
 
 
 def label(axes: Axes3D, unit: str, pad: float = -5.0, change: str = "") -> None:
-    """Label the three axes with their unit, with ``Δ`` if they show a change."""
+    """Label the three axes with their unit; ``change`` precedes their names, such as ``Δ``."""
     axes.set_xlabel(f"{change}x [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_ylabel(f"{change}y [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_zlabel(f"{change}z [{unit}]", fontsize=NORMAL, labelpad=pad)

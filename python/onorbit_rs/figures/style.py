@@ -32,9 +32,9 @@ SMALL, NORMAL = 7, 8
 LINE = 1.1
 DPI = 300
 MOST_POINTS = 4_000
-"""Largest number of points of a line; a printed column has 1050 dots at 300 dpi."""
+"""Largest number of points of a line between its ends; a printed column has 1050 dots at 300 dpi."""
 LONGEST_NAME = 32
-"""Largest number of characters of a name in a legend."""
+"""Number of characters above which a name is shortened in a legend."""
 MOST_LINES = len(COLORS)
 """Largest number of coloured lines in one plot."""
 
@@ -144,7 +144,7 @@ def others_of(count: int) -> str:
 
 
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return at most :data:`MOST_POINTS` points of a line, including the extremes of every interval."""
+    """Return the ends of a line and at most :data:`MOST_POINTS` points: the extremes of every interval."""
     if len(time) <= MOST_POINTS:
         return time, values
     intervals = np.array_split(np.arange(len(time)), MOST_POINTS // 2)

@@ -35,7 +35,7 @@ class Subject:
     ----------
     trace : Trace
     model : Model or None
-        None if the robot's file cannot be read.
+        None if the robot's file cannot be read or was changed since the run.
     tools : tuple of Tool
     joint_controls : dict
         Names of the joints of each control in joint space, by the name of the control.
@@ -83,7 +83,7 @@ def subject_of(
 
 
 def _is_the_papers(scenario: Scenario) -> bool:
-    """Return True if the scenario equals the bundled one apart from name, epoch and integrator settings."""
+    """Return True if the scenario equals the bundled one apart from texts, epoch and simulation settings."""
     ignored = ("name", "description", "epoch", "simulation")
     given, bundled = (
         {key: value for key, value in one.resolved(Path()).items() if key not in ignored}

@@ -71,7 +71,7 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
 
 
 def joint_torques(trace: Trace, model: Model) -> Figure:
-    """Draw Fig. 7: the torque of every joint, and in a separate panel the force of prismatic joints."""
+    """Draw Fig. 7: the torque of revolute joints, and in a separate panel the force of prismatic joints."""
     time, label = clock(trace)
     names = list(model.joint_names)
     groups = [

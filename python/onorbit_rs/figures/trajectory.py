@@ -102,6 +102,6 @@ def _row_at_half(path: Floats) -> int:
 
 
 def _sparse(path: Floats) -> Floats:
-    """Return at most about 1000 points of a path, including its last."""
+    """Return at most 2000 points of a path, including its last."""
     stride = max(1, len(path) // 1000)
     return np.vstack([path[::stride], path[-1:]])

@@ -14,10 +14,11 @@ onorbit_rs      ``p, quat xyzw, joints``                  ``v_B, w_B, rates``
 ``spart``       ``(R0, r0, qm)``, ``r0`` mass centre      ``(u0, um)``, ``u0 = w_B, v_W`` of it
 ==============  ========================================  ======================================
 
-For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, q, v)``, for one
-state ``(n,)`` or a batch ``(B, n)``. The order of joints differs between engines (Pinocchio sorts siblings by
-name): ``joints=`` gives their names in the order of the other engine or, for Pinocchio, MuJoCo and Drake, the
-model of that engine. The default is the order of onorbit_rs. The base must be the same link in both engines.
+For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, q, v)``, with the
+tuples of the table for SPART, for one state ``(n,)`` or a batch ``(B, n)``. The order of joints differs
+between engines (Pinocchio sorts siblings by name): ``joints=`` gives their names in the order of the other
+engine or, for Pinocchio, MuJoCo and Drake, the model of that engine. The default is the order of onorbit_rs.
+The base must be the same link in both engines.
 
 >>> import onorbit_rs as oo
 >>> model = oo.Model.rigid_body(1.0, [[1, 0, 0], [0, 1, 0], [0, 0, 1]])

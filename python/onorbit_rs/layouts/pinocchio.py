@@ -99,7 +99,7 @@ def from_pinocchio(
     angles, at = [], 7
     for wraps in is_unbounded:
         if wraps:
-            check_unit("q (cosine and sine of a joint)", q_other[..., at : at + 2])
+            check_unit("q", q_other[..., at : at + 2], "the cosine and sine of a joint")
             angles.append(np.arctan2(q_other[..., at + 1], q_other[..., at]))
         else:
             angles.append(q_other[..., at])

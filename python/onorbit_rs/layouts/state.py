@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NORM_TOLERANCE = 1e-6
-"""Largest deviation of the norm of a quaternion from 1."""
+"""Largest deviation of the norm of a quaternion from 1, and of `Rᵀ R` from the identity."""
 
 
 def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
@@ -74,12 +74,12 @@ def same_batch(**first: Floats) -> None:
         raise ShapeError(message, name="batch", expected="equal lengths", got=lengths)
 
 
-def check_unit(name: str, quat: Floats) -> None:
-    """Raise an InputError unless the norm of each quaternion is 1."""
-    off = np.abs(np.linalg.norm(quat, axis=-1) - 1.0)
+def check_unit(name: str, vectors: Floats, what: str = "the quaternion") -> None:
+    """Raise an InputError unless the norm of each vector is 1 to :data:`NORM_TOLERANCE`."""
+    off = np.abs(np.linalg.norm(vectors, axis=-1) - 1.0)
     if off.size and off.max() > NORM_TOLERANCE:
-        norm = float(np.ravel(np.linalg.norm(quat, axis=-1))[np.argmax(off)])
-        message = f"the quaternion in {name} has norm {norm:.9g}; it differs from 1 by more than 1e-6"
+        norm = float(np.ravel(np.linalg.norm(vectors, axis=-1))[np.argmax(off)])
+        message = f"the norm of {what} in {name} is {norm:.9g}; it must be 1, to within {NORM_TOLERANCE:g}"
         raise InputError(message, name=name, got=norm, expected=1.0)
 
 
@@ -92,6 +92,8 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
         If the model does not have a joint; suggests the nearest name.
     InputError
         If joints of the model are missing or given twice.
+    DtypeError
+        If the names are a single text.
     """
     known = list(model.joint_names)
     if names is None:

@@ -54,6 +54,8 @@ def write_report(
         If there is no run in this folder, or its files cannot be read.
     IntegrityError
         If the files were changed after the run.
+    ScenarioError
+        If this version rejects the scenario of the run.
     OutputFolderError
         If the page cannot be written, or another process writes to the folder.
     """

@@ -45,7 +45,7 @@ def load(
     name : str or path
         One of :func:`names`, or a URDF or xacro file; see :func:`is_file`.
     package_paths, xacro_arguments, xacro
-        As in :meth:`onorbit_rs.Model.from_urdf`; only for files.
+        As in :meth:`onorbit_rs.Model.from_urdf`; ignored for bundled robots.
 
     Returns
     -------
@@ -55,6 +55,8 @@ def load(
     ------
     NotFoundError
         If there is no such bundled robot or file.
+    ReadError, ModelError
+        If the file cannot be read, or does not describe a robot that can be simulated.
     """
     from onorbit_rs._core import Model
 

@@ -28,14 +28,14 @@ def expand(
     package_paths: Sequence[str | os.PathLike[str]] = (),
     arguments: Mapping[str, object] | None = None,
 ) -> tuple[str, list[str]]:
-    """Return the URDF text of a xacro file, and remarks about parts that were omitted.
+    """Return the URDF text of a xacro file, and remarks on omitted parts, unused arguments and warnings.
 
     Parameters
     ----------
     path : path
         Xacro file. Its expressions are evaluated by :mod:`onorbit_rs.robots.expressions`; no code in
-        it is executed. It may include and load files of its package and of packages that
-        ``$(find name)`` returns.
+        it is executed. It may include and load files of its package, of ``package_paths`` and of packages
+        that ``$(find name)`` returns.
     package_paths : sequence of paths
         ROS packages or folders of ROS packages, for ``$(find name)``; the parents of the file are searched
         after them.

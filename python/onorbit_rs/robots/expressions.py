@@ -59,8 +59,8 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
     Raises
     ------
     ValueError
-        If the expression is too long, cannot be parsed, contains an element that is not allowed, or its
-        value is too large.
+        If the expression is too long, cannot be parsed, contains an element that is not allowed, its value
+        is too large, or no steps remain.
     NameError, TypeError, ArithmeticError, LookupError
         As Python raises them for the same operations.
     """

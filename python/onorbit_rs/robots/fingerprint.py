@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
 DIGITS = 9
-"""Digits kept of each number (m, rad, kg), so that rounding does not change the fingerprint.
+"""Decimal places kept of lengths, m, and rotation matrices, so that rounding does not change the fingerprint.
 
-For an inertia they are relative to its largest entry.
+An inertia is kept relative to its largest entry. Masses, limits and losses have twelve digits.
 """
 
 
 def fingerprint(model: Model) -> str:
     """Return sixteen hexadecimal digits that depend on the content of a robot, not on its path.
 
-    They depend on bodies, joints, named frames, and the shapes of visuals without their colours, but not on
-    the contents of mesh files.
+    They depend on bodies, joints, named frames, and the shapes of visuals without their colours; of a mesh
+    only on the name of its file.
     """
     content = {
         "bodies": [

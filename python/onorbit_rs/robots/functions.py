@@ -69,14 +69,14 @@ def repeated(a: Any, b: Any) -> Any:
 
 
 def safe_power(a: Any, b: Any) -> Any:
-    """Return ``a ** b``; raises ValueError if the result is an integer of more than :data:`MAX_BITS` bits."""
+    """Return ``a ** b``; raises ValueError if the result could be an integer above :data:`MAX_BITS` bits."""
     if isinstance(a, int) and isinstance(b, int) and b > 0:
         _check(a.bit_length() * b <= MAX_BITS or abs(a) <= 1, f"{a} ** {b}", f"{MAX_BITS} bits")
     return operator.pow(a, b)
 
 
 def safe_shift(a: Any, b: Any) -> Any:
-    """Return ``a << b``; raises ValueError if the result is an integer of more than :data:`MAX_BITS` bits."""
+    """Return ``a << b``; raises ValueError for a shift by more than :data:`MAX_BITS` bits."""
     _check(not isinstance(b, int) or b <= MAX_BITS, f"a shift by {b} bits", f"{MAX_BITS} bits")
     return operator.lshift(a, b)
 

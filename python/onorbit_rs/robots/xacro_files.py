@@ -32,9 +32,9 @@ class Files:
             self._roots |= _real(own)
 
     def find(self, package: str) -> str:
-        """Return the folder of a package: one of ``package_paths``, or beside or above the file.
+        """Return the folder of a package, in or one of ``package_paths`` and the parents of the file.
 
-        A folder beside the file's parents must contain a ``package.xml``. For a package that is not found,
+        A folder in one of the file's parents must contain a ``package.xml``. For a package that is not found,
         returns ``package://name``: its meshes are not drawn, and includes are reported as missing.
         """
         if not package:
@@ -63,8 +63,8 @@ class Files:
         OSError
             If there is no such file or it cannot be read.
         ValueError
-            If it is outside of the packages, is not a regular file of at most 16 MiB, is not UTF-8 text, or
-            has a document type.
+            If it is outside of the packages, is not a regular file of at most 16 MiB, is not UTF-8 text, is
+            empty, or has a document type.
         """
         path = Path(name)
         path.stat()  # a missing file must reach xacro as an OSError

@@ -47,7 +47,7 @@ class Shape:
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
-    """Return centre (3,) in W and diameter of a sphere around a robot in configurations (k, nq), m."""
+    """Return centre (3,) in W and diameter, at least 0.1, of a sphere around a robot in all q (k, nq), m."""
     corners = np.vstack([_corners(model, row, shape) for row in q for shape in robot])
     center = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
     return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
@@ -91,6 +91,8 @@ def grey_shape(link: str, kind: str, size: Iterable[float], pose: Floats) -> Sha
 
 def box_of_inertia(mass: float, inertia: Floats) -> tuple[Floats, Floats]:
     """Return edges (3,), m, and axes (3, 3) of the uniform box with this mass and inertia about its centre.
+
+    The edges are at least 1 cm long.
 
     `I_x = m (b² + c²) / 12` and its permutations give `a² = 6 (I_y + I_z - I_x) / m`.
     """

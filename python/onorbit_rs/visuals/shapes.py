@@ -1,6 +1,7 @@
 """Shapes that are drawn for a robot: its visual geometry, with substitutes for meshes that cannot be drawn.
 
-The substitutes are the collision shapes of the link, or a sphere at its joint with rods to the next joints.
+The substitutes are the collision shapes of the link, or a sphere at its joint (for the base, the box of its
+inertia) with rods to the next joints.
 """
 
 from __future__ import annotations

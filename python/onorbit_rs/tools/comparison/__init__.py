@@ -59,7 +59,7 @@ class Comparison:
     """Instants at which the runs are compared, (T,), s."""
     differences: tuple[Difference, ...]
     notes: tuple[str, ...]
-    """Quantities that could not be compared, with the reason, and settings that differ."""
+    """Differing robots and settings, how times were matched, and quantities that were not compared."""
 
     @property
     def agrees(self) -> bool:
@@ -134,6 +134,8 @@ def compare(
     ------
     CompareError
         If the robots' joints differ in number, name or order, or the runs do not overlap in time.
+    InputError
+        If the tolerance is not positive and finite.
     DtypeError
         If an argument has another type, such as a trace.
     OnOrbitError

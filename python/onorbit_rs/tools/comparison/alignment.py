@@ -25,8 +25,8 @@ SAME_INSTANT = 1e-9
 def aligned_rows(a: Recorded, b: Recorded) -> tuple[Rows, Rows, Floats, list[str]]:
     """Return the rows of both runs at common instants, these instants, and remarks.
 
-    Rows at equal instants are used unchanged. If these are fewer than half of the rows of either run, the
-    second run is interpolated at the instants of the first.
+    Rows at equal instants are used unchanged. If these are fewer than half of the rows of the run with fewer
+    rows, the second run is interpolated at the instants of the first.
 
     Raises
     ------

@@ -76,6 +76,8 @@ def recorded(source: Source) -> Recorded:
         If the source has another type, such as a trace.
     NotFoundError, ReadError
         If the folder contains no run, or its files cannot be read or were changed.
+    OnOrbitError
+        As raised by :func:`onorbit_rs.run` for a scenario.
     """
     if isinstance(source, Run):
         return _of_run(source)

@@ -10,13 +10,13 @@ from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.scenario import Scenario
 
 PARTS = ("epoch", "orbit", "gravity_mode", "environment", "controller", "controllers", "reference")
-"""Sections of a scenario that determine the motion, besides the step settings."""
+"""Sections of a scenario that are compared, besides the step settings."""
 MOST = 6
 """Number of differences that are listed individually."""
 
 
 def differing_settings(a: Scenario, b: Scenario) -> list[str]:
-    """Return a note for each setting of orbit, environment, controllers or time step that differs."""
+    """Return a note for each compared setting that differs, and the number of those beyond :data:`MOST`."""
     first, second = (_compared_settings(scenario) for scenario in (a, b))
     found = [f"{where} differs: {_short(one)} and {_short(other)}"
              for where, one, other in _differences("", first, second)]  # fmt: skip

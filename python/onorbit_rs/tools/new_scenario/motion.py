@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _TRIES, _SEED = 512, 1
 _BENT = 1.2
-"""Largest deviation of a joint without limits from the middle of its range, rad or m."""
+"""Largest deviation of a joint from the middle of its range, rad or m."""
 _RANGE_FRACTION = 0.35
 """Largest deviation of a joint from the middle of its range, as a fraction of the range."""
 _GOOD_ENOUGH = 0.4
@@ -56,13 +56,13 @@ def home(model: Model, arm: Arm) -> dict[str, float]:
 
 
 def within(joint: Joint, value: float) -> float:
-    """Return the position nearest to ``value`` that is not at a limit."""
+    """Return the position nearest to ``value`` that is 5 % of the range, at most 0.05, from the limits."""
     low, high = _limits(joint)
     return float(np.clip(value, low + 0.05 * min(high - low, 1.0), high - 0.05 * min(high - low, 1.0)))
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the initial position of a joint that is held: zero if possible, fingers otherwise half open."""
+    """Return the position of a joint that is held: zero if possible, otherwise half open if prismatic."""
     near = within(joint, 0.0)
     return near if near == 0.0 or joint.kind != "prismatic" else sum(_limits(joint)) / 2.0
 

@@ -74,7 +74,7 @@ class Trials:
         return min(found, key=lambda one: one[0])[1] if found else None
 
     def failures(self) -> list[str]:
-        """Return the reasons for failures, the most frequent first."""
+        """Return the most frequent reasons for failures, and a damper too fast for motion, if any."""
         reasons = [f"{what} ({count(times, 'run', 'runs')})" for what, times in self._failures.most_common(4)]
         if self._decay > _FAST:
             reasons.append(f"the damper of {self._damped} stops it within {1.0 / self._decay:.1g} s")

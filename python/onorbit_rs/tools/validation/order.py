@@ -55,7 +55,7 @@ TUMBLING = [0.1, 0.0, -0.2, 0.7, 0.9, -0.4]
 
 
 def adaptive() -> tuple[float]:
-    """Return the largest attitude error over one turn, divided by the tolerance."""
+    """Return the largest attitude error over one and a half turns, divided by the tolerance."""
     body = oo.Model.rigid_body(10.0, np.diag([1.0, 2.0, 2.5]))
 
     def run(**settings: Any) -> Any:

@@ -47,7 +47,7 @@ def reach(duration: float, expected: dict[str, Any]) -> list[float]:
 
 
 def certificate(scenario: str) -> tuple[float]:
-    """Return the largest ratio of a certificate's value to its gate; infinite if a check failed."""
+    """Return the largest ratio of a certificate's value to its gate; infinite if a value is missing."""
     ratios = []
     for _, value, gate, passed in oo.run(scenario, quiet=True).trace.certificate():
         ratio = float("inf") if value is None else value / gate

@@ -26,7 +26,7 @@ def make_part(
     texture: Any = None,
     uv: ArrayLike | None = None,
 ) -> Part:
-    """Return a part; without normals its faces are shaded flat.
+    """Return a part; without normals, or with colours of faces, its faces are shaded flat.
 
     Parameters
     ----------
@@ -36,6 +36,11 @@ def make_part(
         RGBA from 0 to 255: one colour, or one for each vertex or face.
     texture, uv
         As in :class:`Part`; a texture without ``uv`` is ignored.
+
+    Raises
+    ------
+    ValueError
+        If the numbers of vertices, normals and ``uv`` differ, or a vertex is not finite.
     """
     index = np.ascontiguousarray(faces, dtype=np.uint32).reshape(-1, 3)
     points = np.asarray(vertices, dtype=np.float32).reshape(-1, 3)

@@ -1,4 +1,4 @@
-"""Reads mesh files, each once per process."""
+"""Reads mesh files, and keeps the last ones in memory while their files are unchanged."""
 
 from __future__ import annotations
 

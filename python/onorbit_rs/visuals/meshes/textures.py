@@ -21,7 +21,7 @@ LARGEST_COMPANION = 64_000_000
 
 MOST_PIXELS = 64_000_000
 SIDE = 1024
-"""Larger textures are reduced to this number of pixels along a side."""
+"""Larger textures are reduced to this number of pixels along their longer side."""
 
 _FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP")
 """Formats that Pillow decodes without other programs such as Ghostscript."""
