@@ -13,7 +13,7 @@ _Array = NDArray[np.float64]
 _Vector = Sequence[float] | np.ndarray[tuple[int], np.dtype[np.float64]]
 _Column = _Array | Any  # None for columns that do not apply to the run
 _Path = str | PathLike[str]
-_External = Mapping[str, ArrayLike]
+_External = dict[str, Any]  # array-like wrenches by frame; no other mapping is accepted
 _JointKind = Literal["revolute", "continuous", "prismatic", "fixed"]
 _EarthModel = Literal["wgs72", "wgs72old", "wgs84"]
 _Propagator = Literal["native", "reference"]
@@ -133,9 +133,9 @@ class Model:
         path: _Path,
         *,
         package_paths: Sequence[_Path] | None = None,
-        xacro_arguments: Mapping[str, object] | None = None,
+        xacro_arguments: dict[str, Any] | None = None,
         xacro: bool = False,
-        links: Mapping[str, Mapping[str, Any]] | None = None,
+        links: dict[str, dict[str, Any]] | None = None,
     ) -> Model: ...
     @staticmethod
     def from_urdf_string(
@@ -1281,9 +1281,9 @@ class RobotPart:
         path: _Path,
         *,
         package_paths: Sequence[_Path] | None = None,
-        xacro_arguments: Mapping[str, object] | None = None,
+        xacro_arguments: dict[str, Any] | None = None,
         xacro: bool = False,
-        links: Mapping[str, Mapping[str, Any]] | None = None,
+        links: dict[str, dict[str, Any]] | None = None,
     ) -> RobotPart: ...
 
 def attach(
@@ -1305,7 +1305,7 @@ def rollout(
     tau: ArrayLike | None = None,
     controller: ComputedTorque | None = None,
     reference: Reference | None = None,
-    integrator: _Integrator = "rk4",
+    integrator: Literal["rk4", "semi_implicit_euler"] = "rk4",
     record_every: int | None = None,
     threads: int | None = None,
     out: tuple[_Array, _Array] | None = None,

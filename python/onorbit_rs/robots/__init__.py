@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common import bundled_files
 
@@ -35,7 +35,7 @@ def load(
     name: str | os.PathLike[str],
     *,
     package_paths: Sequence[str | os.PathLike[str]] | None = None,
-    xacro_arguments: Mapping[str, object] | None = None,
+    xacro_arguments: dict[str, Any] | None = None,
     xacro: bool = False,
 ) -> Model:
     """Return a bundled robot or one from a file; its root link is free-floating.

@@ -73,8 +73,8 @@ def find_arm(model: Model, tool: str | None = None) -> Arm | None:
 def find_fingers(model: Model) -> tuple[set[str], set[str]]:
     """Return the bodies that are parts of fingers, and those that carry the fingers (palms).
 
-    A finger is a branch of at most ``FINGER_JOINTS`` joints, shorter than its arm and with fewer joints. A palm
-    carries fingers only: two or more, or a single one that is named as such (finger, gripper). The
+    A finger is a branch of at most ``FINGER_JOINTS`` joints, shorter than its arm and with fewer joints. A
+    palm carries fingers only: two or more, or a single one that is named as such (finger, gripper). The
     base is never a palm.
     """
     chains = _chains(model)
