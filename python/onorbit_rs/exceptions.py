@@ -9,7 +9,7 @@ class                       built-in               fields: cause
 ==========================  =====================  ==========================================================
 ``InputError``              ``ValueError``         ``name, got, expected``: NaN, out of range, not unit norm
 ``ShapeError``              ``ValueError``         ``name, expected, got``: wrong array length or shape
-``DtypeError``              ``TypeError``          ``name, expected, got``: not an array of real numbers
+``DtypeError``              ``TypeError``          ``name, expected, got``: wrong type, such as text
 ``ModelError``              ``ValueError``         ``link, joint, path``: masses, inertias, loops, bad URDF
 ``FrameError``              ``KeyError``           ``name, kind, known, suggestion``: no such frame or joint
 ``OrbitError``              ``ValueError``         ``name, got, expected``: invalid elements or wrong use
@@ -27,11 +27,11 @@ class                       built-in               fields: cause
 ``CheckpointError``         ``ValueError``         ``path``: a checkpoint that cannot be resumed
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
 ``NotFoundError``           ``FileNotFoundError``  ``path, kind, suggestion``: no such file, robot or scenario
-``ReadError``               ``OSError``            ``path, kind``: a file exists but cannot be read
+``ReadError``               ``OSError``            ``path, kind``: a file cannot be read or is damaged
 ``IntegrityError``          ``ReadError``          ``path, kind, expected, got``: changed since a run wrote it
 ``OutputFolderError``       ``OSError``            ``path``: base class of the next three
 ``OutputInUseError``        ``BlockingIOError``    ``path, pid, command, since``: another process writes to it
-``OutputNotEmptyError``     ``FileExistsError``    ``path``: the folder has files; see ``force``
+``OutputNotEmptyError``     ``FileExistsError``    ``path``: folder has files, or file exists; see ``force``
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder is not writable
 ``ScenarioError``           ``ValueError``         ``file, path, line``: an invalid scenario
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
@@ -186,7 +186,7 @@ class PathError(OrbitError):
 
 
 class EarthError(OnOrbitError, ValueError):
-    """Epoch, time or parameters for which Earth orientation or the positions of Sun and Moon are unknown."""
+    """Invalid epoch or parameters of the Earth, or a time at which it, the Sun or the Moon is unknown."""
 
     name: Any = None
     got: Any = None
@@ -201,7 +201,7 @@ class WorldError(OnOrbitError, ValueError):
 
 
 class EffectError(OnOrbitError, ValueError):
-    """Invalid effect of the environment."""
+    """Invalid effect of the environment, or a state in which it is not defined, such as inside the planet."""
 
     name: Any = None
     got: Any = None
@@ -265,7 +265,7 @@ class ConvergenceError(OnOrbitError, ArithmeticError):
 
 
 class NotFoundError(OnOrbitError, FileNotFoundError):
-    """No such file, bundled robot or bundled scenario."""
+    """No such file or folder, bundled robot or bundled scenario, or no run in a folder."""
 
     path: Any = None
     kind: Any = None
@@ -273,7 +273,7 @@ class NotFoundError(OnOrbitError, FileNotFoundError):
 
 
 class ReadError(OnOrbitError, OSError):
-    """A file exists but cannot be read."""
+    """A file exists but cannot be read, or its content is invalid."""
 
     path: Any = None
     kind: Any = None
@@ -287,7 +287,7 @@ class IntegrityError(ReadError):
 
 
 class OutputFolderError(OnOrbitError, OSError):
-    """The output folder cannot be used."""
+    """The output folder, or an output file, cannot be written."""
 
     path: Any = None
 
@@ -301,7 +301,7 @@ class OutputInUseError(OutputFolderError, BlockingIOError):
 
 
 class OutputNotEmptyError(OutputFolderError, FileExistsError):
-    """The output folder already contains files."""
+    """The output folder already contains files, or a file exists that may not be replaced."""
 
 
 class OutputNotWritableError(OutputFolderError, PermissionError):
