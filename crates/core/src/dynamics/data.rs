@@ -25,22 +25,22 @@ pub struct BodyData<S> {
     /// External wrench on the body. Set by [`apply_external`](super::apply_external) or by the simulation; every
     /// algorithm that computes forces or accelerations reads it.
     pub external: Force<S>,
-    /// Sum of the external wrenches on the subtrees of children, at forks, and on the whole robot, at the base. Set by
-    /// [`free_floating`](super::free_floating).
+    /// Sum of the external wrenches on subtrees, kept at forks by [`free_floating`](super::free_floating). A fork is a
+    /// body with a child that is not the next body; the sum is over the subtrees of these children.
     pub subtree_external: Force<S>,
     /// Spatial acceleration: the velocity-product part or the complete acceleration, depending on the algorithm that
     /// ran last.
     pub acceleration: Motion<S>,
-    /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for the base and at forks: bodies with a child
-    /// that is not the next body.
+    /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for the base and at forks.
     pub delta_acceleration: Motion<S>,
     /// Force through the joint (RNEA), `I S` (CRBA), or articulated bias force `pA` of a body with a locked joint
     /// (ABA).
     pub force: Force<S>,
-    /// Sum of the rigid inertias of the subtrees of children, at forks, and that of the whole robot, at the base. Set
-    /// by CRBA and `free_floating`.
+    /// Rigid inertia of subtrees, kept at forks by CRBA and `free_floating` like `subtree_external`; at the base, that of
+    /// the whole robot, set by `free_floating`.
     pub composite: SpatialInertia<S>,
-    /// Articulated-body inertia `IA` of the base, and, at forks, the sum of the contributions of children. Set by ABA.
+    /// Articulated-body inertia `IA` of the base, set by ABA; at forks, contributions of children, kept like
+    /// `subtree_external`.
     pub articulated: ArticulatedInertia<S>,
     /// `U = IA S`, about the origin of the parent. Set by ABA.
     pub u_force: Force<S>,
