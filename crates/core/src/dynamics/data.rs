@@ -33,7 +33,7 @@ pub struct BodyData<S> {
     pub acceleration: Motion<S>,
     /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for the base and at forks.
     pub delta_acceleration: Motion<S>,
-    /// Force through the joint (RNEA), `I S` (CRBA), or articulated bias force `pA` of a body with a locked joint
+    /// Force through the joint (RNEA), `I S` (CRBA, `free_floating`), or articulated bias force `pA` of a body with a locked joint
     /// (ABA).
     pub force: Force<S>,
     /// Rigid inertia of subtrees, kept at forks by CRBA and `free_floating` like `subtree_external`; at the base, that of

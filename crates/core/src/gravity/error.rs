@@ -26,7 +26,11 @@ pub enum GravityError {
     BeyondModel { model: String, degree: usize, order: usize, highest: usize },
     #[error("degree is {degree}; it must be from 2 to 2700")]
     Degree { degree: usize },
-    #[error("no gravity model is named '{name}'; the choices are {known}, and .gfc files", known = known.join(", "))]
+    #[error(
+        "no gravity model is named '{name}'; the choices are {known} (of order 0; in Python GravityField.zonal), \
+         and .gfc files",
+        known = known.join(", ")
+    )]
     UnknownModel { name: String, known: Vec<&'static str> },
     #[error("{name} has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
