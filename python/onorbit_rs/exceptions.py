@@ -201,7 +201,7 @@ class WorldError(OnOrbitError, ValueError):
 
 
 class EffectError(OnOrbitError, ValueError):
-    """Invalid effect of the environment, or a state in which it is not defined, such as inside the planet."""
+    """Invalid effect of the environment."""
 
     name: Any = None
     got: Any = None
