@@ -41,6 +41,9 @@ def test_every_bundled_robot_gets_a_scenario_that_passes_its_certificate(robot: 
     checked = onorbit("check", "mine.yaml", cwd=tmp_path)
     assert checked.returncode == 0 and "ok: " in checked.stdout, checked
     summary = ran(tmp_path / "mine.yaml")
+    if "a body without joints" in done.stdout:
+        assert load(tmp_path / "mine.yaml").robot.bundled in ("small_satellite", "target_satellite")
+        return
     assert summary["control_arm_result"] == "succeeded"
     assert summary["tracking_position_error_max_m"] < 1e-3
     assert summary["joint_limits_exceeded"] == ""

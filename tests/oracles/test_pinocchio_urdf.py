@@ -47,7 +47,7 @@ def test_urdf_text_and_builder_give_the_same_robot() -> None:
     assert deviation(read.mass_matrix(state.q), built.mass_matrix(state.q)) < GATE
 
 
-@pytest.mark.parametrize("name", ["humanoid_torso", "humanoid_dual_arm"])
+@pytest.mark.parametrize("name", ["humanoid_torso", "humanoid_dual_arm", "servicer"])
 def test_bundled_robots(name: str) -> None:
     text = oo.robots.path(name).read_text()
     model = oo.robots.load(name)
