@@ -197,8 +197,8 @@ def test_a_planned_end_that_is_refused_does_not_end_the_present_run() -> None:
     ("path", "value"),
     [
         ("time", 1e300), ("time", 1.5), ("time", -5.0), ("time", 0.05),
-        ("progress.cursor.now", 0.3), ("progress.cursor.now", -1.0), ("progress.cursor.next_tick", 0),
-        ("progress.cursor.next_grid", 0), ("progress.state.systems.0.q", [0.0] * 14),
+        ("progress.cursor.now", 0.3), ("progress.cursor.now", -1.0),
+        ("progress.cursor.next_grid", 0), ("progress.state.trees.0.q", [0.0] * 14),
         ("progress.systems.0.rows", 3),
         ("progress.step_control.step", 1e-320),
     ],
@@ -210,7 +210,7 @@ def test_a_checkpoint_that_no_run_leaves_is_refused(path: str, value: Any) -> No
     checkpoint = stepper.checkpoint()
     state = json.loads(checkpoint.state)
     *parents, key = path.split(".")
-    part = state
+    part = state["groups"][0]
     for parent in parents:
         part = part[int(parent)] if parent.isdigit() else part[parent]
     part[key] = value

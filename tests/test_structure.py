@@ -31,6 +31,7 @@ ORDER = (
     "environment",
     "reference",
     "control",
+    "world",
     "simulation",
     "batch",
 )

@@ -54,6 +54,7 @@ __all__ = [
     "Body",
     "BodyWrench",
     "Cannonball",
+    "Capture",
     "Checkpoint",
     "Circle",
     "Column",
@@ -65,6 +66,7 @@ __all__ = [
     "Drag",
     "Earth",
     "Effect",
+    "EventRecord",
     "ExponentialAtmosphere",
     "Faces",
     "FixedFrame",
@@ -94,6 +96,7 @@ __all__ = [
     "Plates",
     "RadiationPressure",
     "Reference",
+    "Release",
     "RobotPart",
     "Sampled",
     "Screw",
@@ -102,11 +105,15 @@ __all__ = [
     "State",
     "Stepper",
     "Surface",
+    "System",
+    "SystemStepper",
     "Target",
     "ThirdBody",
     "Trace",
     "Visual",
     "Waypoints",
+    "World",
+    "WorldTrace",
     "__version__",
     "attach",
     "build_info",
@@ -1112,7 +1119,6 @@ class WorldTrace:
     def kinetic_energy(self) -> _Array: ...
     def certificate(self) -> list[_CertificateRow]: ...
     def __getitem__(self, name: str, /) -> Trace: ...
-    def __getattr__(self, name: str, /) -> Any: ...
     def __len__(self) -> int: ...
 
 @final

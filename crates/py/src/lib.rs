@@ -21,6 +21,7 @@ mod run_failure;
 mod shared_run;
 mod simulation;
 mod stepper;
+mod torques;
 mod trace;
 mod world;
 

@@ -1,11 +1,12 @@
 //! Runs that are advanced step by step.
 
-use crate::arrays::{Input, array_of, first_row, wrong_shape};
+use crate::arrays::{array_of, first_row};
 use crate::checkpoint::{PyCheckpoint, checkpoint_of, columns_since};
-use crate::errors::{SimulationErrorExt, fields, plain, raise};
+use crate::errors::{SimulationErrorExt, plain};
 use crate::interrupt::{PACE, period};
 use crate::run_failure::{interrupted, run_failure};
 use crate::shared_run::{Runs, SharedRun};
+use crate::torques::torques;
 use crate::world::{PySystemStepper, Systems};
 use numpy::{PyArrayDyn, PyArrayMethods};
 use onorbit_core::number_text::short;
@@ -249,7 +250,7 @@ impl PyStepper {
 
     /// Sets the torques of a system.
     pub(crate) fn command_system(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<()> {
-        let torques = self.torques(system, tau)?;
+        let torques = torques(&self.systems.models[system], tau)?;
         self.try_with(tau.py(), |stepper| stepper.command(system, &torques))
     }
 
@@ -378,36 +379,6 @@ impl PyStepper {
         let (mut q, mut v) = (vec![0.0; model.nq()], vec![0.0; model.nv()]);
         self.try_with(py, |stepper| stepper.read_state(system, &mut q, &mut v))?;
         Ok((q, v))
-    }
-
-    /// Reads the torques of a command to a system.
-    fn torques(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
-        let (py, model) = (tau.py(), &self.systems.models[system]);
-        let n = model.joint_count();
-        let Ok(by_name) = tau.cast::<PyDict>() else {
-            let input = Input::new(tau, "tau")?;
-            if input.shape() != [n] {
-                return Err(wrong_shape(py, "tau", &format!("({n},)"), input.shape()));
-            }
-            return Ok(input.data().iter().copied().map(Some).collect());
-        };
-        let mut torques = vec![None; n];
-        for (name, value) in by_name {
-            let name = name.str()?.to_string();
-            let Ok(joint) = model.joint(&name) else {
-                let message = format!(
-                    "tau contains the unknown joint '{name}'; the joints are {}",
-                    model.joint_names().collect::<Vec<_>>().join(", ")
-                );
-                return Err(raise(py, "InputError", &message, &fields!(py, "name": "tau", "got": name)));
-            };
-            let input = Input::new(&value, &format!("tau['{name}']"))?;
-            let [torque] = input.data() else {
-                return Err(wrong_shape(py, &format!("tau['{name}']"), "()", input.shape()));
-            };
-            torques[joint] = Some(*torque);
-        }
-        Ok(torques)
     }
 }
 

@@ -1,23 +1,9 @@
-//! Connections between the systems of a run, and the trees that are compiled from them.
+//! Connections between the systems of a run.
 
-use super::accuracy::Accuracy;
-use super::error::SimulationError;
-use super::every_step::EveryStep;
-use super::integrator::Stages;
-use super::latch::Latch;
-use super::members::{Members, Part, Place};
-use super::modes::{JointModes, StepMethod};
-use super::mover::Mover;
-use super::run_state::RunState;
-use super::step_doubling::StepDoubling;
-use super::tree::Tree;
-use super::tree_state::TreeState;
-use crate::dynamics::center_of_mass;
-use crate::model::{BASE_NQ, Model, ModelError};
-use crate::spatial::Scalar;
-use crate::world::{Action, Assembly, FrameIndex, Member, Moving, Weld, When, assemble, connected_velocity};
+use super::members::SavedPart;
+use crate::model::{Model, ModelError};
+use crate::world::{Assembly, FrameIndex, Weld, assemble};
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 
 /// Active connections of the systems of a run.
 #[derive(Debug, Default)]
@@ -46,246 +32,14 @@ impl Connections {
         Ok(Self { prefixed: prefixed.collect::<Result<_, _>>()?, active: ActiveWelds::default() })
     }
 
-    fn assemble(&self) -> Result<Vec<Assembly>, ModelError> {
+    /// Returns the trees for the active connections.
+    pub(super) fn assemble(&self) -> Result<Vec<Assembly>, ModelError> {
         assemble(&self.prefixed, &self.active.welds, &self.active.roots)
     }
 
     /// Returns the name that a frame has in every tree.
-    fn frame_name(&self, place: FrameIndex) -> &str {
+    pub(super) fn frame_name(&self, place: FrameIndex) -> &str {
         &self.prefixed[place.system].frames()[place.frame].name
-    }
-}
-
-/// A system between two compilations: its state and its kinematics in its own coordinates.
-struct Loose<'a, S> {
-    state: TreeState<S>,
-    own: Tree<'a, S>,
-    sign: f64,
-}
-
-impl<'a, S: Scalar> RunState<'a, S> {
-    /// Compiles the trees for the active connections. Trees whose members do not change stay as they are. The others
-    /// take over the states of their members, whose momenta they keep. Expects the kinematics of the state, relative
-    /// to W, in the trees, and the states of the parts; afterwards the new trees hold their kinematics.
-    pub(super) fn recompile(&mut self) -> Result<(), SimulationError> {
-        self.conclude_trees();
-        let assemblies = self.connections.assemble()?;
-        let members = std::mem::replace(&mut self.equations.members, Members::alone(0));
-        let mut sizes = vec![0; self.equations.trees.len()];
-        members.parts.iter().for_each(|part| sizes[part.tree] += 1);
-        let mut old = Old {
-            sizes,
-            trees: std::mem::take(&mut self.equations.trees).into_iter().map(Some).collect(),
-            states: std::mem::take(&mut self.state.trees).into_iter().map(Some).collect(),
-            parts: members.parts.into_iter().map(Some).collect(),
-            places: members.places,
-        };
-        let mut new = Members::alone(old.places.len());
-        for Assembly { model, members } in assemblies {
-            let tree = self.equations.trees.len();
-            let (moved, state) = match (model, old.unchanged(&members)) {
-                (None, _) => {
-                    let Loose { own, state, .. } = old.take(members[0].system);
-                    new.places[members[0].system] = Place::Tree(tree);
-                    (own, state)
-                }
-                (Some(_), Some(number)) => old.take_tree(number, tree, &mut new),
-                (Some(model), None) => join(model, members, tree, &mut old, &mut new),
-            };
-            self.equations.trees.push(moved);
-            self.state.trees.push(state);
-        }
-        self.equations.members = new;
-        self.follow_centers();
-        self.resize();
-        Ok(())
-    }
-
-    /// Lets the centres of mass of several trees follow their momenta; a single tree does not need it. Expects the
-    /// kinematics of the state.
-    pub(super) fn follow_centers(&mut self) {
-        let is_needed = self.state.trees.len() > 1;
-        for (tree, state) in self.equations.trees.iter().zip(&mut self.state.trees) {
-            let center = || center_of_mass(&tree.data, &state.q);
-            state.center = is_needed.then(|| state.center.unwrap_or_else(center));
-        }
-    }
-
-    /// Allocates everything whose dimensions depend on the trees.
-    fn resize(&mut self) {
-        if let Mover::Native(method) = &mut self.mover {
-            let control = method.integration.control().cloned();
-            *method = StepMethod::new(&self.state, &self.step_settings);
-            if let Some(before) = control {
-                method.integration.continue_from(before);
-            }
-        }
-        self.row_buffers = (self.state.clone(), Stages::new(&self.state));
-        let trees = &self.equations.trees;
-        let doubling = self
-            .accuracy
-            .has_doubling()
-            .then(|| StepDoubling::new(trees, &self.state, self.schedule.grid_steps()));
-        let checked = trees.iter().filter(|_| self.accuracy.checks_every_step()).enumerate();
-        let every_step = checked.filter_map(|(number, tree)| EveryStep::new(number, &tree.model).ok());
-        self.accuracy = Accuracy::new(doubling, every_step.collect());
-        self.find_latches();
-    }
-
-    /// Finds the latches that have not closed and whose frames are in different trees.
-    pub(super) fn find_latches(&mut self) {
-        let mut latches = Vec::new();
-        for (event, (declared, state)) in self.events.list.iter().zip(&self.events.states).enumerate() {
-            let (When::Latch(envelope), Action::Capture { by, of }) = (declared.when, declared.action) else {
-                continue;
-            };
-            let frames = [by, of].map(|place| self.frame_in_tree(place));
-            if state.happened.is_none() && frames[0].0 != frames[1].0 {
-                latches.push(Latch { event, frames, envelope, is_held: state.is_held });
-            }
-        }
-        self.equations.latches = latches;
-    }
-
-    /// Returns the tree that contains a frame of a system, and the index of the frame in its model.
-    pub(super) fn frame_in_tree(&self, place: FrameIndex) -> (usize, usize) {
-        match self.equations.members.places[place.system] {
-            Place::Tree(tree) => (tree, place.frame),
-            Place::Part(part) => {
-                let tree = self.equations.members.parts[part].tree;
-                let frame = self.equations.trees[tree].model.frame(self.connections.frame_name(place));
-                (tree, frame.expect("a tree has the frames of its members"))
-            }
-        }
-    }
-
-    /// Returns the number of the tree that contains a system.
-    pub(super) fn tree_of(&self, system: usize) -> usize {
-        self.equations.members.tree_at(self.equations.members.places[system])
-    }
-
-    /// Returns the root of the tree that contains a system.
-    pub(super) fn root_of(&self, system: usize) -> usize {
-        let tree = self.tree_of(system);
-        let is_root = |root: &usize| self.tree_of(*root) == tree;
-        self.connections.active.roots.iter().copied().find(is_root).unwrap_or(system)
-    }
-}
-
-/// Trees before a compilation.
-struct Old<'a, S> {
-    trees: Vec<Option<Tree<'a, S>>>,
-    states: Vec<Option<TreeState<S>>>,
-    parts: Vec<Option<Part<'a, S>>>,
-    places: Vec<Place>,
-    /// Number of parts of each tree.
-    sizes: Vec<usize>,
-}
-
-impl<'a, S: Scalar> Old<'a, S> {
-    /// Returns the number of the tree that has exactly these members; `None` if there is none.
-    fn unchanged(&self, members: &[Member]) -> Option<usize> {
-        let tree = |system: usize| match self.places[system] {
-            Place::Part(part) => self.parts[part].as_ref().map(|part| part.tree),
-            Place::Tree(_) => None,
-        };
-        let first = tree(members[0].system)?;
-        let is_same = members.iter().all(|member| tree(member.system) == Some(first));
-        (is_same && self.sizes[first] == members.len()).then_some(first)
-    }
-
-    /// Takes a tree with several members, which gets the number `to`.
-    fn take_tree(
-        &mut self,
-        number: usize,
-        to: usize,
-        new: &mut Members<'a, S>,
-    ) -> (Tree<'a, S>, TreeState<S>) {
-        for part in &mut self.parts {
-            if let Some(mut part) = part.take_if(|part| part.tree == number) {
-                part.tree = to;
-                new.places[part.member.system] = Place::Part(new.parts.len());
-                new.parts.push(part);
-            }
-        }
-        let taken = self.trees[number].take().zip(self.states[number].take());
-        taken.expect("every tree is taken once")
-    }
-
-    /// Takes a system out of its tree.
-    fn take(&mut self, system: usize) -> Loose<'a, S> {
-        match self.places[system] {
-            Place::Tree(tree) => {
-                let taken = self.trees[tree].take().zip(self.states[tree].take());
-                let (own, state) = taken.expect("every system is taken once");
-                Loose { state, own, sign: 1.0 }
-            }
-            Place::Part(part) => {
-                let Part { state, own, sign, .. } =
-                    self.parts[part].take().expect("every system is taken once");
-                Loose { state, own, sign }
-            }
-        }
-    }
-}
-
-/// Joins systems to a tree with the model `model`, which gets the number `number`.
-fn join<'a, S: Scalar>(
-    model: Model,
-    members: Vec<Member>,
-    number: usize,
-    old: &mut Old<'a, S>,
-    new: &mut Members<'a, S>,
-) -> (Tree<'a, S>, TreeState<S>) {
-    let loose: Vec<Loose<'a, S>> = members.iter().map(|member| old.take(member.system)).collect();
-    let values = |x: &[S]| x.iter().map(|x| x.value()).collect::<Vec<f64>>();
-    let states: Vec<_> = loose.iter().map(|one| (values(&one.state.q), values(&one.state.v))).collect();
-    let mut q = vec![0.0; model.nq()];
-    q[..BASE_NQ].copy_from_slice(&states[0].0[..BASE_NQ]);
-    for (member, (own, _)) in members.iter().zip(&states) {
-        member.joints.iter().enumerate().for_each(|(j, &joint)| q[BASE_NQ + joint] = own[BASE_NQ + j]);
-    }
-    let parts = members.iter().zip(&loose).zip(&states);
-    let moving: Vec<_> =
-        parts.map(|((member, one), (q, v))| Moving { member, model: &one.own.model, q, v }).collect();
-    let v = connected_velocity(&model, &q, &moving);
-    let modes = loose.iter().zip(&members).map(|(one, member)| (&one.own.modes, &member.joints[..]));
-    let modes = JointModes::joined(model.joint_count(), modes);
-    let mut tree = Tree::with_modes(Cow::Owned(model), modes);
-    let lift = |x: Vec<f64>| x.into_iter().map(S::of).collect::<Vec<S>>();
-    let mut state = TreeState::at(&tree.model, &mut tree.data, lift(q), lift(v));
-    state.shares = vec![S::of(0.0); members.len()];
-    tree.shares = members.iter().map(|member| member.joints.clone()).collect();
-    for (share, (member, Loose { state: before, own, sign })) in members.into_iter().zip(loose).enumerate() {
-        let quaternion = before.q[3..BASE_NQ].to_vec();
-        let mut part = Part::new((number, share), member, before, own);
-        part.sign = sign;
-        part.drive(&mut tree);
-        part.follow(&tree, &state);
-        part.choose_sign(&quaternion);
-        new.places[part.member.system] = Place::Part(new.parts.len());
-        new.parts.push(part);
-    }
-    (tree, state)
-}
-
-impl<S: Scalar> RunState<'_, S> {
-    /// Returns the state of the connections and of the systems that share trees, for checkpoints.
-    pub(super) fn save_members(&self) -> SavedMembers {
-        let parts = self.equations.members.parts.iter().map(Part::save).collect();
-        SavedMembers { active: self.connections.active.clone(), parts }
-    }
-
-    /// Restores the connections; the state of the trees must be restored afterwards.
-    pub(super) fn restore_members(&mut self, saved: SavedMembers) -> Result<(), SimulationError> {
-        if self.connections.active != saved.active {
-            self.connections.active = saved.active;
-            self.recompile()?;
-        }
-        for (part, saved) in self.equations.members.parts.iter_mut().zip(saved.parts) {
-            part.restore(saved);
-        }
-        Ok(())
     }
 }
 
@@ -294,13 +48,4 @@ impl<S: Scalar> RunState<'_, S> {
 pub(super) struct SavedMembers {
     pub(super) active: ActiveWelds,
     pub(super) parts: Vec<SavedPart>,
-}
-
-/// State of a part for checkpoints.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct SavedPart {
-    pub(super) state: TreeState<f64>,
-    pub(super) sign: f64,
-    pub(super) work_ahead: f64,
-    pub(super) dissipated_before: f64,
 }

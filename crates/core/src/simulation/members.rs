@@ -3,13 +3,13 @@
 //! Integration uses the coordinates of trees; controllers, loads and rows use those of systems.
 
 use super::body_states::LoadedSystem;
-use super::connections::SavedPart;
 use super::tree::Tree;
 use super::tree_state::TreeState;
 use crate::dynamics::{Momentum, inverse_dynamics, momentum_energy_com};
 use crate::model::{Axis, BASE_NQ, BASE_NV, Model};
 use crate::spatial::{Force, Quat, Real, Scalar, Vec3};
 use crate::world::{BodyPlace, Member};
+use serde::{Deserialize, Serialize};
 
 /// Place of a system in the list of trees or in the list of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,6 +44,15 @@ pub(crate) struct Part<'a, S> {
     work_ahead: S,
     /// Energy dissipated in the joints of the system before it joined the tree, J.
     dissipated_before: S,
+}
+
+/// State of a part for checkpoints.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SavedPart {
+    pub(super) state: TreeState<f64>,
+    pub(super) sign: f64,
+    pub(super) work_ahead: f64,
+    pub(super) dissipated_before: f64,
 }
 
 impl<S: Real> Members<'_, S> {

@@ -130,7 +130,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Tells the schedule and the controllers which events have happened or are due.
+    /// Passes the events that have happened to the controllers, and the times at which others are due to the schedule.
     pub(super) fn events_changed(&mut self) {
         self.schedule.set_due(self.events.due_times());
         let happened = self.events.happened();

@@ -1,11 +1,13 @@
 //! Worlds of several systems.
 
 mod event;
+mod robotics;
 mod system;
 mod systems;
 mod trace;
 mod world;
 
+pub(crate) use robotics::{Robotics, initial_state};
 pub(crate) use systems::{PySystemStepper, Systems};
 pub(crate) use world::PyWorld;
 

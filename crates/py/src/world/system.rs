@@ -1,7 +1,7 @@
 //! One spacecraft of a world.
 
+use super::robotics::{Robotics, initial_state};
 use crate::model::PyModel;
-use crate::simulation::{Robotics, initial_state};
 use onorbit_core::orbit::Orbit;
 use onorbit_core::world::System;
 use pyo3::prelude::*;

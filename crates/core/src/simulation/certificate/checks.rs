@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 /// Largest relative drift of momentum that passes: the rounding of millions of steps.
-pub(super) const MOMENTUM: f64 = 1e-11;
+pub(crate) const MOMENTUM: f64 = 1e-11;
 /// Largest relative error of the energy balance that passes: that of a fourth-order integrator that resolves the
 /// motion.
-pub(super) const ENERGY: f64 = 1e-6;
+pub(crate) const ENERGY: f64 = 1e-6;
 /// Largest relative distance of the centre of mass from the integral of its momentum that still passes.
 pub(super) const CENTER: f64 = 1e-7;
 /// Largest attitude error estimated by step doubling that passes, rad.
@@ -79,7 +79,7 @@ pub struct PairChecks {
 
 impl PairChecks {
     /// Returns the larger errors of two intervals; of the base rows, those that are closer to their gate.
-    pub(in crate::simulation) fn worse(&self, other: &Self) -> Self {
+    pub(crate) fn worse(&self, other: &Self) -> Self {
         let ratio = |checks: &Self| checks.base_rows_residual_rel * (1.0 / checks.base_rows_gate);
         let rows = if ratio(self) >= ratio(other) { self } else { other };
         Self {

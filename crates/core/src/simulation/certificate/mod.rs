@@ -7,13 +7,12 @@ mod center_of_mass;
 mod certify;
 mod checks;
 mod error_measures;
-mod group;
 mod step_doubling;
 mod stream;
 mod trace_row;
 
 pub use certify::certify;
 pub use checks::{Certificate, Check, PairChecks};
-pub use group::certify_group;
+pub(crate) use checks::{ENERGY, MOMENTUM};
 pub(super) use stream::{Stream, Sums};
 pub(super) use trace_row::{BaseMotion, MassMotion};

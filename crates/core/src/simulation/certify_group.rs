@@ -1,7 +1,7 @@
 //! Certificate of a group of several systems: its momentum and its energy, through all events.
 
-use super::checks::{Check, ENERGY, MOMENTUM};
-use crate::simulation::recording::GroupRows;
+use super::certificate::{Check, ENERGY, MOMENTUM};
+use super::recording::GroupRows;
 use crate::spatial::Vec3;
 
 /// Returns the checks of the momentum and the energy of a group of systems.
