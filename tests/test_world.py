@@ -102,7 +102,7 @@ def test_a_triggered_event_has_the_bits_of_a_planned_one() -> None:
     )
     stepper.advance_to(0.3)
     stepper.trigger("grasp")
-    with pytest.raises(oo.exceptions.WorldError, match="unknown|no event 'grip'"):
+    with pytest.raises(oo.exceptions.WorldError, match="no event 'grip'"):
         stepper.trigger("grip")
     stepper.advance_to(0.5)
     with pytest.raises(oo.exceptions.WorldError, match="already happened"):

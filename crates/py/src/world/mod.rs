@@ -1,15 +1,15 @@
 //! Worlds of several systems.
 
+mod declared;
 mod event;
 mod robotics;
 mod system;
 mod systems;
 mod trace;
-mod world;
 
+pub(crate) use declared::PyWorld;
 pub(crate) use robotics::{Robotics, initial_state};
 pub(crate) use systems::{PySystemStepper, Systems};
-pub(crate) use world::PyWorld;
 
 use pyo3::prelude::*;
 
@@ -18,7 +18,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<system::PySystem>()?;
     m.add_class::<event::PyCapture>()?;
     m.add_class::<event::PyRelease>()?;
-    m.add_class::<world::PyWorld>()?;
+    m.add_class::<declared::PyWorld>()?;
     m.add_class::<systems::PySystemStepper>()?;
     m.add_class::<trace::PyWorldTrace>()?;
     m.add_class::<trace::PyEventRecord>()
