@@ -181,7 +181,7 @@ def test_a_python_controller_continues_to_the_same_bits() -> None:
     whole = simulation.run(30.0)
     assert rest.q.tobytes() == whole.q.tobytes()
     forgetful = json.loads(kept[-1].state)  # negative control: the controller's state matters
-    forgetful["controllers"]["systems"][0]["controls"][0]["user"] = list(
+    forgetful["groups"][0]["controllers"]["systems"][0]["controls"][0]["user"] = list(
         encode({"sum": np.ones(7), "calls": 0})
     )
     other = simulation.run(30.0, resume=put_together(kept, json.dumps(forgetful)))
@@ -193,7 +193,7 @@ def test_a_checkpoint_with_a_pickle_runs_no_code(tmp_path: Path) -> None:
     evil = pickle.dumps(Payload(file))
     simulation, kept = stopped(Integral(oo.robots.load("humanoid_torso")))
     record = json.loads(kept[-1].state)
-    record["controllers"]["systems"][0]["controls"][0]["user"] = list(evil)
+    record["groups"][0]["controllers"]["systems"][0]["controls"][0]["user"] = list(evil)
     with pytest.raises(CheckpointError, match=r"pickle.*not read; run the scenario again"):
         simulation.run(30.0, resume=put_together(kept, json.dumps(record)))
     assert not file.exists()

@@ -194,7 +194,7 @@ class Spoilt(Euler):
 
 def test_an_invalid_quaternion_is_rejected(model: oo.Model) -> None:
     longer = Spoilt(model, 0, lambda q: np.concatenate([q[:3], 1.5 * q[3:7], q[7:]]))
-    with pytest.raises(EngineError, match=r"length 1\.5.*normalise"):
+    with pytest.raises(EngineError, match=r"norm 1\.5.*normalise"):
         reach(longer).run(0.05)
 
 

@@ -12,6 +12,7 @@
 //! | reduced model `M*`, `c*`, `Q*`; generalized Jacobian `Jg` and drift `d` | `dynamics/free_floating.rs` | `kernel`, `reduced_inertia`, `reduce_task` |
 //! | forward dynamics by ABA | `dynamics/aba.rs` | `kernel` |
 //! | joint traversed backwards `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹` | `model/reroot.rs` | `reversed` |
+//! | velocity after a capture `M v⁺ = Σ J_kᵀ I_k V_k⁻` | `world/impulse.rs` | `connected_velocity` |
 //! | momentum projection `v_b = Mbb⁻¹ (h − Mbm q̇)` | `dynamics/momentum.rs` | `projected_base_twist` |
 //! | Kepler's equation, ellipse and hyperbola | `orbit/kepler/anomaly.rs` | `solve_ellipse`, `solve_hyperbola` |
 //! | `F_k = m_k [g(r_k) − r̈_ref]`; only the tide if `gravity_mode: carried` | `environment/differential_gravity.rs` | `GravityMode`, `DifferentialGravity::add` |

@@ -74,7 +74,7 @@ fn two_rigid_craft_lose_the_energy_of_the_closed_form() {
     }
 }
 
-/// Systems of different groups never interact: each has the bits of a run of its own.
+/// Systems of different groups never interact: each has the bits of a separate run.
 #[test]
 fn two_systems_that_cannot_touch_have_the_bits_of_two_runs() {
     let both = two_craft().run(1.0).unwrap();

@@ -1,4 +1,4 @@
-//! Systems as members of the integrated trees: a system is a tree of its own, or a part of a larger one.
+//! Systems as members of the integrated trees: a system is the only member of a tree, or a part of a larger one.
 //!
 //! Integration uses the coordinates of trees; controllers, loads and rows use those of systems.
 
@@ -56,7 +56,7 @@ pub(super) struct SavedPart {
 }
 
 impl<S: Real> Members<'_, S> {
-    /// Returns the places of systems each of which is a tree of its own.
+    /// Returns the places of systems that share no tree.
     pub(crate) fn alone(count: usize) -> Self {
         Self { places: (0..count).map(Place::Tree).collect(), parts: Vec::new() }
     }

@@ -1,5 +1,5 @@
-//! Groups: systems that may interact during a run. Systems of different groups never do, so each group is a run of its
-//! own.
+//! Groups: systems that may interact during a run. Systems of different groups never do, so each group is a separate
+//! run.
 
 use super::event::{Action, Event, When};
 
