@@ -209,3 +209,56 @@ def test_what_belongs_to_the_world_is_no_argument_of_its_simulation() -> None:
         _ = trace.q
     with pytest.raises(oo.exceptions.WorldError, match="no system 'x'"):
         _ = trace["x"]
+
+
+class Constant:
+    """Controller with constant torques that notes when it is called."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+
+    def update(self, t: float, state: oo.State) -> np.ndarray:
+        self.times.append(t)
+        return np.full(len(state.joints), 0.1)
+
+
+def test_a_control_starts_after_an_event() -> None:
+    late = Constant()
+    control = oo.Control(late, name="damp", after="grasp")
+    chaser, target = systems()
+    q, v = ARM.neutral(), np.zeros(ARM.nv)
+    chaser = oo.System("chaser", ARM, q, v, controller=[control], control_period=0.05)
+    trace = oo.Simulation(
+        oo.World([chaser, target], events=[oo.Capture("grasp", "chaser/tool", "target/base", at=0.13)])
+    )
+    tau = trace.run(0.3)["chaser"]
+    assert late.times[0] == 0.13
+    assert np.allclose(late.times[1:3], [0.15, 0.2])
+    assert not tau.tau[tau.time < 0.13].any()
+    assert np.all(tau.tau[tau.time > 0.13] == 0.1)
+    with pytest.raises(oo.exceptions.ControlError, match="grip"):
+        oo.World([oo.System("chaser", ARM, q, v, controller=[oo.Control(late, after="grip")])])
+
+
+def test_a_resumed_run_is_certified_from_its_start() -> None:
+    simulation = oo.Simulation(world(GRASP, LET_GO), time_step=2e-4)
+    stepper = simulation.start(duration=1.0)
+    stepper.advance_to(0.5)
+    checkpoint = stepper.checkpoint()
+    resumed = oo.Simulation(world(GRASP, LET_GO), time_step=2e-4).start(resume=checkpoint)
+    resumed.advance_to(0.6)
+    resumed.trace()
+    resumed.advance_to(1.0)
+    trace = resumed.finish()
+    assert [event.name for event in trace.events] == ["grasp", "let_go"]
+    assert all(line[3] for line in trace.certificate()), trace.certificate()
+
+
+def test_a_system_far_from_the_reference_orbit_is_warned_of() -> None:
+    chaser, target = systems()
+    q = BOX.neutral()
+    q[0] = 2e6
+    far = oo.System("target", BOX, q, np.zeros(6))
+    with pytest.warns(UserWarning, match=r"'target' starts 2000000 m .* resolved to 4\.44089e-10 m"):
+        oo.World([chaser, far], events=[GRASP])
+    assert target.name == "target"

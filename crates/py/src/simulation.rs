@@ -175,7 +175,7 @@ impl PySimulation {
             simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
             set_environment(py, &mut simulation, &effects(environment)?)?;
             let orbit = simulation.orbit.clone();
-            settings.apply(model.get(), orbit.as_ref(), &mut simulation.systems[0])?;
+            settings.apply(model.get(), (orbit.as_ref(), &[]), &mut simulation.systems[0])?;
             simulation.rereference_beyond = rereference_beyond;
             simulation
         };

@@ -8,7 +8,7 @@ use super::every_step::SavedChecks;
 use super::integrator::StepControl;
 use super::local_reference::LocalReference;
 use super::modes::SavedModes;
-use super::recording::{EventRecord, Ledger};
+use super::recording::{EventRecord, GroupRows, Ledger};
 use super::schedule::{Cursor, Schedule};
 use super::state::State;
 use super::state_range::{UNIT_NORM, attitude_norm};
@@ -88,6 +88,9 @@ pub(super) struct WorldProgress {
     pub(super) events: Vec<EventState>,
     pub(super) records: Vec<EventRecord>,
     pub(super) ledger: Ledger,
+    /// Number of rows of the balance of the group, and the first of them.
+    pub(super) group_rows: usize,
+    pub(super) group_start: GroupRows,
 }
 
 /// State of the controllers and torques of a run.

@@ -77,9 +77,4 @@ impl<S: Scalar> RunState<'_, S> {
         group.dissipated.push(dissipated);
         group.scales.extend(scales);
     }
-
-    /// Restores the rows of the balance from those of the systems, for a run that resumes.
-    pub(super) fn restore_group(&mut self) {
-        // the rows before the checkpoint are not part of it; those of a resumed run begin at the checkpoint
-    }
 }

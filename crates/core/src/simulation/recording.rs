@@ -102,7 +102,7 @@ impl EventRecord {
 }
 
 /// Balance of momentum and energy of a group of several systems, one row per recorded step.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupRows {
     /// Numbers of the systems.
     pub systems: Vec<usize>,
@@ -127,6 +127,21 @@ impl GroupRows {
     /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.time.len()
+    }
+
+    /// Returns the first row.
+    pub(super) fn first(&self) -> Self {
+        let start = |column: &[f64], width: usize| column[..width.min(column.len())].to_vec();
+        Self {
+            systems: self.systems.clone(),
+            time: start(&self.time, 1),
+            momentum: start(&self.momentum, 6),
+            impulse: start(&self.impulse, 6),
+            kinetic_energy: start(&self.kinetic_energy, 1),
+            work: start(&self.work, 1),
+            dissipated: start(&self.dissipated, 1),
+            scales: start(&self.scales, 2),
+        }
     }
 
     pub(super) fn truncate(&mut self, rows: usize) {

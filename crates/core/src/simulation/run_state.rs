@@ -94,12 +94,15 @@ impl<S: Scalar> RunState<'_, S> {
                 events: self.events.states.clone(),
                 records: self.events.records.clone(),
                 ledger: self.ledger,
+                group_rows: self.group.rows(),
+                group_start: self.group.first(),
             },
         }
     }
 
     /// Restores the state that [`RunState::progress`] returned and removes the rows recorded since then.
     pub(super) fn restore(&mut self, progress: Progress) -> Result<(), SimulationError> {
+        self.group.truncate(progress.world.group_rows);
         self.restore_world(progress.world)?;
         self.state = progress.state.map(|x| S::of(*x));
         self.schedule.set_cursor(progress.cursor);
@@ -110,7 +113,6 @@ impl<S: Scalar> RunState<'_, S> {
             self.accuracy.restore(number, (saved.errors, saved.checks));
         }
         for (saved, run) in progress.systems.into_iter().zip(&mut self.systems) {
-            self.group.truncate(saved.rows);
             run.recorder.truncate(saved.rows);
             run.recorder.trace.work_done = saved.work_done;
             run.settled = saved.settled;
@@ -166,7 +168,8 @@ impl<S: Scalar> RunState<'_, S> {
         for (run, rows) in self.systems.iter_mut().zip(rows) {
             run.recorder.resume(rows)?;
         }
-        self.restore_group();
+        // the rows before the checkpoint are not part of it; drifts are measured from the first row
+        self.group = progress.world.group_start.clone();
         self.restore(progress)?;
         self.time = time;
         if let Some(local) = local_reference {

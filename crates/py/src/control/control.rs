@@ -155,10 +155,14 @@ impl PyControl {
             law_of(controller, reference, &joints, tool, robot)?.ok_or_else(|| no_controller(controller))?;
         let begin = match &self.after {
             None => Begin::At(self.start),
-            Some(after) => Begin::After(names.iter().position(|other| other == after).ok_or_else(|| {
-                let (control, after) = (name.to_owned(), after.clone());
-                ControlError::NoSuchControl { control, after }.into_python(py)
-            })?),
+            Some(after) => {
+                let control = names.iter().position(|other| other == after).map(Begin::After);
+                let event = || robot.events.iter().position(|event| event == after).map(Begin::AfterEvent);
+                control.or_else(event).ok_or_else(|| {
+                    let (control, after) = (name.to_owned(), after.clone());
+                    ControlError::NoSuchControl { control, after }.into_python(py)
+                })?
+            }
         };
         let goal = self.goal.as_ref().map(|goal| goal.get().goal.clone());
         let (end, starts_at_present) = (self.end, self.starts_at_present);

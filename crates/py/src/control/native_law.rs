@@ -18,6 +18,8 @@ pub(crate) struct Robot<'a> {
     pub(crate) model: &'a Arc<Model>,
     pub(crate) orbit: Option<&'a Arc<dyn Orbit>>,
     pub(crate) tool: Option<usize>,
+    /// Names of the events of the world.
+    pub(crate) events: &'a [String],
 }
 
 /// Reference, joints and robot of a control, from which its law is constructed.

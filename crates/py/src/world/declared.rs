@@ -1,14 +1,17 @@
 //! Worlds of several spacecraft.
 
-use super::event::events_of;
+use super::event::{events_of, names_of};
 use super::system::PySystem;
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::SimulationErrorExt;
 use crate::orbit::PyOrbit;
 use crate::simulation::{gravity_mode_named, set_environment};
+use onorbit_core::number_text::short;
 use onorbit_core::simulation::Simulation;
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use std::ffi::CString;
 use std::sync::Arc;
 
 /// World of one or more spacecraft on one reference orbit, with their environment and events.
@@ -74,6 +77,7 @@ impl PyWorld {
         };
         let simulation = world.simulation(py)?;
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
+        world.warn_of_distance(py, &simulation)?;
         Ok(world)
     }
 
@@ -89,10 +93,30 @@ impl PyWorld {
 }
 
 impl PyWorld {
+    /// Warns of systems that are so far from the reference orbit that their positions lose digits. Systems that events
+    /// may connect keep the reference orbit.
+    fn warn_of_distance(&self, py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
+        for system in simulation.systems.iter().filter(|_| !simulation.events.is_empty()) {
+            let distance = system.q[..3].iter().map(|x| x * x).sum::<f64>().sqrt();
+            if distance > self.rereference_beyond {
+                let message = format!(
+                    "system '{}' starts {} m from the reference orbit, where positions are resolved to {} m; use an orbit \
+                     near the systems",
+                    system.name,
+                    short(distance),
+                    short(distance * f64::EPSILON)
+                );
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 2)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Returns a simulation of the world with default settings of the integration.
     pub(crate) fn simulation(&self, py: Python<'_>) -> PyResult<Simulation> {
         let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));
-        let systems = self.systems.iter().map(|system| system.get().system(py, orbit.as_ref()));
+        let names = names_of(py, &self.events)?;
+        let systems = self.systems.iter().map(|system| system.get().system(py, orbit.as_ref(), &names));
         let systems = systems.collect::<PyResult<Vec<_>>>()?;
         let events: Vec<_> = self.events.iter().map(|event| event.bind(py).clone()).collect();
         let events = events_of(&events, &systems)?;

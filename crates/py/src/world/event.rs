@@ -4,6 +4,7 @@ use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
 use onorbit_core::model::Model;
 use onorbit_core::world::{Action, Envelope, FrameIndex, System, When};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -219,6 +220,15 @@ impl PyRelease {
     fn __repr__(&self) -> String {
         format!("<Release '{}' of '{}'>", self.name, self.capture)
     }
+}
+
+/// Returns the names of events.
+pub(super) fn names_of(py: Python<'_>, events: &[Py<PyAny>]) -> PyResult<Vec<String>> {
+    let name = |event: &Py<PyAny>| match event.bind(py).getattr("name") {
+        Ok(name) => name.extract(),
+        Err(_) => Err(PyTypeError::new_err("events must be a list of Capture and Release")),
+    };
+    events.iter().map(name).collect()
 }
 
 /// Reads the events of a world.

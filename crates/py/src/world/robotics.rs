@@ -24,11 +24,12 @@ pub(crate) struct Robotics<'a, 'py> {
 }
 
 impl Robotics<'_, '_> {
-    /// Sets controls, reference, tool and stops of a system.
+    /// Sets controls, reference, tool and stops of a system; `orbit` is the reference orbit and `events` are the names
+    /// of the events of the world.
     pub(crate) fn apply(
         &self,
         model: &PyModel,
-        orbit: Option<&Arc<dyn Orbit>>,
+        (orbit, events): (Option<&Arc<dyn Orbit>>, &[String]),
         system: &mut System,
     ) -> PyResult<()> {
         if let Some(tolerance) = self.reference_start_tolerance {
@@ -36,7 +37,7 @@ impl Robotics<'_, '_> {
         }
         system.tool = self.tool.map(|tool| model.frame(tool)).transpose()?;
         if let Some(controller) = self.controller {
-            let robot = Robot { model: &model.model, orbit, tool: system.tool };
+            let robot = Robot { model: &model.model, orbit, tool: system.tool, events };
             system.controls = controls_of(controller, self.reference, &robot)?;
             let tracked = system.controls.iter().find_map(|control| control.law.task());
             system.tool = system.tool.or(tracked.map(|(frame, _)| frame));

@@ -96,8 +96,14 @@ impl PySystem {
 }
 
 impl PySystem {
-    /// Returns the system of the core; `orbit` is the reference orbit of the world.
-    pub(super) fn system(&self, py: Python<'_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<System> {
+    /// Returns the system of the core; `orbit` is the reference orbit of the world, and `events` are the names of its
+    /// events.
+    pub(super) fn system(
+        &self,
+        py: Python<'_>,
+        orbit: Option<&Arc<dyn Orbit>>,
+        events: &[String],
+    ) -> PyResult<System> {
         let bind = |value: &Option<Py<PyAny>>| value.as_ref().map(|value| value.bind(py).clone());
         let (controller, reference, tool) = (bind(&self.controller), bind(&self.reference), bind(&self.tool));
         let tolerance = bind(&self.reference_start_tolerance);
@@ -112,7 +118,7 @@ impl PySystem {
         };
         let model = self.model.get();
         let mut system = System::new(&self.name, Arc::clone(&model.model), self.q.clone(), self.v.clone());
-        settings.apply(model, orbit, &mut system)?;
+        settings.apply(model, (orbit, events), &mut system)?;
         Ok(system)
     }
 }
