@@ -256,7 +256,11 @@ fn invalid_states_are_refused() {
     let (x, y) = (Vector3::x() * 7e6, Vector3::y() * 7e3);
     let from = |r, v, mu| Kepler::from_state(r, v, mu).expect_err("must be refused");
     for (r, v) in [(x, x * 1e-3), (x, Vector3::zeros()), (Vector3::zeros(), y)] {
-        assert!(matches!(from(r, v, MU_EARTH), OrbitError::Rectilinear { .. }));
+        let error = from(r, v, MU_EARTH);
+        assert!(
+            matches!(error, OrbitError::Rectilinear { .. }) && !error.to_string().contains("NaN"),
+            "{error}"
+        );
     }
     assert!(matches!(from(x, y, -1.0), OrbitError::NotPositive { name: "mu", .. }));
     assert!(matches!(from(x * f64::NAN, y, 1.0), OrbitError::NotFinite { name: "position", .. }));

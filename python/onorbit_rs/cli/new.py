@@ -41,7 +41,14 @@ def new(
             metavar="ROBOT", help="Spacecraft to attach the robot to: a bundled name, a URDF or a xacro file."
         ),
     ] = None,
-    at: Annotated[str | None, typer.Option(metavar="FRAME", help="Frame of the bus to attach to.")] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FRAME",
+            help="Frame of the bus to attach the robot to; only with --bus; default: the only frame of the "
+            "bus, if it has one.",
+        ),
+    ] = None,
     prefix: Annotated[
         str,
         typer.Option(metavar="TEXT", help="Prefix for the robot's link and joint names; only with --bus."),

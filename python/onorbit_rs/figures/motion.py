@@ -31,7 +31,10 @@ STEEPEST_DEG = 80.0
 
 
 def base_motion(trace: Trace) -> Figure:
-    """Draw position and attitude of the base in W: three angles, or the quaternion near their singularity."""
+    """Draw the position and attitude of the base in W.
+
+    The attitude is drawn as roll, pitch and yaw, or as a quaternion if the pitch reaches 80° at any time.
+    """
     time, label = clock(trace)
     position = np.asarray(trace.q)[:, POSITION]
     quat = np.asarray(trace.q)[:, QUATERNION]

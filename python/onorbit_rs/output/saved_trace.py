@@ -15,7 +15,10 @@ from onorbit_rs.output.columns import row_shape, split_path
 
 @dataclass(frozen=True)
 class SavedTrace:
-    """Columns by path; they are attributes with the names of those of a :class:`onorbit_rs.Trace`."""
+    """Trace read from a file; its columns are attributes, named as in :class:`onorbit_rs.Trace`.
+
+    ``arrays`` maps the path of each column to its values.
+    """
 
     arrays: Mapping[str, Any]
 

@@ -1,4 +1,7 @@
-"""Columns of the trace as time series in groups; each plot has one unit and a name for every line."""
+"""Groups of plots for the viewer, computed from the rows of a trace.
+
+The lines of a plot share a unit label, which is ``rad or m`` for joint errors of mixed joints.
+"""
 
 from __future__ import annotations
 
@@ -73,7 +76,11 @@ def series_of(rows: TraceRows, setting: Setting, *, is_live: bool = False) -> It
 
 
 def _fitted(series: Series) -> Series:
-    """Return the series with a unit that fits: rerun's axes show four decimals and no exponents."""
+    """Return the series in a unit that suits its peak.
+
+    Rerun's axes show four decimals and no exponents. A peak below the rounding error gives zeros; exact
+    columns and labels with two units keep their unit.
+    """
     peak = float(max(series.values.max(initial=0.0), -series.values.min(initial=0.0)))
     if peak < (np.degrees(ROUNDING) if series.unit == "deg" else ROUNDING):
         return replace(series, values=np.zeros_like(series.values))

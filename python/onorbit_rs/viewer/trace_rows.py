@@ -34,9 +34,9 @@ TIMELINE = "simulation_time"
 
 @dataclass(frozen=True)
 class TraceRows:
-    """Columns by the names of the trace, (T, ...).
+    """Rows of a trace: ``columns`` maps the name of each column to its values, (T, ...).
 
-    ``wrenches`` (T, bodies, 6) by effect, ``tracking`` (T, k) by control.
+    ``wrenches``, (T, bodies, 6), are stored by effect and ``tracking`` errors, (T, k), by control.
     """
 
     columns: Mapping[str, Floats]

@@ -8,10 +8,11 @@ pub(super) const ROWS: usize = 6;
 /// Damped pseudo-inverse `J⁺ = Jᵀ (J Jᵀ + Λ²)⁻¹` for `k` tasks of six rows; well-conditioned tasks are not
 /// damped.
 ///
-/// `σ² = 1/tr [(J Jᵀ)⁻¹]` over the six rows of a task is at most the square of the smallest singular value,
-/// and for a single task at least a sixth of it. If it is below the task's `λ₀²`, the rows of that task are
-/// damped by the difference, `λ² = λ₀² − σ²`. The null-space projector is always built from the undamped
-/// inverse, since a damped one would disturb the task.
+/// For each task, `1/σ²` is the sum of the six diagonal entries of `(J Jᵀ)⁻¹` in its rows. `σ²` is at most the
+/// square of the smallest singular value of the task's own six rows of `J`; for a single task it is at least a
+/// sixth of that square. If `σ²` is below the task's `λ₀²`, the rows of that task are damped by the difference,
+/// `λ² = λ₀² − σ²`. The null-space projector is always built from the undamped inverse, since a damped one would
+/// disturb the task.
 ///
 /// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
 /// the distance from singularity.

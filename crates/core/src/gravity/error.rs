@@ -62,8 +62,11 @@ pub enum GravityError {
     Unreadable { file: String, reason: String },
     #[error("{file}: {key} is {got}; expected {expected}")]
     Header { file: String, key: &'static str, got: String, expected: &'static str },
-    #[error("{file}:{line}: the row is '{got}'; expected 'gfc degree order C S'")]
-    Row { file: String, line: usize, got: String },
+    #[error(
+        "{file}:{line}: the row is '{got}'; expected 'gfc degree order C S' with finite C and S, and \
+         order ≤ degree ≤ {max_degree}, the max_degree of the header"
+    )]
+    Row { file: String, line: usize, got: String, max_degree: usize },
     #[error(
         "{file}:{line}: the file ends without a line break after '{got}', so the last number may be truncated; \
          download the file again, or add a line break if the row is complete"

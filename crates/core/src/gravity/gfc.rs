@@ -20,7 +20,12 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
     let rows = text.lines().enumerate().skip(header.lines).filter(|(_, line)| !line.trim().is_empty());
     for (index, text) in rows {
         let line = index + 1;
-        let invalid = || GravityError::Row { file: file.to_owned(), line, got: text.trim().to_owned() };
+        let invalid = || GravityError::Row {
+            file: file.to_owned(),
+            line,
+            got: text.trim().to_owned(),
+            max_degree: header.degree,
+        };
         let words: Vec<&str> = text.split_whitespace().collect();
         let (n, m) =
             (index_of(words.get(1)).ok_or_else(invalid)?, index_of(words.get(2)).ok_or_else(invalid)?);
@@ -193,6 +198,12 @@ mod tests {
         {
             assert!(matches!(refused(&GOOD.replace(from, to), None), GravityError::Row { .. }), "{to}");
         }
+        let beyond_header = refused(&GOOD.replace("gfc 3 3", "gfc 4 3"), None);
+        assert!(
+            matches!(beyond_header, GravityError::Row { line: 19, max_degree: 3, .. }),
+            "{beyond_header}"
+        );
+        assert!(beyond_header.to_string().contains("order ≤ degree ≤ 3"), "{beyond_header}");
         let twice = GOOD.replace("gfc 2 2", "gfc 2 1");
         assert!(matches!(refused(&twice, None), GravityError::Twice { line: 15, degree: 2, order: 1, .. }));
         let varies = GOOD.replace("gfc 3 1", "gfct 3 1");

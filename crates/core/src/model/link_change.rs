@@ -53,10 +53,11 @@ impl LinkChange {
 }
 
 impl Model {
-    /// Returns this robot with the values of one link replaced.
+    /// Returns this robot with the mass, centre of mass or inertia of one link replaced.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown link or values that are not physical.
+    /// [`ModelError`] for an unknown link, values that are not physical, or a link without mass for which none is
+    /// given.
     pub fn with_link(&self, change: &LinkChange) -> Result<Self, ModelError> {
         let mut description = self.description().clone();
         change.check_is_one_of(description.links.iter().map(|link| link.name.as_str()))?;

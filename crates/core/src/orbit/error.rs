@@ -142,18 +142,18 @@ pub enum OrbitError {
     },
     /// Position and velocity are parallel, or one of them is zero.
     #[error(
-        "the orbit is rectilinear: the sine of the angle between position ({radius} m) and velocity ({speed} m/s) \
-         is {sine}; it must exceed {limit}",
-        radius = short(*radius), speed = short(*speed), sine = unlike(*sine, &[*limit]), limit = short(*limit)
+        "the orbit is rectilinear: position ({radius} m) and velocity ({speed} m/s) must be nonzero, and the sine of \
+         the angle between them must exceed {limit}{sine}; give a velocity that is not parallel to the position",
+        radius = short(*radius), speed = short(*speed), sine = actual_sine(*sine, *limit), limit = short(*limit)
     )]
     Rectilinear {
         /// Length of the position, m.
         radius: f64,
         /// Length of the velocity, m/s.
         speed: f64,
-        /// Sine of the angle between position and velocity.
+        /// Sine of the angle between position and velocity; NaN if one of them is zero.
         sine: f64,
-        /// Smallest accepted sine.
+        /// Limit that the sine must exceed.
         limit: f64,
     },
     /// The local orbital frame is undefined.
@@ -273,4 +273,10 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> 
 /// Returns `value` if it is finite and greater than zero.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)? > 0.0 { Ok(value) } else { Err(OrbitError::NotPositive { name, value }) }
+}
+
+/// Returns ` (it is …)` with the sine of an angle, in enough digits to distinguish it from `limit`; nothing if it is
+/// not finite.
+fn actual_sine(sine: f64, limit: f64) -> String {
+    if sine.is_finite() { format!(" (it is {})", unlike(sine, &[limit])) } else { String::new() }
 }

@@ -127,7 +127,8 @@ impl PyEarth {
         self.earth.axes().map(Axes::name)
     }
 
-    /// Return the rotation ``rot_fi`` from inertial to Earth-fixed (ITRF) components.
+    /// Return the rotation ``rot_fi`` from the inertial axes (``axes``) to Earth-fixed axes: ITRF for
+    /// ``iau2006``, uniformly rotating axes for ``about_z``.
     ///
     /// Parameters
     /// ----------

@@ -118,7 +118,10 @@ impl PyJointWaypoints {
     }
 }
 
-/// C² spline through joint positions at given times; before and after, the first and last positions are held.
+/// C² spline through joint positions at given times.
+///
+/// Outside these times the joints rest at the first or last position, so the rate jumps at an end where it is
+/// not zero.
 ///
 /// Parameters
 /// ----------
@@ -127,7 +130,7 @@ impl PyJointWaypoints {
 /// positions : (K, n) array
 ///     Positions, rad or m.
 /// rates : (K, n) array, optional
-///     Rates, rad/s or m/s.
+///     Rates, rad/s or m/s; default: computed from the positions.
 #[pyclass(name = "JointSampled", extends = PyJointReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyJointSampled;
 

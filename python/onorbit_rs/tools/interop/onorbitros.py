@@ -129,7 +129,11 @@ def _unwrapped(source: Source) -> list[Source]:
         return [source]
     below: list[Source] = []
     for key in source.data:
-        text = "a wrapper of ROS 2" if key in ("/**", "ros__parameters") else "a namespace of ROS: omitted"
+        text = (
+            "ROS 2 parameter wrapper; its contents are converted"
+            if key in ("/**", "ros__parameters")
+            else "ROS namespace; its contents are converted without the prefix"
+        )
         source.note(key, "understood", text)
         below += _unwrapped(source.inside(key, apart=True))
     return below

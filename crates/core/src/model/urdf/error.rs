@@ -64,7 +64,7 @@ pub enum UrdfProblem {
     IsFolder,
     #[error("cannot be read ({reason})")]
     Unreadable { reason: String },
-    #[error("the file is empty")]
+    #[error("the URDF is empty; expected a <robot> element")]
     Empty,
     #[error("the file is larger than {limit} bytes, the limit for robot descriptions")]
     TooLarge { limit: usize },

@@ -122,8 +122,8 @@ impl<'a> Meshes<'a> {
         Some(Found { path, is_guess: false })
     }
 
-    /// Returns the candidate paths below the given folders, then below each parent of the URDF. Each may be the
-    /// package itself or contain it.
+    /// Returns the paths at which `rest` of `package` is searched for: below the given folders, then below the
+    /// URDF's folder and each of its parents. Each of these folders may be the package or contain it.
     fn in_package(&self, package: &str, rest: &Path) -> Vec<PathBuf> {
         let parents = self.folder.into_iter().flat_map(Path::ancestors);
         let roots = self.packages.iter().map(PathBuf::as_path).chain(parents);

@@ -41,7 +41,8 @@ impl MeshName {
     }
 }
 
-/// Returns the tails of a path, the longest first, without root and `..`.
+/// Returns the tails of a path with at most `LONGEST_TAIL` components, the longest first; the root and `..` are
+/// omitted.
 pub(super) fn tails(path: &Path) -> Vec<PathBuf> {
     let names: Vec<_> = path.components().filter(|part| matches!(part, Component::Normal(_))).collect();
     let first = names.len().saturating_sub(LONGEST_TAIL);
