@@ -53,8 +53,8 @@ pub enum ControlError {
     #[error("two controls are named '{name}'; give each a different name")]
     RepeatedName { name: String },
     #[error(
-        "control '{control}' starts after '{after}', which is not a control of this run; give the name of one \
-         that is"
+        "control '{control}' starts after '{after}', which is neither a control nor an event of this run; give the \
+         name of one"
     )]
     NoSuchControl { control: String, after: String },
     #[error(

@@ -73,13 +73,13 @@ impl<S: Scalar> RunState<'_, S> {
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
         members.follow(trees, &self.state.trees);
         members.parts.iter_mut().for_each(Part::update_balance);
-        let before = self.ledger_totals();
+        let before = self.totals(&self.state);
         let record = match self.events.list[number].action {
             Action::Capture { by, of } => self.capture(number, (by, of), t)?,
             Action::Release { capture, impulse } => self.release(number, capture, impulse, t)?,
         };
         // the trees that the event made count from zero
-        let after = self.ledger_totals();
+        let after = self.totals(&self.state);
         self.ledger.impulse.linear += before.impulse.linear - after.impulse.linear;
         self.ledger.impulse.angular += before.impulse.angular - after.impulse.angular;
         self.ledger.work += before.work - after.work - record.energy_lost;

@@ -22,6 +22,7 @@ mod events;
 mod every_step;
 mod external_loads;
 mod group_rows;
+mod group_sum;
 mod happen;
 mod integrator;
 mod latch;
