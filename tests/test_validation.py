@@ -27,8 +27,10 @@ from onorbit_rs.tools.validation import (
     against_spart,
     air_and_light,
     bodies,
+    capture,
     conservation,
     earth,
+    gauss,
     gravity,
     kepler,
     nasa,
@@ -39,6 +41,7 @@ from onorbit_rs.tools.validation import (
     secular,
     select,
     sgp4,
+    worlds,
 )  # fmt: skip
 
 # ETS-VII's numbers are as published
@@ -84,6 +87,18 @@ def at_origin(_: Any, q: Any, tau: Any) -> Any:
     return np.concatenate([tau[3:6], matrix_from_quaternion(q[3:7]) @ tau[:3]]), tau[6:]
 
 
+def at_two_points(first: gauss.Craft, second: gauss.Craft) -> gauss.Impact:
+    return gauss.impact(first, second, gap=np.array([1e-3, 0.0, 0.0]))
+
+
+def of_bases_only(first: gauss.Craft, second: gauss.Craft) -> gauss.Impact:
+    return gauss.impact(first, second, joints=False)
+
+
+def without_stop(first: gauss.Craft, second: gauss.Craft, *_: Any) -> Any:
+    return gauss.impact(first, second).v
+
+
 def with_long_steps(name: str, run: Callable[..., Any] = oo.run, **settings: Any) -> Any:
     data = oo.scenario.load(name).resolved()
     data["simulation"] |= {"duration": 10.0, "time_step": 0.1}
@@ -116,6 +131,21 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("certificates", "free_tumble", oo, "run", with_long_steps),
     ("conservation", "100 s of free motion of the humanoid", conservation, "STEP", 0.02),
     ("conservation", "the humanoid on a circular orbit, 300 s", oo, "MU_EARTH", 1.01 * oo.MU_EARTH),
+    ("capture", "two rigid craft, then 100 s", capture, "SECOND", (500.0, [120, 90, 151])),
+    ("capture", "two point masses stick", capture, "CLOSING", 0.0501),
+    ("capture", "12 random pairs of trees", capture, "impact", at_two_points),
+    ("capture", "12 random pairs of trees", capture, "impact", of_bases_only),
+    ("capture", "a straight arm, which is singular", capture, "impact", at_two_points),
+    ("capture", "a gripper without mass, both ways", capture, "impact", at_two_points),
+    ("capture", "joints that stick", capture, "impact", of_bases_only),
+    ("capture", "a joint at its stop, restitution 0 and 0.5", capture, "impact_at_stop", without_stop),
+    ("capture", "release with a spring", capture, "PUSH", [3.0, 0.0, 1.0, 0.0, 0.5, 1e-6]),
+    ("world", "two robots that no event connects, 0.2 s", worlds, "ALONE_STEP", 2e-3),
+    ("world", "two robots after a capture and a release", worlds, "RELEASE", 0.501),
+    ("world", "three captures connect four robots", worlds, "KEPT", 1),
+    ("world", "a latch that closes by distance", worlds, "HELD", 0.2500001),
+    ("world", "a latch that closes by angle", worlds, "SPINS", (0.0200001, -0.015)),
+    ("world", "a capture on a circular orbit, 300 s", worlds, "WEIGHTS", (1000.0, 501.0)),
     ("order", "a tree of eight links by RK4, step halved", order, "end", by_euler),
     ("engines", "humanoid_torso, 4 states", against_pinocchio, "GRAVITY", np.array([0.0, 0.0, -9.81])),
     ("engines", "8 random trees with rotors, 4 states each", against_mujoco, "build", without_rotors),

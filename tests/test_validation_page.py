@@ -24,6 +24,8 @@ TITLES = {
     "robots": "A controlled robot",
     "certificates": "Certificates of the bundled scenarios",
     "conservation": "Conservation",
+    "capture": "Capture and release",
+    "world": "Worlds of several craft",
     "order": "Orders of convergence",
     "engines": "Other engines, if installed",
 }

@@ -18,6 +18,7 @@ from onorbit_rs.tools.validation import (
     against_spart,
     air_and_light,
     bodies,
+    capture,
     conservation,
     earth,
     gravity,
@@ -29,6 +30,7 @@ from onorbit_rs.tools.validation import (
     rotation,
     secular,
     sgp4,
+    worlds,
 )
 from onorbit_rs.tools.validation.case import Case, Check, Gate, Verdict
 
@@ -38,7 +40,7 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, order, against_pinocchio, against_mujoco, against_sgp4, against_spart,
+        conservation, capture, worlds, order, against_pinocchio, against_mujoco, against_sgp4, against_spart,
     )
     for case in module.CASES
 )  # fmt: skip
