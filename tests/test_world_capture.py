@@ -1,0 +1,370 @@
+"""Captures and releases of random robots against Gauss's principle, and at awkward instants and states.
+
+The reference is a dense projection from the mass matrices of the single robots; the tree of both that the
+engine integrates plays no part in it.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.tools.validation import capture, worlds
+from onorbit_rs.tools.validation.capture import arm_and_target, momentum, random_pair, run, straight
+from onorbit_rs.tools.validation.gauss import Craft, impact, mass_matrix, project, relative_twist
+from onorbit_rs.tools.validation.trees import Array, build, random_tree
+
+SEEDS = range(3100, 3140)
+GATES = {"velocity": 1e-12, "energy": 1e-12, "impulse": 1e-11, "momentum": 1e-14, "twist": 1e-13}
+
+
+def assert_gauss(first: Craft, second: Craft, **settings: Any) -> None:
+    """Asserts that a capture is that of Gauss's principle."""
+    errors = dict(zip(GATES, capture.against_gauss(first, second, **settings), strict=True))
+    assert all(errors[name] <= gate for name, gate in GATES.items()), errors
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_random_trees_move_after_a_capture_as_by_gauss_s_principle(seed: int) -> None:
+    assert_gauss(*random_pair(seed))
+
+
+def test_the_random_trees_have_up_to_fourteen_joints_of_every_kind() -> None:
+    models = [craft.model for seed in SEEDS for craft in random_pair(seed)]
+    assert max(model.nv - 6 for model in models) >= 13
+    parts = [part for seed in SEEDS for part in random_tree(seed, 8).parts]
+    assert {part.kind for part in parts} >= {"revolute", "continuous", "prismatic", "fixed"}
+    assert any(part.rotor_inertia for part in parts)
+
+
+def deviation(first: Craft, second: Craft, expected: Sequence[Array]) -> float:
+    """Returns the largest deviation of the engine's velocities, relative to the largest rate before."""
+    _, *after = capture.capture(first, second)
+    rates = np.abs(np.concatenate([first.v, second.v])).max()
+    return max(np.abs(a - b).max() for a, b in zip(after, expected, strict=True)) / float(rates)
+
+
+@pytest.mark.parametrize("seed", range(3000, 3010))
+def test_control_wrong_impulses_are_rejected(seed: int) -> None:
+    first, second = random_pair(seed)
+    assert deviation(first, second, impact(first, second).v) < 1e-12
+    # at two points a millimetre apart
+    assert deviation(first, second, impact(first, second, gap=np.array([0, 0, 1e-3])).v) > 1e-7
+    # without the impulses on the joints
+    assert deviation(first, second, impact(first, second, joints=False).v) > 1e-3
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_control_a_joint_with_the_wrong_sign_is_rejected(seed: int) -> None:
+    tree = random_tree(4000 + seed, 10)
+    moving = [i for i, part in enumerate(tree.parts) if part.kind in ("revolute", "continuous")]
+    wrong = moving[0]
+    x, y, z = tree.parts[wrong].axis
+    parts = [replace(part, axis=(-x, -y, -z)) if i == wrong else part for i, part in enumerate(tree.parts)]
+    first, second = random_pair(3000 + seed)[0], capture.random_craft(5000 + seed, tree)
+    flipped = Craft(build(replace(tree, parts=parts)), second.q, second.v, second.frame)
+    assert deviation(first, second, impact(first, second).v) < 1e-12
+    assert deviation(first, second, impact(first, flipped).v) > 1e-4
+
+
+INTEGRATORS = ("rk4", "dormand_prince", "semi_implicit_euler")
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_captures_at_awkward_states(integrator: str) -> None:
+    settings = {"integrator": integrator}
+    assert_gauss(*arm_and_target(straight(5), 0.0, 0.1), **settings)  # singular
+    assert_gauss(*arm_and_target(straight(1), 0.0), **settings)
+    assert_gauss(*arm_and_target(straight(5, friction=5.0), 0.3), **settings)  # joints stick
+    assert_gauss(*arm_and_target(straight(5, friction=5.0), 0.3, 0.2), **settings)
+    gripper = arm_and_target(straight(5, tip=0.0, rotor=0.2), 0.3, 0.1)
+    assert_gauss(*gripper, **settings)
+    assert_gauss(*reversed(gripper), **settings)
+    first, second = arm_and_target(straight(7), np.linspace(-1.0, 1.0, 7), 0.3)
+    for link in (f"link{i}" for i in range(7)):  # of a link in the middle of an arm
+        assert_gauss(second, replace(first, frame=link), **settings)
+
+
+@pytest.mark.parametrize(("ratio", "offset"), [(1e6, 0.0), (1e-6, 0.0), (1.0, 1e4), (1.0, 1e6)])
+def test_a_capture_between_unequal_masses_and_far_from_the_origin(ratio: float, offset: float) -> None:
+    body = oo.Model.rigid_body(40.0, np.diag([3.0, 4.0, 5.0]))
+    other = oo.Model.rigid_body(40.0 * ratio, ratio * np.diag([3.0, 4.0, 5.0]))
+    q, p = body.neutral(), other.neutral()
+    q[:3], p[:3] = offset, [offset + 1.0, offset + 0.5, offset]
+    first = Craft(body, q, np.array([0.1, 0.2, -0.1, 0.3, 0.1, -0.2]), "base")
+    second = Craft(other, p, np.array([-0.2, 0.1, 0.1, -0.1, 0.4, 0.2]), "base")
+    record, v_a, v_b = capture.capture(first, second)
+    expected = np.concatenate(impact(first, second).v)
+    assert np.abs(np.concatenate([v_a, v_b]) - expected).max() < 1e-14
+    assert record.momentum_error.max() < 1e-14
+
+
+@pytest.mark.parametrize("speed", [10.0, 7.5e3])
+def test_a_common_velocity_changes_nothing(speed: float) -> None:
+    first, second = arm_and_target(straight(4), 0.2, 0.1)
+    _, slow, _ = capture.capture(first, second)
+    common = np.array([speed, 0.0, 0.0])
+
+    def faster(craft: Craft) -> Craft:
+        v = craft.v.copy()
+        v[:3] += craft.model.frame_pose(craft.q, craft.model.body_names[0])[:3, :3].T @ common
+        return replace(craft, v=v)
+
+    _, fast, _ = capture.capture(faster(first), faster(second))
+    expected = slow.copy()
+    expected[0] += speed
+    assert np.abs(fast - expected).max() < 1e-15 * max(speed, 10.0)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_a_capture_that_pushes_joints_into_their_stops_keeps_the_momentum(
+    integrator: str, restitution: float
+) -> None:
+    first, second = arm_and_target(straight(4, lower=-0.4, upper=0.4), [0.4, -0.4, 0.4, -0.4])
+    systems = [
+        oo.System("a", first.model, first.q, first.v, enforce_limits=True, restitution=restitution),
+        oo.System("b", second.model, second.q, second.v),
+    ]
+    event = oo.Capture("grasp", "a/tip", f"b/{second.frame}", at=0.0)
+    trace = run(systems, [event], 0.5, integrator=integrator, time_step=1e-3)
+    rows = trace.time == 0.0
+    change = np.abs(trace.momentum[rows] - trace.momentum[0]).max()
+    assert change < 1e-14 * np.abs(trace.momentum[0]).max()
+    after = trace["a"].v[np.flatnonzero(rows)[-1], 6:]
+    assert np.all(after * [1, -1, 1, -1] <= 1e-15)  # no joint moves beyond its stop
+    assert np.abs(trace["a"].q[:, 7:]).max() < 0.4 + 1e-9
+    assert trace.kinetic_energy[-1] <= trace.kinetic_energy[0]
+    if integrator != "semi_implicit_euler":
+        assert all(line[3] for line in trace.certificate()), trace.certificate()
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_joints_that_stuck_break_loose_and_stick_again(integrator: str) -> None:
+    first, second = arm_and_target(straight(4, friction=2.0), [0.3, 0.2, -0.3, 0.1])
+    systems = [
+        oo.System("a", first.model, first.q, first.v),
+        oo.System("b", second.model, second.q, 0.05 * second.v),
+    ]
+    event = oo.Capture("grasp", "a/tip", f"b/{second.frame}", at=0.1)
+    trace = run(systems, [event], 4.0, integrator=integrator, time_step=2e-3)
+    rates = np.abs(trace["a"].v[:, 6:])
+    assert rates[trace.time < 0.1].max() == 0.0  # friction holds the joints
+    assert rates[np.flatnonzero(trace.time == 0.1)[-1]].min() > 1e-3
+    assert rates[-1].max() == 0.0
+    assert np.abs(trace.momentum[:, :3] - trace.momentum[0, :3]).max() < 1e-12
+    assert trace.events[0].momentum_error.max() < 1e-14
+
+
+def carried() -> tuple[list[Craft], list[oo.System]]:
+    """Returns four slow random robots."""
+    crafts = [worlds.slow(6000 + i) for i in range(4)]
+    return crafts, [worlds.system(name, craft) for name, craft in zip("abcd", crafts, strict=True)]
+
+
+def frame(crafts: Sequence[Craft], name: str) -> str:
+    return f"{name}/{crafts['abcd'.index(name)].frame}"
+
+
+PAIRS = {"ab": (0, 1), "cb": (2, 1), "dc": (3, 2)}
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("order", list(itertools.permutations(PAIRS)), ids="-".join)
+def test_chains_of_captures_are_released_in_any_order(order: tuple[str, ...], integrator: str) -> None:
+    crafts, systems = carried()
+    events: list[Any] = [
+        oo.Capture(name, frame(crafts, name[0]), frame(crafts, name[1]), at=0.05 * (i + 1))
+        for i, name in enumerate(PAIRS)
+    ]
+    impulse = np.array([0.3, -0.1, 0.2, 0.02, 0.01, -0.03])
+    events += [
+        oo.Release(f"free_{name}", name, at=0.2 + 0.05 * i, impulse=impulse) for i, name in enumerate(order)
+    ]
+    trace = run(systems, events, 0.4, integrator=integrator, time_step=5e-3)
+    assert [event.name for event in trace.events] == [*PAIRS, *(f"free_{name}" for name in order)]
+    active: list[str] = []
+    for event in trace.events:
+        rows = np.flatnonzero(trace.time == event.time)
+        before, after = (worlds.at_row(trace, crafts, int(row)) for row in (rows[0], rows[-1]))
+        for old, new in zip(before, after, strict=True):  # nothing moves
+            assert np.abs(old.model.difference(old.q, new.q)).max() < 2e-14
+        expected, mass = worlds.joined(before), mass_matrix(before)
+        if event.kind == "capture":
+            active.append(event.name)
+            extra = np.zeros(len(expected))
+        else:
+            name = event.name.removeprefix("free_")
+            active.remove(name)
+            # an impulse on the captured frame, the opposite one on the capturing frame
+            pose = before[PAIRS[name][0]].pose
+            wrench = np.concatenate([pose[:3, :3] @ impulse[:3], pose[:3, :3] @ impulse[3:]])
+            extra = np.linalg.solve(mass, relative_twist(before, *PAIRS[name]).T @ wrench)
+        expected = expected + extra
+        if active:
+            lines = np.vstack([relative_twist(before, *PAIRS[name]) for name in active])
+            expected, _ = project(mass, lines, expected)
+        found = worlds.joined(after)
+        assert np.abs(found - expected).max() < 1e-12 * np.abs(expected).max(), event
+        assert worlds.change(before, after) < 1e-14
+        assert event.momentum_error.max() < 1e-14
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_a_capture_and_its_release_at_the_same_instant(integrator: str) -> None:
+    first, second = random_pair(3000)
+    systems = [
+        oo.System("a", first.model, first.q, first.v),
+        oo.System("b", second.model, second.q, second.v),
+    ]
+    grasp = oo.Capture("grasp", f"a/{first.frame}", f"b/{second.frame}", at=0.0)
+    let_go = oo.Release("let_go", "grasp", after="grasp")
+    trace = run(systems, [grasp, let_go], 0.01, integrator=integrator)
+    assert [event.time for event in trace.events] == [0.0, 0.0]
+    row = np.flatnonzero(trace.time == 0.0)[-1]
+    after = np.concatenate([trace[name].v[row] for name in "ab"])
+    expected = np.concatenate(impact(first, second).v)
+    assert np.abs(after - expected).max() < 1e-12 * np.abs(expected).max()
+    for name, craft in (("a", first), ("b", second)):  # then each moves alone
+        alone = oo.Simulation(craft.model, trace[name].q[row], trace[name].v[row], integrator=integrator)
+        end = alone.run(0.01)
+        assert np.abs(end.v[-1] - trace[name].v[-1]).max() < 1e-12 * np.abs(end.v).max()
+
+
+class Clock:
+    """A controller that stores when it is called and what it sees."""
+
+    def __init__(self, count: int) -> None:
+        self.count = count
+        self.calls: list[tuple[float, Array]] = []
+
+    def update(self, t: float, state: Any) -> Array:
+        self.calls.append((t, np.array(state.v)))
+        return np.full(self.count, 0.01 * np.cos(t))
+
+
+def ticking(
+    integrator: str, record_every: int, period: float | None, events: Sequence[oo.Capture | oo.Release]
+) -> tuple[oo.WorldTrace, Clock, Craft, Craft]:
+    """Returns a run in which a controlled arm captures and releases a robot."""
+    first, second = arm_and_target(straight(4), [0.3, 0.2, -0.3, 0.1])
+    clock = Clock(4)
+    systems = [
+        oo.System("a", first.model, first.q, first.v, controller=clock, control_period=period),
+        oo.System("b", second.model, second.q, 0.1 * second.v),
+    ]
+    trace = run(systems, events, 1.0, integrator=integrator, time_step=0.01, record_every=record_every)
+    return trace, clock, first, second
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+@pytest.mark.parametrize("record_every", [1, 7, 10])
+@pytest.mark.parametrize("period", [None, 0.05, 0.1])
+@pytest.mark.parametrize("times", [(0.3, 0.6), (0.3, 0.655), (0.123456, 0.7), (0.0, 1.0)])
+def test_events_at_control_ticks_and_recorded_rows(
+    integrator: str, record_every: int, period: float | None, times: tuple[float, float]
+) -> None:
+    target = arm_and_target(straight(4), 0.0)[1].frame
+    events = [
+        oo.Capture("grasp", "a/tip", f"b/{target}", at=times[0]),
+        oo.Release("let_go", "grasp", at=times[1], impulse=[0.1, 0, 0, 0, 0, 0]),
+    ]
+    trace, clock, first, second = ticking(integrator, record_every, period, events)
+    assert [event.time for event in trace.events] == pytest.approx(list(times), abs=1e-15)
+    assert trace.time[0] == 0.0 and trace.time[-1] == 1.0
+    assert np.all(np.diff(trace.time) >= 0.0)
+    for event in trace.events:
+        rows = np.flatnonzero(trace.time == event.time)
+        assert len(rows) == 2, trace.time  # one before the event, one after it
+        before, after = (worlds.at_row(trace, (first, second), int(row)) for row in rows)
+        assert worlds.change(before, after) < 1e-14
+        assert event.momentum_error.max() < 1e-14
+        if event.kind == "capture":
+            expected = np.concatenate(impact(*before).v)
+            assert np.abs(worlds.joined(after) - expected).max() < 1e-12
+    assert np.abs(trace.momentum[:, :3] - trace.momentum[0, :3]).max() < 1e-13
+    if period is not None:
+        # every tick once, at its time, and after the event of the same instant
+        ticks = [t for t, _ in clock.calls]
+        assert np.allclose(ticks, np.arange(len(ticks)) * period, atol=1e-12, rtol=0.0), ticks
+        for t, v in clock.calls:
+            rows = np.flatnonzero(np.abs(trace.time - t) < 1e-12)
+            if len(rows) == 2 and t < 1.0:
+                assert np.array_equal(v, trace["a"].v[rows[-1]])
+
+
+def test_sparse_recording_has_the_bits_of_dense_recording() -> None:
+    events = [
+        oo.Capture("grasp", "a/tip", f"b/{arm_and_target(straight(4), 0.0)[1].frame}", at=0.123456),
+        oo.Release("let_go", "grasp", at=0.6),
+    ]
+    for integrator in ("rk4", "semi_implicit_euler"):
+        dense, sparse = (ticking(integrator, every, 0.1, events)[0] for every in (1, 10))
+        for name in "ab":
+            assert np.array_equal(dense[name].q[-1], sparse[name].q[-1])
+            assert np.array_equal(dense[name].v[-1], sparse[name].v[-1])
+
+
+def two_boxes(gap: float, v: Sequence[float]) -> list[oo.System]:
+    return [
+        capture.rigid("a", 40.0, [3, 4, 5], [0, 0, 0], np.zeros(6)),
+        capture.rigid("b", 20.0, [1, 2, 2], [gap, 0, 0], v),
+    ]
+
+
+@pytest.mark.parametrize("integrator", ["rk4", "semi_implicit_euler"])
+@pytest.mark.parametrize("step", [0.01, 0.07, 0.5])
+def test_a_latch_that_is_crossed_within_a_step_closes_after_its_time(integrator: str, step: float) -> None:
+    """The box is within 0.1 m of the other for 0.2 s."""
+    systems = two_boxes(1.0, [-1.0, 0, 0, 0, 0, 0])
+    settings = {"integrator": integrator, "time_step": step}
+    closes = oo.Capture("grasp", "a/base", "b/base", within=[0.1, 0.1], held_for=0.15)
+    (event,) = run(systems, [closes], 3.0, **settings).events
+    assert event.time == pytest.approx(0.9 + 0.15, abs=1e-11)
+    leaves = oo.Capture("grasp", "a/base", "b/base", within=[0.1, 0.1], held_for=0.25)
+    assert not run(systems, [leaves], 3.0, **settings).events
+
+
+def test_a_latch_within_its_envelope_at_the_start_closes_after_its_time() -> None:
+    systems = two_boxes(0.05, [0.0, 0.01, 0, 0, 0, 0])
+    for held in (0.0, 0.2):
+        event = oo.Capture("grasp", "a/base", "b/base", within=[0.1, 0.1], held_for=held)
+        (record,) = run(systems, [event], 1.0, time_step=0.03).events
+        assert record.time == held
+
+
+def test_events_at_and_after_the_end_of_a_run() -> None:
+    systems = two_boxes(1.0, [-0.1, 0, 0, 0, 0, 0])
+    for time, count in ((0.5, 1), (0.5000001, 0)):
+        event = oo.Capture("grasp", "a/base", "b/base", at=time)
+        trace = run(systems, [event], 0.5, time_step=0.01)
+        assert len(trace.events) == count
+        speed = trace["b"].v[-1, 0]
+        assert speed == pytest.approx(-0.1 / 3.0 if count else -0.1, abs=1e-16)
+
+
+def test_the_release_of_a_craft_that_carries_others_takes_them_along() -> None:
+    crafts, systems = carried()
+    captures = [
+        oo.Capture(name, frame(crafts, name[0]), frame(crafts, name[1]), at=0.0) for name in ("bc", "ab")
+    ]
+    release = oo.Release("free", "ab", at=0.1, impulse=[1.0, 0, 0, 0, 0, 0])
+    trace = run(systems, [*captures, release], 0.3, time_step=5e-3)
+    late = trace["b"].time > 0.1
+    poses = [
+        np.linalg.inv(crafts[1].model.frame_pose(trace["b"].q[late], crafts[1].frame))
+        @ crafts[2].model.frame_pose(trace["c"].q[late], crafts[2].frame)
+    ]
+    assert np.ptp(poses[0], axis=0).max() < 1e-13
+    record = trace.events[-1]
+    assert np.linalg.norm(record.impulse[:3]) == pytest.approx(1.0, abs=1e-12)
+    total = sum((momentum(craft, craft.v, np.zeros(3))[0] for craft in crafts), np.zeros(6))
+    end = worlds.at_row(trace, crafts, -1)
+    found = sum((momentum(craft, craft.v, np.zeros(3))[0] for craft in end), np.zeros(6))
+    assert np.abs(found - total).max() < 1e-11 * np.abs(total).max()
