@@ -4,5 +4,6 @@ from __future__ import annotations
 
 from onorbit_rs.scenario.load import load
 from onorbit_rs.scenario.schema import Scenario
+from onorbit_rs.scenario.world import WorldScenario
 
-__all__ = ["Scenario", "load"]
+__all__ = ["Scenario", "WorldScenario", "load"]

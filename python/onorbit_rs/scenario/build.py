@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from onorbit_rs import _core
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
@@ -43,6 +43,14 @@ class Built:
     """Settings that run but are probably not intended."""
 
 
+class Environment(NamedTuple):
+    """Orbit, Earth and effects of a run."""
+
+    orbit: _core.Orbit | None
+    earth: _core.Earth | None
+    effects: list[_core.Effect]
+
+
 def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     """Return the robot, orbit, initial state and simulation of a scenario, checked with a trial step.
 
@@ -54,23 +62,38 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     OnOrbitError
         The appropriate subclass, with file, line and key before the message of the engine.
     """
-    _check_record_every(scenario)
+    check_record_every(scenario)
     model = scenario.robot.build(scenario)
-    orbit, earth, effects = _environment(scenario, model)
+    around = build_environment(scenario, model)
     with located(scenario, "initial"):
-        q, v = scenario.initial.build(model, orbit)
+        q, v = scenario.initial.build(model, around.orbit)
+    built = build_around(scenario, model, (q, v), around, runs_code=runs_code)
+    for message in built.warnings:
+        warnings.warn(message, stacklevel=2)
+    return built
+
+
+def build_around(
+    scenario: Scenario,
+    model: _core.Model,
+    state: tuple[Floats, Floats],
+    around: Environment,
+    *,
+    runs_code: bool,
+) -> Built:
+    """Return the simulation of a robot in a given environment, checked with a trial step."""
+    (q, v), (orbit, earth, effects) = state, around
     tool = scenario.tracked_tool
     with located(scenario, "tool"):
         if tool is not None:
             model.frame_pose(q, tool)  # raises if there is no such frame
-    start = Start(model, q, orbit, scenario.folder)
     flight = Flight(model, q, v, orbit, earth)
     try_effects(scenario, effects, flight)
     with located(scenario, "engine"):
         engine = build_engine(scenario, model)
 
     def simulation() -> tuple[_core.Simulation, Any]:
-        controller, reference = _controlled(scenario, start, runs_code=runs_code)
+        controller, reference = controlled(scenario, model, q, orbit, runs_code=runs_code)
         with located(scenario, "simulation"), about_start(scenario), about_controllers(scenario):
             built = _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
@@ -82,14 +105,10 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     # a controller in Python may keep state from its trial, so the run gets a new one
     try_one_step(scenario, model, simulation()[0])
     messages = tuple(warnings_of(scenario, flight, effects))
-    for message in messages:
-        warnings.warn(message, stacklevel=2)
     return Built(scenario, model, orbit, earth, q, v, *simulation(), messages)
 
 
-def _environment(
-    scenario: Scenario, model: _core.Model
-) -> tuple[_core.Orbit | None, _core.Earth | None, list[_core.Effect]]:
+def build_environment(scenario: Scenario, model: _core.Model) -> Environment:
     """Return orbit, Earth and effects; raise an error if orbit or Earth end before the run."""
     duration, folder = scenario.simulation.duration, scenario.folder
     with located(scenario, "orbit"):
@@ -107,10 +126,10 @@ def _environment(
             orbit = scenario.orbit.integrate(orbit, effects, earth)
         if orbit is not None:
             orbit.state(duration)  # raises if a path or a decaying orbit ends before the run
-    return orbit, earth, effects
+    return Environment(orbit, earth, effects)
 
 
-def _check_record_every(scenario: Scenario) -> None:
+def check_record_every(scenario: Scenario) -> None:
     """Raise an error if ``record_every`` exceeds the number of steps.
 
     The schema does not check this, since folders of such runs can still be read.
@@ -119,12 +138,15 @@ def _check_record_every(scenario: Scenario) -> None:
     if every > steps:
         at = ("simulation", "record_every")
         message = f"{every} exceeds the {steps} steps of the run; give at most {steps} to record both ends"
-        raise scenario_error(message, scenario.file, scenario.line_of(*at), dotted(at))
+        raise scenario_error(message, scenario.file, scenario.line_of(*at), dotted(scenario.location(*at)))
 
 
-def _controlled(scenario: Scenario, start: Start, *, runs_code: bool) -> tuple[Any, Any]:
+def controlled(
+    scenario: Scenario, model: _core.Model, q: Floats, orbit: _core.Orbit | None, *, runs_code: bool
+) -> tuple[Any, Any]:
     """Return new controllers, and the reference of a single one."""
-    model, folder, tool = start.model, start.folder, scenario.tool
+    folder, tool = scenario.folder, scenario.tool
+    start = Start(model, q, orbit, folder)
     if scenario.controller is not None:
         with located(scenario, "controller"):
             law = scenario.controller.build_law(model, tool, folder, runs_code=runs_code)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 import numpy as np
-from pydantic import Field
+from pydantic import BeforeValidator, Field
+from pydantic_core import PydanticKnownError
 
 from onorbit_rs.common.coordinates import ANGULAR, JOINTS_Q, JOINTS_V, LINEAR, POSITION, QUATERNION
 from onorbit_rs.common.rotations import matrix_from_quaternion, quaternion_from_matrix
@@ -22,6 +23,23 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+_FRAMES = ("world", "lvlh", "path")
+
+
+def _frame(value: Any) -> Any:
+    if value in _FRAMES or (isinstance(value, str) and all(value.partition("/"))):
+        return value
+    raise PydanticKnownError("literal_error", {"expected": "'world', 'lvlh', 'path' or SYSTEM/FRAME"})
+
+
+class Neighbour(NamedTuple):
+    """Another system at its initial state."""
+
+    model: Model
+    q: Floats
+    v: Floats
+
+
 class InitialState(Part):
     """Pose and twist of the base, positions and rates of the joints; each is zero by default."""
 
@@ -30,10 +48,10 @@ class InitialState(Part):
         "q": "joints", "joint_velocities": "joint_rates",
     }  # fmt: skip
 
-    frame: Literal["world", "lvlh", "path"] = "world"
+    frame: Annotated[str, BeforeValidator(_frame)] = "world"
     """Frame of ``position`` and ``attitude``, relative to which the velocities are given: W, the local
-    orbital frame L (x radial outward, y along track, z along the orbital angular momentum), or the attitude
-    of the path (L if it has none)."""
+    orbital frame L (x radial outward, y along track, z along the orbital angular momentum), the attitude
+    of the path (L if it has none), or ``SYSTEM/FRAME``, a frame of another system at its initial state."""
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None
     linear_velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
@@ -44,11 +62,20 @@ class InitialState(Part):
     """Joint positions in the order of the model's joints, or by name."""
     joint_rates: JointRates = Field(default_factory=list)
 
-    def build(self, model: Model, orbit: Orbit | None) -> tuple[Floats, Floats]:
+    @property
+    def neighbour(self) -> tuple[str, str] | None:
+        """Names of the system and of its frame in ``frame``, if there are any."""
+        system, slash, frame = self.frame.partition("/")
+        return (system, frame) if slash else None
+
+    def build(
+        self, model: Model, orbit: Orbit | None, neighbour: Neighbour | None = None
+    ) -> tuple[Floats, Floats]:
         """Return configuration and velocity at time zero.
 
         A position and attitude relative to L are rotated by `R_il`, and the rotation of L is added in body
         axes: `ω_b = ω + R_bl ω_l` and `v_b = v + R_bl (ω_l × p_l)`, with the rate `ω_l` in the axes of L.
+        A frame of the system ``neighbour`` adds its own velocity in the same way.
 
         Returns
         -------
@@ -71,7 +98,16 @@ class InitialState(Part):
         position, linear, angular = (
             np.array(values) for values in (self.position, self.linear_velocity, self.angular_velocity)
         )
-        if self.frame != "world" and orbit is not None:
+        if self.neighbour is not None and neighbour is not None:
+            name = self.neighbour[1]
+            pose_wf = np.asarray(neighbour.model.frame_pose(neighbour.q, name))
+            twist = np.asarray(neighbour.model.frame_velocity(neighbour.q, neighbour.v, name))
+            rot_wf = pose_wf[:3, :3]
+            velocity, rate = rot_wf.T @ twist[LINEAR], rot_wf.T @ twist[ANGULAR]
+            linear = linear + rot_fb.T @ (velocity + np.cross(rate, position))
+            angular = angular + rot_fb.T @ rate
+            position, rot_fb = pose_wf[:3, 3] + rot_wf @ position, rot_wf @ rot_fb
+        elif self.frame != "world" and orbit is not None:
             frame = orbit.lvlh(0.0) if self.frame == "lvlh" else orbit.frame(0.0)
             rot_il, rate = (np.asarray(value, dtype=np.float64) for value in frame)
             linear = linear + rot_fb.T @ np.cross(rate, position)

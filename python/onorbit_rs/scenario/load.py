@@ -12,10 +12,13 @@ from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import DtypeError, NotFoundError
 from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.schema import Scenario
+from onorbit_rs.scenario.world import WorldScenario
 from onorbit_rs.scenario.yaml_lines import Lines, read_yaml
 
+AnyScenario = Scenario | WorldScenario
 
-def load(source: str | os.PathLike[str] | Mapping[str, Any] | Scenario) -> Scenario:
+
+def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> AnyScenario:
     """Return a validated scenario.
 
     Parameters
@@ -38,7 +41,7 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | Scenario) -> Scena
         If the scenario is invalid; has the attributes ``file``, ``path`` (the location in the YAML) and
         ``line``.
     """
-    if isinstance(source, Scenario):
+    if isinstance(source, (Scenario, WorldScenario)):
         return source
     if isinstance(source, Mapping):
         return check(dict(source), None, {})
@@ -78,12 +81,14 @@ def locate(source: str | os.PathLike[str]) -> Path:
     )
 
 
-def check(data: Any, file: Path | None, lines: Lines) -> Scenario:
-    """Return the scenario of plain data; ``lines`` has the line of each entry."""
+def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
+    """Return the scenario of plain data, of several systems if it has the key; ``lines`` has every line."""
     if not isinstance(data, dict):
         what = "empty" if data is None else f"a {type(data).__name__}"
         message = (
             f"this is {what}; a scenario must be a mapping of keys to values (onorbit new writes a template)"
         )
         raise scenario_error(message, file, None)
+    if "systems" in data:
+        return WorldScenario.checked(data, file, lines)
     return Scenario.checked(data, file, lines)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from onorbit_rs.exceptions import OnOrbitError, ScenarioError
 
 if TYPE_CHECKING:
-    from onorbit_rs.scenario.schema import Scenario
+    from onorbit_rs.scenario.document import Document
 
 
 def dotted(at: tuple[str | int, ...]) -> str:
@@ -30,7 +30,7 @@ def scenario_error(message: str, file: Path | None, line: int | None, path: str 
 
 
 @contextmanager
-def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
+def located(scenario: Document, *at: str | int) -> Iterator[None]:
     """Add file, line and key to the message of an :class:`OnOrbitError` raised in the block."""
     try:
         yield
@@ -38,6 +38,6 @@ def located(scenario: Scenario, *at: str | int) -> Iterator[None]:
         if getattr(error, "located", False):
             raise
         where = file_and_line(scenario.file, scenario.line_of(*at))
-        error.message = f"{where}: {dotted(at)}: {error.message}"
+        error.message = f"{where}: {dotted(scenario.location(*at))}: {error.message}"
         error.located = True  # type: ignore[attr-defined]  # inner blocks are more specific
         raise

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -17,7 +17,22 @@ MAX_ROWS = 10**7
 """Largest number of rows in a trace; a row has about half a kilobyte."""
 
 
-class SimulationSettings(Part):
+class ControlSettings(Part):
+    """Clock of the controllers, and stops of the joints, of one robot."""
+
+    control_period: Annotated[Time, Positive] | None = None
+    """Interval between two updates of the controllers. Default: the time step."""
+    enforce_limits: bool = False
+    """Whether rigid stops keep the joints within their position limits."""
+    restitution: Number = Field(default=0.0, ge=0.0, le=1.0)
+    """Fraction of its rate with which a joint rebounds from a stop."""
+    reference_start_tolerance: (
+        Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
+    ) = None
+    """Largest distance from the tool at which a reference may start, m and rad. Default: 0.05 and 0.1."""
+
+
+class IntegrationSettings(Part):
     """Integrator and recording; times are simulated time."""
 
     synonyms: ClassVar = {
@@ -28,16 +43,10 @@ class SimulationSettings(Part):
     """Duration of the run."""
     time_step: Annotated[Time, Positive] = 1e-3
     """Step of the integrator."""
-    control_period: Annotated[Time, Positive] | None = None
-    """Interval between two updates of the controllers. Default: the time step."""
     integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
     """``dormand_prince`` adapts its steps; ``time_step`` is then the interval of the time grid."""
     tolerance: Number = Field(default=1e-9, ge=1e-13, le=0.1)
     """Largest error of a step of ``dormand_prince``, relative to one radian, the robot's size, and rates."""
-    enforce_limits: bool = False
-    """Whether rigid stops keep the joints within their position limits."""
-    restitution: Number = Field(default=0.0, ge=0.0, le=1.0)
-    """Fraction of its rate with which a joint rebounds from a stop."""
     record_every: Whole = Field(default=1, ge=1, le=MAX_STEPS)
     """Number of steps between two rows of the trace."""
     record_wrenches: bool = False
@@ -45,10 +54,6 @@ class SimulationSettings(Part):
     rereference_beyond: Drift = 1e5
     """Distance from the reference orbit beyond which a robot that no controller tracks in W gets a new
     reference orbit; or ``never``."""
-    reference_start_tolerance: (
-        Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
-    ) = None
-    """Largest distance from the tool at which a reference may start, m and rad. Default: 0.05 and 0.1."""
 
     @property
     def steps(self) -> int:
@@ -63,7 +68,7 @@ class SimulationSettings(Part):
         return values
 
     @model_validator(mode="after")
-    def _has_valid_steps(self) -> SimulationSettings:
+    def _has_valid_steps(self) -> Self:
         if self.time_step > self.duration:
             raise invalid(
                 f"time_step {self.time_step:g} s exceeds the duration of {self.duration:g} s; give a shorter "
@@ -78,9 +83,27 @@ class SimulationSettings(Part):
             raise invalid(
                 f"the trace would have more than {MAX_ROWS} rows; record less often with 'record_every'"
             )
+        return self
+
+
+class SimulationSettings(ControlSettings, IntegrationSettings):
+    """Settings of a scenario with one robot."""
+
+    @model_validator(mode="after")
+    def _has_valid_period(self) -> Self:
         if self.control_period is not None and self.control_period < self.time_step * (1.0 - 1e-9):
             raise invalid(
                 f"control_period {self.control_period:g} s is shorter than time_step {self.time_step:g} "
                 "s; it must be at least one step"
             )
         return self
+
+
+class WorldSettings(IntegrationSettings):
+    """Settings of a scenario with ``systems``."""
+
+    @classmethod
+    def _hint(cls, key: str, free: list[str]) -> str:
+        if key in ControlSettings.model_fields:
+            return "; each of 'systems' has its own"
+        return super()._hint(key, free)

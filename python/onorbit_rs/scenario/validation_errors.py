@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,11 +18,21 @@ from onorbit_rs.scenario.locations import dotted, scenario_error
 from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
 
-def first_error(error: ValidationError, data: Any, file: Path | None, lines: Lines) -> ScenarioError:
-    """Return the error that is first in the file, with the number of further errors in its message."""
+def first_error(
+    error: ValidationError,
+    data: Any,
+    file: Path | None,
+    lines: Lines,
+    location: Callable[..., Location] = lambda *at: at,
+) -> ScenarioError:
+    """Return the error that is first in the file, with the number of further errors in its message.
+
+    ``location`` converts the location of an entry in ``data`` to that in the file.
+    """
     found: list[tuple[int, Location, str]] = []
     for details in error.errors(include_url=False):
         at, message = _location_and_message(details, data)
+        at = location(*at)
         found.append((line_of(at, lines) or lines.get((), 0), at, message))
     line, at, message = min(found, key=lambda entry: entry[0])
     more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
@@ -36,7 +46,7 @@ def _location_and_message(details: ErrorDetails, data: Any) -> tuple[Location, s
     if kind == "unknown_key":
         return (*at, context["key"]), details["msg"]
     if kind == "inconsistent":
-        return context["at"], details["msg"]
+        return (*at, *context["at"]), details["msg"]
     if kind == "union_tag_invalid":
         known = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
         return (*at, "kind"), f"unknown kind {context['tag']!r}{did_you_mean(context['tag'], known)}"

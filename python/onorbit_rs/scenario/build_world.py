@@ -1,0 +1,172 @@
+"""Builds the world of a scenario with several systems."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from onorbit_rs import _core
+from onorbit_rs.common.suggestions import did_you_mean, nearest
+from onorbit_rs.exceptions import FrameError, OnOrbitError, SimulationError, WorldError
+from onorbit_rs.scenario.build import (
+    Built,
+    Environment,
+    build_around,
+    build_environment,
+    check_record_every,
+    controlled,
+)
+from onorbit_rs.scenario.events import split_path
+from onorbit_rs.scenario.initial import Neighbour
+from onorbit_rs.scenario.locations import located
+from onorbit_rs.scenario.settings import ControlSettings
+from onorbit_rs.scenario.world import WorldScenario
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from onorbit_rs.scenario.yaml_lines import Location
+
+    Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class BuiltWorld:
+    """Objects of the engine that a run of a world requires."""
+
+    scenario: WorldScenario
+    systems: dict[str, Built]
+    """Each system; its simulation is that of the system alone."""
+    orbit: _core.Orbit | None
+    earth: _core.Earth | None
+    simulation: _core.Simulation
+    """Simulation of the world."""
+    warnings: tuple[str, ...] = ()
+    """Settings that run but are probably not intended."""
+
+
+def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorld:
+    """Return the world of a scenario; each system alone, and then the world, is checked with a trial step.
+
+    Raises
+    ------
+    OnOrbitError
+        As :func:`onorbit_rs.scenario.build.build`; errors of a system are located in its part of ``systems``.
+    """
+    single = scenario.scenarios
+    check_record_every(next(iter(single.values())))
+    models = {name: alone.robot.build(alone) for name, alone in single.items()}
+    around = build_environment(next(iter(single.values())), next(iter(models.values())))
+    states = _initial_states(scenario, models, around)
+    systems = {
+        name: build_around(alone, models[name], states[name], around, runs_code=runs_code)
+        for name, alone in single.items()
+    }
+    _check_frames(scenario, models)
+
+    def simulation() -> _core.Simulation:
+        crafts = [_system(name, built, runs_code=runs_code) for name, built in systems.items()]
+        with _located_event(scenario):
+            world = _core.World(
+                crafts, orbit=around.orbit, earth=around.earth, gravity_mode=scenario.gravity_mode,
+                environment=around.effects, events=[event.build() for event in scenario.events],
+                rereference_beyond=drift,
+            )  # fmt: skip
+        with located(scenario, "simulation"):
+            return _core.Simulation(world, **settings)
+
+    settings = scenario.simulation.arguments()
+    drift = settings.pop("rereference_beyond")
+    _try_one_step(scenario, simulation())
+    messages = tuple(dict.fromkeys(_warnings(systems)))
+    for message in messages:
+        warnings.warn(message, stacklevel=2)
+    return BuiltWorld(scenario, systems, around.orbit, around.earth, simulation(), messages)
+
+
+def _initial_states(
+    scenario: WorldScenario, models: dict[str, _core.Model], around: Environment
+) -> dict[str, tuple[Floats, Floats]]:
+    """Return the initial configuration and velocity of every system."""
+    states: dict[str, tuple[Floats, Floats]] = {}
+    for name in scenario.order:
+        alone = scenario.scenarios[name]
+        initial, neighbour = alone.initial, None
+        if initial.neighbour is not None:
+            other, frame = initial.neighbour
+            with located(alone, "initial", "frame"):
+                _check_frame(models[other], frame)
+            neighbour = Neighbour(models[other], *states[other])
+        with located(alone, "initial"):
+            states[name] = initial.build(models[name], around.orbit, neighbour)
+    return states
+
+
+def _check_frames(scenario: WorldScenario, models: dict[str, _core.Model]) -> None:
+    """Raise an error if a frame of a capture does not exist."""
+    for index, event in enumerate(scenario.events):
+        for side, path in enumerate(event.do.capture or ()):
+            system, frame = split_path(path)
+            with located(scenario, "events", index, "do", "capture", side):
+                _check_frame(models[system], frame)
+
+
+def _check_frame(model: _core.Model, frame: str) -> None:
+    known = [*model.frame_names, *model.body_names]
+    if frame not in known:
+        raise FrameError(
+            f"no frame is named {frame!r}{did_you_mean(frame, known)}",
+            name=frame, kind="frame", known=known, suggestion=nearest(frame, known),
+        )  # fmt: skip
+
+
+def _system(name: str, built: Built, *, runs_code: bool) -> _core.System:
+    """Return the system of the engine, with new controllers."""
+    alone = built.scenario
+    controller, reference = controlled(alone, built.model, built.q, built.orbit, runs_code=runs_code)
+    settings = alone.simulation.model_dump(include=set(ControlSettings.model_fields), exclude_none=True)
+    with located(alone, "robot"):
+        return _core.System(
+            name, built.model, built.q, built.v, controller=controller, reference=reference,
+            tool=alone.tracked_tool, **settings,
+        )  # fmt: skip
+
+
+@contextmanager
+def _located_event(scenario: WorldScenario) -> Iterator[None]:
+    """Locate errors of the world at the event that they name, otherwise at ``events`` or ``systems``."""
+    names = [event.name for event in scenario.events]
+    at: Location = ("events",) if names else ("systems",)
+    try:
+        yield
+    except WorldError as error:
+        if error.name in names:
+            at = ("events", names.index(error.name))
+        with located(scenario, *at):
+            raise
+    except OnOrbitError:
+        with located(scenario, *at):
+            raise
+
+
+def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None:
+    """Run one step, so that errors which would stop the run at once are raised before anything is written."""
+    with located(scenario, "systems"):
+        try:
+            simulation.run(scenario.simulation.time_step)
+        except SimulationError as stop:
+            stop.message = f"the run diverged in its first step: {stop.message}"
+            raise
+
+
+def _warnings(systems: dict[str, Built]) -> list[str]:
+    """Return the warnings of all systems; those about the orbit are the same for all."""
+    return [
+        message if message.startswith("orbit:") else f"systems.{name}: {message}"
+        for name, built in systems.items()
+        for message in built.warnings
+    ]

@@ -1,0 +1,103 @@
+"""What every scenario has: name, engine, orbit and environment, and the locations of its entries."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import Field, PrivateAttr, ValidationError
+
+from onorbit_rs.scenario.environment import Effect
+from onorbit_rs.scenario.environment.earth import EarthPart, Epoch
+from onorbit_rs.scenario.locations import scenario_error
+from onorbit_rs.scenario.orbit import Orbit
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.validation_errors import first_error
+from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
+
+
+class Document(Part):
+    """Keys of a scenario that do not belong to a robot."""
+
+    name: str = "scenario"
+    """Name in results and messages; the default of a file is its name."""
+    description: str = ""
+    """One sentence for lists and reports."""
+    engine: Literal["native", "mujoco"] = "native"
+    """Physics engine that integrates the motion of the robot; ``mujoco`` is an independent check.
+    Former name of the key: ``plant``."""
+    epoch: Epoch | None = None
+    """Time zero with its time scale: ``2024-03-01T12:00:00 UTC``. Default: the epoch of an element set."""
+    earth: EarthPart | None = None
+    """Orientation of the Earth. Default: IAU 2006 if there is an epoch."""
+    orbit: Orbit | None = None
+    """Reference orbit. Without an orbit there is no gravity."""
+    environment: list[Effect] = Field(default_factory=list)
+    """Effects besides the gravity of a point mass."""
+
+    _file: Path | None = PrivateAttr(default=None)
+    _lines: Lines = PrivateAttr(default_factory=dict)
+
+    def __init__(self, **data: Any) -> None:
+        """Validate the arguments; raises :class:`onorbit_rs.exceptions.ScenarioError`."""
+        self._validate(data, None, {})
+
+    @classmethod
+    def checked(cls, data: dict[str, Any], file: Path | None, lines: Lines) -> Self:
+        """Return the scenario of plain data; ``file`` and ``lines`` locate errors in the YAML."""
+        scenario = cls.__new__(cls)
+        scenario._validate(data, file, lines)
+        if file is not None and "name" not in data:
+            scenario.name = file.stem
+        return scenario
+
+    def _validate(self, data: dict[str, Any], file: Path | None, lines: Lines) -> None:
+        former = ("plant",)
+        if "plant" in data:
+            if "engine" in data:
+                message = "'plant' is the former name of 'engine'; give only 'engine'"
+                raise scenario_error(message, file, lines.get(former), "plant")
+            data = {"engine" if key == "plant" else key: value for key, value in data.items()}
+            lines = lines | {("engine",): lines[former]} if former in lines else lines
+        try:
+            self.__pydantic_validator__.validate_python(data, self_instance=self)
+        except ValidationError as error:
+            raise first_error(error, data, file, lines) from None
+        self._file, self._lines = file, lines
+
+    @property
+    def file(self) -> Path | None:
+        """The YAML file, or None for a scenario made in Python."""
+        return self._file
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the YAML file, at which relative paths start."""
+        return self._file.parent if self._file else Path()
+
+    @property
+    def gravity_mode(self) -> Literal["true", "carried"]:
+        """Gravity mode of the orbit; ``true`` for orbits that have no such key."""
+        return "carried" if getattr(self.orbit, "gravity_mode", None) == "carried" else "true"
+
+    def location(self, *at: str | int) -> Location:
+        """Return the location of an entry in the YAML file."""
+        return at
+
+    def line_of(self, *at: str | int) -> int | None:
+        """Return the line of an entry in the YAML file, or of the nearest entry that contains it."""
+        return line_of(self.location(*at), self._lines)
+
+    def resolved(self, folder: Path | None = None) -> dict[str, Any]:
+        """Return the scenario as plain data in SI with all defaults; reading it gives the same scenario.
+
+        Parameters
+        ----------
+        folder : path, optional
+            If given, relative paths become absolute, starting at this folder.
+
+        Returns
+        -------
+        dict
+        """
+        return self.model_dump(mode="json", by_alias=True, exclude_none=True, context=folder)

@@ -1,0 +1,203 @@
+"""Events of a scenario with several systems: captures and releases."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Annotated, Any, ClassVar, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from onorbit_rs import _core
+from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.exceptions import QuantityError
+from onorbit_rs.scenario import units
+from onorbit_rs.scenario.errors import inconsistent, invalid, shortened
+from onorbit_rs.scenario.fields import NotNegative, Time
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.units import Dimension, parse_quantity
+
+RESERVED = ("world", "lvlh", "base", "path")
+"""Names of frames, which no system may have."""
+
+
+def checked_name(value: Any) -> Any:
+    """Return the name of a system or an event if it is valid."""
+    if not isinstance(value, str) or re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", value) is None:
+        raise invalid(
+            f"{shortened(value)} is not a name; a name is a letter, then letters, digits, '_' and '-'"
+        )
+    if value in RESERVED:
+        raise invalid(f"{value!r} is the name of a frame; choose another name")
+    return value
+
+
+ItsName = Annotated[str, BeforeValidator(checked_name)]
+
+
+def _quantities(*dimensions: Dimension, above_zero: bool = False) -> BeforeValidator:
+    """Return the reader of a list with one quantity of each dimension."""
+
+    def read(value: object) -> list[float]:
+        if not isinstance(value, list) or len(value) != len(dimensions):
+            names = ", ".join(dimension.name for dimension in dict.fromkeys(dimensions))
+            raise invalid(f"must be a list of {len(dimensions)} quantities ({names}), not {shortened(value)}")
+        numbers = [parse_quantity(entry, kind) for entry, kind in zip(value, dimensions, strict=True)]
+        for number in numbers:
+            if above_zero and number <= 0.0:
+                message = f"{number:g} is not positive; it must be above zero"
+                raise QuantityError(message, text=number, expected="above zero")
+        return numbers
+
+    return BeforeValidator(read)
+
+
+Impulse = Annotated[list[float], _quantities(*[units.IMPULSE] * 3, *[units.ANGULAR_IMPULSE] * 3)]
+Envelope = Annotated[list[float], _quantities(units.LENGTH, units.ANGLE, above_zero=True)]
+EnvelopeRates = Annotated[list[float], _quantities(units.SPEED, units.ANGULAR_RATE, above_zero=True)]
+
+
+class Latch(Part):
+    """Conditions of the captured frame relative to the capturing one, at which a capture happens."""
+
+    within: Envelope
+    """Largest distance and angle."""
+    slower_than: EnvelopeRates | None = None
+    """Largest speed and angular rate. Default: any."""
+    held_for: Annotated[Time, NotNegative] = 0.0
+    """Time for which the conditions must hold."""
+
+
+class When(Part):
+    """Condition of an event: exactly one of ``at``, ``after``, ``on_command`` and ``latch``."""
+
+    at: Annotated[Time, NotNegative] | None = None
+    after: str | None = None
+    """Name of another event."""
+    delay: Annotated[Time, NotNegative] = 0.0
+    """Time after the other event."""
+    on_command: bool = False
+    """Whether ``Stepper.trigger`` starts the event."""
+    latch: Latch | None = None
+
+    @model_validator(mode="after")
+    def _exactly_one(self) -> Self:
+        given = [self.at is not None, self.after is not None, self.on_command, self.latch is not None]
+        if sum(given) != 1:
+            raise invalid("give exactly one of 'at', 'after', 'on_command: true' and 'latch'")
+        if self.delay and self.after is None:
+            raise inconsistent("delay", "a delay requires 'after'; add the name of an event")
+        return self
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the condition as keyword arguments of an event of the engine."""
+        values = self.model_dump(include={"at", "after", "delay", "on_command"})
+        return values | ({} if self.latch is None else self.latch.model_dump())
+
+
+class Action(Part):
+    """Exactly one of ``capture`` and ``release``."""
+
+    later: ClassVar = ("seat", "pose", "engage", "disengage")
+    """Keys that are planned."""
+
+    capture: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
+    """Capturing and captured frame, each ``SYSTEM/FRAME``."""
+    release: str | None = None
+    """Name of the capture whose connection is removed."""
+    impulse: Impulse | None = None
+    """Impulse of a spring on the captured system at a release, N s and N m s, axes of the capturing frame at
+    its origin; the opposite acts on the other system."""
+
+    @classmethod
+    def _hint(cls, key: str, free: list[str]) -> str:
+        if key in cls.later:
+            return f"; {key!r} is not available yet. Known keys: {', '.join(cls.yaml_keys())}"
+        return super()._hint(key, free)
+
+    @model_validator(mode="after")
+    def _exactly_one(self) -> Self:
+        if (self.capture is None) == (self.release is None):
+            raise invalid("give exactly one of 'capture' and 'release'")
+        if self.impulse is not None and self.release is None:
+            raise inconsistent("impulse", "an impulse requires 'release'")
+        return self
+
+
+class Event(Part):
+    """Capture or release, and its condition."""
+
+    name: ItsName
+    when: When
+    do: Action
+
+    def build(self) -> _core.Capture | _core.Release:
+        """Return the event of the engine."""
+        values = self.when.arguments()
+        if self.do.capture is not None:
+            return _core.Capture(self.name, *self.do.capture, **values)
+        assert self.do.release is not None  # checked by Action
+        return _core.Release(self.name, self.do.release, impulse=self.do.impulse, **values)
+
+
+def check_events(events: list[Event], systems: list[str]) -> None:
+    """Raise an error for names that do not exist or exist twice, and for events that wait for each other."""
+    names = [event.name for event in events]
+    by_name = dict(zip(names, events, strict=True))
+    for index, event in enumerate(events):
+        refuse = _refusal(index)
+        if event.name in names[:index]:
+            raise refuse("name", message=f"two events are named {event.name!r}; names must be unique")
+        after = event.when.after
+        if after is not None and after not in names:
+            raise refuse("when", "after", message=f"no event is named {after!r}{did_you_mean(after, names)}")
+        if event.do.capture is not None:
+            _check_frames(event.do.capture, systems, refuse)
+        else:
+            _check_release(event, by_name, refuse)
+    for index, event in enumerate(events):
+        chain = [event.name]
+        while (after := by_name[chain[-1]].when.after) is not None:
+            if after in chain:
+                circle = ", ".join([*chain[chain.index(after) :], after])
+                raise _refusal(index)("when", "after", message=f"events wait for each other: {circle}")
+            chain.append(after)
+
+
+def _refusal(index: int) -> Callable[..., Exception]:
+    """Return the function that makes an error at a location in the event with this index."""
+
+    def refuse(*at: str | int, message: str) -> Exception:
+        return inconsistent(("events", index, *at), message)
+
+    return refuse
+
+
+def split_path(path: str) -> tuple[str, str]:
+    """Return system and frame of a path; one of them is empty if the path is not valid."""
+    system, _, frame = path.partition("/")
+    return system, frame
+
+
+def _check_frames(paths: list[str], systems: list[str], refuse: Callable[..., Exception]) -> None:
+    for index, path in enumerate(paths):
+        system, frame = split_path(path)
+        if not (system and frame):
+            message = f"{path!r} is not a frame of a system; write SYSTEM/FRAME, such as {systems[0]}/tool"
+            raise refuse("do", "capture", index, message=message)
+        if system not in systems:
+            message = f"no system is named {system!r}{did_you_mean(system, systems)}"
+            raise refuse("do", "capture", index, message=message)
+    if split_path(paths[0])[0] == split_path(paths[1])[0]:
+        raise refuse("do", "capture", message="a system cannot capture itself; give frames of two systems")
+
+
+def _check_release(event: Event, by_name: dict[str, Event], refuse: Callable[..., Exception]) -> None:
+    name = str(event.do.release)
+    captures = [other for other in by_name if by_name[other].do.capture is not None]
+    if name in by_name and name not in captures:
+        raise refuse("do", "release", message=f"event {name!r} is not a capture; give the name of a capture")
+    if name not in by_name:
+        raise refuse("do", "release", message=f"no event is named {name!r}{did_you_mean(name, captures)}")
+    if event.when.latch is not None:
+        raise refuse("when", "latch", message="a latch belongs to a capture; give 'at' or 'after'")
