@@ -14,6 +14,7 @@ from onorbit_rs.common.printable import shell_word
 if TYPE_CHECKING:
     from onorbit_rs.scenario import Scenario
     from onorbit_rs.scenario.build import Built
+    from onorbit_rs.scenario.build_world import BuiltWorld
 
 
 def check(
@@ -29,12 +30,17 @@ def check(
     Python controllers are inspected but not executed, unless --trust is given.
     """
     from onorbit_rs.cli.console import print_json
-    from onorbit_rs.scenario import load
+    from onorbit_rs.scenario import WorldScenario, load
     from onorbit_rs.scenario.build import build
+    from onorbit_rs.scenario.build_world import build_world
 
     checked = load(scenario)
-    built = build(checked, runs_code=trust)
-    not_run = [] if trust else _sources(checked)
+    built: Built | BuiltWorld
+    if isinstance(checked, WorldScenario):
+        built, robots = build_world(checked, runs_code=trust), list(checked.scenarios.values())
+    else:
+        built, robots = build(checked, runs_code=trust), [checked]
+    not_run = [] if trust else [source for robot in robots for source in _sources(robot)]
     if as_json:
         print_json(as_data(built) | {"code_not_run": not_run})
     elif not quiet:
@@ -54,37 +60,66 @@ def _sources(scenario: Scenario) -> list[str]:
     return [source for source in dict.fromkeys(sources) if is_foreign(source)]
 
 
-def as_data(built: Built) -> dict[str, Any]:
+def as_data(built: Built | BuiltWorld) -> dict[str, Any]:
     """Return the contents of a scenario as plain data."""
-    scenario, model = built.scenario, built.model
-    return {
-        "ok": True,
-        "scenario": scenario.name,
-        "robot": model.name,
-        "joints": list(model.joint_names),
-        "mass_kg": model.mass,
-        "tool": scenario.tracked_tool,
+    from onorbit_rs.scenario.build import Built
+
+    scenario = built.scenario
+    if isinstance(built, Built):
+        own, messages = _robot_data(built), [*built.model.warnings, *built.warnings]
+    else:
+        own = {
+            "systems": {name: _robot_data(alone) for name, alone in built.systems.items()},
+            "events": [event.name for event in built.scenario.events],
+        }
+        messages = [*(text for alone in built.systems.values() for text in alone.model.warnings),
+                    *built.warnings]  # fmt: skip
+    return {"ok": True, "scenario": scenario.name} | own | {
         "orbit": scenario.orbit.kind if scenario.orbit else None,
         "environment": [effect.kind for effect in scenario.environment],
-        "controllers": [law.kind for law in scenario.laws],
         "duration_s": scenario.simulation.duration,
         "time_step_s": scenario.simulation.time_step,
         "integrator": scenario.simulation.integrator,
         "engine": scenario.engine,
-        "warnings": [*model.warnings, *built.warnings],
+        "warnings": messages,
+    }  # fmt: skip
+
+
+def _robot_data(built: Built) -> dict[str, Any]:
+    model = built.model
+    return {
+        "robot": model.name,
+        "joints": list(model.joint_names),
+        "mass_kg": model.mass,
+        "tool": built.scenario.tracked_tool,
+        "controllers": [law.kind for law in built.scenario.laws],
     }
 
 
-def print_checked(built: Built) -> None:
+def print_checked(built: Built | BuiltWorld) -> None:
     """Print the contents of a scenario in one line."""
-    scenario, model = built.scenario, built.model
+    from onorbit_rs.scenario.build import Built
+
+    scenario = built.scenario
     settings = scenario.simulation
     engine = "" if scenario.engine == "native" else f" on {scenario.engine}"
-    parts = [
-        f"{model.name} ({count(len(model.joint_names), 'joint', 'joints')}, {model.mass:.4g} kg)",
+    around = [
         f"orbit {scenario.orbit.kind}" if scenario.orbit else "no orbit",
         *(effect.kind for effect in scenario.environment),
-        ", ".join(law.kind for law in scenario.laws) or "no controller",
-        f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}{engine}",
     ]
+    timing = f"{settings.duration:g} s at {settings.time_step:g} s with {settings.integrator}{engine}"
+    if isinstance(built, Built):
+        robot, laws = _robot_words(built)
+        parts = [robot, *around, laws, timing]
+    else:
+        systems = (f"{name}: {', '.join(_robot_words(alone))}" for name, alone in built.systems.items())
+        events = count(len(built.scenario.events), "event", "events")
+        parts = ["; ".join(systems), *around, events, timing]
     print_line(f"ok: {scenario.name}: {', '.join(parts)}")
+
+
+def _robot_words(built: Built) -> tuple[str, str]:
+    """Return robot and controllers in words."""
+    model = built.model
+    robot = f"{model.name} ({count(len(model.joint_names), 'joint', 'joints')}, {model.mass:.4g} kg)"
+    return robot, ", ".join(law.kind for law in built.scenario.laws) or "no controller"

@@ -13,6 +13,7 @@ from onorbit_rs.output.checks import Check, checks, is_incomplete
 from onorbit_rs.output.summary_labels import EXCEEDED, goal_of, tracking
 
 if TYPE_CHECKING:
+    from rich.console import Console
     from rich.table import Table
 
 _ROWS = (
@@ -32,6 +33,9 @@ _FILES = (
     ("run.rrd", "the recording, for the rerun viewer"),
     ("scenario.yaml", "the scenario with all defaults, ready to run"),
 )
+_AUDIT = (("impulse_ns", "N s"), ("energy_lost_j", "J"))
+_OF_THE_RUN = ("simulated_s", "wall_s", "real_time_factor")
+"""Numbers that all systems share."""
 _VERDICTS = {True: "[green]holds[/green]", False: "[red]BROKEN[/red]", None: "[yellow]not evaluated[/yellow]"}
 
 
@@ -39,6 +43,30 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     """Print the main numbers, the certificate, the files and the next commands."""
     console = new_console()
     console.print(f"[bold]{text(summary.get('scenario', ''))}[/bold]: {text(summary.get('status', ''))}")
+    systems = summary.get("systems")
+    if systems is None:
+        _print_run(console, summary)
+    else:
+        _print_world(console, summary, systems)
+    if out is None:
+        console.print("nothing was written; save the results with --out DIR", soft_wrap=True)
+        return
+    for name, what in _FILES:
+        if (out / name).exists():
+            console.print(f"  {text(out / name)}  [dim]{what}[/dim]", soft_wrap=True)
+    if systems is not None:
+        console.print("not available yet with 'systems': recording, report and resume", soft_wrap=True)
+    elif is_new:
+        folder = text(shell_word(out))
+        console.print(f"next: onorbit show {folder}    [dim]opens the recording[/dim]", soft_wrap=True)
+        console.print(
+            f"      onorbit report {folder}  [dim]self-contained report, figures as PDF[/dim]",
+            soft_wrap=True,
+        )
+
+
+def _print_run(console: Console, summary: dict[str, Any]) -> None:
+    """Print the numbers and the certificate of one robot."""
     table = new_table()
     for name, value in (*_errors(summary), *_goals(summary), *_numbers(summary)):
         table.add_row(text(name), text(value))
@@ -53,19 +81,31 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     lines = checks(summary)
     if lines:
         print_table(console, _certificate(lines))
-    if out is None:
-        console.print("nothing was written; save the results with --out DIR", soft_wrap=True)
-        return
-    for name, what in _FILES:
-        if (out / name).exists():
-            console.print(f"  {text(out / name)}  [dim]{what}[/dim]", soft_wrap=True)
-    if is_new:
-        folder = text(shell_word(out))
-        console.print(f"next: onorbit show {folder}    [dim]opens the recording[/dim]", soft_wrap=True)
-        console.print(
-            f"      onorbit report {folder}  [dim]self-contained report, figures as PDF[/dim]",
-            soft_wrap=True,
-        )
+
+
+def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, Any]) -> None:
+    """Print the events, each system, and the certificate of the world."""
+    if summary["events"]:
+        table = new_table("event", "kind", "time", "systems", "impulse", "energy lost")
+        for event in summary["events"]:
+            impulse, lost = (_formatted(event[key], unit) for key, unit in _AUDIT)
+            names = ", ".join(event["systems"])
+            cells = (event["name"], event["kind"], _formatted(event["time_s"], "s"), names, impulse, lost)
+            table.add_row(*map(text, cells))
+        print_table(console, table)
+    for name, system in systems.items():
+        console.print(f"[bold]{text(name)}[/bold]:", soft_wrap=True)
+        _print_run(console, {key: value for key, value in system.items() if key not in _OF_THE_RUN})
+    console.print("[bold]all systems[/bold]:")
+    table = new_table()
+    for name, value in _numbers(summary):
+        table.add_row(text(name), text(value))
+    print_table(console, table)
+    console.print(_verdict(summary), soft_wrap=True)
+    rows = [Check(row["name"], row["name"].removesuffix("_rel").replace("_", " "), row["value"], row["gate"],
+                  row["unit"], row["passed"]) for row in summary["certificate"]]  # fmt: skip
+    if rows:
+        print_table(console, _certificate(rows))
 
 
 def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:

@@ -10,6 +10,7 @@ from onorbit_rs.output.checkpoint import (
 )
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.summary import summarize
+from onorbit_rs.output.world import summarize_world
 from onorbit_rs.output.write import (
     with_absolute_paths,
     write_pictures,
@@ -25,6 +26,7 @@ __all__ = [
     "read_checkpoint",
     "scenario_digest",
     "summarize",
+    "summarize_world",
     "with_absolute_paths",
     "write_pictures",
     "write_scenario",

@@ -20,11 +20,12 @@ from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
 from onorbit_rs.output.npz import read_arrays
 from onorbit_rs.output.saved_trace import SavedTrace, check_shapes
+from onorbit_rs.output.saved_world import SavedWorldTrace, systems_in
 from onorbit_rs.scenario import load
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Trace
-    from onorbit_rs.scenario import Scenario
+    from onorbit_rs.scenario import Scenario, WorldScenario
 
 _MOST = 16_000_000
 """Largest size of a summary, bytes."""
@@ -110,14 +111,23 @@ class SavedRun:
             ) from error
 
     def trace(self) -> Trace:
-        """Return ``trace.npz``; raises as :func:`read_trace`."""
+        """Return ``trace.npz`` of a run with one robot; raises as :func:`read_trace`."""
+        arrays = self._arrays({"time", "q", "v", "momentum"})
+        return cast("Trace", SavedTrace(arrays))
+
+    def world_trace(self) -> SavedWorldTrace:
+        """Return ``trace.npz`` of a run with several systems; raises as :func:`read_trace`."""
+        return SavedWorldTrace(self._arrays({"time", "momentum", "events/time"}))
+
+    def _arrays(self, required: set[str]) -> dict[str, Any]:
         file = self.folder / TRACE
         try:
             with self.opened(TRACE) as stream:
                 arrays = read_arrays(stream)
-            if not {"time", "q", "v", "momentum"} <= set(arrays):
+            if not required <= set(arrays):
                 raise ValueError("columns are missing")
-            check_shapes(arrays)
+            for own in [SavedWorldTrace(arrays)[name].arrays for name in systems_in(arrays)] or [arrays]:
+                check_shapes(own)
         except OnOrbitError:
             raise
         except FileNotFoundError as error:
@@ -125,7 +135,7 @@ class SavedRun:
             raise NotFoundError(message, path=str(file), kind="trace") from error
         except (OSError, ValueError, TypeError, AttributeError) as error:
             raise _unreadable(file, "trace", error) from error
-        return cast("Trace", SavedTrace(arrays))
+        return arrays
 
     def scenario_text(self) -> str:
         """Return the text of ``scenario.yaml``.
@@ -147,7 +157,7 @@ class SavedRun:
         except (OSError, ValueError) as error:
             raise _unreadable(file, "scenario", error) from error
 
-    def scenario(self) -> Scenario:
+    def scenario(self) -> Scenario | WorldScenario:
         """Return the scenario of the run; raises as :meth:`scenario_text`, and :class:`ScenarioError`."""
         self.scenario_text()
         scenario = load(self.folder / SCENARIO)
@@ -236,6 +246,8 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
 def _checked(summary: Any) -> dict[str, Any]:
     if not isinstance(summary, dict):
         raise TypeError(f"it contains a {type(summary).__name__}, expected a mapping")
+    if isinstance(summary.get("systems"), dict):
+        return _checked_world(summary)
     for name, value in summary.items():
         if name in CHECKS or name.startswith(GATE):
             if not isinstance(value, (int, float, type(None))):
@@ -245,6 +257,20 @@ def _checked(summary: Any) -> dict[str, Any]:
     for name, (kind, words) in _KINDS.items():
         if name in summary and not isinstance(summary[name], kind):
             raise TypeError(f"{name} is {_brief(summary[name])}; expected {words}")
+    return summary
+
+
+def _checked_world(summary: dict[str, Any]) -> dict[str, Any]:
+    """Return the summary of a run with several systems if its parts have the right types."""
+    for system in summary["systems"].values():
+        _checked(system)
+    for part in ("events", "certificate"):
+        rows = summary.get(part)
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            raise TypeError(f"{part} is {_brief(rows)}; expected a list of mappings")
+    _checked(
+        {key: value for key, value in summary.items() if key not in ("systems", "events", "certificate")}
+    )
     return summary
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from onorbit_rs.exceptions import IntegrityError, OnOrbitError
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.robots.fingerprint import has_changed
+from onorbit_rs.scenario import WorldScenario
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
@@ -32,9 +33,15 @@ def remark_on_robot(saved: SavedRun, summary: dict[str, Any]) -> str | None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # the warnings were issued during the run
             scenario = saved.scenario()
-            model = scenario.robot.build(scenario)
+            if isinstance(scenario, WorldScenario):
+                robots = [
+                    (alone, summary["systems"].get(name, {})) for name, alone in scenario.scenarios.items()
+                ]
+            else:
+                robots = [(scenario, summary)]
+            models = [(alone.robot.build(alone), own) for alone, own in robots]
     except IntegrityError:
         raise
     except OnOrbitError as error:
         return f"the robot of the run cannot be read again: {error}"
-    return CHANGED if was_changed(model, summary) else None
+    return CHANGED if any(was_changed(model, own) for model, own in models) else None

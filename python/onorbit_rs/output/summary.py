@@ -24,8 +24,8 @@ from onorbit_rs.robots.fingerprint import fingerprint
 from onorbit_rs.scenario.control import JointLaw
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Orbit, Trace
-    from onorbit_rs.scenario import Scenario
+    from onorbit_rs._core import Orbit, Trace, WorldTrace
+    from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.scenario.build import Built
 
 Summary = dict[str, Any]
@@ -55,7 +55,6 @@ def summarize(
         of the simulation loop.
     """
     scenario = built.scenario
-    simulated_s = float(trace.time[-1] - trace.time[0])
     summary = (
         {"scenario": scenario.name, "status": status}
         | _tracking(trace)
@@ -65,16 +64,12 @@ def summarize(
         | _losses(trace, built)
         | _certificate(trace)
         | {"rereferenced": len(trace.rereferenced)}
-        | {"simulated_s": simulated_s, "wall_s": trace.wall_s}
-        | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
-        | versions(scenario.engine)
-        | _settings(scenario)
+        | run_numbers(trace, scenario)
         | _orbit(trace, scenario, built.orbit)
         | {
             "warnings": "\n".join((*built.model.warnings, *built.warnings)),
             "robot_fingerprint": fingerprint(built.model),
         }
-        | _versions()
     )
     return {key: json_value(value) for key, value in summary.items()}
 
@@ -154,9 +149,16 @@ def _losses(trace: Trace, built: Built) -> Summary:
     return losses | loads_exceeded(trace, built.model)
 
 
-def _settings(scenario: Scenario) -> Summary:
-    settings = scenario.simulation
-    return {"time_step_s": settings.time_step, "integrator": settings.integrator}
+def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -> Summary:
+    """Return duration, speed and settings of a run, and the versions of what ran it."""
+    simulated_s, settings = float(trace.time[-1] - trace.time[0]), scenario.simulation
+    return (
+        {"simulated_s": simulated_s, "wall_s": trace.wall_s}
+        | {"real_time_factor": simulated_s / max(trace.wall_s, 1e-9), "rows": len(trace.time)}
+        | versions(scenario.engine)
+        | {"time_step_s": settings.time_step, "integrator": settings.integrator}
+        | _versions()
+    )
 
 
 def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:

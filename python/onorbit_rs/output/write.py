@@ -9,20 +9,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import yaml
 
+from onorbit_rs import _core
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, RECORDING, SCENARIO, SUMMARY, TRACE
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.replacement import Replacement
+from onorbit_rs.output.world import world_arrays
+from onorbit_rs.scenario.build import Built
+from onorbit_rs.scenario.build_world import BuiltWorld
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from onorbit_rs._core import Trace
-    from onorbit_rs.scenario import Scenario
-    from onorbit_rs.scenario.build import Built
+    from onorbit_rs._core import Trace, WorldTrace
+    from onorbit_rs.scenario import Scenario, WorldScenario
 
 
-def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
+def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> None:
     """Write ``scenario.yaml`` with all defaults in SI units and absolute paths, to run from any folder."""
     source = scenario.file or "Python"
     header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
@@ -37,12 +40,15 @@ def write_scenario(folder: OutputFolder, scenario: Scenario) -> None:
         path.write_text(header + text, encoding="utf-8")
 
 
-def write_trace(files: Replacement, trace: Trace) -> None:
+def write_trace(files: Replacement, trace: Trace | WorldTrace) -> None:
     """Write ``trace.npz``: every column of the trace by path."""
     with files.writing(TRACE) as path, path.open("wb") as stream:
-        columns = arrays_of(trace)
-        if len(trace.rereferenced):
-            columns["rereferenced"] = np.asarray(trace.rereferenced)
+        if isinstance(trace, _core.WorldTrace):
+            columns = world_arrays(trace)
+        else:
+            columns = arrays_of(trace)
+            if len(trace.rereferenced):
+                columns["rereferenced"] = np.asarray(trace.rereferenced)
         np.savez(stream, allow_pickle=False, **columns)
 
 
@@ -54,32 +60,49 @@ def write_summary(files: Replacement, summary: dict[str, Any]) -> None:
 
 def write_pictures(
     folder: OutputFolder,
-    trace: Trace,
+    trace: Trace | WorldTrace,
     summary: dict[str, Any],
-    built: Built,
+    built: Built | BuiltWorld,
     *,
     tell: Callable[[str], None] = lambda doing: None,
 ) -> None:
-    """Write the figures, if the trace has several rows, and the recording; ``tell`` receives each task."""
-    # Imported here because matplotlib and rerun take a second to import.
-    from onorbit_rs import figures, viewer
+    """Write the figures, if the trace has several rows, and the recording; ``tell`` receives each task.
 
-    if len(trace.time) > 1:
-        subject = figures.subject_of(trace, built.scenario, built.model, built.orbit, built.earth)
-        with folder.replacing() as files:
-            for drawing in figures.drawings(subject):
-                tell(f"drawing {drawing.name}")
-                with files.writing(f"{FIGURES}/{drawing.name}.png") as path:
-                    path.write_bytes(figures.as_bytes(drawing.draw(), "png"))
+    For a world, the figures of each system begin with its name, and no recording is written.
+    """
+    if isinstance(trace, _core.WorldTrace):
+        assert isinstance(built, BuiltWorld)
+        for name, alone in built.systems.items():
+            _write_figures(folder, trace[name], alone, f"{name}_", tell)
+        return
+    assert isinstance(built, Built)
+    _write_figures(folder, trace, built, "", tell)
+    from onorbit_rs import viewer  # imported here because rerun takes a second to import
+
     tell("writing the recording")
     with folder.writing(RECORDING) as path:
         setting = viewer.Setting.of(built)
         viewer.write_recording(path, trace, setting, notes=viewer.notes(summary, built.scenario))
 
 
-def with_absolute_paths(scenario: Scenario) -> dict[str, Any]:
+def _write_figures(
+    folder: OutputFolder, trace: Trace, built: Built, prefix: str, tell: Callable[[str], None]
+) -> None:
+    from onorbit_rs import figures  # imported here because matplotlib takes a second to import
+
+    if len(trace.time) > 1:
+        subject = figures.subject_of(trace, built.scenario, built.model, built.orbit, built.earth)
+        with folder.replacing() as files:
+            for drawing in figures.drawings(subject):
+                tell(f"drawing {prefix}{drawing.name}")
+                with files.writing(f"{FIGURES}/{prefix}{drawing.name}.png") as path:
+                    path.write_bytes(figures.as_bytes(drawing.draw(), "png"))
+
+
+def with_absolute_paths(scenario: Scenario | WorldScenario) -> dict[str, Any]:
     """Return the resolved scenario with absolute paths and the control period."""
     data = scenario.resolved(scenario.file.parent if scenario.file else Path())
-    settings = data["simulation"]
-    settings.setdefault("control_period", settings["time_step"])
+    step = data["simulation"]["time_step"]
+    for settings in data["systems"].values() if "systems" in data else [data["simulation"]]:
+        settings.setdefault("control_period", step)
     return data

@@ -9,18 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.exceptions import InputError, OnOrbitError
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, REPORT
 from onorbit_rs.output.read import SavedRun, read_summary
 from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.report.page import Picture, page
+from onorbit_rs.scenario import Scenario
 from onorbit_rs.scenario.environment.earth import build_earth
 
 if TYPE_CHECKING:
     from onorbit_rs.figures import Subject
-    from onorbit_rs.scenario import Scenario
 
 LARGEST_SVG = 600_000
 """Largest size of an SVG, bytes; larger figures are embedded as PNG."""
@@ -60,7 +60,11 @@ def write_report(
         If the page cannot be written, or another process writes to the folder.
     """
     path = Path(folder)
-    read_summary(path)  # raises before anything is written
+    if "systems" in read_summary(path):  # raises before anything is written
+        raise InputError(
+            "a report of a run with 'systems' is not available yet; its figures are in the folder 'figures'",
+            name="folder", got=str(path),
+        )  # fmt: skip
     with OutputFolder(path) as out, out.replacing() as files:
         out.check_replaceable(REPORT)
         return _write_report(out.path, files, pdf=pdf, tell=tell)
@@ -71,6 +75,7 @@ def _write_report(folder: Path, files: Replacement, *, pdf: bool, tell: Callable
     saved = SavedRun(folder)
     summary = saved.summary()
     text, scenario = saved.scenario_text(), saved.scenario()
+    assert isinstance(scenario, Scenario)  # as in the summary
     remarks: list[str] = []
     tell("reading the trace", 0.0)
     subject = _subject(saved, scenario, summary, remarks)

@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs._core import WorldTrace
 from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import RunInterrupted, SimulationError
 from onorbit_rs.output import (
     OutputFolder,
     has_checkpoint,
     summarize,
+    summarize_world,
     write_pictures,
     write_summary,
     write_trace,
 )
+from onorbit_rs.scenario.build import Built
+from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.scenario.divergence import divergence
 from onorbit_rs.simulation.stop_signals import stopped_by
 
@@ -24,18 +28,20 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from onorbit_rs._core import Trace
-    from onorbit_rs.scenario.build import Built
 
 
 def finished(
-    trace: Trace, built: Built, folder: OutputFolder | None, tell: Callable[[str], None]
+    trace: Trace | WorldTrace,
+    built: Built | BuiltWorld,
+    folder: OutputFolder | None,
+    tell: Callable[[str], None],
 ) -> dict[str, Any]:
     """Evaluate the certificate of a completed run, write its folder, and return its summary."""
     tell("certificate")
     if folder is None:
-        return summarize(trace, built)
+        return _summary(trace, built)
     with _noting(lambda: _not_written(folder)):
-        summary = summarize(trace, built)
+        summary = _summary(trace, built)
         tell("writing the trace")
         with folder.replacing() as files:
             write_trace(files, trace)
@@ -44,6 +50,16 @@ def finished(
         write_pictures(folder, trace, summary, built, tell=tell)
     folder.discard_checkpoint()
     return summary
+
+
+def _summary(
+    trace: Trace | WorldTrace, built: Built | BuiltWorld, *, status: str = "complete"
+) -> dict[str, Any]:
+    if isinstance(trace, WorldTrace):
+        assert isinstance(built, BuiltWorld)
+        return summarize_world(trace, built, status=status)
+    assert isinstance(built, Built)
+    return summarize(trace, built, status=status)
 
 
 @contextmanager
@@ -71,7 +87,7 @@ def _not_drawn(folder: OutputFolder) -> str:
     return f"figures and recording are not; draw the figures with: onorbit report {word}"
 
 
-def keep_failed(error: Exception, built: Built, folder: OutputFolder | None) -> None:
+def keep_failed(error: Exception, built: Built | BuiltWorld, folder: OutputFolder | None) -> None:
     """Write the rows of a run that ended by an error other than divergence, and add a note to the error."""
     trace = getattr(error, "trace", None)
     if folder is None or trace is None or len(trace) == 0:
@@ -87,13 +103,14 @@ def keep_failed(error: Exception, built: Built, folder: OutputFolder | None) -> 
 
 def keep_stopped(
     stop: SimulationError | RunInterrupted,
-    built: Built,
+    built: Built | BuiltWorld,
     folder: OutputFolder | None,
     tell: Callable[[str], None],
 ) -> None:
     """Write the rows of a run that stopped early, and add the folder to its message."""
     if isinstance(stop, SimulationError):
-        stop.message = divergence(stop, built.scenario, built.model)
+        if isinstance(built, Built):
+            stop.message = divergence(stop, built.scenario, built.model)
     else:
         duration = built.scenario.simulation.duration
         stop.message = f"stopped by {stopped_by(stop)[0]} at t = {stop.time:g} s of {duration:g} s"
@@ -109,7 +126,7 @@ def keep_stopped(
 
 def _keep_rows(
     stop: SimulationError | RunInterrupted,
-    built: Built,
+    built: Built | BuiltWorld,
     folder: OutputFolder,
     tell: Callable[[str], None],
 ) -> None:
@@ -132,10 +149,12 @@ def _keep_rows(
         stop.message += f"; some figures were not drawn; draw them with: onorbit report {word}"
 
 
-def _write_rows(trace: Trace, status: str, built: Built, folder: OutputFolder) -> dict[str, Any]:
+def _write_rows(
+    trace: Trace | WorldTrace, status: str, built: Built | BuiltWorld, folder: OutputFolder
+) -> dict[str, Any]:
     """Write trace and summary of a run, and return the summary."""
     with np.errstate(all="ignore"):  # a diverged run has numbers near the end of the range of floats
-        summary = summarize(trace, built, status=status)
+        summary = _summary(trace, built, status=status)
     with folder.replacing() as files:
         write_trace(files, trace)
         write_summary(files, summary)

@@ -14,7 +14,14 @@ from onorbit_rs.common.files import exists
 from onorbit_rs.common.numbers import finite_float
 from onorbit_rs.common.progress import doing, progress_bar
 from onorbit_rs.engines import versions
-from onorbit_rs.exceptions import InputError, ModelError, NotFoundError, RunInterrupted, SimulationError
+from onorbit_rs.exceptions import (
+    CheckpointError,
+    InputError,
+    ModelError,
+    NotFoundError,
+    RunInterrupted,
+    SimulationError,
+)
 from onorbit_rs.output import (
     CheckpointWriter,
     OutputFolder,
@@ -25,13 +32,14 @@ from onorbit_rs.output import (
 )
 from onorbit_rs.output.read import check_folder
 from onorbit_rs.output.robot import CHANGED, was_changed
-from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario import Scenario, WorldScenario, load
 from onorbit_rs.scenario.build import Built, build
+from onorbit_rs.scenario.build_world import BuiltWorld, build_world
 from onorbit_rs.simulation.finish import finished, keep_failed, keep_stopped
 from onorbit_rs.simulation.live import CHECKPOINT_EVERY, watched
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Model, Trace
+    from onorbit_rs._core import Model, Trace, WorldTrace
 
 
 @dataclass(frozen=True)
@@ -42,21 +50,21 @@ class Run:
 
     Attributes
     ----------
-    trace : Trace
-        Recorded rows.
+    trace : Trace or WorldTrace
+        Recorded rows; ``trace["chaser"]`` has those of a system.
     summary : dict
         Content of ``summary.json``.
-    scenario : Scenario
+    scenario : Scenario or WorldScenario
         Scenario that was run.
     out : Path or None
         Output folder.
     """
 
-    trace: Trace
+    trace: Trace | WorldTrace
     summary: dict[str, Any]
-    scenario: Scenario
+    scenario: Scenario | WorldScenario
     out: Path | None
-    _ran: Model | None = field(default=None, repr=False, compare=False)
+    _ran: Model | dict[str, Model] | None = field(default=None, repr=False, compare=False)
     """None after unpickling."""
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -72,7 +80,10 @@ class Run:
         OnOrbitError
             If its file is missing or cannot be read, or was changed since the run (``ModelError``).
         """
-        if self._ran is not None:
+        if isinstance(self.scenario, WorldScenario):
+            names = ", ".join(f"models[{name!r}]" for name in self.scenario.systems)
+            raise AttributeError(f"the run has several systems, each with its own model: {names}")
+        if self._ran is not None and not isinstance(self._ran, dict):
             return self._ran
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # these warnings were shown during the run
@@ -81,9 +92,16 @@ class Run:
             raise ModelError(CHANGED)
         return model
 
+    @property
+    def models(self) -> dict[str, Model]:
+        """Robots of the systems of a scenario with ``systems``, by the name of the system."""
+        if not isinstance(self._ran, dict):
+            raise AttributeError("the run has one robot: use model")
+        return self._ran
+
 
 def run(
-    scenario: str | os.PathLike[str] | Mapping[str, Any] | Scenario,
+    scenario: str | os.PathLike[str] | Mapping[str, Any] | Scenario | WorldScenario,
     out: str | os.PathLike[str] | None = None,
     *,
     force: bool = False,
@@ -125,6 +143,8 @@ def run(
     """
     every = _checked_period(checkpoint_every)
     checked = load(scenario)
+    if isinstance(checked, WorldScenario):
+        return _run_world(checked, out, force=force, quiet=quiet, view=view)
     built = build(checked)
     if out is None:
         return _simulate(built, None, quiet=quiet, view=view)
@@ -175,6 +195,11 @@ def resume(
     with OutputFolder(path) as folder:
         folder.check_figures()
         scenario = load(path / "scenario.yaml")
+        if isinstance(scenario, WorldScenario):
+            raise CheckpointError(
+                "runs of a scenario with 'systems' write no checkpoints yet and cannot resume; run it again "
+                "with --force", path=str(path),
+            )  # fmt: skip
         digest = _digest(scenario)
         saved = read_checkpoint(path, digest)
         writer = CheckpointWriter(folder, digest, after=saved)
@@ -182,6 +207,21 @@ def resume(
             build(scenario), folder, quiet=quiet, view=view,
             checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
         )  # fmt: skip
+
+
+def _run_world(
+    scenario: WorldScenario, out: str | os.PathLike[str] | None, *, force: bool, quiet: bool, view: bool
+) -> Run:
+    """Run a scenario with several systems; neither viewer nor checkpoints support it yet."""
+    if view:
+        raise InputError("the viewer does not show a scenario with 'systems' yet; run it without the viewer",
+                         name="view", got=view)  # fmt: skip
+    built = build_world(scenario)
+    if out is None:
+        return _simulate(built, None, quiet=quiet)
+    with OutputFolder.claim(out, force=force) as folder:
+        write_scenario(folder, scenario)
+        return _simulate(built, folder, quiet=quiet)
 
 
 def _checked_period(checkpoint_every: float) -> float:
@@ -201,18 +241,24 @@ def _digest(scenario: Scenario) -> str:
 
 
 def _simulate(
-    built: Built, folder: OutputFolder | None, *, quiet: bool, view: bool = False, **checkpoints: Any
+    built: Built | BuiltWorld,
+    folder: OutputFolder | None,
+    *,
+    quiet: bool,
+    view: bool = False,
+    **checkpoints: Any,
 ) -> Run:
     """Simulate and write the results, including those of a run that was stopped or failed."""
     scenario, duration = built.scenario, built.scenario.simulation.duration
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
-            if view:
+            trace: Trace | WorldTrace
+            if view and isinstance(built, Built):
                 trace = watched(built, progress.move, **checkpoints)
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
             summary = finished(trace, built, folder, progress.tell)
-            return Run(trace, summary, scenario, folder.path if folder else None, built.model)
+            return Run(trace, summary, scenario, folder.path if folder else None, _models(built))
     except (SimulationError, RunInterrupted) as stop:
         with doing("stopped; writing the results so far", quiet=quiet) as tell:
             keep_stopped(stop, built, folder, tell)
@@ -222,3 +268,10 @@ def _simulate(
     ) as error:  # raised by a Python controller, or outside of the range of orbit or environment
         keep_failed(error, built, folder)
         raise
+
+
+def _models(built: Built | BuiltWorld) -> Model | dict[str, Model]:
+    """Return the robot of a run, or those of its systems."""
+    if isinstance(built, Built):
+        return built.model
+    return {name: system.model for name, system in built.systems.items()}

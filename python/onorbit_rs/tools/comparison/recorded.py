@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs._core import WorldTrace
 from onorbit_rs.common.files import exists
-from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
+from onorbit_rs.exceptions import DtypeError, InputError, ModelError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.output.manifest import SCENARIO, SUMMARY
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.robots.fingerprint import has_changed
-from onorbit_rs.scenario import Scenario
+from onorbit_rs.scenario import Scenario, WorldScenario
 from onorbit_rs.simulation.run import Run, run
 
 if TYPE_CHECKING:
@@ -101,6 +102,8 @@ def on_the_other_engine(first: Recorded) -> Recorded:
 
 def _of_run(made: Run) -> Recorded:
     trace = made.trace
+    if isinstance(trace, WorldTrace) or isinstance(made.scenario, WorldScenario):
+        raise _several_systems(made.scenario.name)
     columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
     name = f"{made.scenario.name} ({made.scenario.engine})" if made.out is None else str(made.out)
     return Recorded(name, columns, made.scenario, made, made.summary.get("robot_fingerprint"))
@@ -108,11 +111,21 @@ def _of_run(made: Run) -> Recorded:
 
 def _of_folder(folder: Path) -> Recorded:
     saved = SavedRun(folder)
+    scenario = saved.scenario() if exists(folder / SCENARIO) else None
+    if isinstance(scenario, WorldScenario):
+        raise _several_systems(str(folder))
     trace = saved.trace()
-    if not exists(folder / SCENARIO):
+    if scenario is None:
         raise NotFoundError(
             f"no run in this folder ({SCENARIO} is missing): {folder}", path=str(folder), kind="run"
         )
     columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
     known = saved.summary().get("robot_fingerprint") if exists(folder / SUMMARY) else None
-    return Recorded(str(folder), columns, saved.scenario(), fingerprint=known)
+    return Recorded(str(folder), columns, scenario, fingerprint=known)
+
+
+def _several_systems(name: str) -> InputError:
+    return InputError(
+        f"{name}: runs of scenarios with 'systems' cannot be compared yet; compare the columns of trace.npz",
+        name="source", got=name,
+    )  # fmt: skip

@@ -17,7 +17,7 @@ from onorbit_rs.common.counting import count
 from onorbit_rs.common.rotations import angle_between
 from onorbit_rs.exceptions import OnOrbitError, SimulationError
 from onorbit_rs.output.joints import effort_fractions, rate_fractions
-from onorbit_rs.scenario import load
+from onorbit_rs.scenario import Scenario
 from onorbit_rs.scenario.build import build
 from onorbit_rs.tools.new_scenario.motion import fastest_damper
 from onorbit_rs.tools.new_scenario.reaction import GENTLE
@@ -155,7 +155,7 @@ def _trace(plan: Plan, ends: float) -> Trace:
         if now >= ends or (is_slow and now - began > _FIRST_ESTIMATE_S):
             raise _OverTimeError
 
-    built = build(load(yaml.safe_load(draft_text(plan, "trial"))))
+    built = build(Scenario(**yaml.safe_load(draft_text(plan, "trial"))))
     return built.simulation.run(plan.duration_s, progress=check_clock)
 
 

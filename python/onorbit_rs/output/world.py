@@ -1,0 +1,106 @@
+"""Summary and arrays of a run with several systems."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.common.printable import json_value
+from onorbit_rs.output.checks import CHECKS
+from onorbit_rs.output.pickling import arrays_of
+from onorbit_rs.output.summary import Summary, run_numbers, summarize
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import EventRecord, WorldTrace
+    from onorbit_rs.scenario.build_world import BuiltWorld
+
+WORLD_COLUMNS = ("time", "momentum", "kinetic_energy")
+"""Columns of all systems together."""
+
+
+def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "complete") -> Summary:
+    """Return the summary of a run with several systems.
+
+    ``systems`` has the summary of each system, ``certificate`` the checks of the groups of systems that
+    events may connect and of the events, ``events`` the events that happened. ``certificate_passed`` is True
+    if no check of any of them failed.
+    """
+    scenario = built.scenario
+    systems = {name: summarize(trace[name], alone, status=status) for name, alone in built.systems.items()}
+    rows = trace.certificate()
+    failed = [name for name, _, _, passed in rows if not passed]
+    failed += [f"{name}/{check}" for name, system in systems.items()
+               for check in system["certificate_failures"].split(", ") if check]  # fmt: skip
+    absent = [f"{name}/{check}" for name, system in systems.items()
+              for check in system["certificate_not_evaluated"].split(", ") if check]  # fmt: skip
+    messages = [*built.warnings, *(_missed(trace, built) if status == "complete" else ())]
+    own = {
+        "scenario": scenario.name, "status": status,
+        "certificate_passed": not failed, "certificate_failures": ", ".join(failed),
+        "certificate_complete": not absent, "certificate_not_evaluated": ", ".join(absent),
+    }  # fmt: skip
+    summary = {key: json_value(value) for key, value in (own | run_numbers(trace, scenario)).items()}
+    return summary | {
+        "warnings": "\n".join(messages),
+        "certificate": [_check(*row) for row in rows],
+        "events": [_event(record) for record in trace.events],
+        "systems": systems,
+    }
+
+
+def _missed(trace: WorldTrace, built: BuiltWorld) -> list[str]:
+    """Return a warning for each event that did not happen, and give it."""
+    happened = {record.name for record in trace.events}
+    found = [
+        f"event {event.name!r} did not happen"
+        for event in built.scenario.events
+        if event.name not in happened
+    ]
+    for message in found:
+        warnings.warn(message, stacklevel=2)
+    return found
+
+
+def _check(name: str, value: float | None, gate: float, passed: bool) -> Summary:
+    unit = "relative" if name.endswith("_rel") else CHECKS.get(name.rpartition("/")[2], "")
+    return {"name": name, "value": json_value(value), "gate": gate, "unit": unit, "passed": passed}
+
+
+def _event(record: EventRecord) -> Summary:
+    """Return an event and its audit; the impulse acts on the second system, in axes of W."""
+    impulse = np.asarray(record.impulse)
+    values: Summary = {
+        "name": record.name, "kind": record.kind, "time_s": record.time, "systems": list(record.systems),
+        "impulse_ns": float(np.linalg.norm(impulse[:3])),
+        "angular_impulse_nms": float(np.linalg.norm(impulse[3:])),
+        "energy_lost_j": record.energy_lost,
+    }  # fmt: skip
+    linear, angular = np.asarray(record.momentum_error).tolist()
+    values |= {"linear_momentum_error_rel": linear, "angular_momentum_error_rel": angular}
+    return {key: value if isinstance(value, list) else json_value(value) for key, value in values.items()}
+
+
+def world_arrays(trace: WorldTrace) -> dict[str, Any]:
+    """Return the columns of a world by path: ``time``, ``chaser/q``, ``events/time``.
+
+    Rows of ``events`` are in the order of the events in the summary, which has their names.
+    """
+    arrays = {name: np.asarray(getattr(trace, name)) for name in WORLD_COLUMNS}
+    for name in trace.names:
+        own = trace[name]
+        arrays |= {f"{name}/{path}": values for path, values in arrays_of(own).items()}
+        if len(own.rereferenced):
+            arrays[f"{name}/rereferenced"] = np.asarray(own.rereferenced)
+    records = trace.events
+    for name, width in (
+        ("time", ()),
+        ("impulse", (6,)),
+        ("point", (3,)),
+        ("energy_lost", ()),
+        ("momentum_error", (2,)),
+    ):
+        values = np.array([np.asarray(getattr(record, name)) for record in records], dtype=np.float64)
+        arrays[f"events/{name}"] = values.reshape(len(records), *width)
+    return arrays
