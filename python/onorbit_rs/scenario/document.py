@@ -46,9 +46,8 @@ class Document(Part):
     def checked(cls, data: dict[str, Any], file: Path | None, lines: Lines) -> Self:
         """Return the scenario of plain data; ``file`` and ``lines`` locate errors in the YAML."""
         scenario = cls.__new__(cls)
-        scenario._validate(data, file, lines)
-        if file is not None and "name" not in data:
-            scenario.name = file.stem
+        named = data if file is None or "name" in data else data | {"name": file.stem}
+        scenario._validate(named, file, lines)
         return scenario
 
     def _validate(self, data: dict[str, Any], file: Path | None, lines: Lines) -> None:

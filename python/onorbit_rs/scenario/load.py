@@ -82,7 +82,10 @@ def locate(source: str | os.PathLike[str]) -> Path:
 
 
 def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
-    """Return the scenario of plain data, of several systems if it has the key; ``lines`` has every line."""
+    """Return the scenario of plain data; ``lines`` has the line of each entry.
+
+    One system alone is a scenario of one robot.
+    """
     if not isinstance(data, dict):
         what = "empty" if data is None else f"a {type(data).__name__}"
         message = (
@@ -90,5 +93,7 @@ def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
         )
         raise scenario_error(message, file, None)
     if "systems" in data:
-        return WorldScenario.checked(data, file, lines)
+        world = WorldScenario.checked(data, file, lines)
+        only = next(iter(world.scenarios.values()))
+        return world if len(world.systems) > 1 else only
     return Scenario.checked(data, file, lines)

@@ -1,0 +1,276 @@
+"""Scenarios with several systems: runs, output folder, command line, and invalid input."""
+
+from __future__ import annotations
+
+import copy
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import (
+    CheckpointError,
+    FrameError,
+    InputError,
+    ScenarioError,
+    ShapeError,
+    WorldError,
+)
+from onorbit_rs.output.read import SavedRun
+from onorbit_rs.report import write_report
+from onorbit_rs.scenario import WorldScenario, load
+from onorbit_rs.scenario.build_world import build_world
+from onorbit_rs.simulation.run import resume
+from onorbit_rs.tools.comparison.recorded import recorded
+
+TEXT = """\
+orbit: {kind: kepler, semi_major_axis: 6778 km}
+environment: [gravity_gradient]
+systems:
+  chaser:
+    robot: servicer
+    tool: tool
+    initial: {joints: [0, 1.4260, 0, 1.3391, 0, -1.1943, 0]}
+    controller: {kind: joint_computed_torque, kp: 1, kd: 2}
+    control_period: 20 ms
+  target:
+    robot: target_satellite
+    initial:
+      frame: chaser/tool
+      position: [30 cm, 0, 75 cm]
+      attitude: {roll_pitch_yaw: [0, -90 deg, 0]}
+      angular_velocity: [0, 0, 1 deg/s]
+events:
+  - name: grasp
+    when: {latch: {within: [5 cm, 2 deg], slower_than: [15 cm/s, 5 deg/s], held_for: 100 ms}}
+    do: {capture: [chaser/tool, target/handle]}
+  - name: let_go
+    when: {after: grasp, delay: 0.2 s}
+    do: {release: grasp, impulse: [0, 0, 2 N s, 0, 0, 0]}
+simulation: {duration: 0.5 s, time_step: 10 ms}
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    path = tmp_path / "pair.yaml"
+    path.write_text(TEXT)
+    return path
+
+
+def data() -> dict[str, Any]:
+    from onorbit_rs.scenario.yaml_lines import parse_yaml
+
+    values: dict[str, Any] = parse_yaml(TEXT, None)[0]
+    return values
+
+
+def test_a_run_is_certified_and_its_events_are_audited(file: Path) -> None:
+    run = oo.run(file, quiet=True)
+    assert isinstance(run.trace, oo.WorldTrace)
+    assert run.summary["certificate_passed"], run.summary["certificate_failures"]
+    assert run.summary["warnings"] == ""
+    grasp, let_go = run.summary["events"]
+    assert (grasp["name"], grasp["kind"], grasp["systems"]) == ("grasp", "capture", ["chaser", "target"])
+    assert abs(grasp["time_s"] - 0.1) < 1e-12 and grasp["energy_lost_j"] > 0.0
+    assert abs(let_go["time_s"] - 0.3) < 1e-12 and abs(let_go["impulse_ns"] - 2.0) < 1e-12
+    assert max(event["linear_momentum_error_rel"] for event in (grasp, let_go)) < 1e-14
+    assert set(run.summary["systems"]) == {"chaser", "target"} == set(run.models)
+    assert run.summary["systems"]["chaser"]["certificate_passed"]
+    names = [check["name"] for check in run.summary["certificate"]]
+    assert "chaser+target/linear_momentum_drift_rel" in names and "grasp/energy_error_rel" in names
+    assert run.models["target"].mass == 500.0
+    with pytest.raises(AttributeError, match=r"models\['chaser'\]"):
+        _ = run.model
+
+
+def test_the_run_equals_that_of_the_same_world_in_python(file: Path) -> None:
+    built = build_world(_world(load(file)))
+    chaser, target = built.systems["chaser"], built.systems["target"]
+    law = oo.JointComputedTorque(kp=1.0, kd=2.0)
+    systems = [
+        oo.System("chaser", chaser.model, chaser.q, chaser.v, controller=law, tool="tool",
+                  control_period=0.02, reference=oo.JointHold(chaser.q[7:])),
+        oo.System("target", target.model, target.q, target.v),
+    ]  # fmt: skip
+    grasp = oo.Capture("grasp", "chaser/tool", "target/handle", within=[0.05, np.radians(2.0)],
+                       slower_than=[0.15, np.radians(5.0)], held_for=0.1)  # fmt: skip
+    let_go = oo.Release("let_go", "grasp", after="grasp", delay=0.2, impulse=[0, 0, 2, 0, 0, 0])
+    world = oo.World(systems, orbit=built.orbit, environment=[oo.GravityGradient()], events=[grasp, let_go])
+    expected = oo.Simulation(world, time_step=0.01).run(0.5)
+    found = oo.run(file, quiet=True).trace
+    assert isinstance(found, oo.WorldTrace)
+    for name in ("chaser", "target"):
+        np.testing.assert_array_equal(found[name].q, expected[name].q)
+
+
+def _world(scenario: object) -> WorldScenario:
+    assert isinstance(scenario, WorldScenario)
+    return scenario
+
+
+def test_an_initial_state_relative_to_a_frame_moves_with_it() -> None:
+    values = data()
+    values["systems"]["chaser"]["initial"] |= {"angular_velocity": [0.01, 0.02, 0.03], "position": [1, 2, 3]}
+    values["systems"]["chaser"]["initial"]["joint_rates"] = [0.1] * 7
+    values["systems"]["target"]["initial"].pop("angular_velocity")
+    built = build_world(_world(load(values)))
+    chaser, target = built.systems["chaser"], built.systems["target"]
+    tool, handle = chaser.model.frame_pose(chaser.q, "tool"), target.model.frame_pose(target.q, "handle")
+    np.testing.assert_allclose(handle, tool, atol=1e-12)
+    np.testing.assert_allclose(
+        target.model.frame_velocity(target.q, target.v, "handle"),
+        chaser.model.frame_velocity(chaser.q, chaser.v, "tool"),
+        atol=1e-14,
+    )
+
+
+def test_the_folder_can_be_read_back_and_run_again(file: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    run = oo.run(file, out, quiet=True)
+    assert isinstance(run.trace, oo.WorldTrace)
+    saved = SavedRun(out)
+    assert saved.summary() == json.loads(json.dumps(run.summary))
+    trace = saved.world_trace()
+    assert trace.names == ["chaser", "target"]
+    np.testing.assert_array_equal(trace["chaser"].q, run.trace["chaser"].q)
+    np.testing.assert_array_equal(trace.momentum, run.trace.momentum)
+    assert trace.events["time"].shape == (2,) and trace.events["impulse"].shape == (2, 6)
+    with pytest.raises(WorldError, match="no system 'x'"):
+        trace["x"]
+    assert {path.name for path in (out / "figures").iterdir()} >= {"chaser_ledger.png", "target_ledger.png"}
+    again = oo.run(out / "scenario.yaml", quiet=True)
+    assert isinstance(again.trace, oo.WorldTrace)
+    np.testing.assert_array_equal(again.trace["target"].q, run.trace["target"].q)
+    with pytest.raises(InputError, match="report"):
+        write_report(out)
+    with pytest.raises(CheckpointError, match="cannot resume"):
+        resume(out)
+    for source in (out, run):
+        with pytest.raises(InputError, match="cannot be compared yet"):
+            recorded(source)
+
+
+def test_the_viewer_refuses_before_the_run(file: Path) -> None:
+    with pytest.raises(InputError, match="viewer"):
+        oo.run(file, view=True)
+
+
+def test_an_event_that_did_not_happen_gives_a_warning() -> None:
+    values = data()
+    values["events"][0]["when"] = {"at": "0.1 s"}
+    values["events"][1]["when"] = {"on_command": True}
+    with pytest.warns(UserWarning, match="event 'let_go' did not happen"):
+        run = oo.run(values, quiet=True)
+    assert [event["name"] for event in run.summary["events"]] == ["grasp"]
+    assert "let_go" in run.summary["warnings"]
+
+
+def test_one_system_gives_the_motion_of_the_short_form() -> None:
+    short = {"robot": "humanoid_torso", "simulation": {"duration": 0.2, "time_step": 0.01},
+             "initial": {"joint_rates": [0.1] * 7}}  # fmt: skip
+    long = {
+        "systems": {"one": {key: short[key] for key in ("robot", "initial")}},
+        "simulation": short["simulation"],
+    }
+    one, same = oo.run(short, quiet=True).trace, oo.run(long, quiet=True).trace
+    np.testing.assert_array_equal(same.q, one.q)
+
+
+INVALID: dict[str, tuple[str, str, str]] = {
+    "both forms": ("systems:\n", "robot: servicer\nsystems:\n", r":3: robot: .* either 'systems'"),
+    "system twice": ("  target:\n", "  chaser:\n", r":10: key 'chaser' is given twice"),
+    "slash": ("  target:\n", "  a/b:\n", r":10: systems.a/b: 'a/b' is not a name"),
+    "reserved": ("  target:\n", "  world:\n", r":10: systems.world: .* name of a frame"),
+    "key of a system": ("    tool: tool", "    tol: tool", r":6: systems.chaser.tol: .*'tool'"),
+    "key of a robot": (
+        "time_step: 10 ms",
+        "time_step: 10 ms, restitution: 1",
+        r":24: simulation.restitution: .* each of 'systems'",
+    ),
+    "control period": (
+        "control_period: 20 ms",
+        "control_period: 1 ms",
+        r":24: simulation: control_period 0.001 s is",
+    ),
+    "controller": ("joint_computed_torque", "joint_pd", r":8: systems.chaser.controller.kind"),
+    "tool": ("tool: tool", "tool: tol", r":6: systems.chaser.tool: .*'tool'"),
+    "joint": ("{joints: [0,", "{joints: [1, 0,", r":7: systems.chaser.initial: "),
+    "frame": ("frame: chaser/tool", "frame: lvhl", r":13: systems.target.initial.frame: .*lvlh"),
+    "system of a frame": (
+        "frame: chaser/tool",
+        "frame: chasr/tool",
+        r":13: systems.target.initial.frame: no system is named 'chasr'.*'chaser'",
+    ),
+    "frame of a system": (
+        "frame: chaser/tool",
+        "frame: chaser/tol",
+        r":13: systems.target.initial.frame: no frame is named 'tol'.*'tool'",
+    ),
+    "own frame": ("frame: chaser/tool", "frame: target/handle", r":13: .*relative to each other"),
+    "captured frame": (
+        "target/handle]",
+        "target/handel]",
+        r":20: events\[0\].do.capture\[1\]: no frame is named 'handel'.*'handle'",
+    ),
+    "captured system": (
+        "target/handle]",
+        "tarjet/handle]",
+        r":20: events\[0\].do.capture\[1\]: no system is named 'tarjet'.*'target'",
+    ),
+    "no path": ("target/handle]", "handle]", r":20: events\[0\].do.capture\[1\]: .*SYSTEM/FRAME"),
+    "itself": ("target/handle]", "chaser/base]", r":20: .*cannot capture itself"),
+    "one frame": (", target/handle]", "]", r":20: events\[0\].do.capture: has 1 entry"),
+    "negative latch": ("[5 cm, 2 deg]", "[-5 cm, 2 deg]", r":19: .*within: -0.05 is not positive"),
+    "unit": ("[5 cm, 2 deg]", "[5 cm, 2 cm]", r":19: .*within: '2 cm' is not an angle"),
+    "impulse": ("2 N s", "2 N", r":23: events\[1\].do.impulse: '2 N' is not an impulse"),
+    "negative delay": ("delay: 0.2 s", "delay: -1", r":22: events\[1\].when.delay: .*negative"),
+    "two conditions": ("after: grasp,", "after: grasp, at: 1,", r":22: .*exactly one of 'at'"),
+    "delay alone": ("after: grasp,", "at: 1,", r":22: events\[1\].when.delay: .*requires 'after'"),
+    "after": ("after: grasp", "after: grap", r":22: events\[1\].when.after: .*'grap'.*'grasp'"),
+    "after itself": ("after: grasp", "after: let_go", r":22: .*wait for each other: let_go, let_go"),
+    "release": ("release: grasp", "release: grap", r":23: events\[1\].do.release: .*'grasp'"),
+    "release of a release": ("release: grasp", "release: let_go", r":23: .*is not a capture"),
+    "same name": ("name: let_go", "name: grasp", r":21: events\[1\].name: two events"),
+    "seat": ("do: {capture:", "do: {seat: 2 s, capture:", r":20: events\[0\].do.seat: .*not available yet"),
+    "contacts": ("events:\n", "contacts: []\nevents:\n", r":17: contacts: unknown key"),
+    "engine": ("systems:\n", "engine: mujoco\nsystems:\n", r":3: engine: .*does not support 'systems'"),
+    "drag": (
+        "[gravity_gradient]",
+        "[{kind: body_wrench, body: base, force: [1, 0, 0]}]",
+        r":2: environment\[0\]: .*does not support several systems yet",
+    ),
+}
+NOT_IN_THE_SCHEMA = {"tool": FrameError, "joint": ShapeError, "frame of a system": FrameError,
+                     "captured frame": FrameError}  # fmt: skip
+"""Cases that the schema cannot find, since they depend on the robot."""
+
+
+@pytest.mark.parametrize("case", INVALID)
+def test_invalid_input_names_file_line_and_key(case: str, file: Path) -> None:
+    old, new, message = INVALID[case]
+    kind = NOT_IN_THE_SCHEMA.get(case, ScenarioError)
+    assert old in TEXT
+    file.write_text(TEXT.replace(old, new, 1))
+    with pytest.raises(kind, match=r"pair\.yaml" + message):
+        build_world(_world(load(file)))
+
+
+def test_a_capture_that_closes_a_loop_is_located(file: Path) -> None:
+    again = "  - {name: again, when: {at: 0.4}, do: {capture: [chaser/tool, target/handle]}}\n"
+    first = (
+        TEXT[: TEXT.index("  - name: grasp")] + again.replace("again", "grasp").replace("0.4", "0.1") + again
+    )
+    file.write_text(first + "simulation: {duration: 0.5 s, time_step: 10 ms}\n")
+    with pytest.raises(WorldError, match=r"pair.yaml:\d+: events.*loop"):
+        build_world(_world(load(file)))
+
+
+def test_events_that_wait_for_each_other_are_refused() -> None:
+    values = copy.deepcopy(data())
+    values["events"][0]["when"] = {"after": "let_go"}
+    with pytest.raises(ScenarioError, match="wait for each other: grasp, let_go, grasp"):
+        load(values)
