@@ -10,7 +10,7 @@ import yaml
 
 from onorbit_rs import scenarios
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError, ScenarioError
-from onorbit_rs.scenario import Scenario, load
+from onorbit_rs.scenario import Scenario, WorldScenario, load
 
 ALIAS_BOMB = b"a: &a [1, 1, 1, 1, 1, 1, 1, 1]\n" + b"".join(
     b"%c: &%c [%s]\n" % (n + 1, n + 1, b",".join([b"*%c" % n] * 8)) for n in range(ord("a"), ord("h"))
@@ -185,7 +185,7 @@ def test_bundled_scenarios_resolve_to_themselves(name: str, tmp_path: Path) -> N
     file = tmp_path / "resolved.yaml"
     file.write_text(yaml.safe_dump(resolved, sort_keys=False))
     again = load(file)
-    assert isinstance(again, Scenario)
+    assert isinstance(again, (Scenario, WorldScenario))
     assert again.resolved() == resolved
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bundled import ONE_ROBOT
 from stepper_runs import Hold, assert_same_bits, passive, scenario, torque
 
 import onorbit_rs as oo
@@ -35,7 +36,7 @@ def test_pieces_have_the_bits_of_one_call(settings: dict[str, Any], dt: float) -
 
 
 @pytest.mark.filterwarnings("ignore:the inertia of link")
-@pytest.mark.parametrize("name", oo.scenarios.names())
+@pytest.mark.parametrize("name", ONE_ROBOT)
 def test_every_bundled_scenario_has_the_same_bits_in_pieces(name: str) -> None:
     data = load(name).resolved(load(name).file.parent)  # type: ignore[union-attr]
     step = data["simulation"]["time_step"]

@@ -111,17 +111,18 @@ def _of_run(made: Run) -> Recorded:
 
 def _of_folder(folder: Path) -> Recorded:
     saved = SavedRun(folder)
-    scenario = saved.scenario() if exists(folder / SCENARIO) else None
-    if isinstance(scenario, WorldScenario):
+    summary = saved.summary() if exists(folder / SUMMARY) else {}
+    if "systems" in summary:
         raise _several_systems(str(folder))
     trace = saved.trace()
-    if scenario is None:
+    if not exists(folder / SCENARIO):
         raise NotFoundError(
             f"no run in this folder ({SCENARIO} is missing): {folder}", path=str(folder), kind="run"
         )
     columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
-    known = saved.summary().get("robot_fingerprint") if exists(folder / SUMMARY) else None
-    return Recorded(str(folder), columns, scenario, fingerprint=known)
+    scenario = saved.scenario()
+    assert isinstance(scenario, Scenario)  # as in the summary
+    return Recorded(str(folder), columns, scenario, fingerprint=summary.get("robot_fingerprint"))
 
 
 def _several_systems(name: str) -> InputError:

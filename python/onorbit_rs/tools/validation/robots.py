@@ -48,8 +48,11 @@ def reach(duration: float, expected: dict[str, Any]) -> list[float]:
 
 def certificate(scenario: str) -> tuple[float]:
     """Return the largest ratio of a certificate's value to its gate; infinite if a value is missing."""
-    ratios = []
-    for _, value, gate, passed in oo.run(scenario, quiet=True).trace.certificate():
+    trace, ratios = oo.run(scenario, quiet=True).trace, []
+    rows = trace.certificate()
+    if isinstance(trace, oo.WorldTrace):
+        rows = rows + [row for name in trace.names for row in trace[name].certificate()]
+    for _, value, gate, passed in rows:
         ratio = float("inf") if value is None else value / gate
         ratios.append(ratio if passed or ratio > 1.0 else float("inf"))
     return (worst(ratios),)
