@@ -105,6 +105,16 @@ def test_without_a_compiler_its_rows_are_omitted_with_a_reason(
     assert not contestants.running, "no program may be started unnecessarily"
 
 
+def test_a_capture_is_measured_with_its_accuracy(versus: Any) -> None:
+    entries = versus.measure.captures(1, 0.0)
+    ours, weld, stiffer = (entry["momentum_lost"] for entry in entries)
+    assert ours < 1e-14 and entries[0]["gap_m"] < 1e-14
+    assert 1e-6 < stiffer < weld < 1e-3
+    assert 1e-6 < entries[2]["gap_m"] < entries[1]["gap_m"] < 1e-3
+    assert all(entry["us_per_simulated_second"] > 10.0 for entry in entries)
+    assert len(versus.report.captures(entries)) == 3
+
+
 def test_ratios_are_computed_per_round(versus: Any) -> None:
     # a machine that slows down by half between rounds changes no ratio
     assert versus.timing.ratios([4.0, 8.0, 8.0], [2.0, 4.0, 4.0]) == {"min": 2.0, "median": 2.0, "max": 2.0}

@@ -13,7 +13,7 @@ import page
 import programs
 import report
 from contestants import Contestants
-from measure import ceiling, measure
+from measure import CAPTURE, captures, ceiling, measure
 from rows import ROWS
 
 
@@ -57,6 +57,12 @@ def main() -> None:
                 print(report.line(measured, before), flush=True)
         run["ceiling"].append(ceiling(nv, contestants))
         contestants.close()
+    if given.only in CAPTURE:
+        if run["versions"]["mujoco-core"]:
+            run["captures"] = captures(given.rounds, given.seconds)
+            print(f"{CAPTURE}:", *report.captures(run["captures"]), sep="\n")
+        else:
+            skipped.append(f"not measured: {CAPTURE}: mujoco-core not installed")
     print(*skipped, *report.regressions(run, before), sep="\n")
     if not given.only and not given.no_save:
         report.append(run)

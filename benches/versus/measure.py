@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import statistics
+import sys
+import tempfile
+from pathlib import Path
 from typing import Any
 
-from contestants import Contestants
+from contestants import CORE, HERE, Contestants
 from rows import Row
-from timing import Entry, alternate, difference, ratios
+from timing import Contestant, Entry, alternate, difference, ratios
 
 KERNELS = ("aba", "crba", "rnea", "jacobian", "reduced")
 LANES = {"avx512": ("avx2+fma", "avx512"), "avx2+fma": ("avx2+fma",), "fma": ("fma",)}
@@ -40,6 +43,36 @@ def measure(row: Row, nv: int, contestants: Contestants, rounds: int, seconds: f
             for name, other in zip(row.jobs, others, strict=True)
         },
     }
+
+
+CAPTURE = "capture of a rigid craft"
+CAPTURES = {
+    "ours": "onorbit_rs, RK4, every step recorded",
+    "weld": "MuJoCo, default weld",
+    "stiffer_weld": "MuJoCo, weld with a fifth of the time constant",
+}
+
+
+def captures(rounds: int, seconds: float) -> list[dict[str, Any]]:
+    """Returns time and accuracy of a capture by this package and by welds of MuJoCo."""
+    who = Contestant([sys.executable, str(HERE / "capture.py")], core=CORE)
+    times = dict(
+        zip(CAPTURES, alternate([Entry(who, job) for job in CAPTURES], rounds, seconds), strict=True)
+    )
+    with tempfile.TemporaryDirectory() as folder:
+        errors = {job: who.result(job, Path(folder)) for job in CAPTURES}
+    step = who.about["time_step"]
+    who.close()
+    return [
+        {
+            "engine": name,
+            "us_per_simulated_second": round(statistics.median(times[job]) / step / 1e3, 1),
+            "ratio": {key: round(x, 3) for key, x in ratios(times[job], times["ours"]).items()},
+            "momentum_lost": float(f"{errors[job][0]:.2g}"),
+            "gap_m": float(f"{errors[job][1]:.2g}"),
+        }
+        for job, name in CAPTURES.items()
+    ]
 
 
 def ceiling(nv: int, contestants: Contestants) -> dict[str, Any]:

@@ -66,6 +66,16 @@ def line(row: Run, before: Run | None) -> str:
     )
 
 
+def captures(entries: list[Run]) -> list[str]:
+    """Returns a line for each engine of the capture: time and accuracy."""
+    return [
+        f"{entry['engine']:<48} {entry['us_per_simulated_second'] / 1e3:.2f} ms per simulated second "
+        f"({entry['ratio']['median']:.2f} times), angular momentum lost {entry['momentum_lost']:.0e}, "
+        f"gap {entry['gap_m']:.0e} m"
+        for entry in entries
+    ]
+
+
 def regressions(run: Run, before: Run | None) -> list[str]:
     """Returns the rows whose ratio fell by more than 10 % and below the last median in every round."""
     lost = []

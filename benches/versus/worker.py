@@ -37,9 +37,9 @@ def timed(job: Job, seconds: float) -> float:
     return statistics.median(passes)
 
 
-def serve(ready: str, jobs: dict[str, Job]) -> None:
-    """Answers requests until standard input ends."""
-    answer({"ready": ready, "jobs": list(jobs)})
+def serve(ready: str, jobs: dict[str, Job], **about: Any) -> None:
+    """Answers requests until standard input ends; `about` is sent first, with the names of the jobs."""
+    answer({"ready": ready, "jobs": list(jobs), **about})
     for line in sys.stdin:
         verb, name, last = line.split()
         if verb == "time":
