@@ -1,6 +1,6 @@
 """Captures between random trees against Pinocchio: the velocity after them, and 5 s of motion of both.
 
-Pinocchio's tree of both robots (`appendModel`) is integrated here, by RK4 on coordinates of its own kind.
+Pinocchio's tree of both robots (`appendModel`) is integrated here by RK4, with Richardson's extrapolation.
 """
 
 from __future__ import annotations
@@ -25,12 +25,32 @@ DURATION, STEP = 5.0, 2e-3
 GATE = 1e-12  # the largest value observed is 2e-14
 
 
-def captured(two: Pair, duration: float, **settings: Any) -> tuple[oo.WorldTrace, Array]:
+class Constant:
+    """A controller that applies constant torques."""
+
+    def __init__(self, tau: Array) -> None:
+        self.tau = tau
+
+    def update(self, _t: float, _state: Any) -> Array:
+        return self.tau
+
+
+def torques(model: oo.Model) -> Array:
+    """Returns a torque for each joint, N m or N."""
+    return 0.05 * np.cos(1.0 + np.arange(model.nv - 6))
+
+
+def captured(
+    two: Pair, duration: float, *, driven: bool = False, **settings: Any
+) -> tuple[oo.WorldTrace, Array]:
     """Returns a run in which A captures B at t = 0, and B's velocity before, which differs from A's."""
     v_b = SPEED * np.random.default_rng(1).uniform(-1.0, 1.0, two.b.nv)
     systems = [
-        oo.System("a", two.a, two.state_a[0], SPEED * two.state_a[1]),
-        oo.System("b", two.b, two.state_b[0], v_b),
+        oo.System(name, model, q, v, controller=Constant(torques(model)) if driven else None)
+        for name, model, q, v in (
+            ("a", two.a, two.state_a[0], SPEED * two.state_a[1]),
+            ("b", two.b, two.state_b[0], v_b),
+        )
     ]
     event = oo.Capture("grasp", "a/tool", f"b/{PREFIX}tool", at=0.0)
     return run(systems, [event], duration, **settings), v_b
@@ -46,34 +66,34 @@ def together(two: Pair, trace: oo.WorldTrace, row: int) -> tuple[Array, Array]:
     return q, v
 
 
-def rates(robot: Any, q: Array, v: Array) -> tuple[Array, Array]:
-    """Returns q̇ and v̇, with the derivative of the unit quaternion `½ q ⊗ ω`."""
+def rates(robot: Any, q: Array, v: Array, tau: Array) -> tuple[Array, Array]:
+    """Returns q̇ and v̇ under the torques `tau` (nv,), with the derivative of the unit quaternion `½ q ⊗ ω`."""
     x, y, z, w = quaternion = q[3:7] / np.linalg.norm(q[3:7])
     rotation = pin.Quaternion(quaternion).toRotationMatrix()
     a, b, c = v[3:6]
     turn = [w * a + y * c - z * b, w * b + z * a - x * c, w * c + x * b - y * a, -x * a - y * b - z * c]
     changes = np.concatenate([rotation @ v[:3], 0.5 * np.array(turn), v[6:]])
     at = np.concatenate([q[:3], quaternion, q[7:]])
-    return changes, robot.forward_dynamics(State(at, v, v, np.zeros(len(v)), {}))
+    return changes, robot.forward_dynamics(State(at, v, v, tau, {}))
 
 
-def integrate(robot: Any, q: Array, v: Array, steps: int) -> tuple[Array, Array]:
+def integrate(robot: Any, q: Array, v: Array, tau: Array, steps: int) -> tuple[Array, Array]:
     """Returns the state after `DURATION` by RK4."""
     h = DURATION / steps
     for _ in range(steps):
-        k1 = rates(robot, q, v)
-        k2 = rates(robot, q + 0.5 * h * k1[0], v + 0.5 * h * k1[1])
-        k3 = rates(robot, q + 0.5 * h * k2[0], v + 0.5 * h * k2[1])
-        k4 = rates(robot, q + h * k3[0], v + h * k3[1])
+        k1 = rates(robot, q, v, tau)
+        k2 = rates(robot, q + 0.5 * h * k1[0], v + 0.5 * h * k1[1], tau)
+        k3 = rates(robot, q + 0.5 * h * k2[0], v + 0.5 * h * k2[1], tau)
+        k4 = rates(robot, q + h * k3[0], v + h * k3[1], tau)
         q, v = (x + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) for i, x in enumerate((q, v)))
         q[3:7] /= np.linalg.norm(q[3:7])
     return q, v
 
 
-def extrapolated(robot: Any, q: Array, v: Array) -> tuple[Array, Array]:
+def extrapolated(robot: Any, q: Array, v: Array, tau: Array) -> tuple[Array, Array]:
     """Returns the state after `DURATION` from two steps, without the error of the fourth order."""
     steps = round(DURATION / STEP)
-    coarse, fine = (integrate(robot, q, v, count) for count in (steps, 2 * steps))
+    coarse, fine = (integrate(robot, q, v, tau, count) for count in (steps, 2 * steps))
     return tuple((16.0 * b - a) / 15.0 for a, b in zip(coarse, fine, strict=True))  # type: ignore[return-value]
 
 
@@ -91,10 +111,15 @@ def two(request: pytest.FixtureRequest) -> Pair:
     return pair(request.param)
 
 
-@pytest.fixture(scope="module")
-def moved(two: Pair) -> oo.WorldTrace:
+@pytest.fixture(scope="module", params=[False, True], ids=["free", "driven"])
+def moved(two: Pair, request: pytest.FixtureRequest) -> tuple[oo.WorldTrace, Array]:
+    """Returns a run and the torques (nv,) on the tree of both."""
     settings = {"integrator": "dormand_prince", "tolerance": 1e-13}
-    return captured(two, DURATION, **settings)[0]
+    tau = np.zeros(two.both.nv)
+    if request.param:
+        for part in (two.a, two.b):
+            tau[6:][[two.both.joint_names.index(joint) for joint in part.joint_names]] = torques(part)
+    return captured(two, DURATION, driven=request.param, **settings)[0], tau
 
 
 def test_the_velocity_after_a_capture_by_the_mass_matrices_of_pinocchio(two: Pair) -> None:
@@ -121,20 +146,24 @@ def test_the_velocity_after_a_capture_by_the_mass_matrices_of_pinocchio(two: Pai
 
 
 def test_the_motion_after_a_capture_is_that_of_pinocchio_s_append_model(
-    two: Pair, moved: oo.WorldTrace
+    two: Pair, moved: tuple[oo.WorldTrace, Array]
 ) -> None:
-    start = together(two, moved, int(np.flatnonzero(moved.time == 0.0)[-1]))
-    expected = extrapolated(appended(two), *start)
+    trace, tau = moved
+    start = together(two, trace, int(np.flatnonzero(trace.time == 0.0)[-1]))
+    expected = extrapolated(appended(two), *start, tau)
     assert np.abs(expected[0][7:] - start[0][7:]).max() > 1.0  # rad
-    found = error(together(two, moved, -1), expected)
+    found = error(together(two, trace, -1), expected)
     print(f"largest relative deviation after {DURATION:g} s: {found:.1e}")
     assert found < GATE
 
 
-def test_control_kept_axes_and_dropped_rotors_are_rejected(two: Pair, moved: oo.WorldTrace) -> None:
-    start = together(two, moved, int(np.flatnonzero(moved.time == 0.0)[-1]))
-    found = together(two, moved, -1)
-    assert error(found, integrate(appended(two, sign=1.0), *start, steps=500)) > 1e-3
+def test_control_kept_axes_and_dropped_rotors_are_rejected(
+    two: Pair, moved: tuple[oo.WorldTrace, Array]
+) -> None:
+    trace, tau = moved
+    start = together(two, trace, int(np.flatnonzero(trace.time == 0.0)[-1]))
+    found = together(two, trace, -1)
+    assert error(found, integrate(appended(two, sign=1.0), *start, tau, steps=500)) > 1e-3
     light = appended(two)
     light.model.armature = np.zeros(light.model.nv)
-    assert error(found, integrate(light, *start, steps=500)) > 1e-4
+    assert error(found, integrate(light, *start, tau, steps=500)) > 1e-4
