@@ -32,6 +32,9 @@ def _frame(value: Any) -> Any:
     raise PydanticKnownError("literal_error", {"expected": "'world', 'lvlh', 'path' or SYSTEM/FRAME"})
 
 
+InitialFrame = Annotated[str, BeforeValidator(_frame)]
+
+
 class Neighbour(NamedTuple):
     """Another system at its initial state."""
 
@@ -48,7 +51,7 @@ class InitialState(Part):
         "q": "joints", "joint_velocities": "joint_rates",
     }  # fmt: skip
 
-    frame: Annotated[str, BeforeValidator(_frame)] = "world"
+    frame: InitialFrame = "world"
     """Frame of ``position`` and ``attitude``, relative to which the velocities are given: W, the local
     orbital frame L (x radial outward, y along track, z along the orbital angular momentum), the attitude
     of the path (L if it has none), or ``SYSTEM/FRAME``, a frame of another system at its initial state."""
