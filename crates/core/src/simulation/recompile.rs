@@ -13,10 +13,10 @@ use super::run_state::RunState;
 use super::step_doubling::StepDoubling;
 use super::tree::Tree;
 use super::tree_state::TreeState;
-use crate::dynamics::center_of_mass;
+use crate::dynamics::{Momentum, center_of_mass};
 use crate::model::{BASE_NQ, Model};
-use crate::spatial::Scalar;
-use crate::world::{Action, Assembly, FrameIndex, Member, Moving, When, connected_velocity};
+use crate::spatial::{Force, Scalar, Vec3};
+use crate::world::{Action, Assembly, Balance, FrameIndex, Member, Moving, When, connected_velocity};
 use std::borrow::Cow;
 
 /// A system between two compilations: its state and its kinematics in its own coordinates.
@@ -135,6 +135,15 @@ impl<'a, S: Scalar> RunState<'a, S> {
     }
 }
 
+/// Returns the momentum of systems, the angular part about `center` in W.
+fn momentum_of<S: Scalar>(systems: &[Moving<'_>], center: Vec3<S>) -> Momentum<S> {
+    let point = center.map(|x| x.value());
+    let balances = systems.iter().map(|system| Balance::of(system.model, system.q, system.v, point));
+    let total = balances.fold(Force::zero(), |sum, balance| sum + balance.momentum);
+    let lift = |vector: Vec3<f64>| vector.map(|x| S::of(*x));
+    Momentum { linear: lift(total.linear), angular: lift(total.angular) }
+}
+
 /// Trees before a compilation.
 struct Old<'a, S> {
     trees: Vec<Option<Tree<'a, S>>>,
@@ -217,7 +226,9 @@ fn join<'a, S: Scalar>(
     let mut tree = Tree::with_modes(Cow::Owned(model), modes);
     let lift = |x: Vec<f64>| x.into_iter().map(S::of).collect::<Vec<S>>();
     let mut state = TreeState::at(&tree.model, &mut tree.data, lift(q), lift(v));
+    state.initial_momentum = momentum_of(&moving, center_of_mass(&tree.data, &state.q));
     state.shares = vec![S::of(0.0); members.len()];
+    tree.project_momentum(&mut state);
     tree.shares = members.iter().map(|member| member.joints.clone()).collect();
     for (share, (member, Loose { state: before, own, sign })) in members.into_iter().zip(loose).enumerate() {
         let quaternion = before.q[3..BASE_NQ].to_vec();

@@ -184,8 +184,8 @@ impl Shared {
         self.integrator == Integrator::DormandPrince
     }
 
-    /// Returns the schedule of the run. Steps of an adaptive integrator do not end at grid points nor, without
-    /// controls, at control ticks.
+    /// Returns the schedule of the run. Steps of an adaptive integrator do not end at grid points, unless there are
+    /// latches, nor, without controls, at control ticks.
     fn schedule(&self, duration: Option<f64>, systems: &[&mut System], events: &[Event]) -> Schedule {
         // in `Carried` mode the acceleration of the reference orbit, and with it its jumps, does not act on the robot
         let orbit = self.orbit.iter().filter(|_| self.gravity_mode == GravityMode::True);
@@ -203,7 +203,9 @@ impl Shared {
         let clocks = systems.iter().map(clock).collect();
         let schedule =
             Schedule::new(self.time_step, duration, clocks, effects.chain(jumps).chain(times).collect());
-        if self.is_adaptive() { schedule.without_grid_steps() } else { schedule }
+        // the conditions of a latch are evaluated at the ends of steps, which must not be too long for it
+        let has_latches = events.iter().any(|event| matches!(event.when, When::Latch(_)));
+        if self.is_adaptive() && !has_latches { schedule.without_grid_steps() } else { schedule }
     }
 
     /// Returns the number of rows for which the recorder reserves memory.
