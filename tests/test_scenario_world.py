@@ -194,7 +194,7 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "control period": (
         "control_period: 20 ms",
         "control_period: 1 ms",
-        r":24: simulation: control_period 0.001 s is",
+        r":9: systems.chaser.control_period: control_period 0.001 s",
     ),
     "controller": ("joint_computed_torque", "joint_pd", r":8: systems.chaser.controller.kind"),
     "tool": ("tool: tool", "tool: tol", r":6: systems.chaser.tool: .*'tool'"),
@@ -236,7 +236,8 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "release of a release": ("release: grasp", "release: let_go", r":23: .*is not a capture"),
     "same name": ("name: let_go", "name: grasp", r":21: events\[1\].name: two events"),
     "seat": ("do: {capture:", "do: {seat: 2 s, capture:", r":20: events\[0\].do.seat: .*not available yet"),
-    "contacts": ("events:\n", "contacts: []\nevents:\n", r":17: contacts: unknown key"),
+    "knows": ("    tool: tool", "    knows: [target]", r":6: systems.chaser.knows: .*not available yet"),
+    "contacts": ("events:\n", "contacts: []\nevents:\n", r":17: contacts: .*not available yet"),
     "engine": ("systems:\n", "engine: mujoco\nsystems:\n", r":3: engine: .*does not support 'systems'"),
     "drag": (
         "[gravity_gradient]",
@@ -267,6 +268,14 @@ def test_a_capture_that_closes_a_loop_is_located(file: Path) -> None:
     file.write_text(first + "simulation: {duration: 0.5 s, time_step: 10 ms}\n")
     with pytest.raises(WorldError, match=r"pair.yaml:\d+: events.*loop"):
         build_world(_world(load(file)))
+
+
+def test_a_system_far_from_the_reference_gives_a_warning_with_its_precision() -> None:
+    values = data()
+    values["systems"]["chaser"]["initial"]["position"] = ["3000 km", 0, 0]
+    with pytest.warns(UserWarning, match=r"systems\.target: .*3000 km from the reference.* 5e-10 m"):
+        built = build_world(_world(load(values)))
+    assert len(built.warnings) == 2
 
 
 def test_events_that_wait_for_each_other_are_refused() -> None:

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from onorbit_rs.scenario.errors import invalid
+from onorbit_rs.scenario.errors import inconsistent, invalid
 from onorbit_rs.scenario.fields import Drift, NotNegative, Number, Positive, Time, Whole
 from onorbit_rs.scenario.part import Part
 
@@ -92,9 +92,10 @@ class SimulationSettings(ControlSettings, IntegrationSettings):
     @model_validator(mode="after")
     def _has_valid_period(self) -> Self:
         if self.control_period is not None and self.control_period < self.time_step * (1.0 - 1e-9):
-            raise invalid(
+            raise inconsistent(
+                "control_period",
                 f"control_period {self.control_period:g} s is shorter than time_step {self.time_step:g} "
-                "s; it must be at least one step"
+                "s; it must be at least one step",
             )
         return self
 

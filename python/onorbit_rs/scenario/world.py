@@ -23,6 +23,12 @@ from onorbit_rs.scenario.yaml_lines import Lines
 class System(RobotKeys, ControlSettings):
     """One spacecraft: robot, initial state and controllers."""
 
+    @classmethod
+    def _hint(cls, key: str, free: list[str]) -> str:
+        if key in ("actuators", "sensors", "estimators", "loops", "knows"):
+            return "; it is not available yet"
+        return super()._hint(key, free)
+
 
 class WorldScenario(Document):
     """Several systems on one reference orbit, and the events that connect and separate them."""
@@ -30,6 +36,14 @@ class WorldScenario(Document):
     systems: Annotated[dict[ItsName, System], Field(min_length=1)]
     events: list[Event] = Field(default_factory=list)
     simulation: WorldSettings
+
+    @classmethod
+    def _hint(cls, key: str, free: list[str]) -> str:
+        if key in ("contacts", "loops"):
+            return "; it is not available yet"
+        if key in ControlSettings.model_fields:
+            return "; each of 'systems' has its own"
+        return super()._hint(key, free)
 
     def _validate(self, data: dict[str, Any], file: Path | None, lines: Lines) -> None:
         for key in RobotKeys.model_fields:
