@@ -15,7 +15,7 @@ use super::tree::Tree;
 use super::tree_state::TreeState;
 use crate::dynamics::{Momentum, center_of_mass};
 use crate::model::{BASE_NQ, Model};
-use crate::spatial::{Force, Scalar, Vec3};
+use crate::spatial::{Force, Real, Scalar, Vec3};
 use crate::world::{Action, Assembly, Balance, FrameIndex, Member, Moving, When, connected_velocity};
 use std::borrow::Cow;
 
@@ -59,19 +59,9 @@ impl<'a, S: Scalar> RunState<'a, S> {
             self.state.trees.push(state);
         }
         self.equations.members = new;
-        self.follow_centers();
+        follow_centers(&self.equations.trees, &mut self.state.trees);
         self.resize();
         Ok(())
-    }
-
-    /// Lets the centres of mass of several trees follow their momenta; a single tree does not need it. Expects the
-    /// kinematics of the state.
-    pub(super) fn follow_centers(&mut self) {
-        let is_needed = self.state.trees.len() > 1;
-        for (tree, state) in self.equations.trees.iter().zip(&mut self.state.trees) {
-            let center = || center_of_mass(&tree.data, &state.q);
-            state.center = is_needed.then(|| state.center.unwrap_or_else(center));
-        }
     }
 
     /// Allocates everything whose dimensions depend on the trees.
@@ -142,6 +132,16 @@ fn momentum_of<S: Scalar>(systems: &[Moving<'_>], center: Vec3<S>) -> Momentum<S
     let total = balances.fold(Force::zero(), |sum, balance| sum + balance.momentum);
     let lift = |vector: Vec3<f64>| vector.map(|x| S::of(*x));
     Momentum { linear: lift(total.linear), angular: lift(total.angular) }
+}
+
+/// Lets the centres of mass of several trees follow their momenta; a single tree does not need it. Expects the kinematics
+/// of the states.
+pub(super) fn follow_centers<S: Real>(trees: &[Tree<'_, S>], states: &mut [TreeState<S>]) {
+    let is_needed = states.len() > 1;
+    for (tree, state) in trees.iter().zip(states) {
+        let center = || center_of_mass(&tree.data, &state.q);
+        state.center = is_needed.then(|| state.center.unwrap_or_else(center));
+    }
 }
 
 /// Trees before a compilation.

@@ -169,7 +169,7 @@ impl Schedule {
     pub(super) fn is_tick(&self, system: usize, t: f64) -> bool {
         let Clock { period, switches } = &self.clocks[system];
         let is_now = |instant: f64| (instant - t).abs() <= self.tolerance();
-        is_now((t / period).round() * period) || switches.iter().any(|&switch| is_now(switch))
+        is_now(nearest_tick(t, *period) * period) || switches.iter().any(|&switch| is_now(switch))
     }
 
     /// Returns true if the controllers of any system are due at the current cut.
@@ -179,7 +179,7 @@ impl Schedule {
 
     /// Returns the first regular tick of a clock after the current cut, s.
     fn next_tick(&self, period: f64) -> f64 {
-        let count = (self.at.now / period).round(); // a product, so that rounding errors do not accumulate
+        let count = nearest_tick(self.at.now, period); // a product, so that rounding errors do not accumulate
         let nearest = count * period;
         if nearest > self.at.now + self.tolerance() { nearest } else { (count + 1.0) * period }
     }
@@ -247,6 +247,12 @@ impl Schedule {
         self.at.next_grid += usize::from(is_passed);
         is_passed.then_some((step, instant))
     }
+}
+
+/// Returns the number of the tick nearest to `t`, s.
+fn nearest_tick(t: f64, period: f64) -> f64 {
+    // conversion to an integer, because rounding is a library call on processors without SSE 4.1
+    (t / period + 0.5) as u64 as f64
 }
 
 #[cfg(test)]

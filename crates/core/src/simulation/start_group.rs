@@ -12,6 +12,7 @@ use super::every_step::EveryStep;
 use super::integrator::{Integrator, Stages, StepSettings};
 use super::modes::StepMethod;
 use super::mover::Mover;
+use super::recompile::follow_centers;
 use super::recorder::{RecordOptions, Recorder};
 use super::recording::{GroupRows, Ledger};
 use super::run_state::RunState;
@@ -94,7 +95,8 @@ impl Shared {
             models.push(model);
         }
         let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(&models));
-        let state = State::at(&mut equations.trees, starts);
+        let mut state = State::at(&mut equations.trees, starts);
+        follow_centers(&equations.trees, &mut state.trees);
         let is_fixed = is_native && !is_adaptive;
         let doubling = is_fixed.then(|| StepDoubling::new(&equations.trees, &state, schedule.grid_steps()));
         let checked = equations.trees.iter().filter(|_| is_fixed && !has_every_step).enumerate();
@@ -130,8 +132,6 @@ impl Shared {
             rereference_beyond,
             earth: self.earth.clone(),
         };
-        run.follow_centers();
-        run.row_buffers.0.copy_from(&run.state);
         run.find_latches();
         Ok(run)
     }

@@ -46,7 +46,9 @@ impl<S: Real> State<S> {
         for (to, from) in self.trees.iter_mut().zip(&from.trees) {
             to.copy_from(from);
         }
-        self.orbital = from.orbital;
+        if self.trees.len() > 1 {
+            self.orbital = from.orbital;
+        }
     }
 
     /// Writes `from ⊕ h rate`; see [`TreeState::move_from`].

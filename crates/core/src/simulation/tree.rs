@@ -170,7 +170,7 @@ impl<'a, S: Real> Tree<'a, S> {
         }
         rate.v.copy_from_slice(v);
         if state.center.is_some() {
-            rate.center_velocity = state.momentum().linear * (S::of(1.0) / *mass);
+            rate.center_velocity = Some(state.momentum().linear * (S::of(1.0) / *mass));
         }
         S::enter(
             #[inline(always)]

@@ -47,8 +47,8 @@ pub(crate) struct TreeRate<S> {
     pub(crate) power: S,
     /// Power dissipated by damping and friction, W.
     pub(crate) loss: S,
-    /// Velocity of the centre of mass, `P/m`, W axes, m/s; zero in a run with a single tree.
-    pub(crate) center_velocity: Vec3<S>,
+    /// Velocity of the centre of mass, `P/m`, W axes, m/s; `None` in a run with a single tree.
+    pub(crate) center_velocity: Option<Vec3<S>>,
     /// Part of `loss` in the joints of each member, W; empty for a tree with a single member.
     pub(crate) shares: Vec<S>,
 }
@@ -65,7 +65,7 @@ impl<S: Real> TreeRate<S> {
             wrench: Momentum::default(),
             power: S::of(0.0),
             loss: S::of(0.0),
-            center_velocity: Vec3::zero(),
+            center_velocity: state.center.map(|_| Vec3::zero()),
             shares: vec![S::of(0.0); state.shares.len()],
         }
     }
@@ -79,12 +79,16 @@ impl<S: Real> TreeRate<S> {
         self.wrench.angular = other.wrench.angular.scale_add(s, self.wrench.angular);
         self.power = other.power.mul_add(s, self.power);
         self.loss = other.loss.mul_add(s, self.loss);
-        self.center_velocity = other.center_velocity.scale_add(s, self.center_velocity);
-        let shares = (&mut self.shares, &other.shares);
-        for (to, from) in [(&mut self.v, &other.v), (&mut self.a, &other.a), shares] {
+        for (to, from) in [(&mut self.v, &other.v), (&mut self.a, &other.a)] {
             for (to, from) in to.iter_mut().zip(from) {
                 *to = from.mul_add(s, *to);
             }
+        }
+        if let (Some(sum), Some(other)) = (&mut self.center_velocity, &other.center_velocity) {
+            *sum = other.scale_add(s, *sum);
+        }
+        for (to, from) in self.shares.iter_mut().zip(&other.shares) {
+            *to = from.mul_add(s, *to);
         }
     }
 
@@ -96,7 +100,7 @@ impl<S: Real> TreeRate<S> {
         (self.wrench, self.power, self.loss) = (wrench, power, loss);
         self.v.copy_from_slice(&from.v);
         self.a.copy_from_slice(&from.a);
-        self.center_velocity = from.center_velocity;
+        self.center_velocity.clone_from(&from.center_velocity);
         self.shares.copy_from_slice(&from.shares);
     }
 
@@ -108,7 +112,7 @@ impl<S: Real> TreeRate<S> {
         (self.power, self.loss) = (S::of(0.0), S::of(0.0));
         self.v.fill(S::of(0.0));
         self.a.fill(S::of(0.0));
-        self.center_velocity = Vec3::zero();
+        self.center_velocity = self.center_velocity.map(|_| Vec3::zero());
         self.shares.fill(S::of(0.0));
     }
 }
@@ -164,7 +168,9 @@ impl<S: Real> TreeState<S> {
         self.v.copy_from_slice(&from.v);
         (self.initial_momentum, self.impulse) = (from.initial_momentum, from.impulse);
         (self.work, self.dissipated) = (from.work, from.dissipated);
-        self.center = from.center;
+        if from.center.is_some() {
+            self.center = from.center;
+        }
         self.shares.copy_from_slice(&from.shares);
     }
 
@@ -186,7 +192,9 @@ impl<S: Real> TreeState<S> {
         self.impulse.angular = rate.wrench.angular.scale_add(h, from.impulse.angular);
         self.work = rate.power.mul_add(h, from.work);
         self.dissipated = rate.loss.mul_add(h, from.dissipated);
-        self.center = from.center.map(|center| rate.center_velocity.scale_add(h, center));
+        if let (Some(center), Some(velocity)) = (from.center, rate.center_velocity) {
+            self.center = Some(velocity.scale_add(h, center));
+        }
         for ((to, from), rate) in self.shares.iter_mut().zip(&from.shares).zip(&rate.shares) {
             *to = rate.mul_add(h, *from);
         }
