@@ -8,10 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from onorbit_rs import _core
-from onorbit_rs.common.coordinates import POSITION
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import FrameError, OnOrbitError, SimulationError, WorldError
 from onorbit_rs.scenario.build import (
@@ -29,6 +26,7 @@ from onorbit_rs.scenario.settings import ControlSettings
 from onorbit_rs.scenario.world import WorldScenario
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from onorbit_rs.scenario.yaml_lines import Location
@@ -83,11 +81,15 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
 
     settings = scenario.simulation.arguments()
     drift = settings.pop("rereference_beyond")
-    _try_one_step(scenario, simulation())
-    messages = tuple(dict.fromkeys(_warnings(scenario, systems)))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        _try_one_step(scenario, simulation())
+        world = simulation()
+    given = (f"systems: {warning.message}" for warning in caught)
+    messages = tuple(dict.fromkeys([*_warnings(systems), *given]))
     for message in messages:
         warnings.warn(message, stacklevel=2)
-    return BuiltWorld(scenario, systems, around.orbit, around.earth, simulation(), messages)
+    return BuiltWorld(scenario, systems, around.orbit, around.earth, world, messages)
 
 
 def _initial_states(
@@ -165,18 +167,8 @@ def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None
             raise
 
 
-def _warnings(scenario: WorldScenario, systems: dict[str, Built]) -> Iterator[str]:
+def _warnings(systems: dict[str, Built]) -> Iterator[str]:
     """Yield the warnings of all systems; those about the orbit are the same for all."""
     for name, built in systems.items():
         for message in built.warnings:
             yield message if message.startswith("orbit:") else f"systems.{name}: {message}"
-    limit = scenario.simulation.rereference_beyond
-    connected = {split_path(path)[0] for event in scenario.events for path in event.do.capture or ()}
-    for name in [name for name in systems if name in connected]:
-        distance = float(np.linalg.norm(systems[name].q[POSITION]))
-        if limit != "never" and distance > limit:
-            yield (
-                f"systems.{name}: it starts {distance / 1e3:.4g} km from the reference, which systems with "
-                f"captures keep, so its position is rounded to {np.spacing(distance):.0e} m: choose an orbit "
-                "near the systems"
-            )
