@@ -368,3 +368,48 @@ def test_the_release_of_a_craft_that_carries_others_takes_them_along() -> None:
     end = worlds.at_row(trace, crafts, -1)
     found = sum((momentum(craft, craft.v, np.zeros(3))[0] for craft in end), np.zeros(6))
     assert np.abs(found - total).max() < 1e-11 * np.abs(total).max()
+
+
+JOINTS: dict[str, tuple[dict[str, float], dict[str, Any]]] = {
+    "free": ({}, {}),
+    "stops": ({"lower": -0.4, "upper": 0.4}, {"enforce_limits": True}),
+    "bouncing stops": ({"lower": -0.4, "upper": 0.4}, {"enforce_limits": True, "restitution": 0.5}),
+    "friction": ({"friction": 2.0, "static_friction": 4.0}, {}),
+    "damping and rotors": ({"damping": 2.0, "rotor": 0.1}, {}),
+    "all": (
+        {"damping": 1.0, "friction": 1.0, "lower": -0.4, "upper": 0.4, "rotor": 0.1},
+        {"enforce_limits": True, "restitution": 0.3},
+    ),
+}
+
+
+def ends(joints: dict[str, float], settings: dict[str, Any], *, captures: bool, orbit: bool) -> oo.WorldTrace:
+    """Returns a run in which an arm captures a robot by its tip, or is captured by it, and both separate."""
+    first, second = arm_and_target(straight(4, **joints), [0.3, 0.2, -0.3, 0.1])
+    systems = [
+        oo.System("a", first.model, first.q, first.v, **settings),
+        oo.System("b", second.model, second.q, 0.3 * second.v),
+    ]
+    frames = ["a/tip", f"b/{second.frame}"]
+    grasp = oo.Capture("grasp", *(frames if captures else reversed(frames)), at=0.1)
+    surroundings: dict[str, Any] = {}
+    if orbit:
+        surroundings = {"orbit": oo.Kepler(semi_major_axis=6.8e6, inclination=0.9, mean_anomaly=0.3)}
+    return run(systems, [grasp, oo.Release("let_go", "grasp", at=1.4)], 2.0, time_step=1e-3, **surroundings)
+
+
+@pytest.mark.parametrize("orbit", [False, True], ids=["free", "orbit"])
+@pytest.mark.parametrize("joints", JOINTS)
+def test_the_motion_does_not_depend_on_which_of_two_robots_captures_the_other(
+    joints: str, orbit: bool
+) -> None:
+    """The tip captures: all joints are traversed as in the arm. It is captured: all of them backwards."""
+    forwards, backwards = (ends(*JOINTS[joints], captures=way, orbit=orbit) for way in (True, False))
+    for trace in (forwards, backwards):
+        assert all(line[3] for line in trace.certificate()), trace.certificate()
+    for name in "ab":
+        assert np.abs(forwards[name].v[-1] - backwards[name].v[-1]).max() < 1e-11
+        assert np.abs(forwards[name].q[-1] - backwards[name].q[-1]).max() < 1e-11
+    # control: other joints move differently
+    other = ends(*JOINTS["free" if joints != "free" else "stops"], captures=True, orbit=orbit)
+    assert np.abs(forwards["a"].v[-1] - other["a"].v[-1]).max() > 1e-3
