@@ -485,3 +485,30 @@ def test_a_run_in_pieces_with_resuming_between_chained_captures_has_the_same_bit
         )
     records = [[event.energy_lost for event in trace.events] for trace in (whole, pieces)]
     assert records[0] == records[1] and len(records[0]) == 6
+
+
+@pytest.mark.parametrize(("integrator", "order"), [("rk4", 4.0), ("semi_implicit_euler", 1.0)])
+@pytest.mark.parametrize("when", [{"at": 0.1234567}, {"within": [2.7, 3.2]}], ids=["at", "latch"])
+def test_the_order_of_an_integrator_holds_through_a_capture_and_a_release(
+    integrator: str, order: float, when: dict[str, Any]
+) -> None:
+    """Neither event is at the end of a step; the latch is located within a step."""
+    first, second = arm_and_target(straight(4), [0.3, 0.2, -0.3, 0.1], 0.3)
+    systems = [
+        oo.System("a", first.model, first.q, first.v),
+        oo.System("b", second.model, second.q, -0.5 * second.v),
+    ]
+    events = [
+        oo.Capture("grasp", "a/tip", f"b/{second.frame}", **when),
+        oo.Release("let_go", "grasp", at=0.7654321, impulse=[1.0, 0.0, 0.5, 0.1, 0.0, 0.0]),
+    ]
+
+    def end(**settings: Any) -> Array:
+        trace = run(systems, events, 1.0, **settings)
+        assert [event.name for event in trace.events] == ["grasp", "let_go"]
+        return np.concatenate([column for name in "ab" for column in (trace[name].q[-1], trace[name].v[-1])])
+
+    exact = end(integrator="dormand_prince", tolerance=1e-13)
+    errors = [np.abs(end(integrator=integrator, time_step=h) - exact).max() for h in (0.02, 0.01, 0.005)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.15), errors
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.15), errors
