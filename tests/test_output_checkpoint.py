@@ -134,6 +134,11 @@ def state_of(out: Path) -> dict[str, Any]:
     return unsealed((out / "checkpoint" / "state.json").read_bytes())
 
 
+def first_tree(record: Any) -> Any:
+    """Return the state of the first tree of the engine's state."""
+    return record["engine"]["groups"][0]["progress"]["state"]["trees"][0]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -142,7 +147,7 @@ def state_of(out: Path) -> dict[str, Any]:
         (lambda out, record: record["engine"].update(version="0.0.1"), "version 0.0.1"),
         (lambda out, record: record["engine"].update(instruction_set="sse9"), "ONORBIT_INSTRUCTION_SET=sse9"),
         (lambda out, record: record.pop("rows"), "damaged"),
-        (lambda out, record: record["engine"]["groups"][0]["progress"]["state"]["trees"][0].pop("q"), "damaged"),
+        (lambda out, record: first_tree(record).pop("q"), "damaged"),
         (lambda out, record: record["widths"].update(q=13), "checksum"),
         (lambda out, record: record["digests"].clear(), "damaged"),
         (lambda out, record: record.update(rows=10**17), "damaged.*expected"),
