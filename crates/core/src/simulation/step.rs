@@ -52,7 +52,9 @@ impl<S: Scalar> RunState<'_, S> {
         self.happen(t, (t, end))?;
         // 3 impacts of joints at their stops
         self.impacts(t, (t, end))?;
-        self.equations.members.follow(&self.equations.trees, &self.state.trees);
+        if self.has_controls() {
+            self.equations.members.follow(&self.equations.trees, &self.state.trees);
+        }
         // 4 loads of the environment, 5 controllers that are due
         self.loads_and_controllers(interval, end)?;
         // 6 which joints stick, slip or rest at a stop during the step
@@ -82,6 +84,11 @@ impl<S: Scalar> RunState<'_, S> {
             self.equations.apply_loads(t, (t, end), &self.state)?;
         }
         Ok(())
+    }
+
+    /// Returns true if any system has controls, which use its state in its coordinates.
+    fn has_controls(&self) -> bool {
+        self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
     }
 
     /// Returns true if the controllers of any system are due at `t`, s.

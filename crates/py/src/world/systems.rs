@@ -65,8 +65,7 @@ impl Systems {
         if traces.len() == 1 {
             return Ok(traces.remove(0).into_any());
         }
-        let world =
-            PyWorldTrace::new(py, self.names.clone(), traces, (events, groups), (is_complete, wall_s))?;
+        let world = PyWorldTrace::new(self.names.clone(), traces, (events, groups), (is_complete, wall_s));
         Ok(Py::new(py, world)?.into_any())
     }
 }

@@ -8,6 +8,7 @@ use onorbit_core::number_text::{count, short};
 use onorbit_core::simulation::{EventRecord, GroupRows, certify_group, world_rows};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
+use std::sync::OnceLock;
 
 /// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
 ///
@@ -19,7 +20,8 @@ pub(crate) struct PyWorldTrace {
     traces: Vec<Py<PyTrace>>,
     records: Vec<EventRecord>,
     groups: Vec<GroupRows>,
-    rows: GroupRows,
+    /// Columns of the world, computed when they are first used.
+    rows: OnceLock<GroupRows>,
     /// True if the run reached its end.
     #[pyo3(get)]
     is_complete: bool,
@@ -30,19 +32,24 @@ pub(crate) struct PyWorldTrace {
 
 impl PyWorldTrace {
     pub(super) fn new(
-        py: Python<'_>,
         names: Vec<String>,
         traces: Vec<Py<PyTrace>>,
         (records, groups): (Vec<EventRecord>, Vec<GroupRows>),
         (is_complete, wall_s): (bool, f64),
-    ) -> PyResult<Self> {
-        let pairs: Vec<_> = traces.iter().map(|trace| (&trace.get().trace, &*trace.get().model)).collect();
-        let rows = py.detach(|| world_rows(&pairs));
-        Ok(Self { names, traces, records, groups, rows, is_complete, wall_s })
+    ) -> Self {
+        Self { names, traces, records, groups, rows: OnceLock::new(), is_complete, wall_s }
+    }
+
+    /// Returns the columns of the world.
+    fn rows(&self) -> &GroupRows {
+        self.rows.get_or_init(|| {
+            let pairs = self.traces.iter().map(|trace| (&trace.get().trace, &*trace.get().model));
+            world_rows(&pairs.collect::<Vec<_>>())
+        })
     }
 
     fn column<'py>(&self, py: Python<'py>, values: &[f64], width: usize) -> Bound<'py, PyArrayDyn<f64>> {
-        let rows = self.rows.rows();
+        let rows = self.rows().rows();
         if width == 1 { array_of(py, &[rows], values) } else { array_of(py, &[rows, width], values) }
     }
 }
@@ -91,20 +98,20 @@ impl PyWorldTrace {
     /// Times of the rows that all systems share, (T,), s.
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.column(py, &self.rows.time, 1)
+        self.column(py, &self.rows().time, 1)
     }
 
     /// Linear momentum of all systems, N s, and their angular momentum about the common centre of mass, N m s, axes
     /// of W, (T, 6).
     #[getter]
     fn momentum<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.column(py, &self.rows.momentum, 6)
+        self.column(py, &self.rows().momentum, 6)
     }
 
     /// Kinetic energy of all systems, (T,), J.
     #[getter]
     fn kinetic_energy<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        self.column(py, &self.rows.kinetic_energy, 1)
+        self.column(py, &self.rows().kinetic_energy, 1)
     }
 
     /// Return the certificate of the groups of systems that may interact: momentum and energy, and the audits of the
@@ -143,11 +150,11 @@ impl PyWorldTrace {
 
     /// Return the number of rows that all systems share.
     fn __len__(&self) -> usize {
-        self.rows.rows()
+        self.rows().rows()
     }
 
     fn __repr__(&self) -> String {
-        let end = self.rows.time.last().copied().unwrap_or(0.0);
+        let end = self.rows().time.last().copied().unwrap_or(0.0);
         let state = if self.is_complete { "complete" } else { "stopped early" };
         let events = count(self.records.len(), "event");
         format!("<WorldTrace of {}: to t = {} s, {events}, {state}>", self.names.join(", "), short(end))
