@@ -5,9 +5,9 @@
 use super::body_states::LoadedSystem;
 use super::tree::Tree;
 use super::tree_state::TreeState;
-use crate::dynamics::{Momentum, inverse_dynamics, momentum_energy_com};
+use crate::dynamics::{Data, Momentum, base_rotation, inverse_dynamics, momentum_energy_com};
 use crate::model::{Axis, BASE_NQ, BASE_NV, Model};
-use crate::spatial::{Force, Quat, Real, Scalar, Vec3};
+use crate::spatial::{Force, Mat3, Quat, Real, Scalar, Vec3};
 use crate::world::{BodyPlace, Member};
 use serde::{Deserialize, Serialize};
 
@@ -114,14 +114,14 @@ impl<'a, S: Scalar> Part<'a, S> {
     pub(super) fn follow(&mut self, tree: &Tree<'_, S>, state: &TreeState<S>) {
         let base = &self.member.bodies[0];
         let body = &tree.data.bodies[base.body];
-        let rot_wb = crate::dynamics::base_rotation(&state.q);
+        let rot_wb = base_rotation(&state.q);
         let offset = body.rot_bk * Vec3::of(&base.pos_kb);
         let position = rot_wb * (body.pos_b + offset) + Vec3::from_slice(&state.q);
         position.write(&mut self.state.q);
         let attitude = attitude_of(&tree.model, &state.q, base);
         let turned = if self.sign < 0.0 { Quat { v: -attitude.v, w: -attitude.w } } else { attitude };
         turned.write_xyzw(&mut self.state.q[3..]);
-        let rot_bp = body.rot_bk * crate::spatial::Mat3::of(&base.rot_kb);
+        let rot_bp = body.rot_bk * Mat3::of(&base.rot_kb);
         rot_bp.transpose_mul(body.velocity.at(offset)).write(&mut self.state.v);
         rot_bp.transpose_mul(body.velocity.angular).write(&mut self.state.v[3..]);
         for (own, &joint) in self.member.joints.iter().enumerate() {
@@ -177,7 +177,7 @@ impl<'a, S: Scalar> Part<'a, S> {
     /// Adds the external wrenches on the bodies of the system to those on the bodies of its tree.
     pub(super) fn add_wrenches_to(&self, tree: &mut Tree<'_, S>) {
         let base = &self.member.bodies[0];
-        let rot_bp = tree.data.bodies[base.body].rot_bk * crate::spatial::Mat3::of(&base.rot_kb);
+        let rot_bp = tree.data.bodies[base.body].rot_bk * Mat3::of(&base.rot_kb);
         for (body, place) in self.own.data.bodies.iter().zip(&self.member.bodies) {
             let to = &mut tree.data.bodies[place.body];
             let (force, moment) = (rot_bp * body.external.linear, rot_bp * body.external.angular);
@@ -202,7 +202,7 @@ impl<'a, S: Scalar> Part<'a, S> {
     pub(super) fn acceleration(&self, tree: &Tree<'_, S>, state: &TreeState<S>, a: &[S]) -> Vec<S> {
         let values = |x: &[S]| x.iter().map(|x| x.value()).collect::<Vec<f64>>();
         let (q, v, a) = (values(&state.q), values(&state.v), values(a));
-        let mut data = crate::dynamics::Data::<f64>::new(&tree.model);
+        let mut data = Data::<f64>::new(&tree.model);
         inverse_dynamics(&tree.model, &mut data, &q, &v, &a, &[], &mut vec![0.0; v.len()]);
         let base = &self.member.bodies[0];
         let body = &data.bodies[base.body];
