@@ -282,19 +282,19 @@ fn the_state_of_step_doubling_is_checked_on_resuming() {
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["ended"] = vec![0.0; 9].into()
             },
-            "has 9 joints with jumps",
+            "joints with jumps of acceleration: 9 in the checkpoint",
         ),
         (
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["jumps"] = vec![0.0; 0].into()
             },
-            "has 0 joints with jumps",
+            "joints with jumps of acceleration: 0 in the checkpoint",
         ),
         (
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["fastest"] = vec![0.0; 1].into()
             },
-            "has 1 joints with jumps",
+            "joints with jumps of acceleration: 1 in the checkpoint",
         ),
         (|value| value["groups"][0]["progress"]["steps"] = 1.into(), "a run cannot have 1 steps"),
         (
