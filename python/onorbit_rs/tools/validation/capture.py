@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 import onorbit_rs as oo
+from onorbit_rs.common.coordinates import BASE_NV, JOINTS_Q, JOINTS_V, QUATERNION
 from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.tools.validation.case import Case, Gate, worst
 from onorbit_rs.tools.validation.gauss import Craft, impact, impact_at_stop
@@ -79,7 +80,7 @@ def two_craft() -> tuple[float, ...]:
     event = oo.Capture("grasp", "a/base", "b/base", at=0.0)
     trace = run([first, second], [event], 100.0, time_step=0.01)
     (record,) = trace.events
-    place = [matrix_from_quaternion(q[3:7]).T @ (p[:3] - q[:3])
+    place = [matrix_from_quaternion(q[QUATERNION]).T @ (p[:3] - q[:3])
              for q, p in zip(trace["a"].q[::100], trace["b"].q[::100], strict=True)]  # fmt: skip
     rates = np.vstack([trace[name].v[1, 3:] for name in "ab"])
     change = np.abs(trace.momentum - trace.momentum[0]).max(axis=0)
@@ -167,7 +168,7 @@ def straight(count: int, *, tip: float = 2.0, rotor: float = 0.0, **joints: Any)
 def arm_and_target(model: oo.Model, joints: Any, rates: Any = 0.0) -> tuple[Craft, Craft]:
     """Return an arm that turns slowly and a random robot that its tip captures."""
     q, v = model.neutral(), np.zeros(model.nv)
-    q[7:], v[:6], v[6:] = joints, [0.01, -0.02, 0.03, 0.05, -0.04, 0.02], rates
+    q[JOINTS_Q], v[:BASE_NV], v[JOINTS_V] = joints, [0.01, -0.02, 0.03, 0.05, -0.04, 0.02], rates
     return Craft(model, q, v, "tip"), random_craft(1001)
 
 

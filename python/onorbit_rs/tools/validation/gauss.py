@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import onorbit_rs as oo
+from onorbit_rs.common.coordinates import BASE_NV
 from onorbit_rs.tools.validation.trees import Array
 
 
@@ -102,7 +103,7 @@ def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: boo
     before, rows = np.concatenate([first.v, second.v]), relative_twist(crafts, 0, 1)
     lines = relative_twist(crafts, 0, 1, gap)
     if not joints:
-        bases = [*range(6), *range(first.model.nv, first.model.nv + 6)]
+        bases = [*range(BASE_NV), *range(first.model.nv, first.model.nv + BASE_NV)]
         lines[:, np.setdiff1d(np.arange(len(before)), bases)] = 0.0
     after, impulse = project(mass_matrix(crafts), rows, before, lines=lines)
     v_a, v_b = np.split(after, [first.model.nv])
@@ -118,8 +119,8 @@ def impact_at_stop(first: Craft, second: Craft, joint: int, restitution: float) 
     crafts = (first, second)
     after = np.concatenate(impact(first, second).v)
     row = np.zeros((1, len(after)))
-    row[0, 6 + joint] = 1.0
+    row[0, BASE_NV + joint] = 1.0
     rows = np.vstack([relative_twist(crafts, 0, 1), row])
-    target = np.append(np.zeros(6), -restitution * after[6 + joint])
+    target = np.append(np.zeros(6), -restitution * after[BASE_NV + joint])
     v_a, v_b = np.split(project(mass_matrix(crafts), rows, after, target)[0], [first.model.nv])
     return v_a, v_b
