@@ -87,4 +87,4 @@ def test_control_reversed_joints_that_keep_their_axes_are_rejected(two: Pair) ->
     state = random_state(two.both, np.random.default_rng(6000))
     ours = two.both.forward_dynamics(state.q, state.v, state.tau, external=state.external)
     theirs = appended(two, sign=1.0).forward_dynamics(state)
-    assert deviation(ours, theirs) > 0.01  # against 1e-12 with the axes negated
+    assert deviation(ours, theirs) > 0.1  # of order one

@@ -108,7 +108,8 @@ def random_state(model: oo.Model, rng: np.random.Generator, frames: int = 4) -> 
     q[QUATERNION] /= np.linalg.norm(q[QUATERNION])
     v, a, tau = rng.uniform(-2.0, 2.0, (3, model.nv))
     names = [str(name) for name in rng.choice(model.frame_names, frames, replace=False)]
-    external = {name: rng.uniform(-3.0, 3.0, 6) for name in {*names, model.frame_names[-1]}}
+    loaded = dict.fromkeys([*names, model.frame_names[-1]])  # a set has another order in every process
+    external = {name: rng.uniform(-3.0, 3.0, 6) for name in loaded}
     return State(q, v, a, tau, external)
 
 
