@@ -262,3 +262,18 @@ def test_a_system_far_from_the_reference_orbit_is_warned_of() -> None:
     with pytest.warns(UserWarning, match=r"'target' starts 2000000 m .* resolved to 4\.44089e-10 m"):
         oo.World([chaser, far], events=[GRASP])
     assert target.name == "target"
+
+
+@pytest.mark.parametrize("integrator", ["rk4", "dormand_prince"])
+def test_events_of_others_leave_a_system_its_bits(integrator: str) -> None:
+    latch = oo.Capture("again", "chaser/tool", "target/base", within=[1e-3, 1e-3])
+    q = ARM.neutral()
+    q[1], q[7:] = 40.0, 0.2
+    bystander = oo.System("bystander", ARM, q, np.full(ARM.nv, 0.05))
+    for events in ([oo.Capture("grasp", "chaser/tool", "target/base", at=0.1234)], [latch]):
+        among = oo.Simulation(oo.World([*systems(), bystander], events=events), integrator=integrator).run(
+            0.3
+        )
+        alone = oo.Simulation(oo.World([bystander]), integrator=integrator).run(0.3)
+        for column in alone.columns():
+            assert getattr(among["bystander"], column).tobytes() == getattr(alone, column).tobytes(), column

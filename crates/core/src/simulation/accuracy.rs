@@ -27,18 +27,25 @@ pub(super) struct Accuracy<S> {
 }
 
 impl<S: Scalar> Accuracy<S> {
-    pub(super) fn new(doubling: Option<StepDoubling<S>>, every_step: Vec<EveryStep>) -> Self {
-        Self { doubling, every_step, is_recorded: false }
+    /// Returns the measurements of trees before their first step. `doubles` is true if step doubling measures the errors
+    /// of steps, `checks` if the checks of the certificate are evaluated at every step; `steps` is the planned number of
+    /// steps.
+    pub(super) fn of(
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+        (doubles, checks): (bool, bool),
+        steps: Option<usize>,
+    ) -> Result<Self, SimulationError> {
+        let checked = trees.iter().filter(|_| checks).enumerate();
+        let every_step = checked.map(|(number, tree)| EveryStep::new(number, &tree.model));
+        let every_step = every_step.collect::<Result<_, _>>()?;
+        let doubling = doubles.then(|| StepDoubling::new(trees, state, steps));
+        Ok(Self { doubling, every_step, is_recorded: false })
     }
 
-    /// Returns true if step doubling measures the errors of steps.
-    pub(super) fn has_doubling(&self) -> bool {
-        self.doubling.is_some()
-    }
-
-    /// Returns true if the checks of the certificate are evaluated at every step.
-    pub(super) fn checks_every_step(&self) -> bool {
-        !self.every_step.is_empty()
+    /// Returns what [`Accuracy::of`] needs to make the same measurements of other trees.
+    pub(super) fn measures(&self) -> (bool, bool) {
+        (self.doubling.is_some(), !self.every_step.is_empty())
     }
 
     /// Returns the errors and checks of a tree accumulated so far.

@@ -129,9 +129,8 @@ impl<S: Scalar> RunState<'_, S> {
         impulse: [f64; 6],
         t: f64,
     ) -> Result<EventRecord, SimulationError> {
-        let active = &mut self.connections.active;
-        let position = active.welds.iter().position(|weld| weld.capture == capture);
-        let Weld { by, of, .. } = active.welds.remove(position.expect("the capture is active"));
+        let weld = self.weld_of(capture).expect("the capture is active");
+        let Weld { by, of, .. } = self.connections.active.welds.remove(weld);
         let before = self.snapshots();
         self.recompile()?;
         // the part that the root has left gets its own root

@@ -3,14 +3,12 @@
 use super::accuracy::Accuracy;
 use super::connections::SavedMembers;
 use super::error::SimulationError;
-use super::every_step::EveryStep;
 use super::integrator::Stages;
 use super::latch::Latch;
 use super::members::{Members, Part, Place};
 use super::modes::{JointModes, StepMethod};
 use super::mover::Mover;
 use super::run_state::RunState;
-use super::step_doubling::StepDoubling;
 use super::tree::Tree;
 use super::tree_state::TreeState;
 use crate::dynamics::{Momentum, center_of_mass};
@@ -60,12 +58,11 @@ impl<'a, S: Scalar> RunState<'a, S> {
         }
         self.equations.members = new;
         follow_centers(&self.equations.trees, &mut self.state.trees);
-        self.resize();
-        Ok(())
+        self.resize()
     }
 
     /// Allocates everything whose dimensions depend on the trees.
-    fn resize(&mut self) {
+    fn resize(&mut self) -> Result<(), SimulationError> {
         if let Mover::Native(method) = &mut self.mover {
             let control = method.integration.control().cloned();
             *method = StepMethod::new(&self.state, &self.step_settings);
@@ -74,15 +71,10 @@ impl<'a, S: Scalar> RunState<'a, S> {
             }
         }
         self.row_buffers = (self.state.clone(), Stages::new(&self.state));
-        let trees = &self.equations.trees;
-        let doubling = self
-            .accuracy
-            .has_doubling()
-            .then(|| StepDoubling::new(trees, &self.state, self.schedule.grid_steps()));
-        let checked = trees.iter().filter(|_| self.accuracy.checks_every_step()).enumerate();
-        let every_step = checked.filter_map(|(number, tree)| EveryStep::new(number, &tree.model).ok());
-        self.accuracy = Accuracy::new(doubling, every_step.collect());
+        let (trees, steps) = (&self.equations.trees, self.schedule.grid_steps());
+        self.accuracy = Accuracy::of(trees, &self.state, self.accuracy.measures(), steps)?;
         self.find_latches();
+        Ok(())
     }
 
     /// Finds the latches that have not closed and whose frames are in different trees.

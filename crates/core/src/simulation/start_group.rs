@@ -8,7 +8,6 @@ use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::events::Events;
-use super::every_step::EveryStep;
 use super::integrator::{Integrator, Stages, StepSettings};
 use super::modes::StepMethod;
 use super::mover::Mover;
@@ -19,7 +18,6 @@ use super::run_state::RunState;
 use super::run_system::RunSystem;
 use super::schedule::{Clock, LONGEST_INTERVAL, Schedule};
 use super::state::State;
-use super::step_doubling::StepDoubling;
 use super::tree::Tree;
 use crate::control::Control;
 use crate::earth::Earth;
@@ -63,7 +61,8 @@ impl Shared {
         events: &[Event],
         engine: Option<&'a mut (dyn Engine + 'static)>,
     ) -> Result<RunState<'a, S>, SimulationError> {
-        let schedule = self.schedule(duration, &systems, events);
+        let events = events_of(numbers, events);
+        let schedule = self.schedule(duration, &systems, &events.list);
         let rows = self.row_count(&schedule);
         let (is_native, is_adaptive) = (engine.is_none(), self.is_adaptive());
         let has_every_step = self.record_every == 1 && !is_adaptive;
@@ -73,7 +72,6 @@ impl Shared {
         let step_settings = StepSettings { integrator, tolerance, time_step, duration: horizon };
 
         let layout = Layout::new(systems.iter().map(|system| (&*system.name, &*system.model)));
-        let events = events_of(numbers, events);
         let named = systems.iter().map(|system| (&*system.name, &*system.model));
         let connections = Connections::new(named, !events.list.is_empty())?;
         let numbers_of = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
@@ -98,10 +96,8 @@ impl Shared {
         let mut state = State::at(&mut equations.trees, starts);
         follow_centers(&equations.trees, &mut state.trees);
         let is_fixed = is_native && !is_adaptive;
-        let doubling = is_fixed.then(|| StepDoubling::new(&equations.trees, &state, schedule.grid_steps()));
-        let checked = equations.trees.iter().filter(|_| is_fixed && !has_every_step).enumerate();
-        let every_step = checked.map(|(number, tree)| EveryStep::new(number, &tree.model));
-        let every_step = every_step.collect::<Result<_, _>>()?;
+        let measures = (is_fixed, is_fixed && !has_every_step);
+        let accuracy = Accuracy::of(&equations.trees, &state, measures, schedule.grid_steps())?;
         let mover = match engine {
             None => Mover::Native(StepMethod::new(&state, &step_settings)),
             Some(engine) => Mover::External(ExternalEngine::new(engine, models[0])),
@@ -111,7 +107,7 @@ impl Shared {
             numbers: numbers.to_vec(),
             row_buffers: (state.clone(), Stages::new(&state)),
             row_states: Vec::new(),
-            accuracy: Accuracy::new(doubling, every_step),
+            accuracy,
             state,
             equations,
             systems: members,
