@@ -10,7 +10,7 @@ import pytest
 
 import onorbit_rs as oo
 
-MASSES = {"servicer": 1088.0, "small_satellite": 400.0, "target_satellite": 500.0}
+MASSES = {"ets_vii_target": 410.0, "servicer": 1088.0, "small_satellite": 400.0, "target_satellite": 500.0}
 GRASP = [0.0, 1.4260230832, 0.0, 1.3391380305, 0.0, -1.1943647869, 0.0]
 """Joint angles of the servicer with the tool 2 m in front of the bus, rad."""
 FRONT = 0.8
@@ -90,6 +90,25 @@ def test_a_handle_is_outside_its_satellite_and_points_into_it(name: str, half_de
     np.testing.assert_allclose(handle[:3, :3] @ [0.0, 0.0, 1.0], [1.0, 0.0, 0.0], atol=1e-15)
     np.testing.assert_allclose(handle[:3, 0], [0.0, 0.0, -1.0], atol=1e-15)
     assert handle[0, 3] == pytest.approx(-half_depth - 0.15, rel=1e-15)
+
+
+def test_a_handle_of_the_target_of_ets_vii_points_into_it() -> None:
+    satellite = oo.robots.load("ets_vii_target")
+    handle = satellite.frame_pose(satellite.neutral(), "handle")
+    np.testing.assert_allclose(handle[:3, 0], [0.0, 0.0, -1.0], atol=1e-15)
+    np.testing.assert_allclose(handle[:3, 1], [0.0, 1.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(handle[:3, 3], [0.0, 0.0, 0.75 + 0.15], atol=1e-15)
+
+
+@pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")  # as published
+def test_the_target_of_ets_vii_is_docked_beside_its_chaser() -> None:
+    chaser, target = oo.robots.load("ets_vii"), oo.robots.load("ets_vii_target")
+    both = oo.attach(chaser, "docking_port", target, "docking_fixture", prefix="target_")
+    assert both.mass == pytest.approx(chaser.mass + 410.0)
+    docked = both.frame_pose(both.neutral(), "target_bus")
+    np.testing.assert_allclose(docked[:3, :3], np.eye(3), atol=1e-15)
+    # rings of 20 and 8 cm between the faces; the target is 0.65 m deep
+    np.testing.assert_allclose(docked[:3, 3], [-1.0 - 0.2 - 0.08 - 0.325, 0.0, 0.0], atol=1e-15)
 
 
 def test_the_docking_ring_is_on_the_lower_face() -> None:
