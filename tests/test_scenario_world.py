@@ -239,14 +239,40 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "knows": ("    tool: tool", "    knows: [target]", r":6: systems.chaser.knows: .*not available yet"),
     "contacts": ("events:\n", "contacts: []\nevents:\n", r":17: contacts: .*not available yet"),
     "engine": ("systems:\n", "engine: mujoco\nsystems:\n", r":3: engine: .*does not support 'systems'"),
-    "drag": (
+    "body without system": (
         "[gravity_gradient]",
-        "[{kind: body_wrench, body: base, force: [1, 0, 0]}]",
-        r":2: environment\[0\]: .*does not support several systems yet",
+        "[gravity_gradient, {kind: body_wrench, body: base, force: [1, 0, 0]}]",
+        r":2: environment\[1\].body: 'base' is not a link of a system; write SYSTEM/LINK",
+    ),
+    "system of a wrench": (
+        "[gravity_gradient]",
+        "[{kind: body_wrench, body: tarjet/base, force: [1, 0, 0]}]",
+        r":2: environment\[0\].body: no system is named 'tarjet'; did you mean 'target'",
+    ),
+    "link of a wrench": (
+        "[gravity_gradient]",
+        "[gravity_gradient, {kind: body_wrench, body: target/bse, force: [1, 0, 0]}]",
+        r":2: environment\[1\]: no body is named 'bse'; did you mean 'bus'",
+    ),
+    "system of a surface": (
+        "[gravity_gradient]",
+        "[{kind: drag, bodies: {targt: faces}}]",
+        r":2: environment\[0\].bodies.targt: 'targt' is not a link of a system; did you mean 'target'",
+    ),
+    "kind of a surface": (
+        "    tool: tool",
+        "    surfaces: {base: {kind: face}}",
+        r":6: systems.chaser.surfaces.base.kind: unknown kind 'face'; did you mean 'faces'",
+    ),
+    "link of a surface": (
+        "[gravity_gradient]\nsystems:\n  chaser:\n",
+        "[drag]\nepoch: 2024-03-01T12:00:00 UTC\nsystems:\n  chaser:\n    surfaces: {bse: faces}\n",
+        r":2: environment\[0\]: .*no frame 'bse'; did you mean 'bus'",
     ),
 }
 NOT_IN_THE_SCHEMA = {"tool": FrameError, "joint": ShapeError, "frame of a system": FrameError,
-                     "captured frame": FrameError}  # fmt: skip
+                     "captured frame": FrameError, "link of a wrench": FrameError,
+                     "link of a surface": FrameError}  # fmt: skip
 """Cases that the schema cannot find, since they depend on the robot."""
 
 

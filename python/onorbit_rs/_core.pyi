@@ -125,6 +125,7 @@ __all__ = [
     "relative_elements",
     "rollout",
     "to_lvlh",
+    "to_world",
 ]
 
 __version__: str
@@ -1021,6 +1022,7 @@ class System:
         enforce_limits: bool = False,
         restitution: float = 0.0,
         reference_start_tolerance: ArrayLike | None = None,
+        surfaces: Surface | Mapping[str, Surface] | None = None,
     ) -> System: ...
     @property
     def name(self) -> str: ...
@@ -1330,6 +1332,9 @@ def to_lvlh(
 ) -> tuple[_Array, _Array]: ...
 def from_lvlh(
     orbit: Orbit, t: ArrayLike, r: ArrayLike, v: ArrayLike, *, frame: Literal["lvlh", "nadir"] = "lvlh"
+) -> tuple[_Array, _Array]: ...
+def to_world(
+    reference: Orbit, orbit: Orbit, t: float = 0.0, *, earth: Earth | None = None
 ) -> tuple[_Array, _Array]: ...
 def relative_elements(
     r: ArrayLike, v: ArrayLike, deputy_r: ArrayLike, deputy_v: ArrayLike, *, mu: float = ...

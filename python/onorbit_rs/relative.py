@@ -15,6 +15,7 @@ from onorbit_rs._core import (
     intercept_velocity,
     relative_elements,
     to_lvlh,
+    to_world,
 )
 
 __all__ = [
@@ -24,4 +25,5 @@ __all__ = [
     "intercept_velocity",
     "relative_elements",
     "to_lvlh",
+    "to_world",
 ]

@@ -4,7 +4,7 @@ use crate::arrays::record_every;
 use crate::checkpoint::{CheckpointCallback, PyCheckpoint};
 use crate::earth::PyEarth;
 use crate::engine::PythonEngine;
-use crate::environment::{PyEffect, effects};
+use crate::environment::{PyEffect, SurfaceAssignment, Target, effects};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
 use crate::gravity::gravity_of;
 use crate::interrupt::{period, prepare};
@@ -16,6 +16,7 @@ use crate::world::{PyWorld, Robotics, Systems, initial_state};
 use onorbit_core::environment::GravityMode;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::simulation::{Integrator, Simulation, SimulationError};
+use onorbit_core::world::System;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -173,7 +174,7 @@ impl PySimulation {
             simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
             simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
             simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
-            set_environment(py, &mut simulation, &effects(environment)?)?;
+            set_environment(py, &mut simulation, &effects(environment)?, &[None])?;
             let orbit = simulation.orbit.clone();
             settings.apply(model.get(), (orbit.as_ref(), &[]), &mut simulation.systems[0])?;
             simulation.rereference_beyond = rereference_beyond;
@@ -186,6 +187,9 @@ impl PySimulation {
         simulation.record_wrenches = record_wrenches;
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         if let Some(engine) = engine {
+            if simulation.systems.len() > 1 {
+                return Err(SimulationError::EngineOfWorld.into_python_with(py, None));
+            }
             simulation.engine = Some(Box::new(PythonEngine::new(engine, &simulation)?));
         }
         let orbit = simulation.orbit.clone();
@@ -297,24 +301,23 @@ impl PySimulation {
     }
 }
 
-/// Sets the effects and the gravity field; orbit and Earth must have been set before. In a world of several systems,
-/// effects that belong to bodies of one robot are refused.
+/// Sets the effects and the gravity field; orbit and Earth must have been set before. `surfaces` are those that were
+/// declared with each system.
 pub(crate) fn set_environment(
     py: Python<'_>,
     simulation: &mut Simulation,
     environment: &[Bound<'_, PyEffect>],
+    surfaces: &[Option<&SurfaceAssignment>],
 ) -> PyResult<()> {
-    let is_world = simulation.systems.len() > 1;
-    if let Some(effect) = environment.iter().find(|effect| is_world && effect.get().has_bodies()) {
-        let message = format!(
-            "{} acts on named bodies of one robot and cannot be used in a world of several systems yet; leave it out",
-            effect.repr()?
-        );
-        return Err(raise(py, "WorldError", &message, &fields!(py, "name": "environment")));
+    let systems = simulation.systems.iter().zip(surfaces);
+    let targets: Vec<Target<'_>> = systems
+        .map(|(System { name, model, .. }, surfaces)| Target { name, model, surfaces: *surfaces })
+        .collect();
+    for (number, own) in surfaces.iter().enumerate() {
+        own.map_or(Ok(()), |own| own.on_robot(py, &targets, number).map(drop))?; // errors even without an effect
     }
-    let model = Arc::clone(&simulation.systems[0].model);
-    let on_robot = environment.iter().filter_map(|effect| effect.get().on(py, &model).transpose());
-    simulation.effects = on_robot.collect::<PyResult<_>>()?;
+    let on_systems = environment.iter().filter_map(|effect| effect.get().on(py, &targets).transpose());
+    simulation.effects = on_systems.collect::<PyResult<_>>()?;
     let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
     let of_orbit = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());
     let given = gravity_of(py, environment, mu, simulation.earth.as_ref())?;

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs.scenario.reference import AnyReference
+    from onorbit_rs.scenario.world import WorldScenario
 
     Floats = NDArray[np.float64]
 
@@ -108,7 +109,7 @@ def build_around(
     return Built(scenario, model, orbit, earth, q, v, *simulation(), messages)
 
 
-def build_environment(scenario: Scenario, model: _core.Model) -> Environment:
+def build_environment(scenario: Scenario | WorldScenario, model: _core.Model | None) -> Environment:
     """Return orbit, Earth and effects; raise an error if orbit or Earth end before the run."""
     duration, folder = scenario.simulation.duration, scenario.folder
     with located(scenario, "orbit"):
@@ -117,16 +118,22 @@ def build_environment(scenario: Scenario, model: _core.Model) -> Environment:
         earth = build_earth(scenario.earth, scenario.epoch, orbit, folder)
         if earth is not None:
             earth.rotation(duration)  # raises if its table ends before the run
-    effects: list[_core.Effect] = []
-    for index, effect in enumerate(scenario.environment):
-        with located(scenario, "environment", index):
-            effects.append(effect.build(model, folder))
+    effects = build_effects(scenario, model)
     with located(scenario, "orbit"):
         if isinstance(scenario.orbit, NumericalOrbit) and orbit is not None:
             orbit = scenario.orbit.integrate(orbit, effects, earth)
         if orbit is not None:
             orbit.state(duration)  # raises if a path or a decaying orbit ends before the run
     return Environment(orbit, earth, effects)
+
+
+def build_effects(scenario: Scenario | WorldScenario, model: _core.Model | None) -> list[_core.Effect]:
+    """Return the effects. Links must exist on ``model``; those of a world (None) are checked by system."""
+    effects: list[_core.Effect] = []
+    for index, effect in enumerate(scenario.effects):
+        with located(scenario, "environment", index):
+            effects.append(effect.build(model, scenario.folder))
+    return effects
 
 
 def check_record_every(scenario: Scenario) -> None:

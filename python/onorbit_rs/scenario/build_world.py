@@ -9,16 +9,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from onorbit_rs import _core
+from onorbit_rs.common.coordinates import LINEAR, POSITION, QUATERNION
+from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import FrameError, OnOrbitError, SimulationError, WorldError
+from onorbit_rs.relative import to_world
 from onorbit_rs.scenario.build import (
     Built,
     Environment,
     build_around,
+    build_effects,
     build_environment,
     check_record_every,
     controlled,
 )
+from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.events import split_path
 from onorbit_rs.scenario.initial import Neighbour
 from onorbit_rs.scenario.locations import located
@@ -60,12 +65,17 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     single = scenario.scenarios
     check_record_every(next(iter(single.values())))
     models = {name: alone.robot.build(alone) for name, alone in single.items()}
-    around = build_environment(next(iter(single.values())), next(iter(models.values())))
+    around = build_environment(scenario, None)
     states = _initial_states(scenario, models, around)
-    systems = {
-        name: build_around(alone, models[name], states[name], around, runs_code=runs_code)
-        for name, alone in single.items()
-    }
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", ".* does not act on bodies")  # the world warns
+        systems = {
+            name: build_around(
+                alone, models[name], states[name],
+                around._replace(effects=build_effects(alone, models[name])), runs_code=runs_code,
+            )
+            for name, alone in single.items()
+        }  # fmt: skip
     _check_frames(scenario, models)
 
     def simulation() -> _core.Simulation:
@@ -106,7 +116,12 @@ def _initial_states(
                 _check_frame(models[other], frame)
             neighbour = Neighbour(models[other], *states[other])
         with located(alone, "initial"):
-            states[name] = initial.build(models[name], around.orbit, neighbour)
+            q, v = initial.build(models[name], around.orbit, neighbour)
+        if (part := scenario.systems[name].orbit) is not None and around.orbit is not None:
+            with located(scenario, "systems", name, "orbit"):
+                q[POSITION], velocity = to_world(around.orbit, part.build(alone.folder), earth=around.earth)
+            v[LINEAR] = matrix_from_quaternion(q[QUATERNION]).T @ velocity
+        states[name] = q, v
     return states
 
 
@@ -136,7 +151,7 @@ def _system(name: str, built: Built, *, runs_code: bool) -> _core.System:
     with located(alone, "robot"):
         return _core.System(
             name, built.model, built.q, built.v, controller=controller, reference=reference,
-            tool=alone.tracked_tool, **settings,
+            tool=alone.tracked_tool, surfaces=build_surfaces(alone.surfaces), **settings,
         )  # fmt: skip
 
 

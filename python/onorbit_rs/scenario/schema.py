@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, get_args
+from typing import Annotated, Any, NamedTuple, get_args
 
 from pydantic import Field, PrivateAttr, ValidationError, model_validator
 
@@ -11,7 +11,9 @@ from onorbit_rs.scenario.control import AnyControl, AnyController, Controller
 from onorbit_rs.scenario.control.check import check_control
 from onorbit_rs.scenario.document import Document
 from onorbit_rs.scenario.engine import check_engine
-from onorbit_rs.scenario.environment import BodyWrenchEffect
+from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect
+from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
+from onorbit_rs.scenario.environment.surfaces import RobotSurfaces
 from onorbit_rs.scenario.errors import inconsistent
 from onorbit_rs.scenario.initial import InitialState
 from onorbit_rs.scenario.orbit import AnyOrbit
@@ -37,6 +39,9 @@ class RobotKeys(Part):
     """Reference of ``controller``. Default: the tool or the joints are held."""
     initial: InitialState = Field(default_factory=InitialState)
     """Initial state. Default: at rest in the neutral configuration."""
+    surfaces: RobotSurfaces | None = None
+    """Surfaces for drag and radiation pressure that name none: one for all links, or a mapping from link to
+    surface. Default: the visual geometry."""
 
     @property
     def laws(self) -> list[AnyController]:
@@ -59,22 +64,30 @@ class Scenario(RobotKeys, Document):
 
     simulation: SimulationSettings
 
-    _system: str | None = PrivateAttr(default=None)
+    _in_world: InWorld | None = PrivateAttr(default=None)
 
     @classmethod
-    def of_system(cls, name: str, data: dict[str, Any], file: Path | None, lines: Lines) -> Scenario:
+    def of_system(cls, place: InWorld, data: dict[str, Any], file: Path | None, lines: Lines) -> Scenario:
         """Return the scenario of one system alone, from validated parts and the lines of the world."""
         scenario = cls.__new__(cls)
         try:
             cls.__pydantic_validator__.validate_python(data, self_instance=scenario)
         except ValidationError as error:
-            raise first_error(error, data, file, lines, lambda *at: _in_system(name, at)) from None
-        scenario._file, scenario._lines, scenario._system = file, lines, name
+            raise first_error(error, data, file, lines, lambda *at: place.location(at)) from None
+        scenario._file, scenario._lines, scenario._in_world = file, lines, place
         return scenario
 
     def location(self, *at: str | int) -> Location:
         """Return the location of an entry in the YAML file, also for a system of a world."""
-        return at if self._system is None else _in_system(self._system, at)
+        return at if self._in_world is None else self._in_world.location(at)
+
+    @property
+    def effects(self) -> list[AnyEffect]:
+        """Effects of the environment, on the surfaces of the robot."""
+        return [
+            effect.with_default(self.surfaces) if isinstance(effect, SurfaceEffect) else effect
+            for effect in self.environment
+        ]
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
@@ -101,10 +114,19 @@ class Scenario(RobotKeys, Document):
         return self
 
 
-def _in_system(name: str, at: Location) -> Location:
-    """Return the location in the file of an entry of the scenario of one system."""
-    if at and at[0] in RobotKeys.model_fields:
-        return ("systems", name, *at)
-    if len(at) > 1 and at[0] == "simulation" and at[1] in ControlSettings.model_fields:
-        return ("systems", name, *at[1:])
-    return at
+class InWorld(NamedTuple):
+    """Place of the scenario of one system in that of its world."""
+
+    system: str
+    effects: list[int]
+    """Index, in the environment of the world, of each effect on the system."""
+
+    def location(self, at: Location) -> Location:
+        """Return the location in the file of an entry of the scenario of the system."""
+        if at and at[0] in RobotKeys.model_fields:
+            return ("systems", self.system, *at)
+        if len(at) > 1 and at[0] == "simulation" and at[1] in ControlSettings.model_fields:
+            return ("systems", self.system, *at[1:])
+        if len(at) > 1 and at[0] == "environment" and isinstance(at[1], int):
+            return ("environment", self.effects[at[1]], *at[2:])
+        return at

@@ -10,18 +10,24 @@ from pydantic import Field, model_validator
 
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.scenario.document import Document
-from onorbit_rs.scenario.environment import BodyWrenchEffect
+from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect
+from onorbit_rs.scenario.environment.paths import split_link
 from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
 from onorbit_rs.scenario.errors import inconsistent
 from onorbit_rs.scenario.events import Event, ItsName, check_events
 from onorbit_rs.scenario.locations import scenario_error
-from onorbit_rs.scenario.schema import RobotKeys, Scenario
+from onorbit_rs.scenario.orbit import StartOrbit
+from onorbit_rs.scenario.schema import InWorld, RobotKeys, Scenario
 from onorbit_rs.scenario.settings import ControlSettings, WorldSettings
-from onorbit_rs.scenario.yaml_lines import Lines
+from onorbit_rs.scenario.yaml_lines import Lines, Location
 
 
 class System(RobotKeys, ControlSettings):
     """One spacecraft: robot, initial state and controllers."""
+
+    orbit: StartOrbit | None = None
+    """Orbit on which the base starts, ``kepler`` or ``sgp4``, instead of ``position`` and
+    ``linear_velocity`` of ``initial``. Its epoch may differ from that of the reference orbit."""
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
@@ -63,8 +69,26 @@ class WorldScenario(Document):
         for name, system in self.systems.items():
             own = {key: getattr(system, key) for key in RobotKeys.model_fields}
             control = {key: getattr(system, key) for key in ControlSettings.model_fields}
+            effects = self._effects_on(name)
+            own["environment"] = list(effects.values())
             data = shared | own | {"simulation": settings | control}
-            found[name] = Scenario.of_system(name, data, self._file, self._lines)
+            found[name] = Scenario.of_system(InWorld(name, [*effects]), data, self._file, self._lines)
+        return found
+
+    @property
+    def effects(self) -> list[AnyEffect]:
+        """Effects of the environment, whose links are paths."""
+        return self.environment
+
+    def _effects_on(self, name: str) -> dict[int, AnyEffect]:
+        """Return the effects on a system alone, by their index."""
+        found: dict[int, AnyEffect] = {}
+        for index, effect in enumerate(self.environment):
+            own: AnyEffect | None = effect
+            if isinstance(effect, (SurfaceEffect, BodyWrenchEffect)):
+                own = effect.of_system(name, self.systems)
+            if own is not None:
+                found[index] = own
         return found
 
     @property
@@ -83,18 +107,55 @@ class WorldScenario(Document):
         names = list(self.systems)
         if self.engine != "native":
             raise inconsistent("engine", f"engine {self.engine} does not support 'systems'; use native")
-        if len(names) > 1:
-            for index, effect in enumerate(self.environment):
-                if isinstance(effect, (SurfaceEffect, BodyWrenchEffect)):
-                    what = effect.kind.replace("_", " ")
-                    message = (
-                        f"{what} acts on the bodies of one robot and does not support several systems yet"
-                    )
-                    raise inconsistent(("environment", index), message)
+        for index, effect in enumerate(self.environment):
+            if isinstance(effect, (SurfaceEffect, BodyWrenchEffect)):
+                self._check_surfaces(index, effect)
+                for at, path in effect.paths:
+                    self._check_path(("environment", index, *at), path, is_link=at == ("body",))
         for name, system in self.systems.items():
             self._check_neighbour(name, system)
+            self._check_start(name, system)
         check_events(self.events, names)
         return self
+
+    def _check_surfaces(self, index: int, effect: AnyEffect) -> None:
+        """Raise an error if several systems are to have one surface that is not their faces."""
+        one = getattr(effect, "surfaces", None)
+        if one is not None and one.kind != "faces" and len(self.systems) > 1:
+            message = (
+                f"{one.kind} is the surface of one body; give it in 'bodies', or as 'surfaces' of a system"
+            )
+            raise inconsistent(("environment", index, "surfaces"), message)
+
+    def _check_path(self, at: Location, path: str, *, is_link: bool) -> None:
+        """Raise an error if a path does not begin with a system, or names no link although it must."""
+        names = list(self.systems)
+        system, link = split_link(path, names)
+        if system and (link or not is_link):
+            return
+        example = f"{names[0]}/LINK"
+        name, slash, _ = path.partition("/")
+        if slash and name not in names:
+            raise inconsistent(at, f"no system is named {name!r}{did_you_mean(name, names)}")
+        if is_link or slash or not (hint := did_you_mean(path, names)).startswith("; did"):
+            hint = f"; write {'SYSTEM/LINK' if is_link else 'SYSTEM or SYSTEM/LINK'}, such as {example}"
+        raise inconsistent(at, f"{path!r} is not a link of a system{hint}")
+
+    def _check_start(self, name: str, system: System) -> None:
+        """Raise an error if the orbit of a system has no reference, or is not the only start."""
+        if system.orbit is None:
+            return
+        at = ("systems", name)
+        if self.orbit is None:
+            message = "the orbit of a system requires the reference orbit; add 'orbit' beside 'systems'"
+            raise inconsistent((*at, "orbit"), message)
+        for key in ("position", "linear_velocity"):
+            if key in system.initial.model_fields_set:
+                message = f"'orbit' defines the start of the system; omit {key!r}, or omit the orbit"
+                raise inconsistent((*at, "initial", key), message)
+        if "gravity_mode" in system.orbit.model_fields_set:
+            message = "'gravity_mode' belongs to the reference orbit; set it there"
+            raise inconsistent((*at, "orbit", "gravity_mode"), message)
 
     def _check_neighbour(self, name: str, system: System) -> None:
         """Raise an error if the initial state is relative to no other system, or to itself in a circle."""

@@ -108,6 +108,11 @@ impl Epoch {
         self.seconds_tt(t) / (36_525.0 * DAY)
     }
 
+    /// Returns the time since another epoch, s.
+    pub fn seconds_since(self, other: Self) -> f64 {
+        self.tai.saturating_sub(other.tai) as f64 * 1e-9
+    }
+
     /// Returns UTC - TAI, s: a whole number, zero before 1972.
     pub fn utc_minus_tai(self) -> f64 {
         -f64::from(self.leap_seconds())

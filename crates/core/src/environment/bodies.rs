@@ -1,12 +1,12 @@
 //! States of the bodies of all systems, in blocks of eight.
 
 use super::body_block::{BodyBlock, BodyMotion, BodyState, LaneGroup};
-use super::body_index::{BlockLayout, BodyIndex};
+use super::body_index::{BlockLayout, BodyIndex, SystemRows};
 use super::soa::{Column8, WIDTH, store};
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
-/// States of the bodies of all systems.
+/// States of the bodies of all systems of a run.
 #[derive(Clone, Debug)]
 pub struct Bodies {
     pub(super) layout: BlockLayout,
@@ -16,13 +16,18 @@ pub struct Bodies {
 impl Bodies {
     /// Returns the states of the bodies of `systems`, each with its base first.
     pub fn new(systems: &[Vec<BodyState>]) -> Self {
-        let counts: Vec<_> = systems.iter().map(Vec::len).collect();
-        let blocks = systems.iter().flat_map(|bodies| bodies.chunks(WIDTH)).map(BodyBlock::new).collect();
-        Self { layout: BlockLayout::new(&counts), blocks }
+        Self::of(systems, 0..systems.len())
     }
 
-    /// Stores the motion of all bodies of a system; `motion(first)` returns the motion of as many bodies as
-    /// `S` has lanes, starting with body `first`.
+    /// Returns the states of the bodies of `systems`, each with its base first; `numbers` are their numbers in the world.
+    pub(crate) fn of(systems: &[Vec<BodyState>], numbers: impl Iterator<Item = usize>) -> Self {
+        let layout = BlockLayout::of(numbers.zip(systems.iter().map(Vec::len)));
+        let blocks = systems.iter().flat_map(|bodies| bodies.chunks(WIDTH)).map(BodyBlock::new).collect();
+        Self { layout, blocks }
+    }
+
+    /// Stores the motion of all bodies of the system at position `system` of the run; `motion(first)` returns the motion
+    /// of as many bodies as `S` has lanes, starting with body `first`.
     #[inline(always)]
     pub(crate) fn store_motion<S: Real>(
         &mut self,
@@ -30,7 +35,7 @@ impl Bodies {
         with_velocity: bool,
         motion: impl Fn(usize) -> BodyMotion<S>,
     ) {
-        let (start, count) = self.layout.systems()[system];
+        let SystemRows { first: start, count, .. } = self.layout.systems()[system];
         for first in (0..count).step_by(S::LANES) {
             let row = start + first;
             let (to, offset) = (&mut self.blocks[row / WIDTH].motion, row % WIDTH);
@@ -79,10 +84,15 @@ impl Bodies {
         self.layout.bodies().filter_map(|index| self.get(index).map(|body| (index, body)))
     }
 
-    /// Returns the centre of mass of the first base in `W`, m; the origin if there are no bodies.
-    pub(super) fn base_com(&self) -> Vector3<f64> {
+    /// Returns the rows of each system of the run.
+    pub(super) fn systems(&self) -> &[SystemRows] {
+        self.layout.systems()
+    }
+
+    /// Returns the centre of mass of the base of a system in `W`, m; the origin if there is no base.
+    pub(super) fn base_com(&self, system: &SystemRows) -> Vector3<f64> {
         let first = |block: &BodyBlock| block.motion.com.map(|column| column.get(0)).to_nalgebra();
-        self.blocks.first().map_or_else(Vector3::zeros, first)
+        self.blocks.get(system.first / WIDTH).map_or_else(Vector3::zeros, first)
     }
 
     /// Returns the centre of mass of all bodies in `W`, m.
@@ -98,13 +108,13 @@ impl Bodies {
 
     /// Returns the bodies of a system in groups with one body per lane of `S`.
     #[inline(always)]
-    pub(super) fn groups<S: Real>(&self, system: usize) -> impl Iterator<Item = LaneGroup<'_>> {
-        let (start, count) = self.layout.systems()[system];
+    pub(super) fn groups<S: Real>(&self, system: SystemRows) -> impl Iterator<Item = LaneGroup<'_>> {
+        let SystemRows { number, first, count } = system;
         let group = move |body| LaneGroup {
-            first: BodyIndex { system, body },
-            row: start + body,
+            first: BodyIndex { system: number, body },
+            row: first + body,
             count: (count - body).min(S::LANES),
-            block: &self.blocks[(start + body) / WIDTH],
+            block: &self.blocks[(first + body) / WIDTH],
         };
         (0..count).step_by(S::LANES).map(group)
     }

@@ -3,10 +3,10 @@
 use super::soa::WIDTH;
 use std::fmt;
 
-/// Index of a body of one of the systems of a run.
+/// Index of a body of one of the systems of a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyIndex {
-    /// Number of the system, from 0.
+    /// Number of the system in the world, from 0. A run of some of the systems keeps their numbers.
     pub system: usize,
     /// Index of the body in its system, base first.
     pub body: usize,
@@ -31,43 +31,62 @@ impl fmt::Display for BodyIndex {
 /// Rows of all bodies in blocks of [`WIDTH`]; every system starts a new block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct BlockLayout {
-    /// First row and number of bodies of each system.
-    systems: Vec<(usize, usize)>,
+    systems: Vec<SystemRows>,
+}
+
+/// Rows of the bodies of one system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SystemRows {
+    /// Number of the system in the world.
+    pub(super) number: usize,
+    /// Row of the base.
+    pub(super) first: usize,
+    /// Number of bodies.
+    pub(super) count: usize,
 }
 
 impl BlockLayout {
-    /// Returns the layout of systems with these numbers of bodies.
+    /// Returns the layout of the systems of a world, which have these numbers of bodies.
     pub(super) fn new(counts: &[usize]) -> Self {
+        Self::of(counts.iter().copied().enumerate())
+    }
+
+    /// Returns the layout of some systems of a world, given by their numbers and their numbers of bodies.
+    pub(super) fn of(systems: impl Iterator<Item = (usize, usize)>) -> Self {
         let mut next = 0;
-        let place = |&count: &usize| {
+        let place = |(number, count): (usize, usize)| {
             let first = next;
             next += count.next_multiple_of(WIDTH);
-            (first, count)
+            SystemRows { number, first, count }
         };
-        Self { systems: counts.iter().map(place).collect() }
+        Self { systems: systems.map(place).collect() }
     }
 
     pub(super) fn block_count(&self) -> usize {
-        self.systems.last().map_or(0, |(first, count)| (first + count).div_ceil(WIDTH))
+        self.systems.last().map_or(0, |rows| (rows.first + rows.count).div_ceil(WIDTH))
     }
 
     pub(super) fn body_count(&self) -> usize {
-        self.systems.iter().map(|(_, count)| count).sum()
+        self.systems.iter().map(|rows| rows.count).sum()
     }
 
-    /// Returns the first row and the number of bodies of each system.
-    pub(super) fn systems(&self) -> &[(usize, usize)] {
+    /// Returns the rows of each system.
+    pub(super) fn systems(&self) -> &[SystemRows] {
         &self.systems
     }
 
     /// Returns the row of a body, if it exists.
     pub(super) fn row(&self, BodyIndex { system, body }: BodyIndex) -> Option<usize> {
-        self.systems.get(system).filter(|(_, count)| body < *count).map(|(first, _)| first + body)
+        let rows = self.systems.iter().find(|rows| rows.number == system)?;
+        (body < rows.count).then(|| rows.first + body)
     }
 
     /// Returns all bodies, system by system, base first.
     pub(super) fn bodies(&self) -> impl Iterator<Item = BodyIndex> {
-        let systems = self.systems.iter().enumerate();
-        systems.flat_map(|(system, (_, count))| (0..*count).map(move |body| BodyIndex { system, body }))
+        let bodies = |rows: &SystemRows| {
+            let system = rows.number;
+            (0..rows.count).map(move |body| BodyIndex { system, body })
+        };
+        self.systems.iter().flat_map(bodies)
     }
 }

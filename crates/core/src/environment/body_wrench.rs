@@ -43,7 +43,8 @@ impl BodyWrench {
         Ok(Self { body: body.into(), force, torque, point: Vector3::zeros(), start, end })
     }
 
-    /// Returns a force (N) at the origin of a frame (index) and a torque (N m), both in frame axes and always active.
+    /// Returns a force (N) at the origin of a frame (index) and a torque (N m), both in frame axes and always active, on
+    /// the first system.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`], [`EnvironmentError::UnknownFrame`].
@@ -80,6 +81,12 @@ impl BodyWrench {
         }
     }
 
+    /// Returns the same wrench on the system with this number in the world.
+    #[must_use]
+    pub fn on_system(self, system: usize) -> Self {
+        Self { body: BodyIndex { system, ..self.body }, ..self }
+    }
+
     /// Returns the body on which the wrench acts.
     pub fn body(&self) -> BodyIndex {
         self.body
@@ -101,6 +108,10 @@ impl Effect for BodyWrench {
 
     fn event_times(&self) -> Vec<f64> {
         [self.start, self.end].into_iter().filter(|t| t.is_finite()).collect()
+    }
+
+    fn acts_on(&self, system: usize) -> bool {
+        self.body.system == system
     }
 
     fn reads_velocities(&self) -> bool {

@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Parts do not shadow each other.
 ///
 /// The density is computed at the last multiple of 1/8 s and the point of a grid of 128 m that is nearest to the base
-/// of the robot, and extrapolated with the scale height up to 160 m from there; the relative error is at most 1e-4
+/// of each system, and extrapolated with the scale height up to 160 m from there; the relative error is at most 1e-4
 /// where the model is smooth. For bodies farther away the model is evaluated at the body. The grid point depends on
 /// position and time alone.
 ///
@@ -30,8 +30,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Drag {
     atmosphere: Arc<dyn Atmosphere>,
     surfaces: Surfaces,
-    /// Last evaluated local atmosphere, a pure function of its time and centre.
-    cached: Mutex<Option<LocalAtmosphere>>,
+    /// Last evaluated local atmosphere of each system, a pure function of its time and centre.
+    cached: Mutex<Vec<Option<LocalAtmosphere>>>,
 }
 
 const NAME: &str = "drag";
@@ -39,20 +39,28 @@ const NAME: &str = "drag";
 impl Drag {
     /// Returns the effect for an atmosphere and the surfaces of the bodies.
     pub fn new(atmosphere: Arc<dyn Atmosphere>, surfaces: Surfaces) -> Self {
-        Self { atmosphere, surfaces, cached: Mutex::new(None) }
+        let cached = Mutex::new(vec![None; surfaces.system_count()]);
+        Self { atmosphere, surfaces, cached }
     }
 
-    /// Returns the atmosphere about the grid point nearest to `r`, or about `r` at the edge of a model.
-    fn local(&self, earth: &Earth, t: f64, r: &Vector3<f64>) -> Result<LocalAtmosphere, AtmosphereError> {
+    /// Returns the atmosphere about the grid point nearest to `r`, or about `r` at the edge of a model; `r` is the
+    /// position of the base of the system with this number.
+    fn local(
+        &self,
+        system: usize,
+        earth: &Earth,
+        t: f64,
+        r: &Vector3<f64>,
+    ) -> Result<LocalAtmosphere, AtmosphereError> {
         let (time, centre) = LocalAtmosphere::grid_point(t, r);
         // The lock is released while the model is evaluated, because runs may share this effect.
         let cached = || self.cached.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(local) = cached().filter(|local| local.is_about(time, &centre)) {
+        if let Some(local) = cached()[system].filter(|local| local.is_about(time, &centre)) {
             return Ok(local);
         }
         let about = |time: f64, r: &Vector3<f64>| LocalAtmosphere::new(&*self.atmosphere, earth, time, r);
         let local = about(time, &centre).or_else(|_| about(t, r))?;
-        *cached() = Some(local);
+        cached()[system] = Some(local);
         Ok(local)
     }
 }
@@ -64,6 +72,10 @@ impl Effect for Drag {
 
     fn requires_orbit(&self) -> bool {
         true
+    }
+
+    fn acts_on(&self, system: usize) -> bool {
+        self.surfaces.covers_system(system)
     }
 
     fn counts_once_on(&self, body: BodyIndex) -> bool {
@@ -85,28 +97,34 @@ impl Effect for Drag {
 impl Drag {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let base = reference.position + scene.bodies.base_com();
-        let local = self.local(earth, scene.time, &base)?;
         let model = |r: Vector3<f64>| -> Result<f64, EnvironmentError> {
             Ok(self.atmosphere.density(&AtmospherePoint::new(earth, scene.time, &r)?)?)
         };
         let (r_ref, v_ref) = (Vec3::from(reference.position), Vec3::from(reference.velocity));
-        let earth_rate = Vec3::<S>::of(&local.earth_rate.into());
-        scene.add_lanes::<S>(
-            wrenches,
-            #[inline(always)]
-            |group| {
-                let Some(surfaces) = self.surfaces.block(group.row) else { return Ok(WrenchLanes::zero()) };
-                let r = Vec3::<S>::of(&r_ref) + group.coms();
-                let counts = |i: usize| i < group.count && self.surfaces.covers(group.body(i));
-                let density = local.densities(r, counts, model)?;
-                // relative to the atmosphere:  v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
-                let [linear, angular] = group.velocities();
-                let (v, w) = (Vec3::<S>::of(&v_ref) + linear - earth_rate.cross(r), angular - earth_rate);
-                let rot_wk = group.rot_wk::<S>();
-                let (v_k, w_k) = (rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
-                Ok(surfaces.drag(group.offset(), v_k, w_k).rotated(&rot_wk) * density)
-            },
-        )
+        for system in scene.bodies.systems().iter().filter(|rows| self.acts_on(rows.number)) {
+            let base = reference.position + scene.bodies.base_com(system);
+            let local = self.local(system.number, earth, scene.time, &base)?;
+            let earth_rate = Vec3::<S>::of(&local.earth_rate.into());
+            scene.add_lanes_to::<S>(
+                std::slice::from_ref(system),
+                wrenches,
+                #[inline(always)]
+                |group| {
+                    let Some(surfaces) = self.surfaces.block(group.first) else {
+                        return Ok(WrenchLanes::zero());
+                    };
+                    let r = Vec3::<S>::of(&r_ref) + group.coms();
+                    let counts = |i: usize| i < group.count && self.surfaces.covers(group.body(i));
+                    let density = local.densities(r, counts, model)?;
+                    // relative to the atmosphere:  v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
+                    let [linear, angular] = group.velocities();
+                    let (v, w) = (Vec3::<S>::of(&v_ref) + linear - earth_rate.cross(r), angular - earth_rate);
+                    let rot_wk = group.rot_wk::<S>();
+                    let (v_k, w_k) = (rot_wk.transpose_mul(v), rot_wk.transpose_mul(w));
+                    Ok(surfaces.drag(group.offset(), v_k, w_k).rotated(&rot_wk) * density)
+                },
+            )?;
+        }
+        Ok(())
     }
 }

@@ -54,6 +54,12 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         false
     }
 
+    /// Returns true if the effect may act on bodies of the system with this number in the world. A run of other systems
+    /// does not evaluate it and ignores its instants.
+    fn acts_on(&self, _system: usize) -> bool {
+        true
+    }
+
     /// Returns true if at most one effect with this name may act on `body`; a second one is rejected.
     fn counts_once_on(&self, _body: BodyIndex) -> bool {
         false

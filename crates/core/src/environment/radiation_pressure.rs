@@ -125,6 +125,10 @@ impl Effect for RadiationPressure {
         true
     }
 
+    fn acts_on(&self, system: usize) -> bool {
+        self.surfaces.covers_system(system)
+    }
+
     fn counts_once_on(&self, body: BodyIndex) -> bool {
         self.surfaces.covers(body)
     }
@@ -148,28 +152,35 @@ impl Effect for RadiationPressure {
 impl RadiationPressure {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
-        let (sun, base) = (scene.sun(earth)?, scene.bodies.base_com());
-        let at_base = self.light(&(reference.position + base), &sun);
-        let near = |com: Vector3<f64>| (com - base).norm_squared() <= UNIFORM_RADIUS * UNIFORM_RADIUS;
-        let on_each = |coms: Vec3<S>| {
-            Light::<S>::from_lanes(|i| match coms.lane(i).to_nalgebra() {
-                com if near(com) => at_base,
-                com => self.light(&(reference.position + com), &sun),
-            })
-        };
-        scene.add_lanes::<S>(
-            wrenches,
-            #[inline(always)]
-            |group| {
-                let Some(surfaces) = self.surfaces.block(group.row) else { return Ok(WrenchLanes::zero()) };
-                let com = group.coms::<S>();
-                let offset = com - Vec3::of(&base.into());
-                let is_far = S::any(S::of(UNIFORM_RADIUS * UNIFORM_RADIUS).less(offset.dot(offset)));
-                let light = if is_far { on_each(com) } else { Light::from_lanes(|_| at_base) };
-                let rot_wk = group.rot_wk::<S>();
-                let to_sun_k = rot_wk.transpose_mul(light.to_sun);
-                Ok(surfaces.pressure(group.offset(), to_sun_k).rotated(&rot_wk) * light.pressure)
-            },
-        )
+        let sun = scene.sun(earth)?;
+        for system in scene.bodies.systems().iter().filter(|rows| self.acts_on(rows.number)) {
+            let base = scene.bodies.base_com(system);
+            let at_base = self.light(&(reference.position + base), &sun);
+            let near = |com: Vector3<f64>| (com - base).norm_squared() <= UNIFORM_RADIUS * UNIFORM_RADIUS;
+            let on_each = |coms: Vec3<S>| {
+                Light::<S>::from_lanes(|i| match coms.lane(i).to_nalgebra() {
+                    com if near(com) => at_base,
+                    com => self.light(&(reference.position + com), &sun),
+                })
+            };
+            scene.add_lanes_to::<S>(
+                std::slice::from_ref(system),
+                wrenches,
+                #[inline(always)]
+                |group| {
+                    let Some(surfaces) = self.surfaces.block(group.first) else {
+                        return Ok(WrenchLanes::zero());
+                    };
+                    let com = group.coms::<S>();
+                    let offset = com - Vec3::of(&base.into());
+                    let is_far = S::any(S::of(UNIFORM_RADIUS * UNIFORM_RADIUS).less(offset.dot(offset)));
+                    let light = if is_far { on_each(com) } else { Light::from_lanes(|_| at_base) };
+                    let rot_wk = group.rot_wk::<S>();
+                    let to_sun_k = rot_wk.transpose_mul(light.to_sun);
+                    Ok(surfaces.pressure(group.offset(), to_sun_k).rotated(&rot_wk) * light.pressure)
+                },
+            )?;
+        }
+        Ok(())
     }
 }

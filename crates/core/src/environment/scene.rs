@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use super::bodies::Bodies;
 use super::body_block::LaneGroup;
+use super::body_index::SystemRows;
 use super::error::{EnvironmentError, ScenePoint};
 use super::wrenches::{WrenchLanes, Wrenches};
 use crate::earth::Earth;
@@ -97,6 +98,17 @@ impl<'a> Scene<'a> {
         wrenches: &mut Wrenches,
         wrench_of: impl Fn(&LaneGroup<'a>) -> Result<WrenchLanes<S>, EnvironmentError>,
     ) -> Result<(), EnvironmentError> {
+        self.add_lanes_to(self.bodies.systems(), wrenches, wrench_of)
+    }
+
+    /// Adds wrenches to the bodies of some systems, as [`Scene::add_lanes`] does to all.
+    #[inline(always)]
+    pub(super) fn add_lanes_to<S: Real>(
+        &self,
+        systems: &[SystemRows],
+        wrenches: &mut Wrenches,
+        wrench_of: impl Fn(&LaneGroup<'a>) -> Result<WrenchLanes<S>, EnvironmentError>,
+    ) -> Result<(), EnvironmentError> {
         if self.bodies.layout != wrenches.layout {
             let (expected, got) = (self.bodies.len(), wrenches.len());
             return Err(EnvironmentError::WrongLength { expected, got });
@@ -104,8 +116,8 @@ impl<'a> Scene<'a> {
         S::enter(
             #[inline(always)]
             || {
-                for system in 0..self.bodies.layout.systems().len() {
-                    for group in self.bodies.groups::<S>(system) {
+                for system in systems {
+                    for group in self.bodies.groups::<S>(*system) {
                         wrenches.add_lanes(group.row, wrench_of(&group)?);
                     }
                 }

@@ -1,6 +1,7 @@
 //! Forces and torques on the bodies of all systems, in blocks of eight.
 
-use super::body_index::{BlockLayout, BodyIndex};
+use super::bodies::Bodies;
+use super::body_index::{BlockLayout, BodyIndex, SystemRows};
 use super::error::EnvironmentError;
 use super::soa::{Column8, WIDTH, store};
 use crate::spatial::{Mat3, Real, Vec3};
@@ -33,7 +34,15 @@ pub(crate) struct WrenchLanes<T> {
 impl Wrenches {
     /// Returns zero wrenches on systems with these numbers of bodies.
     pub fn new(counts: &[usize]) -> Self {
-        let layout = BlockLayout::new(counts);
+        Self::with(BlockLayout::new(counts))
+    }
+
+    /// Returns zero wrenches on these bodies.
+    pub(crate) fn on(bodies: &Bodies) -> Self {
+        Self::with(bodies.layout.clone())
+    }
+
+    fn with(layout: BlockLayout) -> Self {
         Self { blocks: vec![WrenchLanes::default(); layout.block_count()], layout }
     }
 
@@ -65,10 +74,10 @@ impl Wrenches {
         self.layout.bodies().filter_map(|body| self.get(body))
     }
 
-    /// Returns the wrenches on the bodies of a system, base first.
+    /// Returns the wrenches on the bodies of the system at position `system` of the run, base first.
     pub(crate) fn of_system(&self, system: usize) -> impl Iterator<Item = Wrench> {
-        let count = self.layout.systems()[system].1;
-        (0..count).filter_map(move |body| self.get(BodyIndex { system, body }))
+        let SystemRows { number, count, .. } = self.layout.systems()[system];
+        (0..count).filter_map(move |body| self.get(BodyIndex { system: number, body }))
     }
 
     /// Adds a wrench to the wrench on a body. A plain number selects a body of the first system.
@@ -93,10 +102,11 @@ impl Wrenches {
         store(&mut to.torque, offset, sum.torque);
     }
 
-    /// Returns the wrenches on consecutive bodies of a system, one per lane of `S`, starting with body `first`.
+    /// Returns the wrenches on consecutive bodies of the system at position `system` of the run, one per lane of `S`,
+    /// starting with body `first`.
     #[inline(always)]
     pub(crate) fn lanes<S: Real>(&self, system: usize, first: usize) -> WrenchLanes<S> {
-        let row = self.layout.systems()[system].0 + first;
+        let row = self.layout.systems()[system].first + first;
         self.blocks[row / WIDTH].load(row % WIDTH)
     }
 }

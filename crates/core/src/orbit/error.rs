@@ -12,6 +12,35 @@ pub enum OrbitError {
     /// The gravity field cannot be evaluated.
     #[error(transparent)]
     Gravity(#[from] GravityError),
+    /// Two orbits are around different planets.
+    #[error(
+        "the orbit has mu {mu} m³/s² and its reference {expected} m³/s²; give both the same planet",
+        mu = unlike(*mu, &[*expected]), expected = short(*expected)
+    )]
+    OtherPlanet {
+        /// Gravitational parameter of the orbit, m³/s².
+        mu: f64,
+        /// That of the reference, m³/s².
+        expected: f64,
+    },
+    /// An orbit has an epoch, but the reference has none.
+    #[error(
+        "the epoch of the orbit is {epoch}, but time zero of its reference is not a date; give an earth with an epoch"
+    )]
+    NoEpoch {
+        /// Epoch of the orbit.
+        epoch: String,
+    },
+    /// Two orbits have different axes.
+    #[error(
+        "the orbit has {orbit} axes and its reference {reference} axes; give an earth with an epoch to convert them"
+    )]
+    OtherAxes {
+        /// Axes of the orbit.
+        orbit: &'static str,
+        /// Axes of the reference.
+        reference: &'static str,
+    },
     /// An input is infinite or not a number.
     #[error("{name} is {value}; expected a finite number", value = short(*value))]
     NotFinite {

@@ -14,8 +14,9 @@ pub(super) struct LoadedSystem<'a, S> {
     pub(super) frame_velocity: Vec3<S>,
 }
 
-/// Returns the bodies of the systems, all at rest and with their origins at the origin of W.
-pub(super) fn bodies_of(models: &[&Model]) -> Bodies {
+/// Returns the bodies of systems, given by their numbers in the world and their models, all at rest and with their origins
+/// at the origin of W.
+pub(super) fn bodies_of(numbers: &[usize], models: &[&Model]) -> Bodies {
     let at_rest = |node: &Node| BodyState {
         mass: node.mass,
         inertia: node.about_com.to_nalgebra(),
@@ -26,11 +27,11 @@ pub(super) fn bodies_of(models: &[&Model]) -> Bodies {
         angular_velocity: Vector3::zeros(),
     };
     let bodies = |model: &&Model| model.nodes().iter().map(at_rest).collect();
-    Bodies::new(&models.iter().map(bodies).collect::<Vec<_>>())
+    Bodies::of(&models.iter().map(bodies).collect::<Vec<_>>(), numbers.iter().copied())
 }
 
 impl<S: Scalar> LoadedSystem<'_, S> {
-    /// Writes the states of the bodies of system number `system` to `bodies`.
+    /// Writes the states of the bodies of the system at position `system` of the run to `bodies`.
     pub(super) fn gather_bodies(&self, system: usize, with_velocity: bool, bodies: &mut Bodies) {
         let count = self.data.bodies.len();
         on_lanes!(count, L => self.gather_lanes::<L>(system, with_velocity, bodies));
@@ -72,7 +73,8 @@ impl<S: Scalar> LoadedSystem<'_, S> {
         );
     }
 
-    /// Writes the wrenches on system number `system` to `data`, in base axes and about the origins of the bodies.
+    /// Writes the wrenches on the system at position `system` of the run to `data`, in base axes and about the origins of
+    /// the bodies.
     pub(super) fn scatter_wrenches(&mut self, system: usize, wrenches: &Wrenches) {
         on_lanes!(self.data.bodies.len(), L => self.scatter_lanes::<L>(system, wrenches));
     }

@@ -6,6 +6,7 @@ use super::modes::AT_LIMIT;
 use super::settings::Simulation;
 use super::state_range::{UNIT_NORM, attitude_norm, check_range};
 use crate::control::check_controls;
+use crate::environment::BodyIndex;
 use crate::model::{BASE_NQ, Model};
 use crate::world::{System, check_events, check_names};
 
@@ -49,7 +50,7 @@ impl Simulation {
         if let Some(effect) = self.effects.iter().find(|effect| effect.requires_orbit() && !has_planet) {
             return Err(SimulationError::NeedsOrbit { effect: effect.name().to_owned() });
         }
-        self.check_duplicate_effects()?;
+        self.check_effects()?;
         if let (Some(orbit), Some(earth)) = (&self.orbit, &self.earth) {
             earth.check_orbit(orbit.axes(), orbit.epoch())?;
         }
@@ -61,23 +62,38 @@ impl Simulation {
         self.systems.iter().try_for_each(check_system)
     }
 
-    /// Rejects two effects that would count twice on a body, including the gravity that an orbit around a planet
-    /// adds.
-    fn check_duplicate_effects(&self) -> Result<(), SimulationError> {
-        let (effects, model) = (self.all_effects(), &self.systems[0].model);
+    /// Rejects effects that act on none of the systems, and two effects that would count twice on a body, including the
+    /// gravity that an orbit around a planet adds.
+    fn check_effects(&self) -> Result<(), SimulationError> {
+        let (effects, count) = (self.all_effects(), self.systems.len());
         for (k, effect) in effects.iter().enumerate() {
-            let before = effects[..k].iter().filter(|before| before.name() == effect.name());
-            for before in before {
-                let both = |body: &usize| {
-                    before.counts_once_on((*body).into()) && effect.counts_once_on((*body).into())
-                };
-                if let Some(body) = (0..model.nodes().len()).find(both) {
-                    let (effect, body) = (effect.name().to_owned(), model.body_frame(body).name.clone());
+            if !(0..count).any(|system| effect.acts_on(system)) {
+                return Err(SimulationError::EffectOnNoSystem { effect: effect.name().to_owned(), count });
+            }
+            for before in effects[..k].iter().filter(|before| before.name() == effect.name()) {
+                let both = |body: &BodyIndex| before.counts_once_on(*body) && effect.counts_once_on(*body);
+                if let Some(body) = self.bodies().find(both) {
+                    let (effect, body) = (effect.name().to_owned(), self.body_path(body));
                     return Err(SimulationError::EffectTwice { effect, body });
                 }
             }
         }
         Ok(())
+    }
+
+    /// Returns all bodies of all systems.
+    fn bodies(&self) -> impl Iterator<Item = BodyIndex> {
+        let bodies = |(system, declared): (usize, &System)| {
+            (0..declared.model.nodes().len()).map(move |body| BodyIndex { system, body })
+        };
+        self.systems.iter().enumerate().flat_map(bodies)
+    }
+
+    /// Returns the name of a body, after the name of its system if there are several.
+    fn body_path(&self, BodyIndex { system, body }: BodyIndex) -> String {
+        let System { name, model, .. } = &self.systems[system];
+        let body = &model.body_frame(body).name;
+        if self.systems.len() == 1 { body.clone() } else { format!("{name}/{body}") }
     }
 }
 

@@ -46,15 +46,16 @@ pub(super) struct EnvironmentLoads {
 }
 
 impl EnvironmentLoads {
+    /// Returns the loads of `effects` on the bodies of systems, given by their models and their numbers in the world.
     pub(super) fn new(
-        models: &[&Model],
+        (numbers, models): (&[usize], &[&Model]),
         effects: Vec<Arc<dyn Effect>>,
         orbit: Option<Arc<dyn Orbit>>,
         gravity: Option<Arc<Gravity>>,
         earth: Option<Arc<Earth>>,
         gravity_mode: GravityMode,
     ) -> Self {
-        let counts: Vec<_> = models.iter().map(|model| model.nodes().len()).collect();
+        let bodies = bodies_of(numbers, models);
         Self {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
@@ -66,9 +67,9 @@ impl EnvironmentLoads {
             earth,
             gravity_mode,
             interval: (f64::NAN, f64::NAN),
-            bodies: bodies_of(models),
-            wrenches: Wrenches::new(&counts),
-            common: Wrenches::new(&counts),
+            wrenches: Wrenches::on(&bodies),
+            common: Wrenches::on(&bodies),
+            bodies,
         }
     }
 

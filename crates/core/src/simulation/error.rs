@@ -68,6 +68,8 @@ pub enum SimulationError {
          bodies"
     )]
     EffectTwice { effect: String, body: String },
+    #[error("the {effect} acts on none of the systems, which are numbered from 0; there are {count}")]
+    EffectOnNoSystem { effect: String, count: usize },
     #[error(
         "the controller tracks frame '{controller}', but the tool of the run is '{tool}'; use the same \
          frame for both"

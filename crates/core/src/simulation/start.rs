@@ -5,7 +5,7 @@ use super::environment_loads::EnvironmentLoads;
 use super::error::{RunFailure, SimulationError};
 use super::recording::Recording;
 use super::settings::Simulation;
-use super::start_group::Shared;
+use super::start_group::{Shared, column_names};
 use super::stepper::{Group, Stepper};
 use super::trace::Trace;
 use crate::control::Begin;
@@ -100,6 +100,7 @@ impl Simulation {
         let mut runs = Vec::new();
         for (number, numbers) in groups.into_iter().enumerate() {
             let own: Vec<_> = numbers.iter().filter_map(|&system| systems[system].take()).collect();
+            let settings = settings.of_group(&numbers);
             let mut run = settings.run_state::<S>(duration, &numbers, own, events, engine.take())?;
             match checkpoints.get_mut(number).and_then(Option::take) {
                 None => run.mover.kinematics(&mut run.equations, &mut run.state),
@@ -115,12 +116,14 @@ impl Simulation {
 
     /// Returns the settings that all systems share.
     fn settings(&self) -> Shared {
+        let effects = self.all_effects();
         Shared {
+            effect_names: column_names(&effects),
+            effects,
             orbit: self.orbit.clone(),
             gravity: self.gravity(),
             earth: self.earth.clone(),
             gravity_mode: self.gravity_mode,
-            effects: self.all_effects(),
             time_step: self.time_step,
             has_engine: self.engine.is_some(),
             integrator: self.integrator,
@@ -132,7 +135,7 @@ impl Simulation {
     }
 
     /// Returns pairs of systems that interact although no event connects them: those whose controls wait for an event.
-    fn links(&self) -> Vec<(usize, usize)> {
+    pub(super) fn links(&self) -> Vec<(usize, usize)> {
         let waiting = self.systems.iter().enumerate().flat_map(|(system, declared)| {
             declared.controls.iter().filter_map(move |control| match control.begin {
                 Begin::AfterEvent(event) => Some((system, event)),
@@ -158,7 +161,8 @@ impl Simulation {
     /// Returns the loads of the environment on the bodies of all systems.
     pub(super) fn environment_loads(&self) -> EnvironmentLoads {
         let models: Vec<&Model> = self.systems.iter().map(|system| &*system.model).collect();
-        self.settings().environment_loads(&models)
+        let numbers: Vec<usize> = (0..models.len()).collect();
+        self.settings().environment_loads(&numbers, &models)
     }
 
     /// Returns the effects of the scenario, and gravity if the orbit has a planet.

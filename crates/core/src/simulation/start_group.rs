@@ -34,6 +34,7 @@ use std::sync::Arc;
 const ROWS_OF_OPEN_RUN: usize = 1024;
 
 /// Settings that all systems of a simulation share.
+#[derive(Clone)]
 pub(super) struct Shared {
     pub(super) orbit: Option<Arc<dyn Orbit>>,
     /// Gravity field of the run; `None` without a planet.
@@ -42,6 +43,8 @@ pub(super) struct Shared {
     pub(super) gravity_mode: GravityMode,
     /// Effects, including gravity.
     pub(super) effects: Vec<Arc<dyn Effect>>,
+    /// Name of each effect in the trace.
+    pub(super) effect_names: Vec<String>,
     pub(super) time_step: f64,
     pub(super) has_engine: bool,
     pub(super) integrator: Integrator,
@@ -52,6 +55,14 @@ pub(super) struct Shared {
 }
 
 impl Shared {
+    /// Returns the settings of a group of systems, with the effects that act on any of them.
+    pub(super) fn of_group(&self, numbers: &[usize]) -> Self {
+        let is_own = |effect: &Arc<dyn Effect>| numbers.iter().any(|&system| effect.acts_on(system));
+        let named = self.effects.iter().zip(&self.effect_names).filter(|(effect, _)| is_own(effect));
+        let (effects, effect_names) = named.map(|(effect, name)| (Arc::clone(effect), name.clone())).unzip();
+        Self { effects, effect_names, ..self.clone() }
+    }
+
     /// Returns the run, at its initial state, of the systems with these numbers.
     pub(super) fn run_state<'a, S: Scalar>(
         &self,
@@ -92,7 +103,7 @@ impl Shared {
             members.push(RunSystem { controllers, recorder, settled: None });
             models.push(model);
         }
-        let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(&models));
+        let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(numbers, &models));
         let mut state = State::at(&mut equations.trees, starts);
         follow_centers(&equations.trees, &mut state.trees);
         let is_fixed = is_native && !is_adaptive;
@@ -132,10 +143,10 @@ impl Shared {
         Ok(run)
     }
 
-    /// Returns the loads of the environment on the bodies of systems with these models.
-    pub(super) fn environment_loads(&self, models: &[&Model]) -> EnvironmentLoads {
+    /// Returns the loads of the environment on the bodies of systems with these numbers and models.
+    pub(super) fn environment_loads(&self, numbers: &[usize], models: &[&Model]) -> EnvironmentLoads {
         EnvironmentLoads::new(
-            models,
+            (numbers, models),
             self.effects.clone(),
             self.orbit.clone(),
             self.gravity.clone(),
@@ -158,7 +169,7 @@ impl Shared {
         RecordOptions {
             tool,
             has_reference: has_reference || tracks_tool,
-            effects: if self.record_wrenches { column_names(&self.effects) } else { Vec::new() },
+            effects: if self.record_wrenches { self.effect_names.clone() } else { Vec::new() },
             has_orbit: self.orbit.is_some(),
             compensates_friction: compensates_friction && model.has_friction() && !self.has_engine,
             records_residual: self.gravity.is_some() && self.gravity_mode == GravityMode::Carried,
@@ -242,7 +253,7 @@ fn events_of(numbers: &[usize], events: &[Event]) -> Events {
 }
 
 /// Returns a unique column name for each effect: its name, with `_2`, `_3`, … appended where the name is taken.
-fn column_names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
+pub(super) fn column_names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
     let mut names: Vec<String> = Vec::with_capacity(effects.len());
     for effect in effects {
         let name = effect.name().replace(' ', "_");

@@ -19,8 +19,10 @@ use std::sync::Arc;
 ///     Model of the density.
 /// surfaces : Surface or dict of str to Surface, optional
 ///     Surfaces of the bodies: ``Faces`` for all bodies, any one surface for a robot with a single body, or a
-///     dict by link or frame; bodies that are not listed have no drag. Default: ``Faces()``, the robot's visual
-///     geometry with C_D = 2.2; bodies without visual geometry have no drag, which the simulation warns of.
+///     dict by link or frame; bodies that are not listed have no drag. In a world of several systems the keys are
+///     ``SYSTEM/LINK``, or ``SYSTEM`` for all of its bodies. Default: the surfaces of each ``System``, otherwise
+///     ``Faces()``, the visual geometry with C_D = 2.2; bodies without visual geometry have no drag, which the
+///     simulation warns of.
 #[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyDrag;
 

@@ -1,4 +1,4 @@
-//! Effects of the environment. Names of bodies are resolved when the simulation is constructed.
+//! Effects of the environment. Names of systems and bodies are resolved when the simulation is constructed.
 
 mod atmosphere;
 mod body_wrench;
@@ -6,6 +6,7 @@ mod drag;
 mod gravity_gradient;
 mod radiation_pressure;
 mod surfaces;
+mod target;
 
 use crate::arrays::list_of;
 use crate::errors::IntoPython;
@@ -14,11 +15,12 @@ use nalgebra::Vector3;
 use onorbit_core::environment::atmosphere::Atmosphere;
 use onorbit_core::environment::{BodyWrench, Drag, Effect, GravityGradient, RadiationPressure};
 use onorbit_core::gravity::{GravityField, Luminary};
-use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use surfaces::SurfaceAssignment;
+
+pub(crate) use surfaces::SurfaceAssignment;
+pub(crate) use target::Target;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
@@ -46,7 +48,7 @@ impl PyEffect {
     }
 }
 
-/// Parameters of an effect that is not yet assigned to a robot.
+/// Parameters of an effect that is not yet assigned to systems.
 pub(crate) enum Kind {
     GravityGradient,
     /// Part of the gravity of the run; see [`crate::gravity::gravity_of`].
@@ -111,29 +113,24 @@ impl PyEffect {
         matches!(self.kind, Kind::GravityField(_) | Kind::ThirdBody(_))
     }
 
-    /// Returns true if the effect acts on named bodies or surfaces of one robot.
-    pub(crate) fn has_bodies(&self) -> bool {
-        matches!(self.kind, Kind::BodyWrench { .. } | Kind::Drag { .. } | Kind::RadiationPressure { .. })
-    }
-
-    /// Returns the effect on a given robot; `None` if it is part of gravity.
-    pub(crate) fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Option<Arc<dyn Effect>>> {
+    /// Returns the effect on given systems; `None` if it is part of gravity.
+    pub(crate) fn on(&self, py: Python<'_>, targets: &[Target<'_>]) -> PyResult<Option<Arc<dyn Effect>>> {
         Ok(Some(match &self.kind {
             Kind::GravityField(_) | Kind::ThirdBody(_) => return Ok(None),
             Kind::GravityGradient => Arc::new(GravityGradient),
             Kind::BodyWrench { frame, force, torque, start, end } => {
-                let frame = model.frame(frame).map_err(|error| error.into_python(py))?;
-                let wrench = BodyWrench::on_frame(model, frame, *force, *torque)
+                let (system, frame) = target::frame_at(py, targets, frame)?;
+                let wrench = BodyWrench::on_frame(targets[system].model, frame, *force, *torque)
                     .and_then(|wrench| wrench.during(*start, *end))
                     .map_err(|error| error.into_python(py))?;
-                Arc::new(wrench)
+                Arc::new(wrench.on_system(system))
             }
             Kind::Drag { atmosphere, surfaces } => {
-                Arc::new(Drag::new(Arc::clone(atmosphere), surfaces.on_with_warning(py, model, "drag")?))
+                Arc::new(Drag::new(Arc::clone(atmosphere), surfaces.on_with_warning(py, targets, "drag")?))
             }
             Kind::RadiationPressure { surfaces, flux, earth_radius } => {
                 let pressure =
-                    RadiationPressure::new(surfaces.on_with_warning(py, model, "radiation pressure")?)
+                    RadiationPressure::new(surfaces.on_with_warning(py, targets, "radiation pressure")?)
                         .with_flux(*flux)
                         .and_then(|pressure| pressure.with_shadow(*earth_radius))
                         .map_err(|error| error.into_python(py))?;

@@ -48,6 +48,17 @@ impl IntoPython for OrbitError {
             Self::TooManySteps { time, .. } | Self::StepTooShort { time, .. } => {
                 raise(py, "OrbitError", &message, &fields!(py, "name": "t", "time": time))
             }
+            Self::OtherPlanet { mu, expected } => {
+                let fields = fields!(py, "name": "mu", "got": mu, "expected": expected);
+                raise(py, "OrbitError", &message, &fields)
+            }
+            Self::NoEpoch { epoch } => {
+                raise(py, "OrbitError", &message, &fields!(py, "name": "earth", "got": epoch))
+            }
+            Self::OtherAxes { orbit, reference } => {
+                let fields = fields!(py, "name": "earth", "got": orbit, "expected": reference);
+                raise(py, "OrbitError", &message, &fields)
+            }
             Self::Path(error) => path_error(py, error, &message),
             Self::Gravity(error) => error.clone().into_python(py),
             Self::ElementSet(error) => element_set_error(py, error, &message),

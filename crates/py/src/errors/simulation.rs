@@ -59,6 +59,9 @@ impl SimulationErrorExt for SimulationError {
             Self::EffectTwice { effect, body } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": effect, "got": body))
             }
+            Self::EffectOnNoSystem { effect, .. } => {
+                raise(py, "EffectError", &message, &fields!(py, "name": effect))
+            }
             Self::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             Self::NeedsTool | Self::OtherTool { .. } => plain(py, "ControlError", &message),
             Self::ReferenceStartsAway { position, angle, tolerance } => raise(

@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// gravity_mode : {"true", "carried"}
 ///     As for ``Simulation``.
 /// environment : list of Effect, optional
-///     Effects on the bodies of all systems.
+///     Effects on the bodies of all systems; links are named ``SYSTEM/LINK``.
 /// events : list of Capture and Release, optional
 ///     Events that connect and separate systems.
 /// rereference_beyond : float
@@ -77,7 +77,7 @@ impl PyWorld {
         };
         let simulation = world.simulation(py)?;
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
-        world.warn_of_distance(py, &simulation)?;
+        warn_of_distance(py, &simulation)?;
         Ok(world)
     }
 
@@ -93,25 +93,6 @@ impl PyWorld {
 }
 
 impl PyWorld {
-    /// Warns of systems that are so far from the reference orbit that their positions lose digits. Systems that events
-    /// may connect keep the reference orbit.
-    fn warn_of_distance(&self, py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
-        for system in simulation.systems.iter().filter(|_| !simulation.events.is_empty()) {
-            let distance = system.q[..3].iter().map(|x| x * x).sum::<f64>().sqrt();
-            if distance > self.rereference_beyond {
-                let message = format!(
-                    "system '{}' starts {} m from the reference orbit, where positions are resolved to {} m; use an orbit \
-                     near the systems",
-                    system.name,
-                    short(distance),
-                    short(distance * f64::EPSILON)
-                );
-                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 2)?;
-            }
-        }
-        Ok(())
-    }
-
     /// Returns a simulation of the world with default settings of the integration.
     pub(crate) fn simulation(&self, py: Python<'_>) -> PyResult<Simulation> {
         let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));
@@ -131,7 +112,25 @@ impl PyWorld {
         simulation.gravity_mode = gravity_mode_named(py, &self.gravity_mode)?;
         simulation.rereference_beyond = self.rereference_beyond;
         let environment: Vec<_> = self.environment.iter().map(|effect| effect.bind(py).clone()).collect();
-        set_environment(py, &mut simulation, &environment)?;
+        let surfaces: Vec<_> = self.systems.iter().map(|system| system.get().surfaces.as_ref()).collect();
+        set_environment(py, &mut simulation, &environment, &surfaces)?;
         Ok(simulation)
     }
+}
+
+/// Warns of systems that start so far from the reference orbit that their positions lose digits.
+fn warn_of_distance(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
+    for far in simulation.far_systems() {
+        let reason =
+            if far.keeps_reference { "; systems that events may connect keep this orbit" } else { "" };
+        let message = format!(
+            "system '{}' starts {} m from the reference orbit, where positions are resolved to {} m{reason}; use an \
+             orbit near the systems",
+            simulation.systems[far.system].name,
+            short(far.distance),
+            short(far.resolution)
+        );
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 2)?;
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! One spacecraft of a world.
 
 use super::robotics::{Robotics, initial_state};
+use crate::environment::SurfaceAssignment;
 use crate::model::PyModel;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::world::System;
@@ -34,6 +35,9 @@ use std::sync::Arc;
 ///     Coefficient of restitution of the stops, 0 to 1.
 /// reference_start_tolerance : (float, float), optional
 ///     Permitted initial deviation of the tool from its reference, m and rad; default: (0.05, 0.1).
+/// surfaces : Surface or dict of str to Surface, optional
+///     Surfaces of the links for ``Drag`` and ``RadiationPressure`` that have no ``surfaces``; the form is that of
+///     ``Drag``. Default: ``Faces()``.
 #[pyclass(name = "System", frozen, module = "onorbit_rs")]
 pub(crate) struct PySystem {
     /// Name of the system.
@@ -51,6 +55,7 @@ pub(crate) struct PySystem {
     enforce_limits: bool,
     restitution: f64,
     reference_start_tolerance: Option<Py<PyAny>>,
+    pub(super) surfaces: Option<SurfaceAssignment>,
 }
 
 #[pymethods]
@@ -58,7 +63,7 @@ impl PySystem {
     #[new]
     #[pyo3(signature = (
         name, model, q, v, *, controller=None, reference=None, tool=None, control_period=None, enforce_limits=false,
-        restitution=0.0, reference_start_tolerance=None,
+        restitution=0.0, reference_start_tolerance=None, surfaces=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -73,7 +78,9 @@ impl PySystem {
         enforce_limits: bool,
         restitution: f64,
         reference_start_tolerance: Option<Py<PyAny>>,
+        surfaces: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let surfaces = surfaces.map(|surfaces| SurfaceAssignment::new(Some(surfaces))).transpose()?;
         let (q, v) = initial_state(py, &model.get().model, q, v)?;
         Ok(Self {
             name,
@@ -87,6 +94,7 @@ impl PySystem {
             enforce_limits,
             restitution,
             reference_start_tolerance,
+            surfaces,
         })
     }
 

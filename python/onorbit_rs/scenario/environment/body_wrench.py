@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -11,6 +12,7 @@ from pydantic import Field, model_validator
 from onorbit_rs import _core
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import FrameError
+from onorbit_rs.scenario.environment.paths import split_link
 from onorbit_rs.scenario.errors import invalid
 from onorbit_rs.scenario.fields import Force3, Time, Torque3
 from onorbit_rs.scenario.part import Part
@@ -21,6 +23,7 @@ class BodyWrenchEffect(Part):
 
     kind: Literal["body_wrench"] = "body_wrench"
     body: str
+    """Link; with several systems ``SYSTEM/LINK``."""
     force: Force3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     torque: Torque3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     start: Time = 0.0
@@ -33,9 +36,19 @@ class BodyWrenchEffect(Part):
             raise invalid(f"end is {self.end:g} s; it must be later than start, {self.start:g} s")
         return self
 
-    def build(self, model: _core.Model, _folder: Path) -> _core.BodyWrench:
-        """Return the effect of the engine; raises ``FrameError`` if the robot has no such body."""
-        bodies = list(model.body_names)
+    @property
+    def paths(self) -> list[tuple[tuple[str, ...], str]]:
+        """Key and path of the link on which the wrench acts."""
+        return [(("body",), self.body)]
+
+    def of_system(self, name: str, systems: Collection[str]) -> Self | None:
+        """Return the wrench on a system alone, with the link's own name; None if it is on another system."""
+        system, link = split_link(self.body, systems)
+        return self.model_copy(update={"body": link}) if system == name else None
+
+    def build(self, model: _core.Model | None, _folder: Path) -> _core.BodyWrench:
+        """Return the effect of the engine; raises ``FrameError`` if ``model`` has no such body."""
+        bodies = [self.body] if model is None else list(model.body_names)
         if self.body not in bodies:
             raise FrameError(
                 f"no body is named {self.body!r}{did_you_mean(self.body, bodies)}",

@@ -32,7 +32,7 @@ class GravityFieldEffect(Part):
         """Return whether ``model`` is a path."""
         return self.model.endswith(".gfc")
 
-    def build(self, _model: _core.Model, folder: Path) -> _core.GravityField:
+    def build(self, _model: _core.Model | None, folder: Path) -> _core.GravityField:
         """Return the effect of the engine."""
         degree = {} if self.degree is None else {"degree": self.degree}
         if self.is_file:

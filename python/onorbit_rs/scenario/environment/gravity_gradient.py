@@ -14,6 +14,6 @@ class GravityGradientEffect(Part):
 
     kind: Literal["gravity_gradient"] = "gravity_gradient"
 
-    def build(self, _model: _core.Model, _folder: Path) -> _core.GravityGradient:
+    def build(self, _model: _core.Model | None, _folder: Path) -> _core.GravityGradient:
         """Return the effect of the engine."""
         return _core.GravityGradient()

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from onorbit_rs import _core
 from onorbit_rs.scenario.environment.atmosphere import Air, ExponentialAir
-from onorbit_rs.scenario.environment.surfaces import AnySurface
+from onorbit_rs.scenario.environment.paths import split_link
+from onorbit_rs.scenario.environment.surfaces import AnySurface, build_surfaces
 from onorbit_rs.scenario.errors import invalid
 from onorbit_rs.scenario.fields import Flux, Length, NotNegative, Positive
 from onorbit_rs.scenario.part import Part
 
 if TYPE_CHECKING:
-    from typing import Any
+    from collections.abc import Collection
 
 
 class SurfaceEffect(Part):
     """Effect on surfaces: ``surfaces`` for all links, or ``bodies``, a mapping from link to surface."""
 
     surfaces: AnySurface | None = None
-    """Surface of all links. Default, if ``bodies`` is not given either: their visual geometry."""
+    """Surface of all links. Default, if ``bodies`` is not given either: the ``surfaces`` of the robot or of
+    each system, otherwise their visual geometry."""
     bodies: Annotated[dict[str, AnySurface], Field(min_length=1)] | None = None
+    """Surfaces by link; with several systems by ``SYSTEM/LINK``, or by ``SYSTEM`` for all of its links."""
 
     @model_validator(mode="after")
     def _is_given_once(self) -> SurfaceEffect:
@@ -35,9 +38,32 @@ class SurfaceEffect(Part):
 
     def build_surfaces(self) -> Any:
         """Return the surfaces: one for all links, a mapping from link to surface, or None for the default."""
-        if self.bodies is not None:
-            return {body: surface.build() for body, surface in self.bodies.items()}
-        return None if self.surfaces is None else self.surfaces.build()
+        return build_surfaces(self.surfaces if self.bodies is None else self.bodies)
+
+    def with_default(self, surfaces: Any) -> Self:
+        """Return the effect, on these surfaces (one, or by link) if it names none."""
+        if surfaces is None or self.surfaces is not None or self.bodies is not None:
+            return self
+        key = "bodies" if isinstance(surfaces, dict) else "surfaces"
+        return self.model_copy(update={key: surfaces})
+
+    @property
+    def paths(self) -> list[tuple[tuple[str, ...], str]]:
+        """Keys, and paths of the systems or links on which the effect acts."""
+        return [(("bodies", path), path) for path in self.bodies or {}]
+
+    def of_system(self, name: str, systems: Collection[str]) -> Self | None:
+        """Return the effect on a system alone, with the links' own names; None if it does not act on it."""
+        if self.bodies is None:
+            return self
+        own = {}
+        for path, surface in self.bodies.items():
+            system, link = split_link(path, systems)
+            if system == name and not link:
+                return self.model_copy(update={"bodies": None, "surfaces": surface})
+            if system == name:
+                own[link] = surface
+        return self.model_copy(update={"bodies": own}) if own else None
 
 
 class DragEffect(SurfaceEffect):
@@ -46,7 +72,7 @@ class DragEffect(SurfaceEffect):
     kind: Literal["drag"] = "drag"
     atmosphere: Air = Field(default_factory=ExponentialAir)
 
-    def build(self, _model: _core.Model, folder: Path) -> _core.Effect:
+    def build(self, _model: _core.Model | None, folder: Path) -> _core.Effect:
         """Return the effect of the engine."""
         return _core.Drag(self.atmosphere.build(folder), surfaces=self.build_surfaces())
 
@@ -60,7 +86,7 @@ class RadiationPressureEffect(SurfaceEffect):
     shadow: bool = True
     earth_radius: Annotated[Length, Positive] | None = None
 
-    def build(self, _model: _core.Model, _folder: Path) -> _core.Effect:
+    def build(self, _model: _core.Model | None, _folder: Path) -> _core.Effect:
         """Return the effect of the engine."""
         radius = {} if self.earth_radius is None else {"earth_radius": self.earth_radius}
         return _core.RadiationPressure(

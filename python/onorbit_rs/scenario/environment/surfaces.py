@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Discriminator, Field, Tag
 
 from onorbit_rs import _core
 from onorbit_rs.scenario.fields import Area, Length3, NotNegative, Number, Number3
@@ -72,3 +72,22 @@ class PlatesSurface(Part):
 
 _Surfaces = FacesSurface | CannonballSurface | PlatesSurface
 AnySurface = Annotated[_Surfaces, Field(discriminator="kind"), of_kind(_Surfaces)]
+
+
+def _form(value: Any) -> str:
+    return "by link" if isinstance(value, dict) and "kind" not in value else "one surface"
+
+
+RobotSurfaces = Annotated[
+    Annotated[AnySurface, Tag("one surface")]
+    | Annotated[dict[str, AnySurface], Field(min_length=1), Tag("by link")],
+    Discriminator(_form),
+]
+"""One surface for all links, or a surface by link."""
+
+
+def build_surfaces(surfaces: Any) -> Any:
+    """Return the surfaces of the engine: one for all links, a mapping by link, or None for None."""
+    if isinstance(surfaces, dict):
+        return {link: surface.build() for link, surface in surfaces.items()}
+    return None if surfaces is None else surfaces.build()

@@ -15,6 +15,6 @@ class ThirdBodyEffect(Part):
     kind: Literal["third_body"] = "third_body"
     body: Literal["sun", "moon"]
 
-    def build(self, _model: _core.Model, _folder: Path) -> _core.ThirdBody:
+    def build(self, _model: _core.Model | None, _folder: Path) -> _core.ThirdBody:
         """Return the effect of the engine."""
         return _core.ThirdBody(self.body)

@@ -20,6 +20,7 @@ __all__ = [
     "NumericalOrbit",
     "Orbit",
     "Sgp4Orbit",
+    "StartOrbit",
 ]
 
 
@@ -30,3 +31,9 @@ def _with_kind(value: Any) -> Any:
 
 AnyOrbit = KeplerOrbit | NumericalOrbit | Sgp4Orbit | CustomPathOrbit | FixedFrameOrbit
 Orbit = Annotated[AnyOrbit, Field(discriminator="kind"), of_kind(AnyOrbit), BeforeValidator(_with_kind)]
+
+_AnyStart = KeplerOrbit | Sgp4Orbit
+StartOrbit = Annotated[
+    _AnyStart, Field(discriminator="kind"), of_kind(_AnyStart), BeforeValidator(_with_kind)
+]
+"""Orbit whose state at time zero is the initial state of a system."""

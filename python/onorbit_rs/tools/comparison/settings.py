@@ -9,7 +9,16 @@ from onorbit_rs.common.counting import count
 from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.scenario import Scenario
 
-PARTS = ("epoch", "orbit", "gravity_mode", "environment", "controller", "controllers", "reference")
+PARTS = (
+    "epoch",
+    "orbit",
+    "gravity_mode",
+    "environment",
+    "surfaces",
+    "controller",
+    "controllers",
+    "reference",
+)
 """Sections of a scenario that are compared, besides the step settings."""
 MOST = 6
 """Number of differences that are listed individually."""

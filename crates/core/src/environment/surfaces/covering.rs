@@ -17,6 +17,28 @@ pub struct Covering {
     pub surface: Surface,
 }
 
+impl Covering {
+    /// Returns the faces of the shapes of every body of a system, given by its number and its model; bodies without
+    /// shapes have no surface.
+    ///
+    /// # Errors
+    /// The errors of [`Surface::from_shapes`].
+    pub fn from_shapes(
+        system: usize,
+        model: &Model,
+        drag_coefficient: f64,
+        optics: Optics,
+    ) -> Result<Vec<Self>, SurfaceError> {
+        let has_shape =
+            |body: &usize| model.visuals().iter().any(|(frame, _)| model.frames()[*frame].body == *body);
+        let cover = |body: usize| {
+            let surface = Surface::from_shapes(model, body, drag_coefficient, optics)?;
+            Ok(Self { body: BodyIndex { system, body }, surface })
+        };
+        (0..model.nodes().len()).filter(has_shape).map(cover).collect()
+    }
+}
+
 /// Surfaces on the bodies of all systems: at most one per body; drag and light do not act on the others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfaces {
@@ -53,26 +75,30 @@ impl Surfaces {
     /// # Errors
     /// The errors of [`Surface::from_shapes`]; [`SurfaceError::NoShape`] where no body has a shape.
     pub fn from_shapes(model: &Model, drag_coefficient: f64, optics: Optics) -> Result<Self, SurfaceError> {
-        let has_shape =
-            |body: &usize| model.visuals().iter().any(|(frame, _)| model.frames()[*frame].body == *body);
-        let cover = |body: usize| {
-            let surface = Surface::from_shapes(model, body, drag_coefficient, optics)?;
-            Ok(Covering { body: body.into(), surface })
-        };
-        let count = model.nodes().len();
-        let coverings: Vec<_> = (0..count).filter(has_shape).map(cover).collect::<Result<_, _>>()?;
+        let coverings = Covering::from_shapes(0, model, drag_coefficient, optics)?;
         if coverings.is_empty() {
             return Err(SurfaceError::NoShape { body: "the robot".to_owned() });
         }
-        Self::new(coverings, &[count])
+        Self::new(coverings, &[model.nodes().len()])
     }
 
-    /// Returns the names of the bodies of the first system, whose model is `model`, that have mass but no surface.
-    pub fn uncovered<'a>(&self, model: &'a Model) -> Vec<&'a str> {
+    /// Returns the names of the bodies of a system, given by its number and its model, that have mass but no surface.
+    pub fn uncovered<'a>(&self, system: usize, model: &'a Model) -> Vec<&'a str> {
         let is_uncovered =
-            |body: &usize| model.nodes()[*body].mass > 0.0 && !self.covers(BodyIndex::from(*body));
+            |body: &usize| model.nodes()[*body].mass > 0.0 && !self.covers(BodyIndex { system, body: *body });
         let names = (0..model.nodes().len()).filter(is_uncovered);
         names.map(|body| model.body_frame(body).name.as_str()).collect()
+    }
+
+    /// Returns the number of systems of the world.
+    pub(in crate::environment) fn system_count(&self) -> usize {
+        self.layout.systems().len()
+    }
+
+    /// Returns true if any body of this system has a surface.
+    pub(in crate::environment) fn covers_system(&self, system: usize) -> bool {
+        let bodies = self.layout.systems().get(system).map_or(0..0, |rows| 0..rows.count);
+        bodies.into_iter().any(|body| self.covers(BodyIndex { system, body }))
     }
 
     /// Returns true if the body has a surface.
@@ -80,9 +106,9 @@ impl Surfaces {
         self.layout.row(body).is_some_and(|row| self.is_covered[row])
     }
 
-    /// Returns the surfaces of the block of eight bodies that holds `row`; `None` if they have none.
+    /// Returns the surfaces of the block of eight bodies that holds `body`; `None` if they have none.
     #[inline(always)]
-    pub(in crate::environment) fn block(&self, row: usize) -> Option<&SurfaceBlock> {
-        self.blocks.get(row / WIDTH).filter(|block| !block.is_empty())
+    pub(in crate::environment) fn block(&self, body: BodyIndex) -> Option<&SurfaceBlock> {
+        self.blocks.get(self.layout.row(body)? / WIDTH).filter(|block| !block.is_empty())
     }
 }

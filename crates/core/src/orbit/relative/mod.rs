@@ -1,12 +1,14 @@
-//! Relative motion of two satellites: linear motion, exact coordinates, relative elements.
+//! Relative motion of two satellites: linear motion, exact coordinates, relative elements, states in W.
 
 mod elements;
 mod hill;
 mod local;
+mod world;
 
 pub use elements::{deputy_state, deputy_states, relative_elements, relative_elements_rows};
 pub use hill::{hill_transition, hill_transitions, intercept_velocity};
 pub use local::{LocalFrame, from_local, from_local_rows, to_local, to_local_rows};
+pub use world::to_world;
 
 use super::OrbitError;
 use nalgebra::Vector3;

@@ -1,15 +1,17 @@
-//! Assignment of surfaces to the bodies of a robot.
+//! Assignment of surfaces to the bodies of systems.
 
 use super::{Any, PySurface, SurfaceKind};
 use crate::arrays::type_name;
+use crate::environment::target::{self, Target};
 use crate::errors::{IntoPython, fields, raise};
-use onorbit_core::environment::surfaces::{Optics, SurfaceError, Surfaces};
-use onorbit_core::model::Model;
+use onorbit_core::environment::surfaces::{Covering, Optics, SurfaceError, Surfaces};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping};
 
 /// Assignment of surfaces to bodies.
 pub(crate) enum SurfaceAssignment {
+    /// The surfaces that were declared with each system, otherwise the faces of its visual geometry.
+    Declared,
     All(SurfaceKind),
     Named(Vec<(String, SurfaceKind)>),
 }
@@ -17,10 +19,7 @@ pub(crate) enum SurfaceAssignment {
 impl SurfaceAssignment {
     /// Reads ``None``, one surface, or a mapping from names to surfaces.
     pub(crate) fn new(surfaces: Option<Any<'_, '_>>) -> PyResult<Self> {
-        let Some(surfaces) = surfaces else {
-            let optics = Optics::default();
-            return Ok(Self::All(SurfaceKind::Faces { drag_coefficient: 2.2, optics }));
-        };
+        let Some(surfaces) = surfaces else { return Ok(Self::Declared) };
         let kind = |value: Any<'_, '_>| match value.cast::<PySurface>() {
             Ok(surface) => Ok(surface.get().kind.clone()),
             Err(_) => {
@@ -49,14 +48,32 @@ impl SurfaceAssignment {
         }
     }
 
-    /// Returns the surfaces on a given robot; warns if bodies without visual geometry have no faces.
-    pub(crate) fn on_with_warning(&self, py: Python<'_>, model: &Model, effect: &str) -> PyResult<Surfaces> {
-        let surfaces = self.on(py, model)?;
-        let bare = if matches!(self, Self::All(SurfaceKind::Faces { .. })) {
-            surfaces.uncovered(model)
-        } else {
-            vec![]
-        };
+    /// Returns the surfaces on given systems; warns if bodies without visual geometry have no faces.
+    pub(crate) fn on_with_warning(
+        &self,
+        py: Python<'_>,
+        targets: &[Target<'_>],
+        effect: &str,
+    ) -> PyResult<Surfaces> {
+        let (mut coverings, mut by_shape) = (Vec::new(), Vec::new());
+        for (system, target) in targets.iter().enumerate() {
+            let (own, is_by_shape) = self.on_system(py, targets, system)?;
+            coverings.extend(own);
+            by_shape.extend(is_by_shape.then_some((system, target)));
+        }
+        if coverings.is_empty() && targets.len() == 1 {
+            let body = "the robot".to_owned();
+            return Err(SurfaceError::NoShape { body }.into_python(py));
+        }
+        let counts: Vec<usize> = targets.iter().map(|target| target.model.nodes().len()).collect();
+        let surfaces = Surfaces::new(coverings, &counts).map_err(|error| error.into_python(py))?;
+        let bare: Vec<String> = by_shape
+            .into_iter()
+            .flat_map(|(system, target)| {
+                let path = move |body: &str| path_of(targets, target, body);
+                surfaces.uncovered(system, target.model).into_iter().map(path)
+            })
+            .collect();
         if !bare.is_empty() {
             let bodies = bare.join(", ");
             let message = format!(
@@ -68,37 +85,115 @@ impl SurfaceAssignment {
         Ok(surfaces)
     }
 
-    /// Returns the surfaces on a given robot.
-    fn on(&self, py: Python<'_>, model: &Model) -> PyResult<Surfaces> {
-        let count = model.nodes().len();
-        let coverings = match self {
-            Self::All(SurfaceKind::Faces { drag_coefficient, optics }) => {
-                let surfaces = Surfaces::from_shapes(model, *drag_coefficient, *optics);
-                return surfaces.map_err(|error| error.into_python(py));
+    /// Returns the surfaces on one of the systems, and true if they are the faces of all of its bodies.
+    fn on_system(
+        &self,
+        py: Python<'_>,
+        targets: &[Target<'_>],
+        system: usize,
+    ) -> PyResult<(Vec<Covering>, bool)> {
+        let target = &targets[system];
+        match self {
+            Self::Declared => match target.surfaces {
+                Some(own) => own.on_robot(py, targets, system),
+                None => SurfaceKind::default().on_all(py, targets, system),
+            },
+            Self::Named(named) if targets.len() > 1 => {
+                let (mut coverings, mut is_by_shape) = (Vec::new(), false);
+                for (path, kind) in named {
+                    if target::named(targets, path) == Some(system) {
+                        let (all, is_faces) = kind.on_all(py, targets, system)?;
+                        coverings.extend(all);
+                        is_by_shape |= is_faces;
+                    } else if target::named(targets, path).is_none() {
+                        let (owner, frame) = target::frame_at(py, targets, path)?;
+                        if owner == system {
+                            coverings.push(kind.on(py, (system, target.model), frame)?);
+                        }
+                    }
+                }
+                Ok((coverings, is_by_shape))
             }
-            Self::All(kind) if count == 1 => {
-                let base = model.frame(&model.body_frame(0).name).map_err(|error| error.into_python(py))?;
-                vec![kind.on(py, model, base)?]
-            }
-            Self::All(_) => {
+            Self::All(kind) if targets.len() > 1 && !kind.is_faces() => {
                 let message = format!(
-                    "the robot has {count} bodies; name the one with this surface, such as \
-                     surfaces={{'{0}': …}} (in YAML bodies: \
-                     {{{0}: …}})",
-                    model.body_frame(0).name
+                    "the world has {} systems; name those with this surface, such as surfaces={{'{}': …}} (in YAML \
+                     as 'surfaces' of the system)",
+                    targets.len(),
+                    targets[0].name
                 );
-                return Err(raise(py, "EffectError", &message, &fields!(py, "name": "surfaces")));
+                Err(raise(py, "EffectError", &message, &fields!(py, "name": "surfaces")))
             }
-            Self::Named(named) => named
-                .iter()
-                .map(|(name, kind)| {
-                    let frame = model.frame(name).map_err(|error| error.into_python(py))?;
-                    kind.on(py, model, frame)
-                })
-                .collect::<PyResult<_>>()?,
-        };
-        Surfaces::new(coverings, &[count]).map_err(|error| error.into_python(py))
+            _ => self.on_robot(py, targets, system),
+        }
     }
+
+    /// Returns the surfaces on one of the systems, whose links have their own names here, and true if they are the faces
+    /// of all of its bodies.
+    pub(crate) fn on_robot(
+        &self,
+        py: Python<'_>,
+        targets: &[Target<'_>],
+        system: usize,
+    ) -> PyResult<(Vec<Covering>, bool)> {
+        match self {
+            Self::Declared => SurfaceKind::default().on_all(py, targets, system),
+            Self::All(kind) => kind.on_all(py, targets, system),
+            Self::Named(named) => {
+                let alone = &targets[system..=system];
+                let covering = |(path, kind): &(String, SurfaceKind)| {
+                    let (_, frame) = target::frame_at(py, alone, path)?;
+                    kind.on(py, (system, alone[0].model), frame)
+                };
+                Ok((named.iter().map(covering).collect::<PyResult<_>>()?, false))
+            }
+        }
+    }
+}
+
+impl Default for SurfaceKind {
+    /// Returns the surface of bodies to which none is assigned: the faces of their visual geometry.
+    fn default() -> Self {
+        Self::Faces { drag_coefficient: 2.2, optics: Optics::default() }
+    }
+}
+
+impl SurfaceKind {
+    fn is_faces(&self) -> bool {
+        matches!(self, Self::Faces { .. })
+    }
+
+    /// Returns this surface on all bodies of a system, and true if it consists of their faces; other surfaces require a
+    /// robot with a single body.
+    fn on_all(
+        &self,
+        py: Python<'_>,
+        targets: &[Target<'_>],
+        system: usize,
+    ) -> PyResult<(Vec<Covering>, bool)> {
+        let target @ Target { model, .. } = &targets[system];
+        if let Self::Faces { drag_coefficient, optics } = self {
+            let faces = Covering::from_shapes(system, model, *drag_coefficient, *optics);
+            return Ok((faces.map_err(|error| error.into_python(py))?, true));
+        }
+        let (count, base) = (model.nodes().len(), &model.body_frame(0).name);
+        if count == 1 {
+            let frame = model.frame(base).map_err(|error| error.into_python(py))?;
+            return Ok((vec![self.on(py, (system, model), frame)?], false));
+        }
+        let robot =
+            if targets.len() == 1 { "the robot".to_owned() } else { format!("system '{}'", target.name) };
+        let message = format!(
+            "{robot} has {count} bodies; name the one with this surface, such as surfaces={{'{0}': …}} (in YAML bodies: \
+             {{{0}: …}})",
+            path_of(targets, target, base)
+        );
+        Err(raise(py, "EffectError", &message, &fields!(py, "name": "surfaces")))
+    }
+}
+
+/// Returns the path of a body; with a single system, only its name.
+fn path_of(targets: &[Target<'_>], target: &Target<'_>, body: &str) -> String {
+    if targets.len() == 1 { body.to_owned() } else { format!("{}/{body}", target.name) }
 }
 
 /// Returns a copy of the surfaces, because a dict may be modified later.

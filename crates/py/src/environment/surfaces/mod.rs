@@ -5,10 +5,12 @@ mod cannonball;
 mod faces;
 mod plates;
 
-pub(super) use assignment::{SurfaceAssignment, copied};
+pub(crate) use assignment::SurfaceAssignment;
+pub(super) use assignment::copied;
 
 use crate::errors::IntoPython;
 use crate::pickling::{ConstructorCall, Reduced};
+use onorbit_core::environment::BodyIndex;
 use onorbit_core::environment::surfaces::{Covering, Optics, Surface};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
@@ -71,8 +73,8 @@ pub(crate) enum SurfaceKind {
 }
 
 impl SurfaceKind {
-    /// Returns the surface on the body to which `frame` is fixed.
-    fn on(&self, py: Python<'_>, model: &Model, frame: usize) -> PyResult<Covering> {
+    /// Returns the surface on the body to which `frame` of the system with number `system` is fixed.
+    fn on(&self, py: Python<'_>, (system, model): (usize, &Model), frame: usize) -> PyResult<Covering> {
         let frame = &model.frames()[frame];
         let surface = match self {
             Self::Cannonball { area, drag_coefficient, reflectivity } => {
@@ -85,7 +87,8 @@ impl SurfaceKind {
                 Surface::plates(model, frame, areas, normals, centroids, *drag_coefficient, *optics)
             }
         };
-        Ok(Covering { body: frame.body.into(), surface: surface.map_err(|error| error.into_python(py))? })
+        let body = BodyIndex { system, body: frame.body };
+        Ok(Covering { body, surface: surface.map_err(|error| error.into_python(py))? })
     }
 }
 

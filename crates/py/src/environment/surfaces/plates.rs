@@ -49,7 +49,7 @@ impl PyPlates {
         let model =
             Model::rigid_body(1.0, nalgebra::Matrix3::identity()).map_err(|error| error.into_python(py))?;
         let kind = SurfaceKind::Plates { areas, normals, centroids, drag_coefficient, optics };
-        kind.on(py, &model, 0)?;
+        kind.on(py, (0, &model), 0)?;
         Ok(PySurface::new(kind, "Plates", &keywords)?.add_subclass(Self))
     }
 }

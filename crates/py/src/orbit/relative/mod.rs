@@ -3,6 +3,7 @@
 mod elements;
 mod hill;
 mod local;
+mod world;
 
 use crate::arrays::{Input, shape_text, wrong_shape};
 use pyo3::prelude::*;
@@ -15,6 +16,7 @@ pub(super) fn add_functions(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(hill::intercept_velocity, m)?)?;
     m.add_function(wrap_pyfunction!(local::to_lvlh, m)?)?;
     m.add_function(wrap_pyfunction!(local::from_lvlh, m)?)?;
+    m.add_function(wrap_pyfunction!(world::to_world, m)?)?;
     m.add_function(wrap_pyfunction!(elements::relative_elements, m)?)?;
     m.add_function(wrap_pyfunction!(elements::deputy_state, m)?)
 }

@@ -1,0 +1,40 @@
+//! Systems that start far from the reference orbit, where coordinates in W lose digits.
+
+use super::settings::Simulation;
+use crate::world::groups;
+
+/// Largest spacing of the positions that `f64` represents which is acceptable, m. A distance of 4500 km reaches it. It is
+/// a tenth of the error of a long orbit at the tightest tolerance, and far below what sensors of relative motion resolve.
+const FINEST: f64 = 1e-9;
+
+/// A system that starts far from the reference orbit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FarSystem {
+    /// Number of the system.
+    pub system: usize,
+    /// Distance of its base from the reference orbit, m.
+    pub distance: f64,
+    /// Spacing of the positions that can be represented there, m.
+    pub resolution: f64,
+    /// True if the system keeps the reference orbit because events may connect it to others, and starts beyond the distance
+    /// at which a single system changes to a local one.
+    pub keeps_reference: bool,
+}
+
+impl Simulation {
+    /// Returns the systems that start so far from the reference orbit that digits of their positions are lost, and those
+    /// beyond [`Simulation::rereference_beyond`] that nevertheless keep the reference orbit.
+    pub fn far_systems(&self) -> Vec<FarSystem> {
+        let groups = groups(self.systems.len(), &self.events, &self.links());
+        let is_grouped =
+            |system: usize| groups.iter().any(|group| group.len() > 1 && group.contains(&system));
+        let far = self.systems.iter().enumerate().filter_map(|(system, declared)| {
+            let distance = declared.q.iter().take(3).map(|x| x * x).sum::<f64>().sqrt();
+            let resolution = distance * f64::EPSILON;
+            let keeps_reference = is_grouped(system) && distance > self.rereference_beyond;
+            let found = FarSystem { system, distance, resolution, keeps_reference };
+            (keeps_reference || resolution > FINEST).then_some(found)
+        });
+        far.collect()
+    }
+}
