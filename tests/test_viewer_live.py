@@ -148,6 +148,10 @@ class Eye:
     def __init__(self) -> None:
         self.seen, self.ended = 0, []
 
+    @property
+    def shown(self) -> int:
+        return self.seen
+
     def take(self, columns: Any) -> None:
         self.seen += len(columns["time"])
 

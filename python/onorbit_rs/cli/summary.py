@@ -54,9 +54,7 @@ def print_summary(summary: dict[str, Any], out: Path | None, *, is_new: bool = T
     for name, what in _FILES:
         if (out / name).exists():
             console.print(f"  {text(out / name)}  [dim]{what}[/dim]", soft_wrap=True)
-    if systems is not None:
-        console.print("not available yet with 'systems': recording, report and resume", soft_wrap=True)
-    elif is_new:
+    if is_new:
         folder = text(shell_word(out))
         console.print(f"next: onorbit show {folder}    [dim]opens the recording[/dim]", soft_wrap=True)
         console.print(

@@ -6,6 +6,7 @@ Only this folder imports matplotlib.
 
 from __future__ import annotations
 
+from onorbit_rs.figures.captured_motion import captured_motion
 from onorbit_rs.figures.differences import differences
 from onorbit_rs.figures.drawings import Drawing, drawings
 from onorbit_rs.figures.forces import environment_forces
@@ -17,29 +18,40 @@ from onorbit_rs.figures.orbit import orbit_overview
 from onorbit_rs.figures.portrait import portrait
 from onorbit_rs.figures.relative import relative_motion
 from onorbit_rs.figures.save import as_bytes, save, save_all
+from onorbit_rs.figures.shared_balance import energy_exchange, momentum_exchange
 from onorbit_rs.figures.style import COLUMN, PAGE
 from onorbit_rs.figures.subject import Subject, Tool, subject_of
 from onorbit_rs.figures.tracking import control_errors, joint_torques, tracking_errors
 from onorbit_rs.figures.trajectory import desired_trajectory, obtained_trajectory
+from onorbit_rs.figures.world_drawings import world_drawings
+from onorbit_rs.figures.world_motion import formation_motion
+from onorbit_rs.figures.world_subject import EventMark, WorldSubject, marks_of
 
 __all__ = [
     "COLUMN",
     "PAGE",
     "Drawing",
+    "EventMark",
     "Subject",
     "Tool",
+    "WorldSubject",
     "as_bytes",
     "base_motion",
     "base_reaction",
+    "captured_motion",
     "control_errors",
     "desired_trajectory",
     "differences",
     "drawings",
+    "energy_exchange",
     "environment_forces",
+    "formation_motion",
     "ground_track",
     "joint_torques",
     "ledger",
     "manipulability",
+    "marks_of",
+    "momentum_exchange",
     "obtained_trajectory",
     "orbit_overview",
     "portrait",
@@ -48,4 +60,5 @@ __all__ = [
     "save_all",
     "subject_of",
     "tracking_errors",
+    "world_drawings",
 ]

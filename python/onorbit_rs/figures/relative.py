@@ -41,7 +41,7 @@ _SIDES = 1.35
 """Ratio of the width of a panel to its height."""
 _NEAR = 10.0
 """Distance of the paths from the reference, divided by their extent, below which the reference is shown."""
-_MOST_ROWS = 3_000
+MOST_ROWS = 3_000
 
 
 def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
@@ -51,7 +51,7 @@ def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
     of a free base that does not drift are Hill's ellipses, twice as long as high. All axes have the same
     scale.
     """
-    paths = [path[evenly_spaced(len(path), _MOST_ROWS)] for path in paths_in_orbit(trace, targets)]
+    paths = [path[evenly_spaced(len(path), MOST_ROWS)] for path in paths_in_orbit(trace, targets)]
     points = np.vstack(paths)
     is_near = np.linalg.norm(points, axis=1).max() < _NEAR * np.ptp(points, axis=0).max()
     if is_near:
@@ -65,7 +65,7 @@ def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
         if is_near:
             axes.plot(0.0, 0.0, "+", color=INK, markersize=7, label="reference")
         tidy(axes, f"along track [{unit}]", f"{name} [{unit}]")
-        _set_window(axes, factor * points, across)
+        set_window(axes, factor * points, across)
     figure.legend(
         *panels[0].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
         ncols=5, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
@@ -99,7 +99,7 @@ def goes_far(trace: Trace, model: Model) -> bool:
     return float(np.ptp(base, axis=0).max()) > WORTH_A_PATH * size
 
 
-def _set_window(axes: Axes, points: Floats, across: int) -> None:
+def set_window(axes: Axes, points: Floats, across: int) -> None:
     """Set the same scale in both panels."""
     low, high = points.min(axis=0), points.max(axis=0)
     sides = high - low

@@ -105,9 +105,14 @@ def hide_rounding(axes: Axes, rounding: float) -> None:
 def clock(trace: Trace) -> tuple[Floats, str]:
     """Return the time of each row in a unit that fits the run, and the label of the axis."""
     time = np.asarray(trace.time)
-    span = float(time[-1] - time[0])
-    scale, unit = next(((scale, unit) for least, scale, unit in _CLOCK if span >= least), (1.0, "s"))
+    scale, unit = time_unit(time)
     return time / scale, f"time [{unit}]"
+
+
+def time_unit(time: Floats) -> tuple[float, str]:
+    """Return the number of seconds in the unit that fits these times, s, and its name."""
+    span = float(time[-1] - time[0])
+    return next(((scale, unit) for least, scale, unit in _CLOCK if span >= least), (1.0, "s"))
 
 
 def plot_lines(

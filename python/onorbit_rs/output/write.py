@@ -17,11 +17,13 @@ from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.world import world_arrays
 from onorbit_rs.scenario.build import Built
 from onorbit_rs.scenario.build_world import BuiltWorld
+from onorbit_rs.scenario.connections import connections
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from onorbit_rs._core import Trace, WorldTrace
+    from onorbit_rs.figures import Drawing
     from onorbit_rs.scenario import Scenario, WorldScenario
 
 
@@ -68,12 +70,11 @@ def write_pictures(
 ) -> None:
     """Write the figures, if the trace has several rows, and the recording; ``tell`` receives each task.
 
-    For a world, the figures of each system begin with its name, and no recording is written.
+    For a world, the figures of each system begin with its name.
     """
     if isinstance(trace, _core.WorldTrace):
         assert isinstance(built, BuiltWorld)
-        for name, alone in built.systems.items():
-            _write_figures(folder, trace[name], alone, f"{name}_", tell)
+        _write_pictures_of_world(folder, trace, summary, built, tell)
         return
     assert isinstance(built, Built)
     _write_figures(folder, trace, built, "", tell)
@@ -85,6 +86,31 @@ def write_pictures(
         viewer.write_recording(path, trace, setting, notes=viewer.notes(summary, built.scenario))
 
 
+def _write_pictures_of_world(
+    folder: OutputFolder,
+    trace: WorldTrace,
+    summary: dict[str, Any],
+    built: BuiltWorld,
+    tell: Callable[[str], None],
+) -> None:
+    """Write the figures of all systems together and of each, and the recording."""
+    from onorbit_rs import figures
+
+    if len(trace.time) > 1:
+        models = {name: alone.model for name, alone in built.systems.items()}
+        events, found = figures.marks_of(summary), connections(built.scenario)
+        subject = figures.WorldSubject(trace, models, events, found)
+        _draw(folder, figures.world_drawings(subject), "", tell)
+    for name, alone in built.systems.items():
+        _write_figures(folder, trace[name], alone, f"{name}_", tell)
+    from onorbit_rs import viewer
+
+    tell("writing the recording")
+    with folder.writing(RECORDING) as path:
+        text = viewer.world_notes(summary, built.scenario)
+        viewer.write_world_recording(path, trace, viewer.WorldSetting.of(built), notes=text)
+
+
 def _write_figures(
     folder: OutputFolder, trace: Trace, built: Built, prefix: str, tell: Callable[[str], None]
 ) -> None:
@@ -92,11 +118,20 @@ def _write_figures(
 
     if len(trace.time) > 1:
         subject = figures.subject_of(trace, built.scenario, built.model, built.orbit, built.earth)
-        with folder.replacing() as files:
-            for drawing in figures.drawings(subject):
-                tell(f"drawing {prefix}{drawing.name}")
-                with files.writing(f"{FIGURES}/{prefix}{drawing.name}.png") as path:
-                    path.write_bytes(figures.as_bytes(drawing.draw(), "png"))
+        _draw(folder, figures.drawings(subject), prefix, tell)
+
+
+def _draw(
+    folder: OutputFolder, drawings: Iterable[Drawing], prefix: str, tell: Callable[[str], None]
+) -> None:
+    """Write figures as PNG."""
+    from onorbit_rs import figures
+
+    with folder.replacing() as files:
+        for drawing in drawings:
+            tell(f"drawing {prefix}{drawing.name}")
+            with files.writing(f"{FIGURES}/{prefix}{drawing.name}.png") as path:
+                path.write_bytes(figures.as_bytes(drawing.draw(), "png"))
 
 
 def with_absolute_paths(scenario: Scenario | WorldScenario) -> dict[str, Any]:

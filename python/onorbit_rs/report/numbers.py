@@ -12,12 +12,13 @@ from onorbit_rs.output.summary_labels import goal_of, tracking
 
 # longest first, because `_rad_s` also ends in `_s`
 _UNITS = (
+    ("_nms", "N m s"), ("_ns", "N s"),
     ("_rad_s", "rad/s"), ("_m_s2", "m/s²"), ("_m_s", "m/s"), ("_nm", "N m"), ("_rad", "rad"),
     ("_rel", "relative"), ("_m", "m"), ("_s", "s"), ("_j", "J"), ("_n", "N"),
 )  # fmt: skip
 _LEAST_SCALED = 1e-9
 """Smallest value shown with a unit prefix; smaller ones are rounding errors, shown with an exponent."""
-_SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s")
+_SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s", "N s", "N m s")
 _NAMES = {
     "wall_s": "wall clock of the loop",
     "real_time_factor": "times real time",

@@ -32,6 +32,15 @@ class Picture:
     is_wide: bool
 
 
+@dataclass(frozen=True)
+class Content:
+    """Parts of a page as HTML: numbers, certificate and figures."""
+
+    numbers: str
+    checks: str
+    figures: str
+
+
 def page(
     summary: dict[str, Any],
     *,
@@ -43,21 +52,46 @@ def page(
     version: str,
 ) -> str:
     """Return the HTML of a report, without references to other files."""
+    content = Content(
+        numbers_section("Numbers", groups(summary)),
+        checks_table(checks(summary)),
+        "\n".join(map(figure_html, pictures)),
+    )
+    return filled(summary, content, description, scenario, warnings_of(summary), remarks, again, version)
+
+
+def filled(
+    summary: dict[str, Any],
+    content: Content,
+    description: str,
+    scenario: str,
+    warnings: Sequence[str],
+    remarks: Sequence[str],
+    again: str,
+    version: str,
+) -> str:
+    """Return the template filled with the parts of a page; texts of the user are escaped."""
     name = printable(summary.get("scenario") or "run")
     return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=escape(f"{name}: onorbit report"),
         name=escape(name),
         description=escape(description),
         verdict=_verdict(summary),
-        remarks=_remarks(summary, remarks),
-        tables="\n".join(_table(title, rows) for title, rows in groups(summary)),
-        checks=_checks(summary),
-        figures="\n".join(_figure(picture) for picture in pictures) or "<p>There is nothing to draw.</p>",
+        remarks=_remarks([*warnings, *remarks]),
+        numbers=content.numbers,
+        checks=content.checks,
+        figures=content.figures or "<p>There is nothing to draw.</p>",
         scenario=escape(scenario),
         again=escape(again),
         version=escape(version),
         footer=escape(f"Written by onorbit_rs {version}."),
     )
+
+
+def numbers_section(title: str, found: Sequence[tuple[str, Sequence[Row]]]) -> str:
+    """Return tables of numbers under a heading."""
+    tables = "\n".join(_table(name, rows) for name, rows in found)
+    return f'<h2>{escape(title)}</h2>\n<div class="tables">\n{tables}\n</div>'
 
 
 def _verdict(summary: dict[str, Any]) -> str:
@@ -73,6 +107,7 @@ def _verdict(summary: dict[str, Any]) -> str:
         certificate, kind = "Certificate absent: nothing was checked", "neutral"
     elif has_passed and is_incomplete(summary):
         absent = ", ".join(check.name for check in checks(summary) if check.holds is None)
+        absent = absent or str(summary.get("certificate_not_evaluated") or "unknown check")
         certificate, kind = f"Certificate incomplete, not evaluated: {absent}", "warned"
     elif has_passed:
         certificate, kind = "Certificate passed", "passed" if is_whole else "warned"
@@ -86,13 +121,17 @@ def _verdict(summary: dict[str, Any]) -> str:
     return f'<div class="verdict {kind}" id="verdict">{lines}</div>'
 
 
-def _remarks(summary: dict[str, Any], remarks: Sequence[str]) -> str:
-    """Return the warnings of the robot's file, and remarks on omitted parts of the page."""
-    warnings = str(summary.get("warnings") or "").splitlines()
-    warnings += [
-        f"{what} were exceeded: {summary[key]}" for key, what in EXCEEDED.items() if summary.get(key)
+def warnings_of(summary: dict[str, Any]) -> list[str]:
+    """Return the warnings of a run, and the limits that its joints exceeded."""
+    return [
+        *str(summary.get("warnings") or "").splitlines(),
+        *(f"{what} were exceeded: {summary[key]}" for key, what in EXCEEDED.items() if summary.get(key)),
     ]
-    items = "".join(f"<li>{escape(text)}</li>" for text in (*warnings, *remarks))
+
+
+def _remarks(texts: Sequence[str]) -> str:
+    """Return the warnings, and the remarks on omitted parts of the page."""
+    items = "".join(f"<li>{escape(text)}</li>" for text in texts)
     return (
         f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
         if items
@@ -102,20 +141,21 @@ def _remarks(summary: dict[str, Any], remarks: Sequence[str]) -> str:
 
 def _table(title: str, rows: Sequence[Row]) -> str:
     lines = "\n".join(
-        f'<tr><td>{escape(row.name)}</td><td class="number">{_data(row)}</td>'
+        f'<tr><td>{escape(row.name)}</td><td class="number">{data_html(row)}</td>'
         f'<td class="unit">{escape(row.unit)}</td></tr>'
         for row in rows
     )
     return f"<section><h3>{escape(title)}</h3><table>{lines}</table></section>"
 
 
-def _data(row: Row) -> str:
+def data_html(row: Row) -> str:
     """Return the formatted value, with the value of ``summary.json`` as an attribute."""
     return f'<data id="{escape(row.key)}" value="{escape(str(row.value))}">{escape(row.shown)}</data>'
 
 
-def _checks(summary: dict[str, Any]) -> str:
-    lines = "\n".join(map(_check, checks(summary)))
+def checks_table(found: Sequence[Check]) -> str:
+    """Return a table of checks."""
+    lines = "\n".join(map(_check, found))
     head = (
         '<th scope="col">{}</th><th scope="col" class="number">{}</th><th scope="col" class="number">{}</th>'
     )
@@ -130,14 +170,15 @@ def _check(check: Check) -> str:
     value, gate = ("-" if number is None else f"{number:.2g}" for number in (check.value, check.gate))
     if check.holds is not None:
         shown = "not finite" if check.value is None else value
-        value = _data(Row(check.key, check.name, check.value, shown, check.unit))
+        value = data_html(Row(check.key, check.name, check.value, shown, check.unit))
     return (
         f'<tr><td>{escape(check.name)}</td><td class="number">{value}</td><td class="number">{gate}</td>'
         f'<td class="unit">{escape(check.unit)}</td><td class="{kind}">{verdict}</td></tr>'
     )
 
 
-def _figure(picture: Picture) -> str:
+def figure_html(picture: Picture) -> str:
+    """Return an embedded figure with its caption."""
     content = base64.b64encode(picture.content).decode("ascii")
     name, caption = escape(picture.name), escape(picture.caption)
     kind = ' class="wide"' if picture.is_wide else ""

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs import _core
-from onorbit_rs.exceptions import InputError, OnOrbitError
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, REPORT
 from onorbit_rs.output.read import SavedRun, read_summary
 from onorbit_rs.output.replacement import Replacement
-from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.report.page import Picture, page
-from onorbit_rs.scenario import Scenario
-from onorbit_rs.scenario.environment.earth import build_earth
+from onorbit_rs.report.subjects import figures_of, subject_of_run, world_figures
+from onorbit_rs.report.world_page import world_page
+from onorbit_rs.scenario import WorldScenario
 
 if TYPE_CHECKING:
-    from onorbit_rs.figures import Subject
+    from onorbit_rs.report.subjects import OwnDrawing
 
 LARGEST_SVG = 600_000
 """Largest size of an SVG, bytes; larger figures are embedded as PNG."""
@@ -60,11 +59,7 @@ def write_report(
         If the page cannot be written, or another process writes to the folder.
     """
     path = Path(folder)
-    if "systems" in read_summary(path):  # raises before anything is written
-        raise InputError(
-            "a report of a run with 'systems' is not available yet; its figures are in the folder 'figures'",
-            name="folder", got=str(path),
-        )  # fmt: skip
+    read_summary(path)  # raises before anything is written
     with OutputFolder(path) as out, out.replacing() as files:
         out.check_replaceable(REPORT)
         return _write_report(out.path, files, pdf=pdf, tell=tell)
@@ -75,70 +70,49 @@ def _write_report(folder: Path, files: Replacement, *, pdf: bool, tell: Callable
     saved = SavedRun(folder)
     summary = saved.summary()
     text, scenario = saved.scenario_text(), saved.scenario()
-    assert isinstance(scenario, Scenario)  # as in the summary
     remarks: list[str] = []
     tell("reading the trace", 0.0)
-    subject = _subject(saved, scenario, summary, remarks)
-    pictures: list[Picture] = []
-    if summary.get("status") == "diverged":
+    is_drawn = summary.get("status") != "diverged"
+    if not is_drawn:
         remarks.append("the run diverged: figures are not drawn")
-    elif len(subject.trace.time) > 1:
-        pictures = list(_pictures(subject, files, pdf, tell))
-    tell("writing the page", 1.0)
-    version = str(_core.build_info()["version"])
-    content = page(
-        summary,
-        description=scenario.description,
-        scenario=text,
-        pictures=pictures,
-        remarks=remarks,
-        again="onorbit run scenario.yaml",
-        version=version,
-    )
+    write = partial(_pictures, files=files, pdf=pdf, tell=tell)
+    around: dict[str, Any] = {
+        "description": scenario.description, "scenario": text, "remarks": remarks,
+        "again": "onorbit run scenario.yaml", "version": str(_core.build_info()["version"]),
+    }  # fmt: skip
+    if isinstance(scenario, WorldScenario):
+        found = world_figures(saved, scenario, summary, remarks) if is_drawn else []
+        pictures = write(found)
+        names = ["", *scenario.systems]
+        by_system = {name: [picture for owner, picture in pictures if owner == name] for name in names}
+        tell("writing the page", 1.0)
+        content = world_page(summary, pictures=by_system, **around)
+    else:
+        subject = subject_of_run(saved, scenario, summary, remarks)
+        pictures = write(figures_of(subject, "") if is_drawn else [])
+        tell("writing the page", 1.0)
+        content = page(summary, pictures=[picture for _, picture in pictures], **around)
     with files.writing(REPORT) as file:
         file.write_text(content, encoding="utf-8")
     return folder / REPORT
 
 
-def _subject(saved: SavedRun, scenario: Scenario, summary: dict[str, Any], remarks: list[str]) -> Subject:
-    """Return the subject of the figures; unreadable robots, orbits and Earth models become remarks."""
-    from onorbit_rs import figures
-
-    trace, folder = saved.trace(), saved.folder
-    model = orbit = earth = None
-    with _remarked(remarks, "the robot could not be read; figures that show it are omitted"):
-        model = scenario.robot.build(scenario)
-        if was_changed(model, summary):
-            model = None
-            remarks.append(f"{CHANGED}; figures that show it are omitted")
-    with _remarked(remarks, "the orbit could not be read; figures that show it are omitted"):
-        orbit = None if scenario.orbit is None else scenario.orbit.build(folder)
-        earth = build_earth(scenario.earth, scenario.epoch, orbit, folder)
-    return figures.subject_of(trace, scenario, model, orbit, earth)
-
-
-@contextmanager
-def _remarked(remarks: list[str], what: str) -> Iterator[None]:
-    try:
-        yield
-    except OnOrbitError as error:
-        remarks.append(f"{what}: {error}")
-
-
 def _pictures(
-    subject: Subject, files: Replacement, pdf: bool, tell: Callable[[str, float], None]
-) -> Iterator[Picture]:
+    found: Sequence[OwnDrawing], files: Replacement, pdf: bool, tell: Callable[[str, float], None]
+) -> list[tuple[str, Picture]]:
+    """Return the pictures with the systems to which they belong; write them as PDF too if ``pdf`` is set."""
     from onorbit_rs import figures
 
-    drawings = list(figures.drawings(subject))
-    for number, drawing in enumerate(drawings):
-        tell(f"drawing {drawing.name}, {number + 1} of {len(drawings)}", number / len(drawings))
+    pictures = []
+    for number, (system, name, drawing) in enumerate(found):
+        tell(f"drawing {name}, {number + 1} of {len(found)}", number / len(found))
         figure = drawing.draw()
         kind, content = "svg", figures.as_bytes(figure, "svg")
         if len(content) > LARGEST_SVG:
             kind, content = "png", figures.as_bytes(figure, "png")
         if pdf:
-            with files.writing(f"{FIGURES}/{drawing.name}.pdf") as file:
+            with files.writing(f"{FIGURES}/{name}.pdf") as file:
                 file.write_bytes(figures.as_bytes(figure, "pdf"))
         is_wide = figure.get_figwidth() > figures.COLUMN
-        yield Picture(drawing.name, drawing.caption, kind, content, is_wide)
+        pictures.append((system, Picture(name, drawing.caption, kind, content, is_wide)))
+    return pictures

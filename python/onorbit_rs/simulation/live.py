@@ -7,13 +7,14 @@ import warnings
 from typing import TYPE_CHECKING
 
 from onorbit_rs.exceptions import ControlError, RunInterrupted
+from onorbit_rs.scenario.build_world import BuiltWorld
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Checkpoint, Stepper, Trace
+    from onorbit_rs._core import Checkpoint, Stepper, Trace, WorldTrace
     from onorbit_rs.common.progress import ProgressCallback
     from onorbit_rs.output import CheckpointWriter
     from onorbit_rs.scenario.build import Built
-    from onorbit_rs.viewer.live import LiveView
+    from onorbit_rs.viewer.live import View
 
 CHECKPOINT_EVERY = 30.0
 """Wall-clock time between two checkpoints, s."""
@@ -23,18 +24,15 @@ _SLICE_S = 0.05
 
 
 def watched(
-    built: Built,
+    built: Built | BuiltWorld,
     progress: ProgressCallback | None,
     checkpoint: CheckpointWriter | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
     resume: Checkpoint | None = None,
-) -> Trace:
+) -> Trace | WorldTrace:
     """Simulate a scenario while a viewer shows it; without a viewer, simulate it with a warning."""
-    from onorbit_rs.viewer.live import open_live
-    from onorbit_rs.viewer.setting import Setting
-
     duration = built.scenario.simulation.duration
-    live = open_live(Setting.of(built), duration)
+    live = _opened(built, duration)
     if live is None:
         return built.simulation.run(
             duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every,
@@ -52,13 +50,24 @@ def watched(
     return trace
 
 
+def _opened(built: Built | BuiltWorld, duration: float) -> View | None:
+    """Open the viewer for a scenario; None if that is not possible."""
+    from onorbit_rs.viewer import live, world_live
+    from onorbit_rs.viewer.setting import Setting
+    from onorbit_rs.viewer.world_setting import WorldSetting
+
+    if isinstance(built, BuiltWorld):
+        return world_live.open_world_live(WorldSetting.of(built), duration)
+    return live.open_live(Setting.of(built), duration)
+
+
 def _advance(
-    stepper: Stepper, duration: float, progress: ProgressCallback | None, live: LiveView, saver: _Saver
+    stepper: Stepper, duration: float, progress: ProgressCallback | None, live: View, saver: _Saver
 ) -> None:
     """Advance to the end in slices of wall-clock time; show and save the new rows in between."""
     from onorbit_rs.viewer.live import UPDATE_EVERY_S
 
-    shown, last = 0, time.monotonic()
+    last = time.monotonic()
     try:
         while stepper.time < duration:
             stepper.advance_to(duration, wall_s=_SLICE_S)
@@ -66,9 +75,7 @@ def _advance(
                 progress(stepper.time, duration)
             if time.monotonic() - last >= UPDATE_EVERY_S:
                 last = time.monotonic()
-                columns = stepper.columns(shown)
-                shown += len(columns.get("time", ()))
-                live.take(columns)
+                live.take(stepper.columns(live.shown))
             saver.save_if_due(stepper)
     except KeyboardInterrupt as signal:
         stop = _interrupted(stepper, signal)

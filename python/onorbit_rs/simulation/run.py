@@ -212,16 +212,13 @@ def resume(
 def _run_world(
     scenario: WorldScenario, out: str | os.PathLike[str] | None, *, force: bool, quiet: bool, view: bool
 ) -> Run:
-    """Run a scenario with several systems; neither viewer nor checkpoints support it yet."""
-    if view:
-        raise InputError("the viewer does not show a scenario with 'systems' yet; run it without the viewer",
-                         name="view", got=view)  # fmt: skip
+    """Run a scenario with several systems; checkpoints do not support it yet."""
     built = build_world(scenario)
     if out is None:
-        return _simulate(built, None, quiet=quiet)
+        return _simulate(built, None, quiet=quiet, view=view)
     with OutputFolder.claim(out, force=force) as folder:
         write_scenario(folder, scenario)
-        return _simulate(built, folder, quiet=quiet)
+        return _simulate(built, folder, quiet=quiet, view=view)
 
 
 def _checked_period(checkpoint_every: float) -> float:
@@ -253,7 +250,7 @@ def _simulate(
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
             trace: Trace | WorldTrace
-            if view and isinstance(built, Built):
+            if view:
                 trace = watched(built, progress.move, **checkpoints)
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)

@@ -81,7 +81,11 @@ class Arrows:
         centers = centers_of_bodies(rows, self.setting.model)
         (_, force_unit), (_, torque_unit) = COLUMNS["wrenches"].parts.values()
         for effect, hue in hues(rows.wrenches).items():
-            wrenches, path, name = rows.wrenches[effect], f"world/arrows/{effect}", effect.replace("_", " ")
+            wrenches, path, name = (
+                rows.wrenches[effect],
+                self.setting.entity(f"arrows/{effect}"),
+                effect.replace("_", " "),
+            )
             if 0.0 < ROUNDING * _peak(forces(wrenches)) > _peak(net_force(wrenches)):
                 name = f"differential {name}"  # of a carried robot: without the common acceleration
             force = _Kind(f"{path}/force", f"{name} force", force_unit, hue.full)
@@ -92,7 +96,7 @@ class Arrows:
     def _momenta(self, rows: TraceRows) -> Iterator[tuple[_Kind, Floats]]:
         """Yield the momenta that are significant compared to the motion of the joints."""
         mass, energy = self.setting.model.mass, float(rows["kinetic_energy"].max())
-        path, hue = "world/arrows", MOMENTUM
+        path, hue = self.setting.entity("arrows"), MOMENTUM
         (linear_entries, linear_unit), (angular_entries, angular_unit) = COLUMNS["momentum"].parts.values()
         linear = _Kind(f"{path}/linear_momentum", "linear momentum", linear_unit, hue.full, 0.5)
         angular = _Kind.of_moments(f"{path}/angular_momentum", "angular momentum", angular_unit, hue.pale)
@@ -152,7 +156,7 @@ class Arrows:
     def _introduce(self, kind: _Kind, meaning: str) -> None:
         """Log the style of arrows, and the position of the label that states their scale."""
         put_in(self.recording, kind.path, WORLD)
-        put_in(self.recording, meaning, FOLLOW)
+        put_in(self.recording, meaning, self.setting.frame(FOLLOW))
         radius = kind.thickness * self.viewpoint.size / 140.0
         style = rr.Arrows3D.from_fields(colors=[kind.color], radii=[radius])
         self.recording.log(kind.path, style, static=True, strict=True)

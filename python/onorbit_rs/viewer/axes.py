@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.viewer.font import shown
-from onorbit_rs.viewer.frames import COMPASS, DESIRED, FOLLOW, fix_frame, of_link, put_in
+from onorbit_rs.viewer.frames import COMPASS, DESIRED, FOLLOW, fix_frame, put_in
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -30,13 +30,17 @@ def log_axes(
     *,
     origin: Floats | None = None,
     brightness: float = 1.0,
+    thickness: float = 1.0,
 ) -> None:
     """Log static axes of a frame, with ``names`` at their tips."""
     colors = (_COLORS * brightness).astype(np.uint8)
     start = np.zeros(3) if origin is None else origin
     put_in(recording, path, frame)
     arrows = rr.Arrows3D(
-        vectors=np.eye(3) * length, origins=np.tile(start, (3, 1)), colors=colors, radii=[length / 70.0]
+        vectors=np.eye(3) * length,
+        origins=np.tile(start, (3, 1)),
+        colors=colors,
+        radii=[thickness * length / 70.0],
     )
     recording.log(path, arrows, static=True, strict=True)
     if names:
@@ -51,7 +55,7 @@ def log_axes(
         recording.log(f"{path}/names", labels, static=True, strict=True)
 
 
-def _log_name(recording: rr.RecordingStream, path: str, frame: str, name: str, place: Floats) -> None:
+def log_name(recording: rr.RecordingStream, path: str, frame: str, name: str, place: Floats) -> None:
     """Log a static name beside a frame."""
     put_in(recording, path, frame)
     label = rr.Points3D([place], colors=[_NAME], radii=[0.0], labels=[shown(name)], show_labels=True)
@@ -88,24 +92,39 @@ def log_all_axes(
     has_reference : bool
         Whether the tool has a desired pose.
     """
-    log_axes(recording, "world/axes/base", of_link(setting.base), 0.45 * size, ("x B", "y B", "z B"))
+    entity, follow, compass = setting.entity, setting.frame(FOLLOW), setting.frame(COMPASS)
+    base, desired = setting.frame_of(setting.base), setting.frame(DESIRED)
+    log_axes(recording, entity("axes/base"), base, 0.45 * size, ("x B", "y B", "z B"))
     if setting.tool is not None:
-        log_axes(recording, "world/axes/tool", of_link(setting.tool), 0.1 * size)
+        tool = setting.frame_of(setting.tool)
+        log_axes(recording, entity("axes/tool"), tool, 0.1 * size)
         if near > 0.0:
-            log_axes(recording, "world/near/tool", of_link(setting.tool), near)
-    if setting.tool is not None and tool_name_at is not None:
-        _log_name(recording, "world/axes/tool/names", of_link(setting.tool), setting.tool, tool_name_at)
+            log_axes(recording, entity("near/tool"), tool, near)
+        if tool_name_at is not None:
+            log_name(recording, entity("axes/tool/names"), tool, setting.tool, tool_name_at)
     if has_reference:
-        log_axes(recording, "world/axes/desired", DESIRED, 0.1 * size, brightness=0.6)
+        log_axes(recording, entity("axes/desired"), desired, 0.1 * size, brightness=0.6)
         if near > 0.0:
-            log_axes(recording, "world/near/desired", DESIRED, near, brightness=0.6)
-    inertial, local = places
+            log_axes(recording, entity("near/desired"), desired, near, brightness=0.6)
+    log_compass(recording, entity("axes"), (follow, compass), size, places, in_orbit=in_orbit)
+
+
+def log_compass(
+    recording: rr.RecordingStream,
+    path: str,
+    frames: tuple[str, str],
+    size: float,
+    places: tuple[Floats, Floats],
+    *,
+    in_orbit: bool,
+) -> None:
+    """Log the axes of I and L beside a robot; ``frames`` are those of its camera and of the inertial axes."""
+    (follow, compass), (inertial, local) = frames, places
     if in_orbit:
-        log_axes(recording, "world/axes/inertial", COMPASS, 0.2 * size, ("x I", "y I", "z I"))
         names = ("x L: out", "y L: along track", "z L: normal")
-        log_axes(recording, "world/axes/lvlh", FOLLOW, 0.2 * size, names, origin=local)
+        log_axes(recording, f"{path}/lvlh", follow, 0.2 * size, names, origin=local)
     else:
         pose = np.eye(4)
         pose[:3, 3] = inertial
-        fix_frame(recording, FOLLOW, COMPASS, pose)
-        log_axes(recording, "world/axes/inertial", COMPASS, 0.2 * size, ("x I", "y I", "z I"))
+        fix_frame(recording, follow, compass, pose)
+    log_axes(recording, f"{path}/inertial", compass, 0.2 * size, ("x I", "y I", "z I"))

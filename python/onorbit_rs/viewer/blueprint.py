@@ -9,11 +9,11 @@ import numpy as np
 import rerun.blueprint as rrb
 
 from onorbit_rs.viewer.colors import BACKGROUND
-from onorbit_rs.viewer.flight import flight_view, is_apart
+from onorbit_rs.viewer.flight import flight_bodies, flight_view, is_apart
 from onorbit_rs.viewer.frames import FOLLOW
-from onorbit_rs.viewer.planet import INERTIAL, ORBIT_TRAIL, shows_sun, to_eye
+from onorbit_rs.viewer.planet import INERTIAL, shows_sun, to_eye
 from onorbit_rs.viewer.plots import plots_in_groups
-from onorbit_rs.viewer.scene import MOVES, TRAILS, UNTIL_NOW, on_path
+from onorbit_rs.viewer.scene import COLORS, MOVES, UNTIL_NOW, on_path, trail_of
 from onorbit_rs.viewer.trace_rows import TIMELINE
 
 if TYPE_CHECKING:
@@ -31,8 +31,6 @@ _LARGE = ("arrows", "axes", "flight")
 _SOLID, _HIDDEN = ("robot", "target"), 0.02
 """Entities that would hide a path shorter than this many sizes of the robot."""
 
-_TRAILS_UNTIL_NOW: dict[Any, Any] = dict.fromkeys(TRAILS.values(), UNTIL_NOW)
-
 
 def layout(
     rows: TraceRows,
@@ -45,29 +43,53 @@ def layout(
     is_live: bool = False,
 ) -> rrb.Blueprint:
     """Return the layout of one run."""
-    axes = "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
-    robot = rrb.Spatial3DView(
-        origin="world",
-        contents=["$origin/**", "- $origin/flight/**", "- $origin/near/**"],
-        name=f"{setting.robot}: camera follows the base, axes of {axes}",
-        spatial_information=rrb.SpatialInformation(FOLLOW, show_axes=False),
-        eye_controls=viewpoint.eye(),
-        background=BACKGROUND,
-        line_grid=False,
-        overrides=_TRAILS_UNTIL_NOW,
-    )
+    name = f"{setting.label}: camera follows the base, axes of {axes_of_camera(rows)}"
+    contents = ["$origin/**", "- $origin/flight/**", "- $origin/near/**"]
+    robot = scene_view(name, contents, FOLLOW, viewpoint, [setting])
     below: list[rrb.View] = []
     if "position_eci" in rows:
-        below.append(_orbit(rows, setting))
-    if is_apart(rows, setting, viewpoint):
-        below.append(flight_view(rows, setting))
+        below.append(orbit_view(rows, [setting]))
+    if is_apart(bodies := flight_bodies(rows, setting), viewpoint.size):
+        below.append(flight_view(bodies))
     if has_notes:
         below.append(rrb.TextDocumentView(origin="notes", name="Notes"))
     close_up = near_path(rows, setting, viewpoint) if "reference_pose" in rows and not is_live else None
     top = robot if close_up is None else rrb.Tabs(robot, close_up, active_tab=0)
     left = rrb.Vertical(top, rrb.Horizontal(*below), row_shares=[5, 3]) if below else top
+    return with_panels(left, plots_in_groups(plots, duration_s, is_live=is_live), duration_s, is_live=is_live)
+
+
+def axes_of_camera(rows: TraceRows) -> str:
+    """Return the name of the axes in which the camera is fixed."""
+    return "W (inertial axes)" if rows.quat_wl is None else "L (local orbital frame)"
+
+
+def scene_view(
+    name: str, contents: list[str], frame: str, viewpoint: Viewpoint, settings: Sequence[Setting]
+) -> rrb.View:
+    """Return a 3-D view from a camera that is fixed in a frame."""
+    return rrb.Spatial3DView(
+        origin="world",
+        contents=contents,
+        name=name,
+        spatial_information=rrb.SpatialInformation(frame, show_axes=False),
+        eye_controls=viewpoint.eye(),
+        background=BACKGROUND,
+        line_grid=False,
+        overrides=_trails_until_now(settings),
+    )
+
+
+def _trails_until_now(settings: Sequence[Setting]) -> dict[Any, Any]:
+    return {trail_of(setting, name): UNTIL_NOW for setting in settings for name in COLORS}
+
+
+def with_panels(
+    left: rrb.Container | rrb.View, right: rrb.Container, duration_s: float, *, is_live: bool
+) -> rrb.Blueprint:
+    """Return a layout of two columns that plays on simulation time."""
     return rrb.Blueprint(
-        rrb.Horizontal(left, plots_in_groups(plots, duration_s, is_live=is_live), column_shares=[3, 2]),
+        rrb.Horizontal(left, right, column_shares=[3, 2]),
         rrb.TimePanel(
             state="collapsed",
             timeline=TIMELINE,
@@ -102,12 +124,16 @@ def near_path(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> rrb.Vi
         ),
         background=BACKGROUND,
         line_grid=False,
-        overrides=_TRAILS_UNTIL_NOW,
+        overrides=_trails_until_now([setting]),
     )  # fmt: skip
 
 
-def _orbit(rows: TraceRows, setting: Setting) -> rrb.View:
-    """Return the view of the orbit: towards the start of the run, north up, with the whole path visible."""
+def orbit_view(rows: TraceRows, settings: Sequence[Setting]) -> rrb.View:
+    """Return the view of the orbit: towards the start of the run, north up, with the whole path visible.
+
+    ``rows`` are those of the first robot.
+    """
+    setting = settings[0]
     position = rows["position_eci"] / 1e3
     if setting.orbit is not None and setting.orbit.mu is not None:
         center, reach = np.zeros(3), max(float(np.linalg.norm(position, axis=1).max()), 6400.0)
@@ -128,5 +154,5 @@ def _orbit(rows: TraceRows, setting: Setting) -> rrb.View:
         ),
         background=_SPACE,
         line_grid=False,
-        overrides={ORBIT_TRAIL: UNTIL_NOW},
+        overrides={setting.orbit_entity("trail"): UNTIL_NOW for setting in settings},
     )

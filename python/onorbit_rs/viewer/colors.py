@@ -27,6 +27,11 @@ TARGET: Color = (205, 170, 90)
 
 MOMENTUM = Hue((230, 135, 40), (253, 206, 165))
 
+_OF_SYSTEMS: tuple[Color, ...] = (
+    (255, 220, 120), (85, 155, 250), (70, 200, 120), (240, 130, 50), (220, 140, 190), (130, 210, 245),
+    (245, 235, 100), (180, 180, 180),
+)  # fmt: skip
+
 _OF_EFFECTS = {
     "gravity": Hue((150, 112, 222), (222, 212, 255)),
     "gravity_gradient": Hue((235, 40, 230), (250, 150, 245)),
@@ -43,3 +48,8 @@ def hues(effects: Iterable[str]) -> dict[str, Hue]:
     others = [name for name in names if name not in _OF_EFFECTS]
     taken = {name: left[index % len(left)] for index, name in enumerate(others)}
     return {name: _OF_EFFECTS.get(name) or taken[name] for name in names}
+
+
+def of_systems(names: Iterable[str]) -> dict[str, Color]:
+    """Return a colour for each spacecraft; the colours repeat after eight."""
+    return {name: _OF_SYSTEMS[index % len(_OF_SYSTEMS)] for index, name in enumerate(names)}

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from onorbit_rs.viewer.colors import Color
     from onorbit_rs.viewer.setting import Setting
     from onorbit_rs.viewer.trace_rows import TraceRows
-    from onorbit_rs.viewer.viewpoint import Viewpoint
 
     Floats = NDArray[np.float64]
 
@@ -37,25 +36,40 @@ _WHOLE = 0.5
 """Brightness of the whole path, on which the trail is drawn."""
 
 
-class _Body(NamedTuple):
-    """The base or a target: entity path, frame, label, colour, and positions (T, 3) in L, m."""
+class Body(NamedTuple):
+    """A base or a target: entity path, frame, label, colour, positions (T, 3) in L, m, and their rows."""
 
     path: str
     frame: str
     label: str
     color: Color
     points: Floats
+    rows: TraceRows
 
 
-def is_apart(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> bool:
-    """Return True if the base or a target is so far from the reference that the view is shown."""
-    return _farthest(_bodies(rows, setting)) > APART * viewpoint.size
+def flight_bodies(rows: TraceRows, setting: Setting, color: Color = ROBOT) -> list[Body]:
+    """Return the base and the targets; empty if L is undefined."""
+    if rows.rot_wl is None:
+        return []
+    found = [("base", setting.frame(FOLLOW), setting.label, color, rows["q"][:, POSITION])]
+    for index, target in enumerate(setting.targets):
+        place = target.position_at(rows["time"])
+        found.append((f"target_{index}", frame_of_target(setting, index), "target", TARGET, place))
+    return [
+        Body(setting.entity(f"flight/{name}"), frame, label, color,
+             np.einsum("tji,tj->ti", rows.rot_wl, place), rows)
+        for name, frame, label, color, place in found
+    ]  # fmt: skip
 
 
-def log_flight(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
-    """Log the axes of L, and the base and the targets with their names."""
-    bodies = _bodies(rows, setting)
-    log_axes(recording, "world/flight/axes", LOCAL, _axes_length(bodies), ("x L", "y L", "z L"))
+def is_apart(bodies: list[Body], size: float) -> bool:
+    """Return True if a body is farther from the reference than :data:`APART` times ``size``, m."""
+    return _farthest(bodies) > APART * size
+
+
+def log_flight(recording: rr.RecordingStream, bodies: list[Body], axes: str = "world/flight/axes") -> None:
+    """Log the axes of L, and the bodies with their names."""
+    log_axes(recording, axes, LOCAL, _axes_length(bodies), ("x L", "y L", "z L"))
     for body in bodies:
         point = rr.Points3D(
             ORIGIN[None],
@@ -68,11 +82,9 @@ def log_flight(recording: rr.RecordingStream, rows: TraceRows, setting: Setting)
         put_in(recording, body.path, body.frame)
 
 
-def log_whole_flight(
-    recording: rr.RecordingStream, rows: TraceRows, setting: Setting, most: int = 5000
-) -> None:
+def log_whole_flight(recording: rr.RecordingStream, bodies: list[Body], most: int = 5000) -> None:
     """Log the whole paths in a dim colour."""
-    for body in _bodies(rows, setting):
+    for body in bodies:
         points = body.points[evenly_spaced(len(body.points), most)]
         dim = (np.array(body.color) * _WHOLE).astype(np.uint8)
         line = rr.LineStrips3D([points], colors=[dim], radii=rr.Radius.ui_points(1.0))
@@ -80,22 +92,25 @@ def log_whole_flight(
         put_in(recording, f"{body.path}/whole", LOCAL)
 
 
-def send_flight(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, most: int) -> None:
+def send_flight(recording: rr.RecordingStream, bodies: list[Body], most: int) -> None:
     """Send the paths up to the current time."""
-    for body in _bodies(rows, setting):
-        send_trail(recording, f"{body.path}/trail", LOCAL, rows, body.points, most, body.color)
+    for body in bodies:
+        send_trail(recording, f"{body.path}/trail", LOCAL, body.rows, body.points, most, body.color)
 
 
-def flight_view(rows: TraceRows, setting: Setting) -> rrb.View:
-    """Return the view from beside the orbital plane: radial is up, along track to the right."""
-    bodies = _bodies(rows, setting)
+def flight_view(bodies: list[Body], contents: list[str] | None = None) -> rrb.View:
+    """Return the view from beside the orbital plane: radial is up, along track to the right.
+
+    ``contents`` are the entities to show; by default all below ``world/flight``.
+    """
     length = _axes_length(bodies)
     points = np.concatenate([np.eye(3) * length, *(body.points for body in bodies)])
     low, high = points.min(axis=0), points.max(axis=0)
     center, size = (low + high) / 2.0, float(np.linalg.norm(high - low))
     to_eye = np.array([0.45, -0.4, -0.8])
     return rrb.Spatial3DView(
-        origin="world/flight",
+        origin="world/flight" if contents is None else "world",
+        contents=["$origin/**"] if contents is None else contents,
         name=f"Relative flight; axes of L are {amount(length, 'm')} long",
         spatial_information=rrb.SpatialInformation(LOCAL, show_axes=False),
         eye_controls=rrb.EyeControls3D(
@@ -107,25 +122,11 @@ def flight_view(rows: TraceRows, setting: Setting) -> rrb.View:
     )
 
 
-def _bodies(rows: TraceRows, setting: Setting) -> list[_Body]:
-    """Return the base and the targets; empty if L is undefined."""
-    if rows.rot_wl is None:
-        return []
-    found = [("base", FOLLOW, setting.robot, ROBOT, rows["q"][:, POSITION])]
-    for index, target in enumerate(setting.targets):
-        place = target.position_at(rows["time"])
-        found.append((f"target_{index}", frame_of_target(index), "target", TARGET, place))
-    return [
-        _Body(f"world/flight/{name}", frame, label, color, np.einsum("tji,tj->ti", rows.rot_wl, place))
-        for name, frame, label, color, place in found
-    ]
-
-
-def _farthest(bodies: list[_Body]) -> float:
+def _farthest(bodies: list[Body]) -> float:
     """Return the greatest distance from the reference, m."""
     return max((float(np.linalg.norm(body.points, axis=1).max()) for body in bodies), default=0.0)
 
 
-def _axes_length(bodies: list[_Body]) -> float:
+def _axes_length(bodies: list[Body]) -> float:
     """Return a round length that shows the scale, m."""
     return round_up(AXES * _farthest(bodies))

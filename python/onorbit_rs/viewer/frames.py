@@ -14,7 +14,6 @@ import rerun as rr
 
 from onorbit_rs.common.coordinates import JOINTS_Q, POSITION, QUATERNION
 from onorbit_rs.common.rotations import conjugate, matrix_from_quaternion, product, quaternion_from_matrix
-from onorbit_rs.viewer.font import shown
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,11 +28,6 @@ WORLD, LOCAL, FOLLOW, COMPASS = "W", "L", "follow", "compass"
 DESIRED, GOAL = "desired", "goal"
 AT_REST = np.array([0.0, 0.0, 0.0, 1.0])
 ORIGIN = np.zeros(3)
-
-
-def of_link(link: str) -> str:
-    """Return the name of the frame of a link, or of a frame fixed to a link."""
-    return f"robot/{shown(link)}"
 
 
 def send_frame(
@@ -77,32 +71,50 @@ def put_in(recording: rr.RecordingStream, path: str, frame: str) -> None:
 
 
 def send_fixed_frames(recording: rr.RecordingStream, setting: Setting) -> None:
-    """Log links that are fixed to another link, and the tool."""
+    """Log links that are fixed to another link, the tool, and the frames of captures."""
     model = setting.model
     moving = set(model.body_names)
-    wanted = {shape.link for shape in setting.shapes} | ({setting.tool} if setting.tool else set())
+    wanted = {shape.link for shape in setting.shapes} | {setting.tool, *setting.grasps}
     for frame in model.frames:
         if frame.name in wanted - moving:
-            fix_frame(recording, of_link(frame.body), of_link(frame.name), np.array(frame.pose))
+            fix_frame(
+                recording, setting.frame_of(frame.body), setting.frame_of(frame.name), np.array(frame.pose)
+            )
+
+
+def send_local_frame(recording: rr.RecordingStream, rows: TraceRows) -> None:
+    """Send L, if it is defined."""
+    if rows.quat_wl is not None:
+        send_frame(recording, rows.times, WORLD, LOCAL, ORIGIN, rows.quat_wl)
 
 
 def send_moving_frames(
     recording: rr.RecordingStream, rows: TraceRows, setting: Setting, compass: Floats
 ) -> None:
-    """Send L, the base and every joint; inertial axes are shown at ``compass`` in ``follow``, m."""
-    q, time = rows["q"], rows.times
-    if rows.quat_wl is None or rows.quat_lb is None or rows.rot_wl is None:
-        send_frame(recording, time, WORLD, FOLLOW, q[:, POSITION], AT_REST)
-        send_frame(recording, time, FOLLOW, of_link(setting.base), ORIGIN, q[:, QUATERNION])
-    else:
-        base_l = np.einsum("tji,tj->ti", rows.rot_wl, q[:, POSITION])
-        send_frame(recording, time, WORLD, LOCAL, ORIGIN, rows.quat_wl)
-        send_frame(recording, time, LOCAL, FOLLOW, base_l, AT_REST)
-        send_frame(recording, time, FOLLOW, of_link(setting.base), ORIGIN, rows.quat_lb)
-        send_frame(recording, time, FOLLOW, COMPASS, compass, conjugate(rows.quat_wl))
+    """Send the base and every joint; inertial axes are shown at ``compass`` in ``follow``, m."""
+    q, time, base = rows["q"], rows.times, setting.frame_of(setting.base)
+    quat_fb = q[:, QUATERNION] if rows.quat_lb is None else rows.quat_lb
+    send_follow(recording, rows, setting.frame(FOLLOW), setting.frame(COMPASS), q[:, POSITION], compass)
+    send_frame(recording, time, setting.frame(FOLLOW), base, ORIGIN, quat_fb)
     for joint, values in zip(setting.model.joints, q[:, JOINTS_Q].T, strict=True):
         translation, quat = _joint_transform(joint, values)
-        send_frame(recording, time, of_link(joint.parent), of_link(joint.child), translation, quat)
+        parent, child = setting.frame_of(joint.parent), setting.frame_of(joint.child)
+        send_frame(recording, time, parent, child, translation, quat)
+
+
+def send_follow(
+    recording: rr.RecordingStream, rows: TraceRows, follow: str, axes: str, place: Floats, axes_at: Floats
+) -> None:
+    """Send the frame of a camera at ``place``, (T, 3) in W, with the axes of L, or of W if L is undefined.
+
+    In it, the frame ``axes`` has the axes of W and its origin at ``axes_at``, (3,), m.
+    """
+    if rows.quat_wl is None or rows.rot_wl is None:
+        send_frame(recording, rows.times, WORLD, follow, place, AT_REST)
+        return
+    place_l = np.einsum("tji,tj->ti", rows.rot_wl, place)
+    send_frame(recording, rows.times, LOCAL, follow, place_l, AT_REST)
+    send_frame(recording, rows.times, follow, axes, axes_at, conjugate(rows.quat_wl))
 
 
 def _joint_transform(joint: Joint, values: Floats) -> tuple[Floats, Floats]:

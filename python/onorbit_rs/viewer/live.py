@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import warnings
+from abc import ABC, abstractmethod
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import rerun as rr
 
 from onorbit_rs.exceptions import ViewerError
 from onorbit_rs.viewer.arrows import Arrows
-from onorbit_rs.viewer.flight import is_apart, send_flight
+from onorbit_rs.viewer.flight import flight_bodies, is_apart, send_flight
 from onorbit_rs.viewer.planet import send_orbit_trail
 from onorbit_rs.viewer.recording import new_recording, send_rows, send_static
 from onorbit_rs.viewer.scene import send_trails
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Trace
+    from onorbit_rs._core import Trace, WorldTrace
     from onorbit_rs.viewer.setting import Setting
     from onorbit_rs.viewer.viewpoint import Viewpoint
 
@@ -42,34 +43,49 @@ LAST_ROWS_S = 5.0
 """Wall-clock time for the viewer to receive the last rows, s."""
 
 
-class LiveView:
-    """Sends rows of a run that lasts ``duration_s`` to a recording; errors there never stop the run."""
+class View(ABC):
+    """A view of a run that lasts ``duration_s`` in a recording; errors there never stop the run."""
 
-    def __init__(self, recording: rr.RecordingStream, setting: Setting, duration_s: float) -> None:
+    def __init__(self, recording: rr.RecordingStream, duration_s: float) -> None:
         """Prepare for a run that has not started."""
-        self._recording, self._setting, self._duration_s = recording, setting, duration_s
-        self._stage: Viewpoint | None = None
-        self._arrows: Arrows | None = None
-        self._before: TraceRows | None = None
+        self._recording, self._duration_s = recording, duration_s
         self._angles: dict[str, Floats] = {}
-        self._count, self._is_lost, self._has_flight = 0, False, False
+        self._is_lost = False
+
+    @property
+    @abstractmethod
+    def shown(self) -> int:
+        """Number of rows that the view has received."""
+
+    @abstractmethod
+    def _show_columns(self, columns: Mapping[str, Floats]) -> None:
+        """Show the rows from number :attr:`shown` on, the columns of a stepper."""
+
+    @abstractmethod
+    def _show_rest(self, trace: Any) -> None:
+        """Show the rows of a trace that were not shown yet."""
+
+    @abstractmethod
+    def _release(self) -> None:
+        """Delete everything that refers to the recording."""
 
     def take(self, columns: Mapping[str, Floats]) -> None:
-        """Show new rows, the columns of a checkpoint."""
+        """Show the rows from number :attr:`shown` on, the columns of a stepper."""
         with self._loses_view():
-            self._show(TraceRows.of_checkpoint(columns))
+            self._show_columns(columns)
 
-    def finish(self, trace: Trace | None) -> None:
+    def finish(self, trace: Trace | WorldTrace | None) -> None:
         """Show the remaining rows and disconnect."""
         with self._loses_view():
             if trace is not None:
-                self._show(TraceRows.of_trace(trace, slice(self._count, None)))
+                self._show_rest(trace)
         with self._loses_view():
             if not self._is_lost:
                 self._wait_for_viewer()
         with self._loses_view():
             self._recording.disconnect()
-        self._is_lost, self._arrows = True, None  # nothing is sent after this
+        self._is_lost = True  # nothing is sent after this
+        self._release()
         del self._recording
         with self._loses_view():
             release_streams()
@@ -92,35 +108,6 @@ class LiveView:
         except Exception as error:
             self._lose(error)
 
-    def _show(self, rows: TraceRows) -> None:
-        self._count += len(rows)
-        if self._is_lost or len(rows) == 0:
-            return
-        self._send(rows.decimated(MOST_ROWS))
-
-    def _send(self, rows: TraceRows) -> None:
-        recording, setting = self._recording, self._setting
-        plots = list(series_of(rows, setting, is_live=True))
-        if self._stage is None:
-            self._stage = send_static(recording, rows, setting, plots, self._duration_s, is_live=True)
-            self._arrows = Arrows(recording, setting, self._stage)
-            self._has_flight = is_apart(rows, setting, self._stage)
-        send_rows(recording, rows, setting, self._stage)
-        for series in plots:
-            send_series(recording, rows, self._continued(series))
-        if self._arrows is not None:
-            self._arrows.send(rows)
-        joined = rows if self._before is None else rows.after(self._before)
-        if "reference_pose" in rows:
-            send_trails(recording, joined, setting, MOST_ROWS, "desired")
-        if "tool_pose" in rows:
-            send_trails(recording, joined, setting, MOST_ROWS, "obtained")
-        if "position_eci" in rows:
-            send_orbit_trail(recording, joined, MOST_ROWS)
-        if self._has_flight:
-            send_flight(recording, joined, setting, MOST_ROWS)
-        self._before = rows.last()
-
     def _continued(self, series: Series) -> Series:
         """Return angles unwrapped so that they continue those of the previous rows."""
         if series.names != ANGLES:
@@ -138,8 +125,75 @@ class LiveView:
         warnings.warn(f"the viewer was closed or failed; the run continues without it: {error}", stacklevel=2)
 
 
+class LiveView(View):
+    """View of the run of one robot."""
+
+    def __init__(self, recording: rr.RecordingStream, setting: Setting, duration_s: float) -> None:
+        """Prepare for a run that has not started."""
+        super().__init__(recording, duration_s)
+        self._setting = setting
+        self._stage: Viewpoint | None = None
+        self._arrows: Arrows | None = None
+        self._before: TraceRows | None = None
+        self._count, self._has_flight = 0, False
+
+    @property
+    def shown(self) -> int:
+        """Number of rows that the view has received."""
+        return self._count
+
+    def _show_columns(self, columns: Mapping[str, Floats]) -> None:
+        self._show(TraceRows.of_checkpoint(columns))
+
+    def _show_rest(self, trace: Trace) -> None:
+        self._show(TraceRows.of_trace(trace, slice(self._count, None)))
+
+    def _release(self) -> None:
+        self._arrows = None
+
+    def _show(self, rows: TraceRows) -> None:
+        self._count += len(rows)
+        if self._is_lost or len(rows) == 0:
+            return
+        self._send(rows.decimated(MOST_ROWS))
+
+    def _send(self, rows: TraceRows) -> None:
+        recording, setting = self._recording, self._setting
+        plots = list(series_of(rows, setting, is_live=True))
+        if self._stage is None:
+            self._stage = send_static(recording, rows, setting, plots, self._duration_s, is_live=True)
+            self._arrows = Arrows(recording, setting, self._stage)
+            self._has_flight = is_apart(flight_bodies(rows, setting), self._stage.size)
+        send_rows(recording, rows, setting, self._stage)
+        for series in plots:
+            send_series(recording, rows, self._continued(series))
+        if self._arrows is not None:
+            self._arrows.send(rows)
+        joined = rows if self._before is None else rows.after(self._before)
+        send_paths_so_far(recording, joined, setting)
+        if self._has_flight:
+            send_flight(recording, flight_bodies(joined, setting), MOST_ROWS)
+        self._before = rows.last()
+
+
+def send_paths_so_far(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
+    """Send the paths of the tool and on the orbit, from the last row of the previous update on."""
+    if "reference_pose" in rows:
+        send_trails(recording, rows, setting, MOST_ROWS, "desired")
+    if "tool_pose" in rows:
+        send_trails(recording, rows, setting, MOST_ROWS, "obtained")
+    if "position_eci" in rows:
+        send_orbit_trail(recording, rows, setting, MOST_ROWS)
+
+
 def open_live(setting: Setting, duration_s: float) -> LiveView | None:
-    """Open a viewer window; if that fails, warn and return None."""
+    """Open a viewer window for one robot; if that fails, warn and return None."""
+    recording = connected_recording(setting.name)
+    return None if recording is None else LiveView(recording, setting, duration_s)
+
+
+def connected_recording(name: str) -> rr.RecordingStream | None:
+    """Open a viewer window and return a recording that is sent to it; if that fails, warn and return None."""
     if not has_screen():
         warnings.warn("no display is available; the run continues without the viewer", stacklevel=2)
         return None
@@ -149,9 +203,9 @@ def open_live(setting: Setting, duration_s: float) -> LiveView | None:
         warnings.warn(f"{error}; the run continues without it", stacklevel=2)
         return None
     try:
-        recording = new_recording(setting)
+        recording = new_recording(name)
         recording.connect_grpc(url)
     except Exception as error:
         warnings.warn(f"the viewer cannot be reached; the run continues without it: {error}", stacklevel=2)
         return None
-    return LiveView(recording, setting, duration_s)
+    return recording

@@ -10,7 +10,7 @@ from onorbit_rs.visuals.shapes import missing_meshes
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
-    from onorbit_rs.scenario import Scenario
+    from onorbit_rs.scenario import Scenario, WorldScenario
 
 _MARKUP = re.compile(r"([!#&()*+<>\[\]\\^`{|}~$])|(?<!\w)_|_(?!\w)")
 """Characters with a meaning in Markdown, except underscores within a name."""
@@ -18,11 +18,34 @@ _MARKUP = re.compile(r"([!#&()*+<>\[\]\\^`{|}~$])|(?<!\w)_|_(?!\w)")
 _MOST_MESHES = 10
 
 
-def notes(summary: dict[str, Any], scenario: Scenario) -> str:
+def notes(summary: dict[str, Any], scenario: Scenario | WorldScenario) -> str:
     """Return the summary of a run as Markdown."""
     lines = "\n".join(f"| {escaped(key)} | {escaped(_short(value))} |" for key, value in summary.items())
     about = escaped(" ".join(scenario.description.split()))
     return f"# {escaped(scenario.name)}\n\n{about}\n\n| | |\n|-|-|\n{lines}\n"
+
+
+def world_notes(summary: dict[str, Any], scenario: WorldScenario) -> str:
+    """Return the summary of a run with several systems as Markdown: its events first."""
+    own = {key: value for key, value in summary.items() if not isinstance(value, (dict, list))}
+    text = notes(own, scenario)
+    if summary["events"]:
+        rows = [_event(event) for event in summary["events"]]
+        head = "| event | t [s] | lost [J] | impulse [N s] | [N m s] | momentum errors |\n|-|-|-|-|-|-|\n"
+        title, _, rest = text.partition("\n\n| |")
+        text = f"{title}\n\n{head}" + "\n".join(rows) + f"\n\n| |{rest}"
+    for name, system in summary["systems"].items():
+        lines = "\n".join(f"| {escaped(key)} | {escaped(_short(value))} |" for key, value in system.items())
+        text += f"\n## {escaped(name)}\n\n| | |\n|-|-|\n{lines}\n"
+    return text
+
+
+def _event(event: dict[str, Any]) -> str:
+    """Return the row of an event."""
+    errors = ", ".join(_short(event[f"{part}_momentum_error_rel"]) for part in ("linear", "angular"))
+    numbers = (event[key] for key in ("time_s", "energy_lost_j", "impulse_ns", "angular_impulse_nms"))
+    cells = [f"{event['name']} ({event['kind']})", *map(_short, numbers), errors]
+    return "| " + " | ".join(map(escaped, cells)) + " |"
 
 
 def about_meshes(model: Model) -> str:

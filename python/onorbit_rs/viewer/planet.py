@@ -118,29 +118,31 @@ def send_planet(recording: rr.RecordingStream, rows: TraceRows, setting: Setting
         send_frame(recording, times, SUN_PLACE, SUN_ARROW, ORIGIN, quat_is)
 
 
-ORBIT_TRAIL = "orbit/trail"
-
-
-def send_orbit_trail(recording: rr.RecordingStream, rows: TraceRows, most: int) -> None:
+def send_orbit_trail(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, most: int) -> None:
     """Send the path so far."""
-    send_trail(recording, ORBIT_TRAIL, INERTIAL, rows, rows["position_eci"] / 1e3, most, _PATH)
+    path = setting.orbit_entity("trail")
+    send_trail(recording, path, INERTIAL, rows, rows["position_eci"] / 1e3, most, _PATH)
 
 
-def log_path_flown(recording: rr.RecordingStream, rows: TraceRows) -> None:
+def log_path_flown(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
     """Log the whole path of the robot."""
     position = rows["position_eci"]
     points = position[evenly_spaced(len(position), _MOST_PATH_POINTS)] / 1e3
     path = rr.LineStrips3D([points], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
-    put_in(recording, "orbit/path", INERTIAL)
-    recording.log("orbit/path", path, static=True, strict=True)
+    entity = setting.orbit_entity("path")
+    put_in(recording, entity, INERTIAL)
+    recording.log(entity, path, static=True, strict=True)
 
 
-def send_spacecraft(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
-    """Send the positions of the robot, with its name."""
-    path = "orbit/spacecraft"
+def send_spacecraft(
+    recording: rr.RecordingStream, rows: TraceRows, setting: Setting, label: str | None = None
+) -> None:
+    """Send the positions of the robot, with a label: its name by default, nothing if empty."""
+    path = setting.orbit_entity("spacecraft")
     put_in(recording, path, INERTIAL)
+    label = setting.label if label is None else label
     style = rr.Points3D.from_fields(
-        colors=[ROBOT], radii=rr.Radius.ui_points(7.0), labels=[setting.robot], show_labels=True
+        colors=[ROBOT], radii=rr.Radius.ui_points(7.0), labels=[label], show_labels=bool(label)
     )
     recording.log(path, style, static=True, strict=True)
     place = rr.Points3D.columns(positions=rows["position_eci"] / 1e3)

@@ -45,38 +45,45 @@ _FOR_LEGENDS = 1.24
 """Length of the time axis in units of the run; the space after the run is for the legend."""
 
 
-def plots_in_groups(plots: Sequence[Series], duration_s: float, *, is_live: bool) -> rrb.Tabs:
-    """Return an overview, and a tab for each group."""
-    by_path = {plot.path: plot for plot in plots}
+def plots_in_groups(
+    plots: Sequence[Series], duration_s: float, *, is_live: bool, system: str = ""
+) -> rrb.Tabs:
+    """Return an overview, and a tab for each group; ``system`` is that to which the plots belong, if any."""
+    by_path = {plot.path.replace(f"/{system}/", "/", 1): plot for plot in plots}
     wanted = _FIRST if _FIRST[0] in by_path else _FIRST_WITHOUT_TOOL
     first = [by_path[path] for path in wanted if path in by_path][:_MOST_IN_A_COLUMN]
     tabs = {"Overview": first}
     for plot in plots:
         tabs.setdefault(plot.group, []).append(plot)
-    return rrb.Tabs(
-        *(
-            rrb.Vertical(
-                *(_plot(plot, duration_s, is_live=is_live) for plot in group),
-                row_shares=[min(max(_LOW, len(plot.names)), 9) for plot in group],
-                name=name,
-            )
-            for name, group in tabs.items()
-        ),
-        active_tab=0,
+    columns = [plot_column(name, group, duration_s, is_live=is_live) for name, group in tabs.items()]
+    return rrb.Tabs(*columns, active_tab=0, name=system or None)
+
+
+def plot_column(name: str, group: Sequence[Series], duration_s: float, *, is_live: bool) -> rrb.Vertical:
+    """Return the plots of a group below each other."""
+    return rrb.Vertical(
+        *(_plot(plot, duration_s, is_live=is_live) for plot in group),
+        row_shares=[min(max(_LOW, len(plot.names)), 9) for plot in group],
+        name=name,
     )
 
 
-def _plot(series: Series, duration_s: float, *, is_live: bool) -> rrb.TimeSeriesView:
-    """Return a plot over the whole run."""
+def whole_run(duration_s: float) -> rrb.TimeAxis:
+    """Return a time axis over the whole run, with space for the legend."""
     whole = rrb.TimeRange(
         start=rrb.TimeRangeBoundary.absolute(seconds=0.0),
         end=rrb.TimeRangeBoundary.absolute(seconds=_FOR_LEGENDS * duration_s),
     )
+    return rrb.TimeAxis(view_range=whole)
+
+
+def _plot(series: Series, duration_s: float, *, is_live: bool) -> rrb.TimeSeriesView:
+    """Return a plot over the whole run."""
     is_low = len(series.names) <= _LOW
     return rrb.TimeSeriesView(
         origin=series.path,
         name=f"{series.title} [{series.unit}]",
-        axis_x=rrb.TimeAxis(view_range=whole),
+        axis_x=whole_run(duration_s),
         axis_y=rrb.ScalarAxis(range=None if is_live or not is_low else with_two_ticks(series.values)),
         plot_legend=rrb.PlotLegend(rrb.Corner2D.RightTop),
     )

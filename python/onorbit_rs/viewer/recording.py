@@ -17,9 +17,15 @@ from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_all_axes
 from onorbit_rs.viewer.blueprint import layout
 from onorbit_rs.viewer.encoded import Encoded
-from onorbit_rs.viewer.flight import is_apart, log_flight, log_whole_flight, send_flight
+from onorbit_rs.viewer.flight import flight_bodies, is_apart, log_flight, log_whole_flight, send_flight
 from onorbit_rs.viewer.font import shown, shown_lines
-from onorbit_rs.viewer.frames import WORLD, put_in, send_fixed_frames, send_moving_frames
+from onorbit_rs.viewer.frames import (
+    WORLD,
+    put_in,
+    send_fixed_frames,
+    send_local_frame,
+    send_moving_frames,
+)
 from onorbit_rs.viewer.notes import about_meshes
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.scene import (
@@ -81,33 +87,38 @@ def _encode(path: Path, trace: Trace, setting: Setting, notes: str) -> None:
     if len(chosen) < len(trace.time):
         notes += f"\n\nThe recording contains {len(chosen)} of the {len(trace.time)} rows of the trace.\n"
     notes += about_meshes(setting.model)
-    recording = new_recording(setting)
+    recording = new_recording(setting.name)
     encoded = Encoded(recording)
     plots = list(series_of(rows, setting))
     viewpoint = send_static(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
     for series in plots:
         send_series(recording, rows, series)
     send_rows(recording, rows, setting, viewpoint)
+    log_paths(recording, rows, setting, viewpoint)
+    if is_apart(bodies := flight_bodies(rows, setting), viewpoint.size):
+        log_whole_flight(recording, bodies)
+        send_flight(recording, bodies, MOST_TRAIL_PIECES)
+    Arrows(recording, setting, viewpoint).send(rows)
+    encoded.write_to(path)
+
+
+def log_paths(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
+    """Log the paths of the tool and on the orbit, which are known after the run."""
     if "reference_pose" in rows:
         log_path(recording, rows, setting, viewpoint.size)
     if "tool_pose" in rows:
         send_trails(recording, rows, setting, MOST_TRAIL_PIECES, "obtained")
     if "position_eci" in rows:
-        log_path_flown(recording, rows)
-    if is_apart(rows, setting, viewpoint):
-        log_whole_flight(recording, rows, setting)
-        send_flight(recording, rows, setting, MOST_TRAIL_PIECES)
-    Arrows(recording, setting, viewpoint).send(rows)
-    encoded.write_to(path)
+        log_path_flown(recording, rows, setting)
 
 
-def new_recording(setting: Setting) -> rr.RecordingStream:
+def new_recording(name: str) -> rr.RecordingStream:
     """Return an empty recording on simulation time, without wall-clock timelines."""
     recording = rr.RecordingStream(APPLICATION, recording_id=uuid.uuid4(), send_properties=False)
     recording.set_log_time_enabled(False)
     recording.set_log_tick_enabled(False)
-    if setting.name:
-        recording.send_recording_name(shown(setting.name))
+    if name:
+        recording.send_recording_name(shown(name))
     return recording
 
 
@@ -126,37 +137,54 @@ def send_static(
     views = layout(rows, setting, viewpoint, plots, duration_s, has_notes=bool(notes), is_live=is_live)
     send_blueprint(recording, views)
     put_in(recording, "world", WORLD)
+    log_craft(recording, rows, setting, viewpoint)
+    if "position_eci" in rows:
+        log_planet(recording, rows, setting)
+    if is_apart(bodies := flight_bodies(rows, setting), viewpoint.size):
+        log_flight(recording, bodies)
+    for series in plots:
+        log_style(recording, series)
+    log_notes(recording, notes)
+    return viewpoint
+
+
+def log_craft(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
+    """Log the shapes and the axes of one robot, from its first rows."""
     send_fixed_frames(recording, setting)
     log_robot(recording, setting)
-    in_orbit = rows.quat_wl is not None
     log_all_axes(
         recording, setting, viewpoint.size, (viewpoint.inertial_at, viewpoint.local_at),
-        near=NEAR * path_length(rows, setting), in_orbit=in_orbit,
+        near=NEAR * path_length(rows, setting), in_orbit=rows.quat_wl is not None,
         tool_name_at=None if setting.tool is None else viewpoint.beside_tool(rows, setting),
         has_reference="reference_pose" in rows,
     )  # fmt: skip
     log_targets(recording, setting, viewpoint.size)
-    if "position_eci" in rows:
-        log_planet(recording, rows, setting)
-    if is_apart(rows, setting, viewpoint):
-        log_flight(recording, rows, setting)
-    for series in plots:
-        log_style(recording, series)
+
+
+def log_notes(recording: rr.RecordingStream, notes: str) -> None:
+    """Log the notes in Markdown, unless they are empty."""
     if notes:
         text = rr.TextDocument(shown_lines(notes), media_type=rr.MediaType.MARKDOWN)
         recording.log("notes", text, static=True, strict=True)
-    return viewpoint
 
 
 def send_rows(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
     """Send everything that moves, for every row."""
-    send_moving_frames(recording, rows, setting, viewpoint.inertial_at)
-    send_targets(recording, rows, setting)
-    if "reference_pose" in rows:
-        send_desired(recording, rows)
+    send_local_frame(recording, rows)
+    send_craft(recording, rows, setting, viewpoint)
     if "position_eci" in rows:
         send_planet(recording, rows, setting)
         send_spacecraft(recording, rows, setting)
+
+
+def send_craft(
+    recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint
+) -> None:
+    """Send the links of one robot, its targets and the desired pose of its tool, for every row."""
+    send_moving_frames(recording, rows, setting, viewpoint.inertial_at)
+    send_targets(recording, rows, setting)
+    if "reference_pose" in rows:
+        send_desired(recording, rows, setting)
 
 
 def recorded_rows(count: int) -> NDArray[np.int64]:

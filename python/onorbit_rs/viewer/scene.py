@@ -19,7 +19,6 @@ from onorbit_rs.viewer.frames import (
     LOCAL,
     WORLD,
     fix_frame,
-    of_link,
     put_in,
     send_frame,
 )
@@ -42,7 +41,6 @@ NEAR = 0.25
 """Length of the axes in the close-up view, in lengths of the path."""
 
 COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
-TRAILS = {name: f"world/tool/{name}/trail" for name in COLORS}
 UNTIL_NOW = rrb.VisibleTimeRanges(
     rrb.VisibleTimeRange(
         TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
@@ -56,15 +54,15 @@ _POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
     """Log the shapes of the robot, each in the frame of its link."""
     for index, shape in enumerate(setting.shapes):
-        path = rr.new_entity_path(["world", "robot", shown(shape.link), f"visual_{index}"])
+        path = rr.new_entity_path([*setting.entity("robot").split("/"), shown(shape.link), f"visual_{index}"])
         for entity in log_shape(recording, path, shape):
-            put_in(recording, entity, of_link(shape.link))
+            put_in(recording, entity, setting.frame_of(shape.link))
 
 
-def send_desired(recording: rr.RecordingStream, rows: TraceRows) -> None:
+def send_desired(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
     """Send the desired pose of the tool."""
-    pose = rows["reference_pose"]
-    send_frame(recording, rows.times, WORLD, DESIRED, pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3]))
+    pose, desired = rows["reference_pose"], setting.frame(DESIRED)
+    send_frame(recording, rows.times, WORLD, desired, pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3]))
 
 
 def path_length(rows: TraceRows, setting: Setting) -> float:
@@ -78,14 +76,15 @@ def path_length(rows: TraceRows, setting: Setting) -> float:
 def log_path(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, size: float) -> None:
     """Log the whole desired path, and dim axes at its end."""
     points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
-    path, color = "world/tool/desired/path", COLORS["desired"]
+    path, color = setting.entity("tool/desired/path"), COLORS["desired"]
     put_in(recording, path, frame)
     line = rr.LineStrips3D([_decimated(points)], colors=[color], radii=rr.Radius.ui_points(1.2))
     recording.log(path, line, static=True, strict=True)
     if (length := path_length(rows, setting)) > MOVES * size:
         pose_wp = _pose_of_path_frame(rows, setting)
-        fix_frame(recording, frame, GOAL, np.linalg.inv(pose_wp) @ rows["reference_pose"][-1])
-        log_axes(recording, "world/tool/desired/goal", GOAL, NEAR * length, brightness=0.6)
+        goal = setting.frame(GOAL)
+        fix_frame(recording, frame, goal, np.linalg.inv(pose_wp) @ rows["reference_pose"][-1])
+        log_axes(recording, setting.entity("tool/desired/goal"), goal, NEAR * length, brightness=0.6)
 
 
 def send_trails(
@@ -97,7 +96,12 @@ def send_trails(
     """
     for name in names:
         points, frame = on_path(rows, rows[_POSES[name]][:, :3, 3], setting)
-        send_trail(recording, TRAILS[name], frame, rows, points, most, COLORS[name])
+        send_trail(recording, trail_of(setting, name), frame, rows, points, most, COLORS[name])
+
+
+def trail_of(setting: Setting, name: str) -> str:
+    """Return the path of the entity of a named trail."""
+    return setting.entity(f"tool/{name}/trail")
 
 
 def send_trail(
@@ -131,7 +135,9 @@ def on_path(rows: TraceRows, position_w: Floats, setting: Setting) -> tuple[Floa
         return np.einsum("tji,tj->ti", rows.rot_wl, position_w), LOCAL
     if setting.path_frame == "base":
         rot_wb = matrix_from_quaternion(rows["q"][:, QUATERNION])
-        return np.einsum("tji,tj->ti", rot_wb, position_w - rows["q"][:, POSITION]), of_link(setting.base)
+        return np.einsum("tji,tj->ti", rot_wb, position_w - rows["q"][:, POSITION]), setting.frame_of(
+            setting.base
+        )
     return position_w, WORLD
 
 

@@ -33,7 +33,9 @@ _XYZ = [(240, 95, 75), (70, 200, 120), (85, 155, 250)]
 _COLORS = [(85, 155, 250), (240, 130, 50), (70, 200, 120), (220, 140, 190), (240, 190, 50), (130, 210, 245),
            (180, 180, 180), (245, 235, 100)]  # fmt: skip
 _OTHERS, OTHERS = (90, 94, 104), "others, smaller"
-_AXES, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
+AXES, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
+SUM, _SUM = "sum", (235, 235, 235)
+"""Name and colour of the last line of a plot that is the sum of the others."""
 
 _TOOL_ERRORS = (COLUMNS["position_error"], COLUMNS["attitude_error"])
 
@@ -70,12 +72,13 @@ def series_of(rows: TraceRows, setting: Setting, *, is_live: bool = False) -> It
         _of_effects(rows, setting.model),
     )
     for series in chain.from_iterable(parts):
-        fitted = series if is_live else _fitted(series)
+        fitted = series if is_live else fitted_unit(series)
         if is_live or series.group != "Forces" or fitted.values.any():
-            yield fitted
+            root, _, name = fitted.path.partition("/")
+            yield replace(fitted, path=f"{root}/{setting.system}/{name}") if setting.system else fitted
 
 
-def _fitted(series: Series) -> Series:
+def fitted_unit(series: Series) -> Series:
     """Return the series in a unit that suits its peak.
 
     Rerun's axes show four decimals and no exponents. A peak below the rounding error gives zeros; exact
@@ -100,20 +103,20 @@ def _of_effects(rows: TraceRows, model: Model) -> Iterator[Series]:
         parts = (("force", "net force", force), ("torque", "torque about the centre of mass", torque))
         for part, title, values in parts:
             _, unit = COLUMNS["wrenches"].parts[part]
-            yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, _AXES, values)
+            yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, AXES, values)
 
 
 def _of_tools(rows: TraceRows, setting: Setting) -> Iterator[Series]:
     if "position_error" in rows:
         for column in _TOOL_ERRORS:
             title = f"{shown(setting.tool or 'Tool')}: {column.name.replace('_', ' ')}"
-            yield Series("Tool", f"plots/tool_{column.name}", title, column.unit, _AXES, rows[column.name])
+            yield Series("Tool", f"plots/tool_{column.name}", title, column.unit, AXES, rows[column.name])
     for name, errors in rows.tracking.items():
         path = f"plots/tracking/{name}"
-        if errors.shape[1] == 2 * len(_AXES):
+        if errors.shape[1] == 2 * len(AXES):
             for column, part in zip(_TOOL_ERRORS, np.split(errors, 2, axis=1), strict=True):
                 what = column.name.removesuffix("_error")
-                yield Series("Tool", f"{path}/{what}", f"{name}: {what} error", column.unit, _AXES, part)
+                yield Series("Tool", f"{path}/{what}", f"{name}: {what} error", column.unit, AXES, part)
         else:
             names = tuple(f"joint {index + 1}" for index in range(errors.shape[1]))
             unit = joint_units(joint.kind for joint in setting.model.joints).position
@@ -149,9 +152,7 @@ def _of_base(rows: TraceRows) -> Iterator[Series]:
     yield _of_part(rows, "Base", "plots/base_position", "Base position in W", "q", "position")
     if "position_eci" in rows:
         for name, title in (("position_eci", "Base position"), ("velocity_eci", "Base velocity")):
-            yield Series(
-                "Orbit", f"exact/{name}", f"{title}, inertial", COLUMNS[name].unit, _AXES, rows[name]
-            )
+            yield Series("Orbit", f"exact/{name}", f"{title}, inertial", COLUMNS[name].unit, AXES, rows[name])
 
 
 def _of_balances(rows: TraceRows) -> Iterator[Series]:
@@ -167,19 +168,21 @@ def _of_balances(rows: TraceRows) -> Iterator[Series]:
 def _of_part(rows: TraceRows, group: str, path: str, title: str, column: str, part: str) -> Series:
     """Return the plot of three components of a column."""
     entries, unit = COLUMNS[column].parts[part]
-    return Series(group, path, title, unit, _AXES, rows[column][:, entries])
+    return Series(group, path, title, unit, AXES, rows[column][:, entries])
 
 
 def log_style(recording: rr.RecordingStream, series: Series) -> None:
     """Log names and colours of the lines of a plot."""
     count = len(series.names)
-    names, colors = list(series.names), list(_XYZ if series.names in (_AXES, ANGLES) else _COLORS)
+    names, colors = list(series.names), list(_XYZ if series.names in (AXES, ANGLES) else _COLORS)
     if count > len(colors):  # no two lines have the same colour
         peaks = np.abs(series.values).max(axis=0)
         largest = np.sort(np.argsort(-peaks, kind="stable")[: len(colors)])
         taken = dict(zip(largest.tolist(), _COLORS, strict=True))
         colors = [taken.get(index, _OTHERS) for index in range(count)]
         names = [name if index in taken else OTHERS for index, name in enumerate(names)]
+    elif names[-1] == SUM:
+        colors[count - 1] = _SUM
     style = rr.SeriesLines(
         names=names,
         colors=colors[:count],

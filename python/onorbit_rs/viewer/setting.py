@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 class Setting:
     """The robot, its orbit and its targets.
 
-    ``tool`` is the frame whose pose the trace contains; its path is drawn in ``path_frame``.
+    ``tool`` is the frame whose pose the trace contains; its path is drawn in ``path_frame``. ``system`` is
+    the name of the robot in a world, and ``grasps`` are its frames that capture or are captured.
     """
 
     model: Model
@@ -38,9 +39,11 @@ class Setting:
     orbit: Orbit | None = None
     earth: Earth | None = None
     targets: tuple[Target, ...] = ()
+    system: str = ""
+    grasps: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, built: Built) -> Setting:
+    def of(cls, built: Built, system: str = "", grasps: tuple[str, ...] = ()) -> Setting:
         """Return the setting of a scenario."""
         scenario = built.scenario
         return cls(
@@ -51,7 +54,25 @@ class Setting:
             built.orbit,
             built.earth,
             targets(scenario),
+            system,
+            grasps,
         )
+
+    def entity(self, part: str) -> str:
+        """Return the path of an entity in the 3-D scene, which for a system begins with its name."""
+        return f"world/{self.system}/{part}" if self.system else f"world/{part}"
+
+    def orbit_entity(self, part: str) -> str:
+        """Return the path of an entity in the view of the orbit, which for a system ends in its name."""
+        return f"orbit/{part}/{self.system}" if self.system else f"orbit/{part}"
+
+    def frame(self, name: str) -> str:
+        """Return the name of a frame that belongs to the robot."""
+        return f"{self.system}/{name}" if self.system else name
+
+    def frame_of(self, link: str) -> str:
+        """Return the name of the frame of a link, or of a frame fixed to a link."""
+        return self.frame(f"robot/{shown(link)}")
 
     @cached_property
     def shapes(self) -> list[Shape]:
@@ -62,6 +83,11 @@ class Setting:
     def robot(self) -> str:
         """Name of the robot for labels."""
         return shown(self.model.name)
+
+    @property
+    def label(self) -> str:
+        """Name of the system or, for a single robot, of the robot."""
+        return self.system or self.robot
 
     @property
     def base(self) -> str:

@@ -37,19 +37,19 @@ def send_targets(recording: rr.RecordingStream, rows: TraceRows, setting: Settin
         half = rate * t[:, None] / 2.0
         turned = np.hstack([np.sin(half) * axis, np.cos(half)])
         quat, position = product(turned, target.quat_xyzw), target.position_at(t)
-        send_frame(recording, rows.times, WORLD, frame_of_target(index), position, quat)
+        send_frame(recording, rows.times, WORLD, frame_of_target(setting, index), position, quat)
 
 
 def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) -> None:
     """Log the axes of the targets, and boxes of those whose size is given."""
     for index, target in enumerate(setting.targets):
-        path = f"world/target/{index}"
-        log_axes(recording, path, frame_of_target(index), 0.25 * size, ("x T", "y T", "z T"))
+        path = setting.entity(f"target/{index}")
+        log_axes(recording, path, frame_of_target(setting, index), 0.25 * size, ("x T", "y T", "z T"))
         if target.size:
             box = rr.Boxes3D(sizes=[target.size], colors=[TARGET], fill_mode=rr.components.FillMode.Solid)
             recording.log(path, box, static=True, strict=True)
 
 
-def frame_of_target(index: int) -> str:
+def frame_of_target(setting: Setting, index: int) -> str:
     """Return the name of the frame of a target."""
-    return f"target/{index}"
+    return setting.frame(f"target/{index}")

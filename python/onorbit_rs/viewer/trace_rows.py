@@ -83,7 +83,10 @@ class TraceRows:
         """Return at most ``most`` evenly spaced rows, including the last."""
         if len(self) <= most:
             return self
-        chosen = evenly_spaced(len(self), most)
+        return self.at(evenly_spaced(len(self), most))
+
+    def at(self, chosen: NDArray[np.int64] | slice) -> TraceRows:
+        """Return chosen rows."""
         parts = (self.columns, self.wrenches, self.tracking)
         return TraceRows(*({name: values[chosen] for name, values in part.items()} for part in parts))
 
@@ -92,10 +95,12 @@ class TraceRows:
         return TraceRows({name: values[-1:] for name, values in self.columns.items()})
 
     def after(self, earlier: TraceRows) -> TraceRows:
-        """Return these rows preceded by earlier ones."""
-        return TraceRows(
-            {name: np.concatenate([earlier.columns[name], values]) for name, values in self.columns.items()}
-        )
+        """Return these rows preceded by earlier ones, in the columns that both have.
+
+        A stepper omits columns without entries, such as the efforts of a robot without joints.
+        """
+        both = (name for name in self.columns if name in earlier.columns)
+        return TraceRows({name: np.concatenate([earlier.columns[name], self.columns[name]]) for name in both})
 
     @cached_property
     def times(self) -> rr.TimeColumn:

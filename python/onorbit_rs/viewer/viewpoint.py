@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-_TO_EYE = np.array([0.5, -0.8, 0.34])
+TO_EYE = np.array([0.5, -0.8, 0.34])
 """Direction from the robot to the camera in base axes: front, right and a little above."""
 
 _NEAR = 4.0
@@ -38,6 +38,8 @@ class Viewpoint:
     center: Floats
     rot_fb: Floats
     """Rotation from base axes to those of ``follow`` at the start."""
+    to_eye: Floats = field(default_factory=TO_EYE.copy)
+    """Direction to the camera in base axes."""
 
     @classmethod
     def of(cls, rows: TraceRows, setting: Setting) -> Viewpoint:
@@ -58,7 +60,7 @@ class Viewpoint:
 
     def place(self, right: float, up: float, behind: float = 0.0) -> Floats:
         """Return a point in ``follow``, m, given screen coordinates in units of the robot's size."""
-        x, y, z = self._sight()
+        x, y, z = self.sight()
         place: Floats = self.center + self.size * (right * x + up * y - behind * z)
         return place
 
@@ -66,16 +68,16 @@ class Viewpoint:
         """Return the position of the tool's name in its axes, m: away from the robot and upwards."""
         pose = setting.tool_pose(rows["q"][evenly_spaced(len(rows), _POSES)])
         off = pose[:, :3, 3] - self.rot_fb.T @ self.center
-        sight = _TO_EYE / np.linalg.norm(_TO_EYE)
+        sight = self.to_eye / np.linalg.norm(self.to_eye)
         off -= np.outer(off @ sight, sight)  # projected onto the screen
         off = off / np.linalg.norm(off, axis=1, keepdims=True).clip(1e-9) + [0.0, 0.0, 1.0]
         direction = np.einsum("kji,kj->i", pose[:, :3, :3], off)
         place: Floats = 0.11 * self.size * direction / max(float(np.linalg.norm(direction)), 1e-9)
         return place
 
-    def _sight(self) -> Floats:
+    def sight(self) -> Floats:
         """Return unit vectors (3, 3) to the right, up, and towards the camera at the start."""
-        to_eye = self.rot_fb @ _TO_EYE
+        to_eye = self.rot_fb @ self.to_eye
         to_eye /= np.linalg.norm(to_eye)
         right = np.cross(self.rot_fb[:, 2], to_eye)
         right /= np.linalg.norm(right)

@@ -48,9 +48,14 @@ class Shape:
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
     """Return centre (3,) in W and diameter, at least 0.1, of a sphere around a robot in all q (k, nq), m."""
-    corners = np.vstack([_corners(model, row, shape) for row in q for shape in robot])
+    corners = corners_of(model, robot, q)
     center = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
     return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
+
+
+def corners_of(model: Model, robot: list[Shape], q: Floats) -> Floats:
+    """Return the corners (k, 3) in W of the boxes around all shapes in all q (k, nq), m."""
+    return np.vstack([_corners(model, row, shape) for row in q for shape in robot])
 
 
 def box_around(shape: Shape) -> tuple[Floats, Floats]:

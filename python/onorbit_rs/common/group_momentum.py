@@ -1,0 +1,45 @@
+"""Momentum of several systems, and the rows that their traces share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import reduce
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+
+def group_momentum(momenta: Sequence[Floats], centers: Sequence[Floats], masses: Sequence[float]) -> Floats:
+    """Return the momentum (systems, T, 6) of each system; their sum is that of all systems together.
+
+    The angular part is about the common centre of mass `c`: `L_k + (c_k − c) × P_k`.
+
+    Parameters
+    ----------
+    momenta : sequence of (T, 6) array, N s and N m s
+        Momentum of each system, its angular part about the centre of mass of the system; axes of W.
+    centers : sequence of (T, 3) array, m
+        Centres of mass in W.
+    masses : sequence of float, kg
+    """
+    found, places = np.array(momenta, dtype=np.float64), np.array(centers, dtype=np.float64)
+    common = np.einsum("k,kti->ti", np.array(masses), places) / sum(masses)
+    found[:, :, 3:] += np.cross(places - common, found[:, :, :3])
+    return found
+
+
+def shared_rows(times: Sequence[Floats]) -> list[NDArray[np.int64]]:
+    """Return the indices of the rows at the times that all systems have, for each system.
+
+    Systems with equal times share all rows; otherwise the last row of each common time is used.
+    """
+    first = times[0]
+    if all(np.array_equal(other, first) for other in times):
+        return [np.arange(len(first))] * len(times)
+    common = reduce(np.intersect1d, times)
+    return [np.searchsorted(own, common, side="right") - 1 for own in times]

@@ -1,0 +1,99 @@
+"""Motion of a captured frame relative to the capturing one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from onorbit_rs.common.display_units import ROUNDING, degrees_with_prefix, with_prefix
+from onorbit_rs.common.frame_motion import MovingFrame, frame_motion
+from onorbit_rs.figures.event_marks import mark_events, of_systems
+from onorbit_rs.figures.style import (
+    INK,
+    PAGE,
+    SMALL,
+    XYZ_COLORS,
+    hide_rounding,
+    new_figure,
+    plot_lines,
+    tidy,
+    time_unit,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model, WorldTrace
+    from onorbit_rs.figures.world_subject import EventMark
+    from onorbit_rs.scenario.connections import Connection
+
+    Floats = NDArray[np.float64]
+
+
+def captured_motion(
+    trace: WorldTrace, models: Mapping[str, Model], connection: Connection, events: Sequence[EventMark] = ()
+) -> Figure:
+    """Draw the motion of a captured frame in axes of the capturing one, over the whole run.
+
+    The panels show position, attitude (as a rotation vector), velocity and angular velocity: the quantities
+    that a latch compares with its envelope. Black lines are magnitudes, dashed ones the limits of the latch.
+    """
+    moving = [
+        MovingFrame(models[system], frame, trace[system].q, trace[system].v)
+        for system, frame in (connection.by, connection.of)
+    ]
+    motion = frame_motion(*moving)
+    scale, clock = time_unit(times := np.asarray(trace[connection.by[0]].time))
+    time, label = times / scale, f"time [{clock}]"
+    limits = _limits(connection)
+    figure = new_figure(PAGE, 3.9)
+    panels = figure.subplots(2, 2, sharex=True)
+    quantities = (
+        ("position", "m", motion.position, limits[0]),
+        ("attitude", "deg", np.degrees(motion.rotation), limits[1]),
+        ("velocity", "m/s", motion.velocity, limits[2]),
+        ("angular velocity", "deg/s", np.degrees(motion.rate), limits[3]),
+    )
+    for number, (axes, (name, unit, values, limit)) in enumerate(zip(panels.flat, quantities, strict=True)):
+        shown = _draw(axes, time, values, unit, limit)
+        tidy(axes, label if number > 1 else "", f"{name} [{shown}]")
+        mark_events(axes, of_systems(events, connection.systems), scale, has_names=number < 2)
+    figure.legend(
+        *panels[0, 0].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
+        ncols=5, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
+    )  # fmt: skip
+    return figure
+
+
+def _limits(connection: Connection) -> list[float | None]:
+    """Return the largest distance, m, angle, deg, speed, m/s, and angular rate, deg/s, of a latch, if any."""
+    latch = connection.latch
+    limits = [] if latch is None else [*latch.within, *(latch.slower_than or ())]
+    found: list[float | None] = [*limits, *[None] * (4 - len(limits))]
+    return [limit if limit is None or number % 2 == 0 else float(np.degrees(limit))
+            for number, limit in enumerate(found)]  # fmt: skip
+
+
+def _draw(axes: Axes, time: Floats, values: Floats, unit: str, limit: float | None) -> str:
+    """Draw a vector and the limit of the latch; return the unit with its prefix."""
+    size = np.linalg.norm(values, axis=1)
+    scaled = degrees_with_prefix if unit.startswith("deg") else with_prefix
+    factor, shown = scaled(float(size.max()), unit)
+    plot_lines(axes, time, factor * size[:, None], ("magnitude",), (INK,))
+    lines = _broken(values) if unit == "deg" else values
+    plot_lines(axes, time, factor * lines, ("x", "y", "z"), XYZ_COLORS)
+    if limit is not None:
+        axes.axhline(factor * limit, color=INK, linewidth=0.7, linestyle=(0, (2, 2)), label="latch")
+    hide_rounding(axes, ROUNDING * max(factor, 1.0))
+    return shown
+
+
+def _broken(values: Floats) -> Floats:
+    """Return rotation vectors (T, 3), deg, without the lines across their jumps at 180 degrees."""
+    found = values.copy()
+    found[1:][np.linalg.norm(np.diff(values, axis=0), axis=1) > 180.0] = np.nan
+    return found

@@ -1,0 +1,56 @@
+"""Marks of events in figures over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from matplotlib.axes import Axes
+
+from onorbit_rs.figures.style import FAINT_INK, SMALL, legend_name
+
+if TYPE_CHECKING:
+    from onorbit_rs.figures.world_subject import EventMark
+
+STYLES = {"capture": "-", "release": (0, (4, 2))}
+_OTHER = (0, (1, 1.5))
+_LEAST_APART = 0.12
+"""Least time between two names, as a fraction of the time of the last event."""
+
+
+def mark_events(
+    axes: Axes, events: Sequence[EventMark], time_scale: float, *, has_names: bool = False
+) -> None:
+    """Draw a vertical line for each event: solid for a capture, dashed for a release.
+
+    ``time_scale`` is the number of seconds in the unit of the time axis.
+    """
+    for event in events:
+        at, style = event.time / time_scale, STYLES.get(event.kind, _OTHER)
+        axes.axvline(at, color=FAINT_INK, linewidth=0.8, linestyle=style, zorder=0.5)
+    if has_names:
+        for at, name in _joined(events):
+            axes.annotate(
+                legend_name(name), (at / time_scale, 1.0), xycoords=axes.get_xaxis_transform(),
+                xytext=(0, 1.5), textcoords="offset points", ha="center", va="bottom", fontsize=SMALL,
+                color=FAINT_INK,
+            )  # fmt: skip
+
+
+def _joined(events: Sequence[EventMark]) -> list[tuple[float, str]]:
+    """Return times, s, and names; names that would cover each other are joined."""
+    if not events:
+        return []
+    least = _LEAST_APART * max(event.time for event in events)
+    found: list[tuple[float, list[str]]] = []
+    for event in events:
+        if found and event.time - found[-1][0] < least:
+            found[-1][1].append(event.name)
+        else:
+            found.append((event.time, [event.name]))
+    return [(at, ", ".join(names)) for at, names in found]
+
+
+def of_systems(events: Sequence[EventMark], systems: Sequence[str]) -> list[EventMark]:
+    """Return the events between these systems."""
+    return [event for event in events if set(event.systems) <= set(systems)]

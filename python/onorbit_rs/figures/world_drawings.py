@@ -1,0 +1,55 @@
+"""Figures that apply to a run with several systems, with their names and captions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+from onorbit_rs.common.rotations import has_local_frame
+from onorbit_rs.figures.captured_motion import captured_motion
+from onorbit_rs.figures.drawings import Drawing
+from onorbit_rs.figures.shared_balance import energy_exchange, momentum_exchange
+from onorbit_rs.figures.world_motion import formation_motion, is_apart
+from onorbit_rs.scenario.connections import connected_groups
+
+if TYPE_CHECKING:
+    from onorbit_rs.figures.world_subject import WorldSubject
+
+PREFIX = "world_"
+"""Beginning of the names of these figures; no system has the name ``world``."""
+
+
+def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
+    """Yield every figure of several systems together that applies to a run."""
+    trace, models, events = subject.trace, subject.models, subject.events
+    drawn = set()
+    for connection in subject.connections:
+        if connection.frames in drawn or not set(connection.systems) <= set(models):
+            continue
+        drawn.add(connection.frames)
+        by, of = connection.frames
+        about = (
+            f"Motion of {of} relative to {by}, in the axes of the latter; the attitude as a rotation vector. "
+            "Solid vertical lines are captures, dashed ones releases."
+        )
+        draw = partial(captured_motion, trace, models, connection, events)
+        yield Drawing(f"{PREFIX}capture_{connection.name}", about, draw)
+    groups = connected_groups(list(trace.names), subject.connections)
+    for group in groups:
+        which = "" if len(groups) == 1 else f"_{group[0]}"
+        if set(group) <= set(models):
+            about = (
+                f"Momentum of {' and '.join(group)} in W, angular momentum about the common centre of mass; "
+                "only external forces change the sum."
+            )
+            draw = partial(momentum_exchange, trace, models, group, events)
+            yield Drawing(f"{PREFIX}momentum{which}", about, draw)
+        about = f"Kinetic energy of {' and '.join(group)} in W, and the energy lost in events."
+        yield Drawing(f"{PREFIX}energy{which}", about, partial(energy_exchange, trace, group, events))
+    if all(has_local_frame(trace[name]) for name in trace.names) and is_apart(trace, models):
+        about = (
+            "Paths relative to the reference orbit in L, seen along the orbit normal and from above, and the "
+            "distances between the bases."
+        )
+        yield Drawing(f"{PREFIX}motion", about, partial(formation_motion, trace, events))

@@ -1,0 +1,48 @@
+"""Data of a run with several systems that its figures need in addition to its trace."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model, WorldTrace
+    from onorbit_rs.scenario.connections import Connection
+
+
+class EventMark(NamedTuple):
+    """An event as a figure marks it; :class:`onorbit_rs.EventRecord` has the same attributes."""
+
+    name: str
+    kind: str
+    time: float
+    systems: tuple[str, str]
+    energy_lost: float
+
+
+@dataclass(frozen=True)
+class WorldSubject:
+    """A run of several systems to draw.
+
+    Attributes
+    ----------
+    trace : WorldTrace
+    models : dict of Model
+        Robots by system, without those whose file cannot be read or was changed since the run.
+    events : tuple of EventMark
+    connections : tuple of Connection
+    """
+
+    trace: WorldTrace
+    models: Mapping[str, Model]
+    events: tuple[EventMark, ...] = ()
+    connections: tuple[Connection, ...] = ()
+
+
+def marks_of(summary: dict[str, Any]) -> tuple[EventMark, ...]:
+    """Return the events in the summary of a run."""
+    return tuple(
+        EventMark(row["name"], row["kind"], row["time_s"], tuple(row["systems"]), row["energy_lost_j"])
+        for row in summary["events"]
+    )

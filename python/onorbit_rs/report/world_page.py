@@ -1,0 +1,109 @@
+"""The report page of a run with several systems: events, numbers, certificates and figures by system."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from html import escape
+from typing import Any
+
+from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.report.numbers import Row, groups, row
+from onorbit_rs.report.page import (
+    Content,
+    Picture,
+    checks_table,
+    data_html,
+    figure_html,
+    filled,
+    numbers_section,
+    warnings_of,
+)
+
+_PARTS = ("events", "systems", "certificate")
+"""Entries of the summary of a world that are not numbers."""
+
+_COLUMNS = ("time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
+            "angular_momentum_error_rel")  # fmt: skip
+_HEADS = ("event", "kind", "systems", "time", "impulse", "angular impulse", "energy lost",
+          "error of linear momentum", "error of angular momentum")  # fmt: skip
+
+_OF_THE_ORBIT = ("inertial_axes", "velocity_eci_source", "gravity_mode")
+"""Entries of systems that are those of their common orbit."""
+
+
+def world_page(
+    summary: dict[str, Any],
+    *,
+    description: str,
+    scenario: str,
+    pictures: Mapping[str, Sequence[Picture]],
+    remarks: Sequence[str],
+    again: str,
+    version: str,
+) -> str:
+    """Return the HTML of a report; ``pictures`` are by system, those of all systems under an empty name."""
+    systems: dict[str, dict[str, Any]] = summary["systems"]
+    own = {key: value for key, value in summary.items() if key not in _PARTS}
+    first = next(iter(systems.values()))
+    own |= {key: first[key] for key in _OF_THE_ORBIT if key in first}
+    parts = [_events(summary["events"]), numbers_section("All systems", groups(own))]
+    for name, system in systems.items():
+        alone = {key: value for key, value in system.items() if key not in own}
+        parts.append(numbers_section(name, [(title, _named(name, rows)) for title, rows in groups(alone)]))
+    warnings = [*warnings_of(summary), *(f"{name}: {text}" for name, system in systems.items()
+                                         for text in warnings_of(system))]  # fmt: skip
+    content = Content("\n".join(parts), _certificates(summary), _figures(pictures))
+    return filled(summary, content, description, scenario, warnings, remarks, again, version)
+
+
+def _named(system: str, rows: Sequence[Row]) -> list[Row]:
+    """Return rows whose keys begin with the name of the system."""
+    return [entry._replace(key=f"{system}/{entry.key}") for entry in rows]
+
+
+def _events(events: Sequence[dict[str, Any]]) -> str:
+    """Return the table of the events with their audits."""
+    if not events:
+        return "<h2>Events</h2>\n<p>No event happened.</p>"
+    head = "".join(f'<th scope="col">{name}</th>' for name in _HEADS)
+    lines = "\n".join(f"<tr>{''.join(_cells(event))}</tr>" for event in events)
+    about = (
+        "The impulse acts on the second system. The errors are the changes of the momentum of the group, "
+        "relative to the sum of the magnitudes of the momenta of its bodies."
+    )
+    table = f'<table class="events"><thead><tr>{head}</tr></thead>{lines}</table>'
+    return f'<h2>Events</h2>\n<p class="faint">{about}</p>\n<div class="scroll">{table}</div>'
+
+
+def _cells(event: dict[str, Any]) -> Iterator[str]:
+    """Yield the cells of the row of an event."""
+    for text in (event["name"], event["kind"], ", ".join(event["systems"])):
+        yield f"<td>{escape(text)}</td>"
+    for key in _COLUMNS:
+        entry = row(key, event[key])
+        shown = f"{event[key]:.2g}" if key.endswith("_rel") and event[key] is not None else entry.shown
+        value = data_html(entry._replace(key=f"events/{event['name']}/{key}", shown=shown))
+        yield f"<td>{value} {escape(entry.unit)}</td>"
+
+
+def _certificates(summary: dict[str, Any]) -> str:
+    """Return the checks of groups and events, and those of each system."""
+    found = []
+    for check in summary["certificate"]:
+        name = check["name"].removesuffix("_rel").removesuffix("_rad").replace("_", " ").replace("/", ": ")
+        values = (check["value"], check["gate"], check["unit"], check["passed"])
+        found.append(Check(check["name"], name, *values))
+    parts = ["<h3>Groups of systems and events</h3>", checks_table(found)]
+    for name, system in summary["systems"].items():
+        own = [check._replace(key=f"{name}/{check.key}") for check in checks(system)]
+        parts += [f"<h3>{escape(name)}</h3>", checks_table(own)]
+    return "\n".join(parts)
+
+
+def _figures(pictures: Mapping[str, Sequence[Picture]]) -> str:
+    """Return the figures of all systems together, then those of each."""
+    parts = []
+    for name, own in pictures.items():
+        if own:
+            parts += [f"<h3>{escape(name or 'All systems')}</h3>", *map(figure_html, own)]
+    return "\n".join(parts)

@@ -1,0 +1,53 @@
+"""Connections that the events of a scenario can make between its systems."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from onorbit_rs.scenario.events import Latch, split_path
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.world import WorldScenario
+
+
+class Connection(NamedTuple):
+    """A capture: its name, the capturing and the captured frame (each system and frame), and its releases."""
+
+    name: str
+    by: tuple[str, str]
+    of: tuple[str, str]
+    latch: Latch | None = None
+    releases: tuple[str, ...] = ()
+
+    @property
+    def systems(self) -> tuple[str, str]:
+        """Names of the two systems, the capturing one first."""
+        return self.by[0], self.of[0]
+
+    @property
+    def frames(self) -> tuple[str, str]:
+        """Paths ``SYSTEM/FRAME`` of the two frames, the capturing one first."""
+        return "/".join(self.by), "/".join(self.of)
+
+
+def connections(scenario: WorldScenario) -> tuple[Connection, ...]:
+    """Return the connections of a scenario, in the order of its captures."""
+    found = []
+    for event in scenario.events:
+        if event.do.capture is not None:
+            by, of = map(split_path, event.do.capture)
+            releases = tuple(other.name for other in scenario.events if other.do.release == event.name)
+            found.append(Connection(event.name, by, of, event.when.latch, releases))
+    return tuple(found)
+
+
+def connected_groups(systems: Sequence[str], found: Sequence[Connection]) -> list[list[str]]:
+    """Return the groups of two or more systems that connections may join, in the order of ``systems``."""
+    groups = [{name} for name in systems]
+    for connection in found:
+        joined = [group for group in groups if group & set(connection.systems)]
+        groups = [group for group in groups if group not in joined] + [set().union(*joined)]
+    order = list(systems).index
+    large = [sorted(group, key=order) for group in groups if len(group) > 1]
+    return sorted(large, key=lambda group: order(group[0]))

@@ -1,0 +1,201 @@
+"""Events in a recording: a log, the state of every connection, marks in plots and in the 3-D view."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import rerun as rr
+
+from onorbit_rs.common.display_units import amount, digits
+from onorbit_rs.viewer.axes import log_axes, log_name
+from onorbit_rs.viewer.font import shown
+from onorbit_rs.viewer.frames import FOLLOW, put_in
+from onorbit_rs.viewer.trace_rows import TIMELINE
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import EventRecord
+    from onorbit_rs.scenario.connections import Connection
+    from onorbit_rs.viewer.colors import Color
+    from onorbit_rs.viewer.series import Series
+    from onorbit_rs.viewer.setting import Setting
+    from onorbit_rs.viewer.trace_rows import TraceRows
+    from onorbit_rs.viewer.viewpoint import Viewpoint
+    from onorbit_rs.viewer.world_rows import WorldRows
+    from onorbit_rs.viewer.world_setting import WorldSetting
+
+    Floats = NDArray[np.float64]
+
+LOG, STATES = "events", "connections"
+"""Entities of the log, and of the states of the connections."""
+
+COLORS = {"capture": (110, 220, 130), "release": (255, 190, 80)}
+_OTHER = (220, 220, 220)
+_FREE, _CONNECTED = "free", "connected"
+_GREY = (95, 100, 110)
+
+SHOWN_FOR = 0.05
+"""Time for which an event is marked in the 3-D view, as a fraction of the run."""
+
+_AXES, _ARROW = 0.07, 0.2
+"""Lengths of the axes of a grasp and of the largest impulse, in sizes of the scene."""
+
+
+def log_grasps(recording: rr.RecordingStream, world: WorldRows, scene: Viewpoint) -> None:
+    """Log the axes and the names of the frames that capture or are captured."""
+    length = _AXES * scene.size
+    for system in world.setting.systems.values():
+        for frame in system.grasps:
+            log_axes(recording, _of_frame(system, frame), system.frame_of(frame), length, thickness=2.0)
+    for connection in world.setting.pairs:
+        for (name, frame), side in zip((connection.by, connection.of), (1.0, -1.0), strict=True):
+            system, rows = world.setting.systems[name], world[name]
+            pose = np.asarray(system.model.frame_pose(rows["q"][0], frame)).reshape(4, 4)
+            up = scene.sight()[1] if rows.rot_wl is None else rows.rot_wl[0] @ scene.sight()[1]
+            at = side * 1.2 * length * up @ pose[:3, :3]
+            path = f"{_of_frame(system, frame)}/name"
+            log_name(recording, path, system.frame_of(frame), f"{name}/{frame}", at)
+
+
+def _of_frame(system: Setting, frame: str) -> str:
+    """Return the path of the entity of a frame that captures or is captured."""
+    return rr.new_entity_path([*system.entity("grasp").split("/"), shown(frame)])
+
+
+def log_states(recording: rr.RecordingStream, setting: WorldSetting) -> None:
+    """Log the colours of the states of the connections, all of which are free at the start."""
+    for connection in setting.connections:
+        path = f"{STATES}/{connection.name}"
+        style = rr.StateConfiguration(values=[_FREE, _CONNECTED], colors=[_GREY, COLORS["capture"]])
+        recording.log(path, style, static=True, strict=True)
+        _send_state(recording, path, 0.0, _FREE)
+
+
+def send_events(
+    recording: rr.RecordingStream,
+    events: Sequence[EventRecord],
+    world: WorldRows,
+    scene: Viewpoint,
+    duration_s: float,
+) -> None:
+    """Send the log, the states of the connections, and marks in the 3-D view."""
+    if not events:
+        return
+    by_event = {name: connection for connection in world.setting.connections
+                for name in (connection.name, *connection.releases)}  # fmt: skip
+    colors = [COLORS.get(event.kind, _OTHER) for event in events]
+    log = rr.TextLog.columns(
+        text=[described(event, by_event.get(event.name)) for event in events],
+        level=[event.kind for event in events],
+        color=colors,
+    )
+    recording.send_columns(
+        LOG, [rr.TimeColumn(TIMELINE, duration=[event.time for event in events])], log, strict=True
+    )
+    largest = max(float(np.linalg.norm(event.impulse[:3])) for event in events)
+    for event, color in zip(events, colors, strict=True):
+        connection = by_event.get(event.name)
+        if connection is not None:
+            state = _CONNECTED if event.kind == "capture" else _FREE
+            _send_state(recording, f"{STATES}/{connection.name}", event.time, state)
+            scale = _ARROW * scene.size / largest if largest > 0.0 else 0.0
+            _send_arrow(recording, event, connection, world, (scale, color), SHOWN_FOR * duration_s)
+        _send_label(recording, event, scene, color, SHOWN_FOR * duration_s)
+
+
+def send_marks(
+    recording: rr.RecordingStream, events: Sequence[EventRecord], rows: TraceRows, series: Series
+) -> None:
+    """Send a mark for each event to a plot, on its last line."""
+    if not events:
+        return
+    times = np.array([event.time for event in events])
+    at = np.searchsorted(rows["time"], times, side="right") - 1
+    path, column = f"{series.path}/events", [rr.TimeColumn(TIMELINE, duration=times)]
+    style = rr.SeriesPoints(markers=["diamond"], marker_sizes=[5.0], names=["events"])
+    recording.log(path, style, static=True, strict=True)
+    colors = rr.SeriesPoints.columns(colors=[COLORS.get(event.kind, _OTHER) for event in events])
+    values = rr.Scalars.columns(scalars=series.values[at, -1])
+    recording.send_columns(path, column, [*values, *colors], strict=True)
+
+
+def described(event: EventRecord, connection: Connection | None = None) -> str:
+    """Return one line about an event with its audit."""
+    by, of = event.systems if connection is None else connection.frames
+    linear, angular = np.asarray(event.momentum_error).tolist()
+    return (
+        f"{event.name}: {event.kind}, {energy_of(event.energy_lost)}, "
+        f"momentum errors {linear:.1e} and {angular:.1e}, impulse {impulse_of(event)}; {of} by {by}"
+    )
+
+
+def impulse_of(event: EventRecord) -> str:
+    """Return the magnitudes of the impulse and of its moment."""
+    impulse = np.asarray(event.impulse)
+    sizes = (float(np.linalg.norm(part)) for part in (impulse[:3], impulse[3:]))
+    return " and ".join(f"{digits(size)} {unit}" for size, unit in zip(sizes, ("N s", "N m s"), strict=True))
+
+
+def energy_of(lost_j: float) -> str:
+    """Return the energy that an event removed, or added if it is negative."""
+    return f"{amount(abs(lost_j), 'J')} {'added' if lost_j < 0.0 else 'lost'}"
+
+
+def _send_state(recording: rr.RecordingStream, path: str, t: float, state: str) -> None:
+    columns = rr.StateChange.columns(state=[state])
+    recording.send_columns(path, [rr.TimeColumn(TIMELINE, duration=[t])], columns, strict=True)
+
+
+def _send_arrow(
+    recording: rr.RecordingStream,
+    event: EventRecord,
+    connection: Connection,
+    world: WorldRows,
+    style: tuple[float, Color],
+    shown_s: float,
+) -> None:
+    """Show the impulse on the second system for a while; the arrow ends at the point where it acts."""
+    (scale, color), (name, frame) = style, connection.by
+    system, rows = world.setting.systems[name], world[name]
+    row = int(np.searchsorted(rows["time"], event.time, side="right")) - 1
+    pose = np.asarray(system.model.frame_pose(rows["q"][row], frame)).reshape(4, 4)
+    place = (np.asarray(event.point) - pose[:3, 3]) @ pose[:3, :3]
+    impulse = np.asarray(event.impulse)[:3] @ pose[:3, :3]
+    path = system.entity(f"events/{event.name}")
+    put_in(recording, path, system.frame_of(frame))
+    arrow = rr.Arrows3D(
+        vectors=[scale * impulse],
+        origins=[place - scale * impulse],
+        colors=[color],
+        radii=rr.Radius.ui_points(2.5),
+    )
+    _show(recording, path, arrow, event.time, shown_s)
+
+
+def _send_label(
+    recording: rr.RecordingStream, event: EventRecord, scene: Viewpoint, color: Color, shown_s: float
+) -> None:
+    """Show the name of an event, its impulse and the energy lost above the scene for a while."""
+    path = f"world/lvlh/events/{event.name}"
+    put_in(recording, path, FOLLOW)
+    size = float(np.linalg.norm(event.impulse[:3]))
+    text = f"{event.name}: {event.kind}, {amount(size, 'N s')}, {energy_of(event.energy_lost)}"
+    label = rr.Points3D(
+        [scene.place(0.0, 0.42)], colors=[color], radii=[0.0], labels=[text], show_labels=True
+    )
+    _show(recording, path, label, event.time, shown_s)
+
+
+def _show(
+    recording: rr.RecordingStream, path: str, content: rr.AsComponents, t: float, shown_s: float
+) -> None:
+    """Show an entity for a while from the time ``t`` on, s."""
+    recording.set_time(TIMELINE, duration=t)
+    recording.log(path, content, strict=True)
+    recording.set_time(TIMELINE, duration=t + shown_s)
+    recording.log(path, rr.Clear(recursive=False), strict=True)
+    recording.reset_time()

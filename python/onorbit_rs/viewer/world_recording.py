@@ -1,0 +1,198 @@
+"""``run.rrd`` of several systems: each below its name, all in one scene, and the events between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs.viewer.arrows import Arrows
+from onorbit_rs.viewer.axes import log_compass
+from onorbit_rs.viewer.colors import of_systems
+from onorbit_rs.viewer.encoded import Encoded
+from onorbit_rs.viewer.flight import Body, flight_bodies, is_apart, log_flight, log_whole_flight, send_flight
+from onorbit_rs.viewer.frames import COMPASS, FOLLOW, WORLD, put_in, send_follow, send_local_frame
+from onorbit_rs.viewer.notes import about_meshes
+from onorbit_rs.viewer.planet import log_planet, send_planet, send_spacecraft
+from onorbit_rs.viewer.recording import (
+    MOST_STEPS,
+    log_craft,
+    log_notes,
+    log_paths,
+    new_recording,
+    send_craft,
+)
+from onorbit_rs.viewer.scene import MOST_TRAIL_PIECES
+from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
+from onorbit_rs.viewer.streams import release_streams, send_blueprint
+from onorbit_rs.viewer.viewpoint import Viewpoint
+from onorbit_rs.viewer.world_blueprint import world_layout
+from onorbit_rs.viewer.world_events import log_grasps, log_states, send_events, send_marks
+from onorbit_rs.viewer.world_rows import WorldRows
+from onorbit_rs.viewer.world_series import SHARED, world_series
+from onorbit_rs.viewer.world_viewpoint import common_viewpoint
+
+if TYPE_CHECKING:
+    import rerun as rr
+
+    from onorbit_rs._core import WorldTrace
+    from onorbit_rs.viewer.trace_rows import TraceRows
+    from onorbit_rs.viewer.world_setting import WorldSetting
+
+Plots = list[tuple["TraceRows", Series]]
+"""Plots with the rows whose times they have."""
+
+NEAR_ON_ORBIT = 0.02
+"""Distance of spacecraft that share a label in the view of the orbit, as a fraction of its radius."""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Viewpoints on all systems together and on each of them."""
+
+    common: Viewpoint
+    alone: dict[str, Viewpoint]
+
+    @classmethod
+    def of(cls, world: WorldRows) -> Stage:
+        """Return the viewpoints for these rows."""
+        alone = {name: Viewpoint.of(world[name], setting) for name, setting in world.setting.systems.items()}
+        return cls(common_viewpoint(world), alone)
+
+    @property
+    def size(self) -> float:
+        """Size of the largest system, m."""
+        return max(viewpoint.size for viewpoint in self.alone.values())
+
+
+def write_world_recording(path: Path, trace: WorldTrace, setting: WorldSetting, *, notes: str = "") -> Path:
+    """Write a recording of a run with several systems that ``rerun PATH`` opens.
+
+    Parameters
+    ----------
+    path : Path
+        The ``.rrd`` file.
+    trace : WorldTrace
+    setting : WorldSetting
+        The systems and the connections between them.
+    notes : str
+        Markdown shown beside the 3-D view.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+    """
+    try:
+        _encode(path, trace, setting, notes)
+    finally:
+        release_streams()
+    return path
+
+
+def _encode(path: Path, trace: WorldTrace, setting: WorldSetting, notes: str) -> None:
+    """Log the run to a new stream and write its bytes."""
+    most = MOST_STEPS // len(setting.systems)
+    world = WorldRows.of_trace(trace, setting, most)
+    rows = max(len(trace[name].time) for name in setting.names)
+    if rows > most:
+        notes += f"\n\nThe recording contains {most} of the {rows} rows of the trace.\n"
+    notes += "".join(about_meshes(system.model) for system in setting.systems.values())
+    recording = new_recording(setting.name)
+    encoded = Encoded(recording)
+    plots = plots_of(world)
+    duration = float(world.all_times["time"][-1])
+    stage = log_world(recording, world, plots, duration, notes=notes, has_events=bool(trace.events))
+    for times, series in plots:
+        send_series(recording, times, series)
+        if series.path.startswith(SHARED):
+            send_marks(recording, trace.events, times, series)
+    send_world(recording, world, stage)
+    for name, system in setting.systems.items():
+        log_paths(recording, world[name], system, stage.alone[name])
+        Arrows(recording, system, stage.alone[name]).send(world[name])
+    if is_apart(bodies := bodies_of(world), stage.size):
+        log_whole_flight(recording, bodies)
+        send_flight(recording, bodies, MOST_TRAIL_PIECES)
+    send_events(recording, trace.events, world, stage.common, duration)
+    encoded.write_to(path)
+
+
+def plots_of(world: WorldRows, *, is_live: bool = False) -> Plots:
+    """Return the plots of the world and of each system."""
+    found = list(world_series(world, is_live=is_live))
+    for name, system in world.setting.systems.items():
+        found += [(world[name], series) for series in series_of(world[name], system, is_live=is_live)]
+    return found
+
+
+def log_world(
+    recording: rr.RecordingStream,
+    world: WorldRows,
+    plots: Plots,
+    duration_s: float,
+    *,
+    notes: str = "",
+    has_events: bool = False,
+    is_live: bool = False,
+) -> Stage:
+    """Send the layout and log the static entities, from the first rows."""
+    setting, stage, bodies = world.setting, Stage.of(world), bodies_of(world)
+    send_blueprint(
+        recording,
+        world_layout(
+            world, (stage.common, stage.alone), bodies if is_apart(bodies, stage.size) else [],
+            [series for _, series in plots], duration_s,
+            has_notes=bool(notes), has_events=has_events, is_live=is_live,
+        ),
+    )  # fmt: skip
+    put_in(recording, "world", WORLD)
+    for name, system in setting.systems.items():
+        log_craft(recording, world[name], system, stage.alone[name])
+    places = (stage.common.inertial_at, stage.common.local_at)
+    in_orbit = world.first.quat_wl is not None
+    log_compass(recording, "world/lvlh", (FOLLOW, COMPASS), stage.common.size, places, in_orbit=in_orbit)
+    log_grasps(recording, world, stage.common)
+    log_states(recording, setting)
+    if "position_eci" in world.first:
+        log_planet(recording, world.first, setting.first)
+    if is_apart(bodies, stage.size):
+        log_flight(recording, bodies, "world/lvlh/flight")
+    for _, series in plots:
+        log_style(recording, series)
+    log_notes(recording, notes)
+    return stage
+
+
+def send_world(recording: rr.RecordingStream, world: WorldRows, stage: Stage) -> None:
+    """Send everything that moves, for every row."""
+    shared = world.all_times
+    send_local_frame(recording, shared)
+    send_follow(recording, shared, FOLLOW, COMPASS, world.center, stage.common.inertial_at)
+    for name, system in world.setting.systems.items():
+        send_craft(recording, world[name], system, stage.alone[name])
+    if "position_eci" in world.first:
+        send_planet(recording, world.first, world.setting.first)
+        for name, label in _orbit_labels(world).items():
+            send_spacecraft(recording, world[name], world.setting.systems[name], label)
+
+
+def bodies_of(world: WorldRows) -> list[Body]:
+    """Return the bodies in the view of the relative flight; empty if L is undefined."""
+    systems = world.setting.systems
+    colors = of_systems(systems)
+    return [
+        body for name, system in systems.items() for body in flight_bodies(world[name], system, colors[name])
+    ]
+
+
+def _orbit_labels(world: WorldRows) -> dict[str, str]:
+    """Return the label of each spacecraft: all names at the first one if they are near each other."""
+    names = world.setting.names
+    first = world.first["position_eci"][0]
+    apart = max(float(np.linalg.norm(world[name]["position_eci"][0] - first)) for name in names)
+    if apart > NEAR_ON_ORBIT * float(np.linalg.norm(first)):
+        return {name: name for name in names}
+    return {name: ", ".join(names) if name == names[0] else "" for name in names}

@@ -1,0 +1,59 @@
+"""Data of a run with several systems that the viewer needs in addition to its rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from onorbit_rs.scenario.connections import Connection, connected_groups, connections
+from onorbit_rs.viewer.setting import Setting
+
+if TYPE_CHECKING:
+    from onorbit_rs.scenario.build_world import BuiltWorld
+
+
+@dataclass(frozen=True)
+class WorldSetting:
+    """The systems by name, all about one orbit, and the connections that events can make between them."""
+
+    systems: Mapping[str, Setting]
+    connections: tuple[Connection, ...] = ()
+    name: str = ""
+
+    @classmethod
+    def of(cls, built: BuiltWorld) -> WorldSetting:
+        """Return the setting of a scenario."""
+        found = connections(built.scenario)
+        systems = {
+            name: Setting.of(alone, name, grasps_of(name, found)) for name, alone in built.systems.items()
+        }
+        return cls(systems, found, built.scenario.name)
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the systems."""
+        return list(self.systems)
+
+    @property
+    def first(self) -> Setting:
+        """Setting of the first system, whose orbit and Earth are those of all."""
+        return next(iter(self.systems.values()))
+
+    @property
+    def groups(self) -> list[list[str]]:
+        """Names of the systems that connections can join."""
+        return connected_groups(self.names, self.connections)
+
+    @property
+    def pairs(self) -> tuple[Connection, ...]:
+        """Connections whose frames differ from those of the ones before."""
+        return tuple({connection.frames: connection for connection in reversed(self.connections)}.values())[
+            ::-1
+        ]
+
+
+def grasps_of(system: str, found: tuple[Connection, ...]) -> tuple[str, ...]:
+    """Return the frames of a system that capture or are captured, without duplicates."""
+    ends = (end for connection in found for end in (connection.by, connection.of))
+    return tuple(dict.fromkeys(frame for name, frame in ends if name == system))

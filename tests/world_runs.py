@@ -1,0 +1,71 @@
+"""Worlds for the tests of pictures: with a capture and a release, and with rows at different times."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import onorbit_rs as oo
+from onorbit_rs.scenario import WorldScenario, load
+from onorbit_rs.scenario.build_world import BuiltWorld, build_world
+from onorbit_rs.scenario.yaml_lines import parse_yaml
+
+PAIR = """\
+name: two craft
+orbit: {kind: kepler, semi_major_axis: 6778 km}
+systems:
+  chaser:
+    robot: servicer
+    tool: tool
+    initial: {joints: [0, 1.4260, 0, 1.3391, 0, -1.1943, 0], position: [0, 0.5, 0]}
+    controller: {kind: joint_computed_torque, kp: 1, kd: 2}
+    control_period: 20 ms
+  target:
+    robot: target_satellite
+    initial:
+      frame: chaser/tool
+      position: [30 cm, 0, 75 cm]
+      attitude: {roll_pitch_yaw: [0, -90 deg, 0]}
+      angular_velocity: [0, 0, 1 deg/s]
+events:
+  - name: grasp
+    when: {latch: {within: [5 cm, 2 deg], slower_than: [15 cm/s, 5 deg/s], held_for: 100 ms}}
+    do: {capture: [chaser/tool, target/handle]}
+  - name: let_go
+    when: {after: grasp, delay: 0.2 s}
+    do: {release: grasp, impulse: [0, 0, 2 N s, 0, 0, 0]}
+simulation: {duration: 0.5 s, time_step: 10 ms}
+"""
+
+
+def data(**changed: Any) -> dict[str, Any]:
+    """Returns the scenario of the pair, with other top-level entries."""
+    values: dict[str, Any] = parse_yaml(PAIR, None)[0]
+    return values | changed
+
+
+def built(values: dict[str, Any] | str) -> BuiltWorld:
+    scenario = load(values)
+    assert isinstance(scenario, WorldScenario)
+    return build_world(scenario)
+
+
+def ran(world: BuiltWorld) -> oo.WorldTrace:
+    trace: Any = world.simulation.run(world.scenario.simulation.duration)
+    assert isinstance(trace, oo.WorldTrace)
+    return trace
+
+
+@cache
+def pair() -> tuple[BuiltWorld, oo.WorldTrace]:
+    world = built(data())
+    return world, ran(world)
+
+
+@cache
+def trio() -> tuple[BuiltWorld, oo.WorldTrace]:
+    """Returns the pair with a third satellite 40 m away, which has no rows at the times of the events."""
+    values = data()
+    values["systems"]["third"] = {"robot": "small_satellite", "initial": {"position": [0, 40, 0]}}
+    world = built(values)
+    return world, ran(world)
