@@ -211,3 +211,10 @@ def test_wrenches_are_available_during_a_step_only(model: oo.Model) -> None:
 
     with pytest.raises(InputError, match="q holds NaN"):
         reach(Lost(model)).run(0.05)
+
+
+def test_a_world_of_several_systems_is_refused_at_once(model: oo.Model) -> None:
+    start = model.neutral(), np.zeros(model.nv)
+    world = oo.World([oo.System(name, model, *start) for name in ("a", "b")])
+    with pytest.raises(EngineError, match="moves one robot; a world of several systems"):
+        oo.Simulation(world, engine=Euler(model))
