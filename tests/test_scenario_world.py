@@ -13,6 +13,7 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.exceptions import (
     CheckpointError,
+    EffectError,
     FrameError,
     InputError,
     ScenarioError,
@@ -264,15 +265,20 @@ INVALID: dict[str, tuple[str, str, str]] = {
         "    surfaces: {base: {kind: face}}",
         r":6: systems.chaser.surfaces.base.kind: unknown kind 'face'; did you mean 'faces'",
     ),
+    "surface of one body": (
+        "    tool: tool",
+        "    surfaces: {kind: cannonball, area: 2}",
+        r":6: systems.chaser.surfaces: the robot has 8 bodies; give surfaces by link, such as \{bus: \{kind:",
+    ),
     "link of a surface": (
         "[gravity_gradient]\nsystems:\n  chaser:\n",
         "[drag]\nepoch: 2024-03-01T12:00:00 UTC\nsystems:\n  chaser:\n    surfaces: {bse: faces}\n",
-        r":2: environment\[0\]: .*no frame 'bse'; did you mean 'bus'",
+        r":6: systems.chaser.surfaces: .*no frame 'bse'; did you mean 'bus'",
     ),
 }
 NOT_IN_THE_SCHEMA = {"tool": FrameError, "joint": ShapeError, "frame of a system": FrameError,
                      "captured frame": FrameError, "link of a wrench": FrameError,
-                     "link of a surface": FrameError}  # fmt: skip
+                     "link of a surface": FrameError, "surface of one body": EffectError}  # fmt: skip
 """Cases that the schema cannot find, since they depend on the robot."""
 
 

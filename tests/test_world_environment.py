@@ -95,6 +95,28 @@ def test_the_load_on_a_system_does_not_depend_on_its_group() -> None:
     assert np.abs(trace["far"].wrenches["body_wrench_2"]).max() > 0.5
 
 
+@pytest.mark.parametrize("settings", SETTINGS, ids=["rk4", "dormand_prince"])
+def test_pieces_and_resuming_have_the_same_bits(settings: dict[str, Any]) -> None:
+    def simulation() -> oo.Simulation:
+        grasp = oo.Capture("grasp", "chaser/tool", "target/handle", at=1.1)
+        wrench = thrust("target/bus", start=0.333, end=1.777)
+        world = oo.World(systems("far", "chaser", "target"), environment=[*common(), wrench],
+                         events=[grasp], **AROUND)  # fmt: skip
+        return oo.Simulation(world, record_wrenches=True, **settings)
+
+    whole = simulation().run(2.0)
+    stepper = simulation().start(duration=2.0)
+    for stop in (0.4, 1.1, 1.5):  # before the capture, at it, and while the pair is pushed
+        stepper.advance_to(stop)
+        checkpoint = stepper.checkpoint()
+        stepper.trace()
+        resumed = simulation().start(resume=checkpoint)
+        resumed.advance_to(2.0)
+        rest = resumed.finish()
+        for name in whole.names:
+            assert bits(rest[name]) == bits(whole[name]), (stop, name)
+
+
 def captured(*environment: oo.Effect, **keywords: Any) -> oo.WorldTrace:
     """Return the run of a satellite that is captured by the arm at once."""
     grasp = oo.Capture("grasp", "chaser/tool", "target/handle", at=0.0)

@@ -6,10 +6,14 @@ import warnings
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from onorbit_rs import _core
+from onorbit_rs.exceptions import EffectError
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.engine import build_engine
 from onorbit_rs.scenario.environment.earth import build_earth
+from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.locations import dotted, located, scenario_error
 from onorbit_rs.scenario.orbit import NumericalOrbit
 from onorbit_rs.scenario.reference.start import Start
@@ -18,7 +22,6 @@ from onorbit_rs.scenario.trial import Flight, about_controllers, about_start, tr
 from onorbit_rs.scenario.warnings import warnings_of
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from onorbit_rs.scenario.reference import AnyReference
@@ -88,6 +91,7 @@ def build_around(
     with located(scenario, "tool"):
         if tool is not None:
             model.frame_pose(q, tool)  # raises if there is no such frame
+    _check_surfaces(scenario, model)
     flight = Flight(model, q, v, orbit, earth)
     try_effects(scenario, effects, flight)
     with located(scenario, "engine"):
@@ -107,6 +111,22 @@ def build_around(
     try_one_step(scenario, model, simulation()[0])
     messages = tuple(warnings_of(scenario, flight, effects))
     return Built(scenario, model, orbit, earth, q, v, *simulation(), messages)
+
+
+def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:
+    """Raise an error if the surfaces of the robot do not fit it, also if no effect uses them."""
+    surfaces, bodies = scenario.surfaces, list(model.body_names)
+    if surfaces is None:
+        return
+    with located(scenario, "surfaces"):
+        if not isinstance(surfaces, dict) and surfaces.kind != "faces" and len(bodies) > 1:
+            raise EffectError(
+                f"the robot has {len(bodies)} bodies; give surfaces by link, such as "
+                f"{{{bodies[0]}: {{kind: {surfaces.kind}, …}}}}",
+                name="surfaces",
+            )
+        at_rest = model.neutral(), np.zeros(model.nv)
+        _core.World([_core.System("robot", model, *at_rest, surfaces=build_surfaces(surfaces))])
 
 
 def build_environment(scenario: Scenario | WorldScenario, model: _core.Model | None) -> Environment:

@@ -106,7 +106,9 @@ class WorldScenario(Document):
     def _is_consistent(self) -> WorldScenario:
         names = list(self.systems)
         if self.engine != "native":
-            raise inconsistent("engine", f"engine {self.engine} moves one robot and does not support 'systems'; use native")
+            raise inconsistent(
+                "engine", f"engine {self.engine} moves one robot and does not support 'systems'; use native"
+            )
         for index, effect in enumerate(self.environment):
             if isinstance(effect, (SurfaceEffect, BodyWrenchEffect)):
                 self._check_surfaces(index, effect)
