@@ -134,7 +134,7 @@ def test_momentum_of_a_captured_pair_under_a_wrench_on_the_captured_one() -> Non
     given = np.trapezoid(force[during], target.time[during], axis=0)
     assert np.linalg.norm(given) > 3.0
     # the force turns slowly: the trapezoidal rule is accurate to h² |F''|/12
-    np.testing.assert_allclose(momentum[-1] - momentum[0], given, atol=1e-7)
+    np.testing.assert_allclose(momentum[-1] - momentum[0], given, atol=5e-8)
     assert all(line[3] for line in trace.certificate()), trace.certificate()
     # control: the same wrench on the arm turns with the arm, whose attitude differs
     other = captured(thrust("chaser/bus", start=0.5, end=1.5))
@@ -142,22 +142,38 @@ def test_momentum_of_a_captured_pair_under_a_wrench_on_the_captured_one() -> Non
     assert np.linalg.norm(change - given) > 0.01
 
 
-def test_a_captured_pair_under_wrench_drag_and_light_moves_like_one_robot() -> None:
-    environment = [*common(), thrust("target/bus", start=0.5, end=1.5)]
-    trace = captured(*environment, **AROUND)
+def pair_after(trace: oo.WorldTrace) -> tuple[oo.Model, Any, Any]:
+    """Return the attached models after the capture at time zero, with their state."""
     chaser, target = trace["chaser"], trace["target"]
-    first = np.flatnonzero(chaser.time == 0.0)[-1]  # after the capture
+    first = np.flatnonzero(chaser.time == 0.0)[-1]
     pose = np.linalg.inv(ARM.frame_pose(chaser.q[first], "tool")) @ BOX.frame_pose(target.q[first], "handle")
     both = oo.attach(ARM, "tool", BOX, "handle", pose=pose, prefix="target_")
-    q = np.concatenate([chaser.q[first], target.q[first, 7:]])
-    v = np.concatenate([chaser.v[first], target.v[first, 6:]])
-    surfaces = oo.Faces()
+    return both, chaser.q[first], chaser.v[first]  # the satellite has no joints
+
+
+def test_a_captured_pair_under_wrench_drag_and_light_moves_like_one_robot() -> None:
+    pushed = {"start": 0.5, "end": 1.5}
+    trace = captured(*common(), thrust("target/bus", **pushed), **AROUND)
     alone = oo.Simulation(
-        both, q, v, time_step=5e-3,
-        environment=[oo.Drag(AIR, surfaces=surfaces), oo.RadiationPressure(surfaces=surfaces),
-                     oo.GravityGradient(), thrust("target_bus", start=0.5, end=1.5)], **AROUND,
-    ).run(2.0)  # fmt: skip
-    np.testing.assert_allclose(chaser.q[-1], alone.q[-1, : ARM.nq], atol=1e-9)
+        *pair_after(trace), time_step=5e-3, environment=[*common(), thrust("target_bus", **pushed)], **AROUND
+    ).run(2.0)
+    # 3e-10 measured: the density of the satellite is that about its own grid point, within 1e-4 of the other
+    np.testing.assert_allclose(trace["chaser"].q[-1], alone.q[-1], rtol=0, atol=2e-9)
+
+
+def test_a_captured_pair_under_a_wrench_agrees_with_mujoco() -> None:
+    pytest.importorskip("mujoco", reason="the oracle is in the test extra")
+    pushed = {"start": 0.5, "end": 1.5}
+    trace = captured(thrust("target/bus", **pushed))
+    both, q, v = pair_after(trace)
+    engine = oo.engines.Mujoco(both, time_step=5e-3)
+    wrench = thrust("target_bus", **pushed)
+    other = oo.Simulation(both, q, v, time_step=5e-3, environment=[wrench], engine=engine).run(2.0)
+    difference = both.difference(other.q[-1], trace["chaser"].q[-1])
+    assert np.abs(difference).max() < 1e-11
+    # control: the same wrench on the arm's base
+    wrong = oo.Simulation(both, q, v, time_step=5e-3, environment=[thrust("bus", **pushed)]).run(2.0)
+    assert np.abs(both.difference(wrong.q[-1], trace["chaser"].q[-1])).max() > 1e-4
 
 
 def test_surfaces_of_a_system_serve_all_effects_without_their_own() -> None:
