@@ -45,7 +45,9 @@ def test_the_motion_of_the_captured_frame_is_relative_to_the_capturing_one() -> 
     assert position.get_ylabel() == "position [mm]"
     for axis, name in enumerate("xyz"):
         np.testing.assert_allclose(lines[name], 1e3 * relative[:, axis, 3], atol=1e-9)
-    np.testing.assert_allclose(lines["latch"], 50.0)  # of the scenario, 5 cm
+    assert "latch: 50 mm" in [text.get_text() for text in position.texts]  # far above the distances
+    limits = {line.get_label(): np.asarray(line.get_ydata()) for line in velocity.lines}
+    np.testing.assert_allclose(limits["latch"], 150.0)  # mm/s
     turned = {line.get_label(): np.asarray(line.get_ydata()) for line in attitude.lines}
     trace_of = np.trace(relative[:, :3, :3], axis1=1, axis2=2)
     np.testing.assert_allclose(

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onorbit_rs.common.display_units import ROUNDING, degrees_with_prefix, with_prefix
+from onorbit_rs.common.display_units import ROUNDING, degrees_with_prefix, digits, with_prefix
 from onorbit_rs.common.frame_motion import MovingFrame, frame_motion
 from onorbit_rs.figures.event_marks import mark_events, of_systems
 from onorbit_rs.figures.style import (
@@ -32,6 +32,10 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.connections import Connection
 
     Floats = NDArray[np.float64]
+
+
+MOST_ABOVE = 3.0
+"""Largest ratio of the limit of a latch to the peak of a quantity for which both are drawn."""
 
 
 def captured_motion(
@@ -87,9 +91,18 @@ def _draw(axes: Axes, time: Floats, values: Floats, unit: str, limit: float | No
     lines = _broken(values) if unit == "deg" else values
     plot_lines(axes, time, factor * lines, ("x", "y", "z"), XYZ_COLORS)
     if limit is not None:
-        axes.axhline(factor * limit, color=INK, linewidth=0.7, linestyle=(0, (2, 2)), label="latch")
+        _draw_limit(axes, factor * limit, factor * float(size.max()), shown)
     hide_rounding(axes, ROUNDING * max(factor, 1.0))
     return shown
+
+
+def _draw_limit(axes: Axes, limit: float, peak: float, unit: str) -> None:
+    """Draw the limit of a latch, or print it if the line would compress the others."""
+    if limit <= MOST_ABOVE * peak:
+        axes.axhline(limit, color=INK, linewidth=0.7, linestyle=(0, (2, 2)), label="latch")
+        return
+    text = f"latch: {digits(limit)} {unit}"
+    axes.text(0.98, 0.97, text, transform=axes.transAxes, ha="right", va="top", fontsize=SMALL, color=INK)
 
 
 def _broken(values: Floats) -> Floats:

@@ -41,6 +41,9 @@ _GREY = (95, 100, 110)
 SHOWN_FOR = 0.05
 """Time for which an event is marked in the 3-D view, as a fraction of the run."""
 
+_FIRST_LINE, _LINE_HEIGHT = 0.42, 0.06
+"""Position and line height of the labels of events, in sizes of the scene."""
+
 _AXES, _ARROW = 0.07, 0.2
 """Lengths of the axes of a grasp and of the largest impulse, in sizes of the scene."""
 
@@ -97,14 +100,16 @@ def send_events(
         LOG, [rr.TimeColumn(TIMELINE, duration=[event.time for event in events])], log, strict=True
     )
     largest = max(float(np.linalg.norm(event.impulse[:3])) for event in events)
-    for event, color in zip(events, colors, strict=True):
+    shown_s = SHOWN_FOR * duration_s
+    for number, (event, color) in enumerate(zip(events, colors, strict=True)):
+        line = sum(event.time - other.time < shown_s for other in events[:number])
         connection = by_event.get(event.name)
         if connection is not None:
             state = _CONNECTED if event.kind == "capture" else _FREE
             _send_state(recording, f"{STATES}/{connection.name}", event.time, state)
             scale = _ARROW * scene.size / largest if largest > 0.0 else 0.0
-            _send_arrow(recording, event, connection, world, (scale, color), SHOWN_FOR * duration_s)
-        _send_label(recording, event, scene, color, SHOWN_FOR * duration_s)
+            _send_arrow(recording, event, connection, world, (scale, color), shown_s)
+        _send_label(recording, event, scene.place(0.0, _FIRST_LINE - _LINE_HEIGHT * line), color, shown_s)
 
 
 def send_marks(
@@ -177,16 +182,14 @@ def _send_arrow(
 
 
 def _send_label(
-    recording: rr.RecordingStream, event: EventRecord, scene: Viewpoint, color: Color, shown_s: float
+    recording: rr.RecordingStream, event: EventRecord, place: Floats, color: Color, shown_s: float
 ) -> None:
     """Show the name of an event, its impulse and the energy lost above the scene for a while."""
     path = f"world/lvlh/events/{event.name}"
     put_in(recording, path, FOLLOW)
     size = float(np.linalg.norm(event.impulse[:3]))
     text = f"{event.name}: {event.kind}, {amount(size, 'N s')}, {energy_of(event.energy_lost)}"
-    label = rr.Points3D(
-        [scene.place(0.0, 0.42)], colors=[color], radii=[0.0], labels=[text], show_labels=True
-    )
+    label = rr.Points3D([place], colors=[color], radii=[0.0], labels=[text], show_labels=True)
     _show(recording, path, label, event.time, shown_s)
 
 

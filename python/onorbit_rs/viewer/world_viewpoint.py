@@ -26,7 +26,7 @@ NEAR = 8.0
 _SAMPLES = 12
 _ABOVE = 0.4
 """Height of the camera above the line between two systems, divided by its distance from it."""
-_WIDE, _HIGH = 0.7, 1.1
+_WIDE, _HIGH = 0.65, 1.05
 """Sizes of a scene that just fits into the view, in its width and its height."""
 
 
