@@ -236,8 +236,24 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "release": ("release: grasp", "release: grap", r":23: events\[1\].do.release: .*'grasp'"),
     "release of a release": ("release: grasp", "release: let_go", r":23: .*is not a capture"),
     "same name": ("name: let_go", "name: grasp", r":21: events\[1\].name: two events"),
-    "seat": ("do: {capture:", "do: {seat: 2 s, capture:", r":20: events\[0\].do.seat: .*not available yet"),
-    "knows": ("    tool: tool", "    knows: [target]", r":6: systems.chaser.knows: .*not available yet"),
+    "brake": (
+        "do: {capture:",
+        "do: {engage: brake, capture:",
+        r":20: events\[0\].do.engage: .*not available yet",
+    ),
+    "no time": ("do: {capture:", "do: {seat: 0 s, capture:", r":20: events\[0\].do.seat: .*must be"),
+    "pose alone": (
+        "do: {capture:",
+        "do: {pose: {}, capture:",
+        r":20: events\[0\].do.pose: .*requires 'seat'",
+    ),
+    "seat of a release": ("do: {release:", "do: {seat: 2 s, release:", r":23: .*seat: .*requires 'capture'"),
+    "knows": (
+        "    tool: tool",
+        "    knows: [tarjet]",
+        r":6: systems.chaser.knows\[0\]: .*did you mean 'target'",
+    ),
+    "knows itself": ("    tool: tool", "    knows: [chaser]", r":6: systems.chaser.knows\[0\]: .*itself"),
     "contacts": ("events:\n", "contacts: []\nevents:\n", r":17: contacts: .*not available yet"),
     "engine": ("systems:\n", "engine: mujoco\nsystems:\n", r":3: engine: .*does not support 'systems'"),
     "body without system": (
@@ -315,3 +331,39 @@ def test_events_that_wait_for_each_other_are_refused() -> None:
     values["events"][0]["when"] = {"after": "let_go"}
     with pytest.raises(ScenarioError, match="wait for each other: grasp, let_go, grasp"):
         load(values)
+
+
+def test_a_control_starts_after_an_event(file: Path):
+    """The arm is free until the capture and damped from then on."""
+    text = TEXT.replace(
+        "    controller: {kind: joint_computed_torque, kp: 1, kd: 2}\n",
+        "    controllers: [{name: damp, kind: joint_computed_torque, kp: 0, kd: 2, after: grasp}]\n",
+    )
+    file.write_text(text)
+    trace = oo.run(load(file)).trace
+    (grasp, _), chaser = trace.events, trace["chaser"]
+    before = chaser.time < grasp.time
+    assert not chaser.tau[before].any()
+    assert chaser.tau[~before][1:].any(axis=1).all()  # the first row is the one before the event
+    file.write_text(text.replace("after: grasp}", "after: grap}"))
+    with pytest.raises(ScenarioError, match=r"controllers\[0\].after: no other controller or event.*'grasp'"):
+        load(file)
+
+
+def test_a_capture_is_seated_and_known(file: Path):
+    seated = (
+        TEXT.replace(
+            "do: {capture: [chaser/tool, target/handle]}",
+            "do: {capture: [chaser/tool, target/handle], seat: 150 ms, pose: {position: [2 cm, 0, 0]}}",
+        )
+        .replace("time_step: 10 ms", "time_step: 1 ms")
+        .replace("    tool: tool\n", "    tool: tool\n    knows: [target]\n")
+    )
+    file.write_text(seated)
+    trace = oo.run(load(file)).trace
+    chaser, target = (oo.robots.load(name) for name in ("servicer", "target_satellite"))
+    row = int(np.searchsorted(trace["chaser"].time, trace.events[1].time)) - 1
+    tool = chaser.frame_pose(trace["chaser"].q[row], "tool")
+    pose = np.linalg.inv(tool) @ target.frame_pose(trace["target"].q[row], "handle")
+    np.testing.assert_allclose(pose[:3, 3], [0.02, 0, 0], atol=1e-13)
+    assert trace.certificate() and all(passed for _, _, _, passed in trace.certificate())

@@ -1023,6 +1023,7 @@ class System:
         restitution: float = 0.0,
         reference_start_tolerance: ArrayLike | None = None,
         surfaces: Surface | Mapping[str, Surface] | None = None,
+        knows: Sequence[str] = ...,
     ) -> System: ...
     @property
     def name(self) -> str: ...
@@ -1044,6 +1045,8 @@ class Capture:
         within: ArrayLike | None = None,
         slower_than: ArrayLike | None = None,
         held_for: float = 0.0,
+        seat: float | None = None,
+        pose: ArrayLike | None = None,
     ) -> Capture: ...
     @property
     def name(self) -> str: ...

@@ -60,7 +60,7 @@ fn effects(c: &mut Criterion) {
         let gravity = Gravity::of_field(Arc::new(field), earth).expect("an earth");
         let (position, zero) = (Vector3::from(PLACE), Vector3::zeros());
         let state = OrbitState { position, velocity: zero, acceleration: zero };
-        let reference = Some(Reference { state, gravity: Some(&gravity), in_free_fall: false });
+        let reference = Some(Reference { state: &state, gravity: Some(&gravity), in_free_fall: false });
         Scene::with((0.0, 1e-3), 5e-4, &bodies, reference, None, |scene| {
             c.bench_function(&format!("gravity_8_bodies_{name}_known"), |b| {
                 b.iter(|| {

@@ -68,7 +68,7 @@ fn effects(c: &mut Criterion) {
     let bodies = Bodies::from_iter([body; 8]);
     let mut wrenches = Wrenches::new(&[8]);
     let gravity = orbit.mu().map(Gravity::point_mass);
-    let reference = Some(Reference { state, gravity: gravity.as_ref(), in_free_fall: false });
+    let reference = Some(Reference { state: &state, gravity: gravity.as_ref(), in_free_fall: false });
     Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
         c.bench_function("differential_gravity_8_bodies", |b| {
             b.iter(|| DifferentialGravity::default().add_wrenches(black_box(scene), &mut wrenches));

@@ -103,7 +103,7 @@ fn every_law_of_a_list_realizes_its_commanded_acceleration() {
             Law::Pid(JointPid::new(Interface::Position, 8.0, 0.0, 2.0), hold(0.5)),
         ),
     ];
-    let mut set = ControllerSet::<f64>::new(&mut controls, &model, 1e-12).unwrap();
+    let mut set = ControllerSet::<f64>::new(&mut controls, &model, 1e-12, false).unwrap();
     let mut data = Data::new(&model);
     kinematics(&model, &mut data, &q, &v);
     let push = Force::new(Vec3::new(3.0, -2.0, 1.0), Vec3::new(0.4, 0.2, -0.3));
@@ -272,7 +272,7 @@ fn two_arms_track_simultaneously_but_not_if_each_ignores_the_other() {
         let most = tracking.values.iter().fold(0.0_f64, |most, e| most.max(e.abs()));
         assert!(most < 1e-4, "{}: {most}", tracking.name);
     }
-    let alone = |i| ControllerSet::new(Box::leak(Box::new([control(i)])), &model, 1e-12).unwrap();
+    let alone = |i| ControllerSet::new(Box::leak(Box::new([control(i)])), &model, 1e-12, false).unwrap();
     let deaf = Deaf { model: Arc::clone(&model), arms: vec![alone(0), alone(1)] };
     let trace = run(vec![Control::on_all_joints(&model, Law::User(Box::new(deaf), None))]);
     let off = |row: usize| {
@@ -308,7 +308,7 @@ fn a_reference_is_sampled_once_for_a_tick_and_its_row() {
         TaskReference { path: Arc::clone(&path) as Arc<dyn TaskPath>, frame: ReferenceFrame::World };
     let law = Law::TaskComputedTorque(Box::new(ComputedTorque::new(tool, 4.0, 4.0)), reference);
     let mut controls = [Control::new("arm", (0..7).collect(), law)];
-    let mut set = ControllerSet::<f64>::new(&mut controls, &model, 1e-12).unwrap();
+    let mut set = ControllerSet::<f64>::new(&mut controls, &model, 1e-12, false).unwrap();
     let (mut data, mut tau) = (Data::new(&model), vec![0.0; 7]);
     kinematics(&model, &mut data, &q, &v);
     set.update(0.0, &model, &mut data, &q, &v, &mut tau).unwrap();

@@ -292,11 +292,11 @@ fn states_of_controls_are_saved_and_restored_bit_by_bit() {
     };
     for cut in [3, 9, 14] {
         let (mut one, mut other) = (controls(), controls());
-        let mut one = ControllerSet::new(&mut one, &model, 1e-12).unwrap();
+        let mut one = ControllerSet::new(&mut one, &model, 1e-12, false).unwrap();
         (0..cut).for_each(|k| _ = step(&mut one, k));
         let text = serde_json::to_string(&one.save().unwrap()).unwrap();
         let mut saved: Vec<ControlMemory> = serde_json::from_str(&text).unwrap();
-        let mut other = ControllerSet::new(&mut other, &model, 1e-12).unwrap();
+        let mut other = ControllerSet::new(&mut other, &model, 1e-12, false).unwrap();
         other.load(&saved).unwrap();
         for k in cut..20 {
             assert_eq!(step(&mut one, k), step(&mut other, k), "cut at {cut}, tick {k}");

@@ -55,11 +55,11 @@ fn point_mass(mu: f64) -> &'static Gravity {
     Box::leak(Box::new(Gravity::point_mass(mu)))
 }
 
-/// Returns a reference at `position` without acceleration.
+/// Returns a reference with a static lifetime at `position`, without acceleration.
 fn reference(position: [f64; 3], mu: f64) -> Reference<'static> {
     let zero = Vector3::zeros();
     let state = OrbitState { position: position.into(), velocity: zero, acceleration: zero };
-    Reference { state, gravity: Some(point_mass(mu)), in_free_fall: false }
+    Reference { state: Box::leak(Box::new(state)), gravity: Some(point_mass(mu)), in_free_fall: false }
 }
 
 fn wrench(
@@ -104,7 +104,7 @@ fn a_reference_in_free_fall_leaves_exactly_the_tide() {
     let orbit = Kepler::from_state(ORIGIN.into(), v, MU_EARTH).expect("an ellipse");
     for t in [0.0, 1234.5, 86_400.0] {
         let (state, gravity) = (orbit.state(t).expect("a valid time"), orbit.mu().map(point_mass));
-        let reference = Reference { state, gravity, in_free_fall: false };
+        let reference = Reference { state: &state, gravity, in_free_fall: false };
         assert_eq!(DifferentialGravity::residual(t, &reference), Ok(Some(Vector3::zeros())));
         let b = body(Vector3::new(0.3, -0.2, 0.1));
         assert_eq!(wrench(&TRUE, Some(reference), b), wrench(&CARRIED, Some(reference), b));

@@ -85,7 +85,7 @@ fn wrenches(
     let position = Vector3::new(4.1e6, -4.9e6, 2.2e6);
     let (velocity, acceleration) = (Vector3::new(5.6e3, 3.1e3, -4.0e3), Vector3::zeros());
     let state = OrbitState { position, velocity, acceleration };
-    let reference = Reference { state, gravity: Some(gravity), in_free_fall: true };
+    let reference = Reference { state: &state, gravity: Some(gravity), in_free_fall: true };
     let (mut wrenches, bodies) = (Wrenches::new(&[bodies.len()]), bodies.iter().copied().collect::<Bodies>());
     let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
     Scene::with((0.0, 1e-3), 0.0, &bodies, Some(reference), Some(earth), act)?;

@@ -70,7 +70,7 @@ fn gravity_wrenches(gravity: &Gravity, bodies: &[BodyState], forces: bool) -> Ve
     let position = Vector3::from(ORIGIN);
     let acceleration = gravity.acceleration(0.0, &position).unwrap();
     let state = OrbitState { position, velocity: Vector3::new(0.0, 5.4e3, 5.4e3), acceleration };
-    let reference = Some(Reference { state, gravity: Some(gravity), in_free_fall: true });
+    let reference = Some(Reference { state: &state, gravity: Some(gravity), in_free_fall: true });
     let (mut wrenches, bodies) = (Wrenches::new(&[bodies.len()]), bodies.iter().copied().collect::<Bodies>());
     Scene::with((0.0, 1.0), 0.0, &bodies, reference, None, |scene| {
         GravityGradient.add_wrenches(scene, &mut wrenches).unwrap();

@@ -71,7 +71,7 @@ fn attached_is_the_same_as_built_in_one_go() {
         let mut random = Random::new(seed);
         let (bus, arm) = (chain(&mut random, 4), chain(&mut random, 5));
         let (tip, end, pose) = (random.pose(), random.pose(), random.pose());
-        let mount = Mount { pose, prefix: "arm_".into(), frame: None };
+        let mount = Mount { pose, prefix: "arm_".into(), ..Mount::default() };
         let attached = built(&bus, tip).attach("tip", &built(&arm, end), &mount).unwrap();
 
         let in_one_go = |pose: Isometry3<f64>| {
@@ -100,7 +100,12 @@ fn a_frame_on_the_base_of_the_other_is_put_on_the_mount() {
     add_chain(&mut builder, &arm, "");
     builder.add_frame("flange", "base", flange).unwrap();
     let (bus, arm) = (built(&bus, Isometry3::identity()), builder.build().unwrap());
-    let mount = |frame: &str, pose| Mount { frame: Some(frame.into()), pose, prefix: "arm_".into() };
+    let mount = |frame: &str, pose| Mount {
+        frame: Some(frame.into()),
+        pose,
+        prefix: "arm_".into(),
+        ..Mount::default()
+    };
     let pose = random.pose();
     let by_flange = bus.attach("tip", &arm, &mount("flange", pose)).unwrap();
     let by_root = bus.attach("tip", &arm, &mount("base", pose * flange.inverse())).unwrap();

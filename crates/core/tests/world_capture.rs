@@ -31,7 +31,7 @@ fn two_craft() -> Simulation {
 
 fn capture(when: When) -> Event {
     let grip = |system: usize| FrameIndex { system, frame: 1 };
-    Event { name: "grasp".into(), when, action: Action::Capture { by: grip(0), of: grip(1) } }
+    Event { name: "grasp".into(), when, action: Action::Capture { by: grip(0), of: grip(1), seat: None } }
 }
 
 fn energy(recording: &Recording, row: usize) -> f64 {

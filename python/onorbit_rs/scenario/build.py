@@ -169,9 +169,18 @@ def check_record_every(scenario: Scenario) -> None:
 
 
 def controlled(
-    scenario: Scenario, model: _core.Model, q: Floats, orbit: _core.Orbit | None, *, runs_code: bool
+    scenario: Scenario,
+    model: _core.Model,
+    q: Floats,
+    orbit: _core.Orbit | None,
+    *,
+    runs_code: bool,
+    is_alone: bool = True,
 ) -> tuple[Any, Any]:
-    """Return new controllers, and the reference of a single one."""
+    """Return new controllers, and the reference of a single one.
+
+    If the system is alone, controls that start after an event of the world are left out.
+    """
     folder, tool = scenario.folder, scenario.tool
     start = Start(model, q, orbit, folder)
     if scenario.controller is not None:
@@ -180,7 +189,10 @@ def controlled(
         with located(scenario, "reference"):
             return law, _reference(scenario.reference, replace(start, tool=tool))
     controls = []
+    waiting = _waiting(scenario) if is_alone else set()
     for index, part in enumerate(scenario.controllers or []):
+        if part.name in waiting:
+            continue
         at = ("controllers", index)
         with located(scenario, *at):
             joints = None if part.joints is None else joint_group(part.joints, list(model.joint_names))
@@ -191,6 +203,16 @@ def controlled(
         with located(scenario, *at):
             controls.append(part.build_control(law, reference, joints))
     return controls or None, None
+
+
+def _waiting(scenario: Scenario) -> set[str]:
+    """Return the names of the controls that start after an event, also through other controls."""
+    found: set[str] = set()
+    controls, causes = scenario.controllers or [], set(scenario.event_names)
+    while new := {str(part.name) for part in controls if part.after in causes} - found:
+        found |= new
+        causes |= new
+    return found
 
 
 def _reference(part: AnyReference | None, start: Start) -> _core.Reference | _core.JointReference | None:

@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
+import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from onorbit_rs import _core
+from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
+from onorbit_rs.scenario.attitude import Attitude, quaternion_of
 from onorbit_rs.scenario.errors import inconsistent, invalid, shortened
-from onorbit_rs.scenario.fields import NotNegative, Time
+from onorbit_rs.scenario.fields import Length3, NotNegative, Positive, Time
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.units import Dimension, parse_quantity
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 RESERVED = ("world", "lvlh", "base", "path")
 """Names of frames, which no system may have."""
@@ -95,14 +101,32 @@ class When(Part):
         return values | ({} if self.latch is None else self.latch.model_dump())
 
 
+class Pose(Part):
+    """Pose of a frame in another frame."""
+
+    position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    attitude: Attitude | None = None
+
+    def matrix(self) -> NDArray[np.float64]:
+        """Return the pose as a (4, 4) matrix."""
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = matrix_from_quaternion(quaternion_of(self.attitude)), self.position
+        return pose
+
+
 class Action(Part):
     """Exactly one of ``capture`` and ``release``."""
 
-    later: ClassVar = ("seat", "pose", "engage", "disengage")
+    later: ClassVar = ("engage", "disengage")
     """Keys that are planned."""
 
     capture: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
     """Capturing and captured frame, each ``SYSTEM/FRAME``."""
+    seat: Annotated[Time, Positive] | None = None
+    """Time in which the captured frame is pulled into ``pose`` after the capture. Default: the pose at the
+    capture is kept."""
+    pose: Pose | None = None
+    """Nominal pose of the captured frame in the capturing frame. Default: the frames coincide."""
     release: str | None = None
     """Name of the capture whose connection is removed."""
     impulse: Impulse | None = None
@@ -121,6 +145,10 @@ class Action(Part):
             raise invalid("give exactly one of 'capture' and 'release'")
         if self.impulse is not None and self.release is None:
             raise inconsistent("impulse", "an impulse requires 'release'")
+        if self.seat is not None and self.capture is None:
+            raise inconsistent("seat", "'seat' requires 'capture'")
+        if self.pose is not None and self.seat is None:
+            raise inconsistent("pose", "'pose' requires 'seat', the time in which the pose is reached")
         return self
 
 
@@ -135,7 +163,8 @@ class Event(Part):
         """Return the event of the engine."""
         values = self.when.arguments()
         if self.do.capture is not None:
-            return _core.Capture(self.name, *self.do.capture, **values)
+            pose = None if self.do.pose is None else self.do.pose.matrix()
+            return _core.Capture(self.name, *self.do.capture, seat=self.do.seat, pose=pose, **values)
         assert self.do.release is not None  # checked by Action
         return _core.Release(self.name, self.do.release, impulse=self.do.impulse, **values)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, get_args
 
-from pydantic import Field, PrivateAttr, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_validator
 
 from onorbit_rs.scenario.control import AnyControl, AnyController, Controller
 from onorbit_rs.scenario.control.check import check_control
@@ -71,7 +71,8 @@ class Scenario(RobotKeys, Document):
         """Return the scenario of one system alone, from validated parts and the lines of the world."""
         scenario = cls.__new__(cls)
         try:
-            cls.__pydantic_validator__.validate_python(data, self_instance=scenario)
+            context = {"events": place.events}
+            cls.__pydantic_validator__.validate_python(data, self_instance=scenario, context=context)
         except ValidationError as error:
             raise first_error(error, data, file, lines, lambda *at: place.location(at)) from None
         scenario._file, scenario._lines, scenario._in_world = file, lines, place
@@ -80,6 +81,11 @@ class Scenario(RobotKeys, Document):
     def location(self, *at: str | int) -> Location:
         """Return the location of an entry in the YAML file, also for a system of a world."""
         return at if self._in_world is None else self._in_world.location(at)
+
+    @property
+    def event_names(self) -> list[str]:
+        """Names of the events of the world; empty for a robot alone."""
+        return [] if self._in_world is None else self._in_world.events
 
     @property
     def effects(self) -> list[AnyEffect]:
@@ -98,8 +104,8 @@ class Scenario(RobotKeys, Document):
         return f"; it belongs in {' or '.join(sections)}" if sections else super()._hint(key, free)
 
     @model_validator(mode="after")
-    def _is_consistent(self) -> Scenario:
-        check_control(self)
+    def _is_consistent(self, info: ValidationInfo) -> Scenario:
+        check_control(self, (info.context or {}).get("events", []))
         check_engine(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
@@ -120,6 +126,8 @@ class InWorld(NamedTuple):
     system: str
     effects: list[int]
     """Index, in the environment of the world, of each effect on the system."""
+    events: list[str]
+    """Names of the events of the world, after which a control may start."""
 
     def location(self, at: Location) -> Location:
         """Return the location in the file of an entry of the scenario of the system."""

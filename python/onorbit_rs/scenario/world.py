@@ -28,10 +28,13 @@ class System(RobotKeys, ControlSettings):
     orbit: StartOrbit | None = None
     """Orbit on which the base starts, ``kepler`` or ``sgp4``, instead of ``position`` and
     ``linear_velocity`` of ``initial``. Its epoch may differ from that of the reference orbit."""
+    knows: list[str] = Field(default_factory=list)
+    """Other systems whose models the controllers know: while such a system is connected to this one, laws
+    that use a model use that of the connected tree. Default: controllers know their own system only."""
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        if key in ("actuators", "sensors", "estimators", "loops", "knows"):
+        if key in ("actuators", "sensors", "estimators", "loops"):
             return "; it is not available yet"
         return super()._hint(key, free)
 
@@ -65,6 +68,7 @@ class WorldScenario(Document):
         """Scenario of each system alone, with the orbit and environment of the world."""
         shared = {name: getattr(self, name) for name in Document.model_fields}
         settings = self.simulation.model_dump()
+        events = [event.name for event in self.events]
         found = {}
         for name, system in self.systems.items():
             own = {key: getattr(system, key) for key in RobotKeys.model_fields}
@@ -72,7 +76,7 @@ class WorldScenario(Document):
             effects = self._effects_on(name)
             own["environment"] = list(effects.values())
             data = shared | own | {"simulation": settings | control}
-            found[name] = Scenario.of_system(InWorld(name, [*effects]), data, self._file, self._lines)
+            found[name] = Scenario.of_system(InWorld(name, [*effects], events), data, self._file, self._lines)
         return found
 
     @property
@@ -117,6 +121,7 @@ class WorldScenario(Document):
         for name, system in self.systems.items():
             self._check_neighbour(name, system)
             self._check_start(name, system)
+            self._check_knows(name, system)
         check_events(self.events, names)
         return self
 
@@ -158,6 +163,18 @@ class WorldScenario(Document):
         if "gravity_mode" in system.orbit.model_fields_set:
             message = "'gravity_mode' belongs to the reference orbit; set it there"
             raise inconsistent((*at, "orbit", "gravity_mode"), message)
+
+    def _check_knows(self, name: str, system: System) -> None:
+        """Raise an error if a system knows itself, or a system that does not exist."""
+        others = [other for other in self.systems if other != name]
+        for index, known in enumerate(system.knows):
+            if known not in others:
+                what = (
+                    "itself, which it always knows" if known == name else f"{known!r}, which is not a system"
+                )
+                raise inconsistent(
+                    ("systems", name, "knows", index), f"{name!r} knows {what}{did_you_mean(known, others)}"
+                )
 
     def _check_neighbour(self, name: str, system: System) -> None:
         """Raise an error if the initial state is relative to no other system, or to itself in a circle."""

@@ -7,7 +7,7 @@ use super::kinematics::kinematics;
 use super::passes::{leaf_to_root, root_to_leaf};
 use super::rnea::{body_accelerations, net_force};
 use super::subspace::{add_joint_motion, articulated_force, joint_effort};
-use crate::model::Model;
+use crate::model::{BASE_NV, Model};
 use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 
 /// Computes the acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)`.
@@ -42,31 +42,33 @@ pub fn forward_dynamics_recursion<S: Real>(
     a: &mut [S],
 ) {
     if model.is_heavy_on_light() {
-        return dense::solve(model, data, v, tau, a, |_| false);
+        return dense::solve(model, data, v, tau, &[], a, |_| false);
     }
     S::enter(
         #[inline(always)]
-        || kernel(model, data, v, tau, a, |_| false),
+        || kernel(model, data, v, tau, &[], a, |_| false),
     );
 }
 
 /// Computes [`forward_dynamics_recursion`] with some joints locked (`locked`, `(n,)`): their acceleration is exactly
-/// zero, and `holding_torque` of their bodies receives the constraint torque, N m (N).
+/// zero, or that of `given`, `(n,)`, unless `given` is empty. `holding_torque` of their bodies receives the constraint
+/// torque, N m (N).
 pub(crate) fn locked_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
     v: &[S],
     tau: &[S],
     locked: &[bool],
+    given: &[f64],
     a: &mut [S],
 ) {
     S::enter(
         #[inline(always)]
-        || kernel(model, data, v, tau, a, |k| locked[k - 1]),
+        || kernel(model, data, v, tau, given, a, |k| locked[k - 1]),
     );
     if model.is_heavy_on_light() {
         // in addition to the recursion: the stick margin of a locked joint needs its `U`
-        dense::solve(model, data, v, tau, a, |k| locked[k - 1]);
+        dense::solve(model, data, v, tau, given, a, |k| locked[k - 1]);
     }
 }
 
@@ -76,6 +78,7 @@ fn kernel<S: Real>(
     data: &mut Data<S>,
     v: &[S],
     tau: &[S],
+    given: &[f64],
     a: &mut [S],
     is_locked: impl Fn(usize) -> bool,
 ) {
@@ -83,8 +86,14 @@ fn kernel<S: Real>(
     let bodies = &mut data.bodies[..nodes.len()];
     let (v, tau, a) = (&v[..nodes.len() + 5], &tau[..nodes.len() + 5], &mut a[..nodes.len() + 5]);
 
-    // bias accelerations for q̈ = 0; the recursion below solves for the difference from these
-    body_accelerations(nodes, bodies, v, None);
+    // bias accelerations for q̈ = 0, or the given q̈; the recursion below solves for the difference from these
+    if given.is_empty() {
+        body_accelerations(nodes, bodies, v, None);
+    } else {
+        a[..BASE_NV].fill(S::of(0.0));
+        a[BASE_NV..].iter_mut().zip(given).for_each(|(a, given)| *a = S::of(*given));
+        body_accelerations(nodes, bodies, v, Some(a));
+    }
     let children = leaf_to_root(
         nodes,
         bodies,
@@ -135,7 +144,7 @@ fn kernel<S: Real>(
                 // λ = Uᵀ Δa_p − u
                 body.holding_torque = parent.dot(body.u_force) - body.joint_bias;
             }
-            a[k + 5] = acceleration;
+            a[k + 5] = if given.is_empty() { acceleration } else { acceleration + S::of(given[k - 1]) };
             // Δa = Δa_p + S q̈,  a = a(q̈ = 0) + Δa
             let delta = add_joint_motion(node, body.axis(), acceleration, parent.referred_to(body.offset));
             body.acceleration += delta;

@@ -7,10 +7,10 @@
 use super::crba;
 use super::data::Data;
 use super::rnea::inverse_dynamics_recursion;
-use crate::model::Model;
+use crate::model::{BASE_NV, Model};
 use crate::spatial::Real;
 
-/// Solves `M a = τ − c + Σ Jᵀ F`. Stores the accelerations of all bodies and the holding torques of locked joints in
+/// Solves `M a = τ − c + Σ Jᵀ F`; locked joints have the accelerations `given`, `(n,)`, or zero if it is empty. Stores the accelerations of all bodies and the holding torques of locked joints in
 /// `data`, as the recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
@@ -19,12 +19,15 @@ pub(super) fn solve<S: Real>(
     data: &mut Data<S>,
     v: &[S],
     tau: &[S],
+    given: &[f64],
     a: &mut [S],
     is_locked: impl Fn(usize) -> bool,
 ) {
     let nv = model.nv();
     let (mut factors, mut forces) = (std::mem::take(&mut data.factors), std::mem::take(&mut data.forces));
-    inverse_dynamics_recursion(model, data, v, None, &mut forces);
+    a.fill(S::of(0.0));
+    a[BASE_NV..].iter_mut().zip(given).for_each(|(a, given)| *a = S::of(*given));
+    inverse_dynamics_recursion(model, data, v, (!given.is_empty()).then_some(&*a), &mut forces);
     S::enter(
         #[inline(always)]
         || {
@@ -40,6 +43,7 @@ pub(super) fn solve<S: Real>(
             substitute(&factors, nv, a);
         },
     );
+    a[BASE_NV..].iter_mut().zip(given).for_each(|(a, given)| *a += S::of(*given));
     inverse_dynamics_recursion(model, data, v, Some(a), &mut forces);
     for k in (1..=model.joint_count()).filter(|k| is_locked(*k)) {
         data.bodies[k].holding_torque = forces[k + 5] - tau[k + 5];

@@ -48,7 +48,7 @@ impl DifferentialGravity {
         if reference.in_free_fall {
             return Ok(Some(Vector3::zeros()));
         }
-        let state = &reference.state;
+        let state = reference.state;
         Ok(Some(gravity.acceleration(t, &state.position)? - state.acceleration))
     }
 }

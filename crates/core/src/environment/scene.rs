@@ -17,7 +17,7 @@ use std::cell::OnceCell;
 #[derive(Clone, Copy, Debug)]
 pub struct Reference<'a> {
     /// State of the reference, axes of `I`; the origin of `W` is at its position.
-    pub state: OrbitState,
+    pub state: &'a OrbitState,
     /// Gravity that acts on robot and reference; `None` without a planet.
     pub gravity: Option<&'a Gravity>,
     /// True if the reference obeys exactly this gravity, so that only differences of gravity act in `W`.
@@ -136,13 +136,12 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns the planet of the reference orbit; the reference must be above ground.
-    pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'_, 'a>, EnvironmentError> {
-        let found = self.reference.as_ref().and_then(|reference| Some((reference, reference.gravity?)));
+    pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'a>, EnvironmentError> {
+        let found = self.reference.and_then(|reference| Some((reference, reference.gravity?)));
         let (Reference { state, in_free_fall, .. }, gravity) =
             found.ok_or(EnvironmentError::NoPlanet { effect })?;
         let (mu, minimum_cubed) = (gravity.mu(), lowest_ground_cubed(gravity.mu()));
-        let planet =
-            Planet { effect, mu, gravity, reference: state, in_free_fall: *in_free_fall, minimum_cubed };
+        let planet = Planet { effect, mu, gravity, reference: state, in_free_fall, minimum_cubed };
         planet.check_above_ground(ScenePoint::Reference, state.position.norm())?;
         Ok(planet)
     }
@@ -152,7 +151,7 @@ impl<'a> Scene<'a> {
     /// `tide_only` selects the expansion that also provides the difference from the reference, which is the tide.
     pub(super) fn local_field(
         &self,
-        planet: &Planet<'_, 'a>,
+        planet: &Planet<'a>,
         tide_only: bool,
     ) -> Result<Option<&LocalField<'a>>, EnvironmentError> {
         if planet.gravity.is_point_mass() {
@@ -184,16 +183,16 @@ fn get_or_try_init<T, E>(cell: &OnceCell<T>, compute: impl FnOnce() -> Result<T,
 }
 
 /// Planet of a scene, with the name of the effect for which it is evaluated.
-pub(super) struct Planet<'s, 'a> {
+pub(super) struct Planet<'a> {
     effect: &'static str,
     pub(super) mu: f64,
     pub(super) gravity: &'a Gravity,
-    pub(super) reference: &'s OrbitState,
+    pub(super) reference: &'a OrbitState,
     pub(super) in_free_fall: bool,
     minimum_cubed: f64,
 }
 
-impl Planet<'_, '_> {
+impl Planet<'_> {
     /// Rejects bodies below ground; `distance` is measured from the planet's centre, m.
     #[inline(always)]
     pub(super) fn check_group_above_ground<S: Real>(

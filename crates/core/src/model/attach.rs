@@ -1,7 +1,7 @@
 //! Attachment of one robot to another, such as an arm to a bus.
 
 use super::builder::ModelBuilder;
-use super::description::{Description, Joint, JointKind};
+use super::description::{Description, Joint, JointKind, Link};
 use super::error::ModelError;
 use super::tree::Model;
 use crate::spatial::{Mat3, Vec3};
@@ -12,7 +12,10 @@ use nalgebra::{Isometry3, Rotation3};
 pub struct Mount {
     /// Mounting frame of the attached robot; `None` selects its root link.
     pub frame: Option<String>,
-    /// Pose of the mounting frame in the frame that it is attached to.
+    /// Joints between the frame that the robot is attached to and the robot, each with a massless link of the same name
+    /// behind it; none by default.
+    pub joints: Vec<Joint>,
+    /// Pose of the mounting frame in the frame that it is attached to, or behind the last of `joints`.
     pub pose: Isometry3<f64>,
     /// Prefix for the names of the attached robot's links, joints and frames.
     pub prefix: String,
@@ -32,8 +35,8 @@ impl Model {
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
         let carrier = &self.frames[self.frame(frame)?];
         // the robot is attached to the link that names the body: its joints follow those already below that link
-        let on_link = isometry(self.pose_in_link(carrier));
-        let link = &self.body_frame(carrier.body).name;
+        let mut on_link = isometry(self.pose_in_link(carrier));
+        let mut link = self.body_frame(carrier.body).name.clone();
         let (robot, in_root) = match &mount.frame {
             Some(name) => other.rooted_below(name)?,
             None => (other.description().clone(), Isometry3::identity()),
@@ -45,8 +48,14 @@ impl Model {
         while builder.has_joint(&name) {
             name.push('_'); // the generated name must differ from the names of all other joints
         }
+        for joint in &mount.joints {
+            let behind = joint.name.clone();
+            let joint = Joint { origin: on_link * joint.origin, ..joint.clone() };
+            builder.add(&link, joint, Link::new(&behind, None))?;
+            (link, on_link) = (behind, Isometry3::identity());
+        }
         let joint = Joint::new(&name, JointKind::Fixed, on_link * mount.pose * in_root.inverse());
-        builder.add_robot(link, joint, robot).map_err(|error| error.suggest_prefix(&mount.prefix))?;
+        builder.add_robot(&link, joint, robot).map_err(|error| error.suggest_prefix(&mount.prefix))?;
         builder.build()
     }
 

@@ -2,7 +2,7 @@
 
 use super::members::SavedPart;
 use crate::model::{Model, ModelError};
-use crate::world::{Assembly, FrameIndex, Weld, assemble};
+use crate::world::{Assembly, FrameIndex, Member, Weld, assemble};
 use serde::{Deserialize, Serialize};
 
 /// Active connections of the systems of a run.
@@ -35,6 +35,30 @@ impl Connections {
     /// Returns the trees for the active connections.
     pub(super) fn assemble(&self) -> Result<Vec<Assembly>, ModelError> {
         assemble(&self.prefixed, &self.active.welds, &self.active.roots)
+    }
+
+    /// Returns the tree of a system and of those of the systems `knows` that are connected to it through them, rooted at
+    /// the system: its model and its members; `None` if no known system is connected.
+    pub(super) fn known_tree(
+        &self,
+        system: usize,
+        knows: &[usize],
+    ) -> Result<Option<(Model, Vec<Member>)>, ModelError> {
+        let is_known = |other: usize| other == system || knows.contains(&other);
+        let welds =
+            self.active.welds.iter().filter(|weld| is_known(weld.by.system) && is_known(weld.of.system));
+        // the motion of a seating is not known in advance
+        let welds: Vec<Weld> = welds.map(|weld| Weld { seating: None, ..weld.clone() }).collect();
+        if welds.is_empty() {
+            return Ok(None);
+        }
+        let tree = assemble(&self.prefixed, &welds, &[system])?.into_iter().next();
+        Ok(tree.and_then(|Assembly { model, members, .. }| Some((model?, members))))
+    }
+
+    /// Returns the index in a tree of each frame of a system.
+    pub(super) fn frames_in(&self, system: usize, tree: &Model) -> Result<Vec<usize>, ModelError> {
+        self.prefixed[system].frames().iter().map(|frame| tree.frame(&frame.name)).collect()
     }
 
     /// Returns the name that a frame has in every tree.

@@ -24,8 +24,9 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         (tool, reference): (Option<usize>, Option<&'a TaskReference>),
         model: &Model,
         time_step: f64,
+        knows_others: bool,
     ) -> Result<Self, SimulationError> {
-        let set = ControllerSet::new(controls, model, SAME_INSTANT * time_step)?;
+        let set = ControllerSet::new(controls, model, SAME_INSTANT * time_step, knows_others)?;
         Ok(Self { set, tool, reference, sample: None })
     }
 

@@ -120,7 +120,7 @@ impl EnvironmentLoads {
     pub(super) fn reference_residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
         let Some(state) = self.reference_state(t)? else { return Ok(None) };
         let in_free_fall = self.in_free_fall;
-        let reference = Reference { state, gravity: self.gravity.as_deref(), in_free_fall };
+        let reference = Reference { state: &state, gravity: self.gravity.as_deref(), in_free_fall };
         DifferentialGravity::residual(t, &reference)
             .map_err(|source| SimulationError::Environment { time: t, source })
     }
@@ -136,7 +136,7 @@ impl EnvironmentLoads {
         let in_free_fall = self.in_free_fall;
         let Instant { state, ephemeris, .. } = self.cache.at(t, self.interval.1)?;
         let gravity = self.gravity.as_deref();
-        let reference = state.map(|state| Reference { state, gravity, in_free_fall });
+        let reference = state.as_ref().map(|state| Reference { state, gravity, in_free_fall });
         let mut scene = Scene::new(self.interval, t, &self.bodies, ephemeris);
         // assigned in place because the scene is large
         (scene.reference, scene.earth) = (reference, self.earth.as_deref());

@@ -94,10 +94,10 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         &mut self,
         t: f64,
         interval: (f64, f64),
-        state: &State<S>,
+        state: &mut State<S>,
         rate: &mut Rate<S>,
     ) -> Result<(), SimulationError> {
-        for (tree, state) in self.trees.iter_mut().zip(&state.trees) {
+        for (tree, state) in self.trees.iter_mut().zip(&mut state.trees) {
             tree.update_stage_kinematics(state);
         }
         self.apply_loads(t, interval, state)?;

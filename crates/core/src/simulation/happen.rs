@@ -10,7 +10,8 @@ use crate::dynamics::{Data, FramePose, frame_pose, frame_velocity, kinematics};
 use crate::model::Model;
 use crate::spatial::{Force, Motion, Quat, Scalar, Vec3};
 use crate::world::{
-    Action, Balance, FrameIndex, Weld, WorldError, energy, energy_of_change, impulse_response,
+    Action, Balance, FrameIndex, RigidPose, Seat, Seating, Weld, WorldError, energy, energy_of_change,
+    impulse_response,
 };
 
 /// State of a system in `f64`.
@@ -26,6 +27,7 @@ impl<S: Scalar> RunState<'_, S> {
         if self.events.list.is_empty() {
             return Ok(());
         }
+        self.end_seatings(t)?;
         self.update_latches(t);
         while let Some(number) = self.events.next_due(t, &self.schedule) {
             if self.has_effect(number) {
@@ -70,28 +72,53 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     fn execute(&mut self, number: usize, t: f64) -> Result<EventRecord, SimulationError> {
+        let record = self.keep_balance(|run| match run.events.list[number].action {
+            Action::Capture { by, of, seat } => run.capture(number, (by, of), seat, t),
+            Action::Release { capture, impulse } => run.release(number, capture, impulse, t),
+        })?;
+        self.ledger.work -= record.energy_lost;
+        self.ledger.dissipated += record.energy_lost.max(0.0);
+        Ok(record)
+    }
+
+    /// Compiles new trees for the connections whose seating has ended by `t`, s: they are rigid at the nominal pose.
+    fn end_seatings(&mut self, t: f64) -> Result<(), SimulationError> {
+        let (schedule, welds) = (&self.schedule, &mut self.connections.active.welds);
+        let mut has_ended = false;
+        for weld in welds {
+            if weld.seated_at().is_some_and(|end| !schedule.is_later(end, t))
+                && let Some(seating) = weld.seating.take()
+            {
+                (weld.pose, has_ended) = (seating.pose, true);
+            }
+        }
+        if has_ended { self.keep_balance(|run| run.recompile(t)) } else { Ok(()) }
+    }
+
+    /// Calls `change`, which compiles new trees, and keeps the balance of the group: the new trees count from zero.
+    fn keep_balance<T>(
+        &mut self,
+        change: impl FnOnce(&mut Self) -> Result<T, SimulationError>,
+    ) -> Result<T, SimulationError> {
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
         members.follow(trees, &self.state.trees);
         members.parts.iter_mut().for_each(Part::update_balance);
         let before = self.totals(&self.state);
-        let record = match self.events.list[number].action {
-            Action::Capture { by, of } => self.capture(number, (by, of), t)?,
-            Action::Release { capture, impulse } => self.release(number, capture, impulse, t)?,
-        };
-        // the trees that the event made count from zero
+        let changed = change(self)?;
         let after = self.totals(&self.state);
         self.ledger.impulse.linear += before.impulse.linear - after.impulse.linear;
         self.ledger.impulse.angular += before.impulse.angular - after.impulse.angular;
-        self.ledger.work += before.work - after.work - record.energy_lost;
-        self.ledger.dissipated += before.dissipated - after.dissipated + record.energy_lost.max(0.0);
-        Ok(record)
+        self.ledger.work += before.work - after.work;
+        self.ledger.dissipated += before.dissipated - after.dissipated;
+        Ok(changed)
     }
 
-    /// Connects two frames rigidly at their current relative pose.
+    /// Connects two frames rigidly at their current relative pose, or from there in the motion `seat` to a nominal pose.
     fn capture(
         &mut self,
         number: usize,
         (by, of): (FrameIndex, FrameIndex),
+        seat: Option<Seat>,
         t: f64,
     ) -> Result<EventRecord, SimulationError> {
         if self.tree_of(by.system) == self.tree_of(of.system) {
@@ -109,10 +136,12 @@ impl<S: Scalar> RunState<'_, S> {
         Quat::from_matrix(&rot_by_of).normalized().write_xyzw(&mut rotation);
         pose_by.rot_wf.transpose_mul(pose_of.pos_w - pose_by.pos_w).write(&mut position);
         let active = &mut self.connections.active;
-        active.welds.push(Weld { capture: number, by, of, rotation, position });
+        let pose = RigidPose { rotation, position };
+        let seating = seat.map(|Seat { duration, pose }| Seating { start: t, duration, pose });
+        active.welds.push(Weld { capture: number, by, of, pose, seating });
         active.roots.retain(|root| !roots.contains(root));
         active.roots.push(roots[0]);
-        self.recompile()?;
+        self.recompile(t)?;
         let mut record = self.audit(number, EventKind::Capture, t, (by, of), (&before, &captured), point);
         let after = self.snapshots();
         let twist = |snapshots: &[Snapshot]| self.relative_twist((by, of), snapshots);
@@ -132,7 +161,7 @@ impl<S: Scalar> RunState<'_, S> {
         let weld = self.weld_of(capture).expect("the capture is active");
         let Weld { by, of, .. } = self.connections.active.welds.remove(weld);
         let before = self.snapshots();
-        self.recompile()?;
+        self.recompile(t)?;
         // the part that the root has left gets its own root
         for place in [by, of] {
             let root = self.root_of(place.system);
@@ -161,7 +190,8 @@ impl<S: Scalar> RunState<'_, S> {
             let (tree, frame) = self.frame_in_tree(place);
             let (moved, state) = (&mut self.equations.trees[tree], &mut self.state.trees[tree]);
             let q: Vec<f64> = state.q.iter().map(|x| x.value()).collect();
-            let change = impulse_response(&moved.model, &q, frame, impulse);
+            let given: Vec<usize> = moved.modes.given().iter().map(|given| given.joint).collect();
+            let change = impulse_response(&moved.model, &q, frame, impulse, &given);
             moved.jump(state, &change);
         }
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
@@ -195,9 +225,11 @@ impl<S: Scalar> RunState<'_, S> {
             }
             lost += energy_of_change(model, &before[system].q, &before[system].v, &after[system].v);
         }
+        // a joint whose rate is given does work during the impulse, which is not part of `lost`
+        let is_driven = self.equations.trees.iter().any(|tree| !tree.modes.given().is_empty());
         let energy_lost = match kind {
-            EventKind::Capture => lost,
-            EventKind::Release => energies[0] - energies[1],
+            EventKind::Capture if !is_driven => lost,
+            _ => energies[0] - energies[1],
         };
         let (mut impulse_w, mut point_w) = ([0.0; 6], [0.0; 3]);
         impulse.write(&mut impulse_w);
@@ -213,7 +245,7 @@ impl<S: Scalar> RunState<'_, S> {
             momentum_error: totals[1].error_since(&totals[0]),
             twist_left: [0.0; 2],
             energy_error: ((energies[0] - energies[1]) - energy_lost).abs()
-                / energies[0].max(f64::MIN_POSITIVE),
+                / energies[0].max(energies[1]).max(f64::MIN_POSITIVE),
         }
     }
 

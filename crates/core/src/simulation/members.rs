@@ -105,6 +105,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         own: Tree<'a, S>,
     ) -> Self {
         state.center = None; // it is the tree whose centre of mass follows the momentum
+        state.clock = None;
         let energy = momentum_energy_com(&own.model, &own.data, &state.q, &state.v).1;
         let (work_ahead, dissipated_before) = (state.work - energy, state.dissipated);
         Self { tree, share, member, state, own, sign: 1.0, work_ahead, dissipated_before }
@@ -130,7 +131,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         }
         self.state.dissipated = self.dissipated_before + state.shares[self.share];
         self.own.follow_frame(tree.frame_velocity());
-        self.own.update_stage_kinematics(&self.state);
+        self.own.update_stage_kinematics(&mut self.state);
     }
 
     /// Makes the quaternion of the base continuous with `before`, (x, y, z, w). Expects the kinematics of the tree.
@@ -176,11 +177,18 @@ impl<'a, S: Scalar> Part<'a, S> {
 
     /// Adds the external wrenches on the bodies of the system to those on the bodies of its tree.
     pub(super) fn add_wrenches_to(&self, tree: &mut Tree<'_, S>) {
-        let base = &self.member.bodies[0];
-        let rot_bp = tree.data.bodies[base.body].rot_bk * Mat3::of(&base.rot_kb);
-        for (body, place) in self.own.data.bodies.iter().zip(&self.member.bodies) {
-            let to = &mut tree.data.bodies[place.body];
-            let (force, moment) = (rot_bp * body.external.linear, rot_bp * body.external.angular);
+        self.add_wrenches(&self.member, &mut tree.data);
+    }
+
+    /// Adds the external wrenches on the bodies of the system to those in a tree in which `member` is its place.
+    pub(super) fn add_wrenches<T: Scalar>(&self, member: &Member, tree: &mut Data<T>) {
+        let base = &member.bodies[0];
+        let rot_bp = tree.bodies[base.body].rot_bk * Mat3::of(&base.rot_kb);
+        let vector = |v: &Vec3<S>| v.map(|x| T::of(x.value()));
+        for (body, place) in self.own.data.bodies.iter().zip(&member.bodies) {
+            let to = &mut tree.bodies[place.body];
+            let force = rot_bp * vector(&body.external.linear);
+            let moment = rot_bp * vector(&body.external.angular);
             to.external += Force::at(force, moment, to.rot_bk * Vec3::of(&place.pos_kb));
         }
     }

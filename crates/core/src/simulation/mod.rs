@@ -26,6 +26,7 @@ mod group_rows;
 mod group_sum;
 mod happen;
 mod integrator;
+mod known;
 mod latch;
 mod local_reference;
 mod look_ahead;

@@ -14,7 +14,9 @@ use super::tree_state::TreeState;
 use crate::dynamics::{Momentum, center_of_mass};
 use crate::model::{BASE_NQ, Model};
 use crate::spatial::{Force, Real, Scalar, Vec3};
-use crate::world::{Action, Assembly, Balance, FrameIndex, Member, Moving, When, connected_velocity};
+use crate::world::{
+    Action, Assembly, Balance, FrameIndex, GivenJoint, Member, Moving, When, connected_velocity,
+};
 use std::borrow::Cow;
 
 /// A system between two compilations: its state and its kinematics in its own coordinates.
@@ -25,10 +27,10 @@ struct Loose<'a, S> {
 }
 
 impl<'a, S: Scalar> RunState<'a, S> {
-    /// Compiles the trees for the active connections. Trees whose members do not change stay as they are. The others
+    /// Compiles the trees for the active connections at `t`, s. Trees whose members do not change stay as they are. The others
     /// take over the states of their members, whose momenta they keep. Expects the kinematics of the state, relative
     /// to W, in the trees, and the states of the parts; afterwards the new trees hold their kinematics.
-    pub(super) fn recompile(&mut self) -> Result<(), SimulationError> {
+    pub(super) fn recompile(&mut self, t: f64) -> Result<(), SimulationError> {
         self.conclude_trees();
         let assemblies = self.connections.assemble()?;
         let members = std::mem::replace(&mut self.equations.members, Members::alone(0));
@@ -42,16 +44,16 @@ impl<'a, S: Scalar> RunState<'a, S> {
             places: members.places,
         };
         let mut new = Members::alone(old.places.len());
-        for Assembly { model, members } in assemblies {
+        for Assembly { model, members, given } in assemblies {
             let tree = self.equations.trees.len();
-            let (moved, state) = match (model, old.unchanged(&members)) {
+            let (moved, state) = match (model, old.unchanged(&members, &given)) {
                 (None, _) => {
                     let Loose { own, state, .. } = old.take(members[0].system);
                     new.places[members[0].system] = Place::Tree(tree);
                     (own, state)
                 }
                 (Some(_), Some(number)) => old.take_tree(number, tree, &mut new),
-                (Some(model), None) => join(model, members, tree, &mut old, &mut new),
+                (Some(model), None) => join((model, members, given), (tree, t), &mut old, &mut new),
             };
             self.equations.trees.push(moved);
             self.state.trees.push(state);
@@ -74,14 +76,15 @@ impl<'a, S: Scalar> RunState<'a, S> {
         let (trees, steps) = (&self.equations.trees, self.schedule.grid_steps());
         self.accuracy = Accuracy::of(trees, &self.state, self.accuracy.measures(), steps)?;
         self.find_latches();
-        Ok(())
+        self.find_known()
     }
 
     /// Finds the latches that have not closed and whose frames are in different trees.
     pub(super) fn find_latches(&mut self) {
         let mut latches = Vec::new();
         for (event, (declared, state)) in self.events.list.iter().zip(&self.events.states).enumerate() {
-            let (When::Latch(envelope), Action::Capture { by, of }) = (declared.when, declared.action) else {
+            let (When::Latch(envelope), Action::Capture { by, of, .. }) = (declared.when, declared.action)
+            else {
                 continue;
             };
             let frames = [by, of].map(|place| self.frame_in_tree(place));
@@ -147,15 +150,16 @@ struct Old<'a, S> {
 }
 
 impl<'a, S: Scalar> Old<'a, S> {
-    /// Returns the number of the tree that has exactly these members; `None` if there is none.
-    fn unchanged(&self, members: &[Member]) -> Option<usize> {
+    /// Returns the number of the tree that has exactly these members and given joints; `None` if there is none.
+    fn unchanged(&self, members: &[Member], given: &[GivenJoint]) -> Option<usize> {
         let tree = |system: usize| match self.places[system] {
             Place::Part(part) => self.parts[part].as_ref().map(|part| part.tree),
             Place::Tree(_) => None,
         };
         let first = tree(members[0].system)?;
         let is_same = members.iter().all(|member| tree(member.system) == Some(first));
-        (is_same && self.sizes[first] == members.len()).then_some(first)
+        let has_given = self.trees[first].as_ref().is_some_and(|tree| tree.modes.given() == given);
+        (is_same && has_given && self.sizes[first] == members.len()).then_some(first)
     }
 
     /// Takes a tree with several members, which gets the number `to`.
@@ -193,11 +197,10 @@ impl<'a, S: Scalar> Old<'a, S> {
     }
 }
 
-/// Joins systems to a tree with the model `model`, which gets the number `number`.
+/// Joins systems at `t`, s, to a tree with this model and these given joints, which gets the number `number`.
 fn join<'a, S: Scalar>(
-    model: Model,
-    members: Vec<Member>,
-    number: usize,
+    (model, members, given): (Model, Vec<Member>, Vec<GivenJoint>),
+    (number, t): (usize, f64),
     old: &mut Old<'a, S>,
     new: &mut Members<'a, S>,
 ) -> (Tree<'a, S>, TreeState<S>) {
@@ -209,17 +212,24 @@ fn join<'a, S: Scalar>(
     for (member, (own, _)) in members.iter().zip(&states) {
         member.joints.iter().enumerate().for_each(|(j, &joint)| q[BASE_NQ + joint] = own[BASE_NQ + j]);
     }
+    let mut rates = Vec::new();
+    for joint in &given {
+        let [position, rate, _] = joint.at(t);
+        q[BASE_NQ + joint.joint] = position;
+        rates.push((joint.joint, rate));
+    }
     let parts = members.iter().zip(&loose).zip(&states);
     let moving: Vec<_> =
         parts.map(|((member, one), (q, v))| Moving { member, model: &one.own.model, q, v }).collect();
-    let v = connected_velocity(&model, &q, &moving);
+    let v = connected_velocity(&model, &q, &moving, &rates);
     let modes = loose.iter().zip(&members).map(|(one, member)| (&one.own.modes, &member.joints[..]));
-    let modes = JointModes::joined(model.joint_count(), modes);
+    let modes = JointModes::joined(model.joint_count(), given, modes);
     let mut tree = Tree::with_modes(Cow::Owned(model), modes);
     let lift = |x: Vec<f64>| x.into_iter().map(S::of).collect::<Vec<S>>();
     let mut state = TreeState::at(&tree.model, &mut tree.data, lift(q), lift(v));
     state.initial_momentum = momentum_of(&moving, center_of_mass(&tree.data, &state.q));
     state.shares = vec![S::of(0.0); members.len()];
+    state.clock = (!rates.is_empty()).then(|| S::of(t));
     tree.project_momentum(&mut state);
     tree.shares = members.iter().map(|member| member.joints.clone()).collect();
     for (share, (member, Loose { state: before, own, sign })) in members.into_iter().zip(loose).enumerate() {
@@ -246,7 +256,7 @@ impl<S: Scalar> RunState<'_, S> {
     pub(super) fn restore_members(&mut self, saved: SavedMembers) -> Result<(), SimulationError> {
         if self.connections.active != saved.active {
             self.connections.active = saved.active;
-            self.recompile()?;
+            self.recompile(self.time)?;
         }
         for (part, saved) in self.equations.members.parts.iter_mut().zip(saved.parts) {
             part.restore(saved);

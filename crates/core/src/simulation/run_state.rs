@@ -23,7 +23,7 @@ use super::tree::Tree;
 use super::tree_state::TreeState;
 use crate::earth::Earth;
 use crate::spatial::Scalar;
-use crate::world::Layout;
+use crate::world::{Layout, Weld};
 use std::sync::Arc;
 
 /// State of a run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at
@@ -134,7 +134,8 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Passes the events that have happened to the controllers, and the times at which others are due to the schedule.
     pub(super) fn events_changed(&mut self) {
-        self.schedule.set_due(self.events.due_times());
+        let seated = self.connections.active.welds.iter().filter_map(Weld::seated_at);
+        self.schedule.set_due(self.events.due_times().into_iter().chain(seated).collect());
         let happened = self.events.happened();
         self.systems.iter_mut().for_each(|run| run.controllers.set.set_events(&happened));
     }

@@ -12,11 +12,18 @@ use super::tree_state::TreeState;
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::spatial::Scalar;
+use crate::world::Member;
 
 /// Controllers and recorder of one system.
 pub(super) struct RunSystem<'a, S> {
     pub(super) controllers: Controllers<'a, S>,
     pub(super) recorder: Recorder,
+    /// True if the controllers are due at the current cut.
+    pub(super) is_due: bool,
+    /// Systems whose models the controllers know.
+    pub(super) knows: Vec<usize>,
+    /// Places of the systems in the tree that the controllers know, if they are connected to any of these systems.
+    pub(super) known_members: Vec<Member>,
     /// Error estimates of the trees that contained the system before; `None` if its tree never changed.
     pub(super) settled: Option<Estimates>,
 }

@@ -219,7 +219,8 @@ impl Schedule {
         let grid = if self.cuts_at_grid { next_grid as f64 * self.time_step } else { last };
         let mut end = grid.min(last);
         let due = self.due.iter().copied().filter(|t| *t > now + self.tolerance());
-        let ticks = self.periods().map(|period| self.next_tick(period));
+        let is_on_grid = |period: &f64| self.cuts_at_grid && *period == self.time_step;
+        let ticks = self.periods().filter(|period| !is_on_grid(period)).map(|period| self.next_tick(period));
         for cut in ticks.chain(self.events.get(next_event).copied()).chain(due) {
             if cut < end - self.tolerance() {
                 end = cut;

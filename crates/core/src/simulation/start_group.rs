@@ -90,17 +90,27 @@ impl Shared {
             systems.iter().map(|system| (numbers_of(&system.q), numbers_of(&system.v))).collect();
         let (mut trees, mut members, mut models) = (Vec::new(), Vec::new(), Vec::new());
         for (number, system) in systems.into_iter().enumerate() {
-            let System { model, controls, tool, reference, stops, .. } = system;
+            let System { model, controls, tool, reference, stops, knows, .. } = system;
+            let local = |system: &usize| numbers.iter().position(|number| number == system);
+            let knows: Vec<usize> = knows.iter().filter_map(local).collect();
             let model: &'a Model = model;
             let stops = stops.filter(|_| is_native); // an external engine has its own
             trees.push(Tree::new(Cow::Borrowed(model), stops));
             let options = self.record_options(model, controls, *tool, reference.is_some());
             let recorder = Recorder::new(rows, (number, model), options, controls, has_every_step)?;
-            let mut controllers = Controllers::new(controls, (*tool, reference.as_ref()), model, time_step)?;
+            let tracked = (*tool, reference.as_ref());
+            let mut controllers = Controllers::new(controls, tracked, model, time_step, !knows.is_empty())?;
             if !is_native {
                 controllers.set.assume_creeping_friction();
             }
-            members.push(RunSystem { controllers, recorder, settled: None });
+            members.push(RunSystem {
+                controllers,
+                recorder,
+                is_due: false,
+                knows,
+                known_members: Vec::new(),
+                settled: None,
+            });
             models.push(model);
         }
         let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(numbers, &models));
@@ -244,7 +254,7 @@ fn events_of(numbers: &[usize], events: &[Event]) -> Events {
             *other = event_number(*other);
         }
         match &mut event.action {
-            Action::Capture { by, of } => (*by, *of) = (place(*by), place(*of)),
+            Action::Capture { by, of, .. } => (*by, *of) = (place(*by), place(*of)),
             Action::Release { capture, .. } => *capture = event_number(*capture),
         }
         event

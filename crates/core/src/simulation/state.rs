@@ -36,6 +36,11 @@ impl<S: Real> State<S> {
         self.trees.iter().all(TreeState::is_finite)
     }
 
+    /// Sets the clocks of the trees with joints that are functions of time to `t`, s.
+    pub(super) fn set_clocks(&mut self, t: f64) {
+        self.trees.iter_mut().filter_map(|tree| tree.clock.as_mut()).for_each(|clock| *clock = S::of(t));
+    }
+
     /// Returns the state with `f` applied to every number.
     pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> State<T> {
         State { trees: self.trees.iter().map(|tree| tree.map(&f)).collect(), orbital: self.orbital.map(&f) }

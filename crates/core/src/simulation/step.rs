@@ -43,6 +43,7 @@ impl<S: Scalar> RunState<'_, S> {
     pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
         // 1 kinematics, and the base twist projected onto the momentum
+        self.state.set_clocks(t);
         self.mover.kinematics(&mut self.equations, &mut self.state);
         if !self.state.is_finite() {
             return Err(self.diverged(t));
@@ -69,7 +70,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
-        let is_due = !self.controllers_updated && self.is_any_due(t);
+        let is_due = !self.controllers_updated && self.find_due(t);
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
         if is_due {
@@ -91,26 +92,26 @@ impl<S: Scalar> RunState<'_, S> {
         self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
     }
 
-    /// Returns true if the controllers of any system are due at `t`, s.
-    fn is_any_due(&self, t: f64) -> bool {
-        (0..self.systems.len()).any(|number| self.is_due(number, t))
-    }
-
-    /// Returns true if the controllers of a system are due at `t`, s: at its own ticks, and when an event starts one of
-    /// them.
-    fn is_due(&self, number: usize, t: f64) -> bool {
-        self.schedule.is_tick(number, t)
-            || self.has_event && self.systems[number].controllers.set.is_started_by_event()
+    /// Finds the systems whose controllers are due at `t`, s: at their own ticks, and when an event starts one of them.
+    /// Returns true if there are any.
+    fn find_due(&mut self, t: f64) -> bool {
+        let Self { systems, schedule, has_event, .. } = self;
+        for (number, run) in systems.iter_mut().enumerate() {
+            let starts_at_event = *has_event && run.controllers.set.is_started_by_event();
+            run.is_due = starts_at_event || schedule.is_tick(number, t);
+        }
+        systems.iter().any(|run| run.is_due)
     }
 
     /// Updates the controllers that are due of those systems whose value of `compensates_environment` equals the
     /// argument.
     fn update_controllers(&mut self, t: f64, compensates_environment: bool) -> Result<(), SimulationError> {
         for number in 0..self.systems.len() {
-            let set = &self.systems[number].controllers.set;
-            if set.compensates_environment() != compensates_environment || !self.is_due(number, t) {
+            let run = &self.systems[number];
+            if !run.is_due || run.controllers.set.compensates_environment() != compensates_environment {
                 continue;
             }
+            self.update_known(number);
             let EquationsOfMotion { trees, members, .. } = &mut self.equations;
             let controllers = &mut self.systems[number].controllers;
             let (state, system) = match members.places[number] {

@@ -73,6 +73,7 @@ impl<'a, S: Real> Tree<'a, S> {
     }
 
     fn project_twist(&mut self, state: &mut TreeState<S>) {
+        self.move_given(state);
         // relative to the velocity of the base's origin, so that a speed of km/s in W costs no precision
         let frame_velocity = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
         Vec3::zero().write(&mut state.v);
@@ -89,6 +90,13 @@ impl<'a, S: Real> Tree<'a, S> {
                 data.bodies.iter_mut().for_each(|body| body.velocity += correction.referred_to(body.pos_b));
             },
         );
+    }
+
+    /// Writes positions and rates of the joints that are functions of time to `state`.
+    fn move_given(&self, state: &mut TreeState<S>) {
+        if let Some(clock) = state.clock {
+            self.modes.move_given(clock.lane(0), &mut state.q, &mut state.v);
+        }
     }
 
     /// Changes the velocity of `state` by `change`, adds the change of its momentum to its impulse and that of its
@@ -111,7 +119,8 @@ impl<'a, S: Real> Tree<'a, S> {
     }
 
     /// Computes the kinematics of a later stage of a step, whose velocity is relative to the frame of the step.
-    pub(super) fn update_stage_kinematics(&mut self, stage: &TreeState<S>) {
+    pub(super) fn update_stage_kinematics(&mut self, stage: &mut TreeState<S>) {
+        self.move_given(stage);
         kinematics(&self.model, &mut self.data, &stage.q, &stage.v);
     }
 
@@ -161,11 +170,19 @@ impl<'a, S: Real> Tree<'a, S> {
     /// external loads.
     pub(crate) fn rates(&mut self, state: &TreeState<S>, is_loaded: bool, rate: &mut TreeRate<S>) {
         let (q, v) = (&state.q[..], &state.v[..]);
+        if let Some(clock) = state.clock {
+            self.modes.accelerate_given(clock.lane(0));
+        }
         self.update_joint_forces(v);
         let Self { model, data, forces, modes, frame_velocity, is_lossy, shares, mass, .. } = self;
         let loaded = if is_loaded { model.nodes().len() } else { 0 };
         match modes.locked() {
-            Some(locked) => locked_dynamics_recursion(model, data, v, forces, locked, &mut rate.a),
+            Some(locked) => {
+                locked_dynamics_recursion(model, data, v, forces, locked, modes.accelerations(), &mut rate.a);
+                for joint in modes.given().iter().map(|given| given.joint) {
+                    forces[BASE_NV + joint] = data.bodies[joint + 1].holding_torque; // its power is work
+                }
+            }
             None => forward_dynamics_recursion(model, data, v, forces, &mut rate.a),
         }
         rate.v.copy_from_slice(v);

@@ -25,6 +25,8 @@ pub(crate) struct TreeState<S> {
     pub(crate) center: Option<Vec3<S>>,
     /// Part of `dissipated` in the joints of each member, J; empty for a tree with a single member.
     pub(crate) shares: Vec<S>,
+    /// Time, s, at which the joints that are functions of time are evaluated; `None` without such joints.
+    pub(crate) clock: Option<S>,
 }
 
 /// Time derivatives of a tree at one stage.
@@ -51,6 +53,8 @@ pub(crate) struct TreeRate<S> {
     pub(crate) center_velocity: Option<Vec3<S>>,
     /// Part of `loss` in the joints of each member, W; empty for a tree with a single member.
     pub(crate) shares: Vec<S>,
+    /// Time derivative of the clock, 1; `None` without a clock.
+    pub(crate) clock: Option<S>,
 }
 
 impl<S: Real> TreeRate<S> {
@@ -67,6 +71,7 @@ impl<S: Real> TreeRate<S> {
             loss: S::of(0.0),
             center_velocity: state.center.map(|_| Vec3::zero()),
             shares: vec![S::of(0.0); state.shares.len()],
+            clock: state.clock.map(|_| S::of(1.0)),
         }
     }
 
@@ -90,6 +95,9 @@ impl<S: Real> TreeRate<S> {
         for (to, from) in self.shares.iter_mut().zip(&other.shares) {
             *to = from.mul_add(s, *to);
         }
+        if let (Some(sum), Some(other)) = (&mut self.clock, &other.clock) {
+            *sum = other.mul_add(s, *sum);
+        }
     }
 
     /// Copies `from` without allocating.
@@ -102,6 +110,7 @@ impl<S: Real> TreeRate<S> {
         self.a.copy_from_slice(&from.a);
         self.center_velocity.clone_from(&from.center_velocity);
         self.shares.copy_from_slice(&from.shares);
+        self.clock = from.clock;
     }
 
     /// Sets the rates that `accumulate` sums to zero.
@@ -114,6 +123,7 @@ impl<S: Real> TreeRate<S> {
         self.a.fill(S::of(0.0));
         self.center_velocity = self.center_velocity.map(|_| Vec3::zero());
         self.shares.fill(S::of(0.0));
+        self.clock = self.clock.map(|_| S::of(0.0));
     }
 }
 
@@ -133,6 +143,7 @@ impl<S: Real> TreeState<S> {
             dissipated: S::of(0.0),
             center: None,
             shares: Vec::new(),
+            clock: None,
         }
     }
 
@@ -159,6 +170,7 @@ impl<S: Real> TreeState<S> {
             dissipated: f(&self.dissipated),
             center: self.center.map(|center| center.map(&f)),
             shares: self.shares.iter().map(&f).collect(),
+            clock: self.clock.as_ref().map(&f),
         }
     }
 
@@ -172,6 +184,9 @@ impl<S: Real> TreeState<S> {
             self.center = from.center;
         }
         self.shares.copy_from_slice(&from.shares);
+        if from.clock.is_some() {
+            self.clock = from.clock;
+        }
     }
 
     /// Writes `from ⊕ h rate`: increments are added to positions and velocities, and the attitude is multiplied by
@@ -197,6 +212,9 @@ impl<S: Real> TreeState<S> {
         }
         for ((to, from), rate) in self.shares.iter_mut().zip(&from.shares).zip(&rate.shares) {
             *to = rate.mul_add(h, *from);
+        }
+        if let (Some(clock), Some(rate)) = (from.clock, rate.clock) {
+            self.clock = Some(rate.mul_add(h, clock));
         }
     }
 }

@@ -1,7 +1,9 @@
 //! Compiles connected systems to trees: one model for the systems that welds connect, rooted at one of them.
 
-use super::event::Weld;
+use super::event::{Seating, Weld};
+use super::seating::{GivenJoint, Path};
 use crate::model::{Model, ModelError, Mount};
+use crate::reference::TimeLaw;
 use crate::spatial::{Mat3, Quat, Vec3};
 
 /// Tree compiled from one system, or from several systems that welds connect.
@@ -11,6 +13,8 @@ pub struct Assembly {
     pub model: Option<Model>,
     /// Systems of the tree, the root first.
     pub members: Vec<Member>,
+    /// Joints between systems that move as a function of time.
+    pub given: Vec<GivenJoint>,
 }
 
 /// Place of a system in a tree.
@@ -49,12 +53,13 @@ pub fn assemble(models: &[Model], welds: &[Weld], roots: &[usize]) -> Result<Vec
         }
         is_placed[root] = true;
         let (mut order, mut model, mut next) = (vec![root], None::<Model>, 0);
+        let mut moving = Vec::new();
         while let Some(&system) = order.get(next) {
             next += 1;
             for weld in welds {
-                let (near, far, pose) = match (weld.by, weld.of) {
-                    (by, of) if by.system == system => (by, of, weld.pose()),
-                    (by, of) if of.system == system => (of, by, weld.pose().inverse()),
+                let (near, far, is_reversed) = match (weld.by, weld.of) {
+                    (by, of) if by.system == system => (by, of, false),
+                    (by, of) if of.system == system => (of, by, true),
                     _ => continue,
                 };
                 if is_placed[far.system] {
@@ -63,18 +68,27 @@ pub fn assemble(models: &[Model], welds: &[Weld], roots: &[usize]) -> Result<Vec
                 is_placed[far.system] = true;
                 order.push(far.system);
                 let name = |system: usize, frame: usize| models[system].frames()[frame].name.as_str();
-                let mount = Mount {
-                    frame: Some(name(far.system, far.frame).to_owned()),
-                    pose,
-                    prefix: String::new(),
-                };
+                let Path { joints, travels, pose } =
+                    weld.path(&format!("capture {}", weld.capture), is_reversed);
+                if let Some(seating) = weld.seating {
+                    let names = joints.iter().map(|joint| joint.name.clone());
+                    moving.extend(names.zip(travels).map(|(name, travel)| (name, travel, seating)));
+                }
+                let frame = Some(name(far.system, far.frame).to_owned());
+                let mount = Mount { frame, joints, pose, prefix: String::new() };
                 let tree = model.as_ref().unwrap_or(&models[root]);
                 model = Some(tree.attach(name(near.system, near.frame), &models[far.system], &mount)?);
             }
         }
         let tree = model.as_ref().unwrap_or(&models[root]);
         let members = order.iter().map(|&system| Member::of(system, &models[system], tree));
-        assemblies.push(Assembly { members: members.collect::<Result<_, _>>()?, model });
+        let members = members.collect::<Result<_, _>>()?;
+        let given = moving.into_iter().map(|(name, travel, Seating { start, duration, .. })| {
+            let (joint, law) = (tree.joint(&name)?, TimeLaw::quintic(duration).expect("a checked duration"));
+            Ok(GivenJoint { joint, travel, start, law })
+        });
+        let given = given.collect::<Result<_, ModelError>>()?;
+        assemblies.push(Assembly { members, given, model });
     }
     Ok(assemblies)
 }

@@ -4,12 +4,17 @@ use crate::dynamics::{Data, base_rotation, kinematics, kinetic_energy};
 use crate::model::Model;
 use crate::spatial::{Force, Vec3};
 
+/// Speed below which a body counts as at rest, m/s; it keeps the scales above zero.
+const REST: f64 = 1e-9;
+/// Smallest angular scale of a body, relative to `|r| |p| + |H|`, of which `|r × p + H|` may be any part.
+const LEAST: f64 = 1e-3;
+
 /// Momentum of a system, and the scales to which its errors are relative.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Balance {
     /// Linear momentum, N s, and angular momentum about a point, N m s, in W axes.
     pub momentum: Force<f64>,
-    /// Sum of the magnitudes of the momenta of the bodies, N s and N m s.
+    /// Sum of the magnitudes of the momenta of the bodies, N s and N m s; it does not vanish for bodies at rest.
     pub scales: [f64; 2],
 }
 
@@ -23,10 +28,12 @@ impl Balance {
         for body in &data.bodies {
             let h = body.inertia.momentum(body.velocity);
             let lever = rot_wb * body.pos_b + origin - point;
-            let h = Force::at(rot_wb * h.linear, rot_wb * h.angular, lever);
-            all.momentum += h;
-            all.scales[0] += h.linear.norm();
-            all.scales[1] += h.angular.norm();
+            let about_point = Force::at(rot_wb * h.linear, rot_wb * h.angular, lever);
+            let linear = h.linear.norm().max(REST * body.inertia.mass);
+            all.momentum += about_point;
+            all.scales[0] += linear;
+            all.scales[1] +=
+                about_point.angular.norm().max(LEAST * (lever.norm() * linear + h.angular.norm()));
         }
         all
     }

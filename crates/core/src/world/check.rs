@@ -1,12 +1,16 @@
 //! Checks of the systems and events of a world before a run.
 
 use super::error::WorldError;
-use super::event::{Action, Event, FrameIndex, When};
+use super::event::{Action, Event, FrameIndex, RigidPose, Seat, When};
 use super::groups::Union;
 use super::system::System;
+use crate::reference::TimeLaw;
 
 /// Names that a path or a frame of a reference already uses.
 const RESERVED: [&str; 4] = ["world", "lvlh", "base", "path"];
+
+/// Largest difference from 1 of the norm of a quaternion.
+const UNIT_NORM: f64 = 1e-9;
 
 /// Checks the names of the systems of a world. A single system may have any name.
 ///
@@ -52,7 +56,7 @@ pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldErr
 fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(), WorldError> {
     let name = || event.name.clone();
     match &event.action {
-        Action::Capture { by, of } => {
+        Action::Capture { by, of, seat } => {
             for FrameIndex { system, frame } in [by, of] {
                 let count = systems.len();
                 let owner = systems.get(*system);
@@ -67,7 +71,7 @@ fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(
             if by.system == of.system {
                 return Err(WorldError::OwnSystem { event: name(), system: systems[by.system].name.clone() });
             }
-            Ok(())
+            seat.as_ref().map_or(Ok(()), |seat| check_seat(event, seat))
         }
         Action::Release { capture, impulse } => {
             let reason = match events.get(*capture).map(|event| &event.action) {
@@ -89,6 +93,24 @@ fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(
             value.map_or(Ok(()), |value| Err(wrong(value)))
         }
     }
+}
+
+fn check_seat(event: &Event, seat: &Seat) -> Result<(), WorldError> {
+    let wrong = |what, value, unit, expected| {
+        Err(WorldError::Number { event: event.name.clone(), what, value, unit, expected })
+    };
+    if TimeLaw::quintic(seat.duration).is_err() {
+        return wrong("the time of seating", seat.duration, "s", "positive, at least 1e-9 s, and finite");
+    }
+    let RigidPose { rotation, position } = &seat.pose;
+    if let Some(value) = position.iter().copied().find(|x| !x.is_finite()) {
+        return wrong("the position of the pose", value, "m", "finite");
+    }
+    let norm = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() > UNIT_NORM || norm.is_nan() {
+        return wrong("the norm of the quaternion of the pose", norm, "", "1");
+    }
+    Ok(())
 }
 
 fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
@@ -149,7 +171,7 @@ fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
     };
     let (mut union, mut names) = (Union::new(systems), Vec::new());
     for (number, event) in events.iter().enumerate() {
-        let Action::Capture { by, of } = event.action else { continue };
+        let Action::Capture { by, of, .. } = event.action else { continue };
         if is_released(number) {
             continue;
         }

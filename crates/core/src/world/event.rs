@@ -1,6 +1,5 @@
 //! Events that change how the systems of a world are connected.
 
-use nalgebra::{Isometry3, Quaternion, UnitQuaternion, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// Index of a frame of a system.
@@ -61,6 +60,8 @@ pub enum Action {
         by: FrameIndex,
         /// Captured frame.
         of: FrameIndex,
+        /// Motion to a nominal pose after the capture, if any.
+        seat: Option<Seat>,
     },
     /// Removes the connection that a capture made.
     Release {
@@ -72,6 +73,35 @@ pub enum Action {
     },
 }
 
+/// Motion of a captured frame to its nominal pose, as latches and grapple fixtures impose it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seat {
+    /// Time that the motion takes, s.
+    pub duration: f64,
+    /// Nominal pose of the captured frame in the capturing frame.
+    pub pose: RigidPose,
+}
+
+/// Pose of a frame in another one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RigidPose {
+    /// Rotation to the axes of the other frame, as a quaternion (x, y, z, w).
+    pub rotation: [f64; 4],
+    /// Origin in the other frame, m.
+    pub position: [f64; 3],
+}
+
+/// Motion of a captured frame to its nominal pose, once it has begun.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Seating {
+    /// Start, s.
+    pub start: f64,
+    /// Duration, s.
+    pub duration: f64,
+    /// Nominal pose of the captured frame in the capturing frame.
+    pub pose: RigidPose,
+}
+
 /// Rigid connection of two frames of different systems.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weld {
@@ -81,17 +111,8 @@ pub struct Weld {
     pub by: FrameIndex,
     /// Captured frame.
     pub of: FrameIndex,
-    /// Rotation from the axes of the captured frame to those of the capturing frame, as a quaternion (x, y, z, w).
-    pub rotation: [f64; 4],
-    /// Origin of the captured frame in the capturing frame, m.
-    pub position: [f64; 3],
-}
-
-impl Weld {
-    /// Returns the pose of the captured frame in the capturing frame.
-    pub fn pose(&self) -> Isometry3<f64> {
-        let [x, y, z, w] = self.rotation;
-        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
-        Isometry3::from_parts(Vector3::from(self.position).into(), rotation)
-    }
+    /// Pose of the captured frame in the capturing frame, at the start of a seating motion.
+    pub pose: RigidPose,
+    /// Motion to the nominal pose, until it ends.
+    pub seating: Option<Seating>,
 }

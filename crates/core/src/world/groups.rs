@@ -37,7 +37,7 @@ pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
             Action::Release { capture, .. } => capture,
             Action::Capture { .. } => at,
         };
-        if let Action::Capture { by, of } = events[capture].action {
+        if let Action::Capture { by, of, .. } = events[capture].action {
             all.extend([by.system, of.system]);
         }
         match events[at].when {

@@ -2,7 +2,8 @@
 
 use super::assembly::Member;
 use crate::dynamics::{
-    Data, FrameWrench, apply_external, base_rotation, forward_dynamics_recursion, kinematics, positions,
+    Data, FrameWrench, apply_external, base_rotation, forward_dynamics_recursion, kinematics,
+    locked_dynamics_recursion, positions,
 };
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Vec3};
@@ -20,13 +21,18 @@ pub struct Moving<'a> {
 }
 
 /// Returns the velocity `(nv,)` of a tree at `q` at the instant at which its systems are rigidly connected; the first
-/// system is the root.
+/// system is the root. `given` are the indices and the rates, rad/s (m/s), of the joints whose motion is given.
 ///
 /// The impulses of the connections do no work on motions that the tree permits, so its generalized momentum is that of
 /// the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By Gauss's principle, `v⁺` is the motion of
 /// the tree closest to the motion before in the metric of the kinetic energy; with `Λ = (J M⁻¹ Jᵀ)⁻¹` of the relative
 /// twist `J v` at the connection it equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻`.
-pub fn connected_velocity(tree: &Model, q: &[f64], systems: &[Moving<'_>]) -> Vec<f64> {
+pub fn connected_velocity(
+    tree: &Model,
+    q: &[f64],
+    systems: &[Moving<'_>],
+    given: &[(usize, f64)],
+) -> Vec<f64> {
     let mut data = Data::<f64>::new(tree);
     positions(tree, &mut data, q);
     let rot_bw = base_rotation(q).transpose();
@@ -48,20 +54,36 @@ pub fn connected_velocity(tree: &Model, q: &[f64], systems: &[Moving<'_>]) -> Ve
             momentum[BASE_NV + in_tree] = model.nodes()[joint + 1].rotor_inertia * v[BASE_NV + joint];
         }
     }
-    // at zero velocity the bias vanishes, and the wrenches Jᵀ F of ABA are momenta
+    // at zero velocity the bias vanishes, the wrenches Jᵀ F of ABA are momenta, and its accelerations are velocities
     let (at_rest, mut v) = (vec![0.0; tree.nv()], vec![0.0; tree.nv()]);
-    forward_dynamics_recursion(tree, &mut data, &at_rest, &momentum, &mut v);
+    let (mut locked, mut rates) = (vec![false; tree.joint_count()], vec![0.0; tree.joint_count()]);
+    given.iter().for_each(|&(joint, rate)| (locked[joint], rates[joint]) = (true, rate));
+    match given {
+        [] => forward_dynamics_recursion(tree, &mut data, &at_rest, &momentum, &mut v),
+        _ => locked_dynamics_recursion(tree, &mut data, &at_rest, &momentum, &locked, &rates, &mut v),
+    }
     (Vec3::from_slice(&v) + rot_bw * common).write(&mut v);
     v
 }
 
 /// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i`, of a robot at `q` by an impulse at the origin of a frame,
-/// N s and N m s in the axes of the frame.
-pub fn impulse_response(model: &Model, q: &[f64], frame: usize, impulse: Force<f64>) -> Vec<f64> {
+/// N s and N m s in the axes of the frame. The rates of the joints `given` do not change.
+pub fn impulse_response(
+    model: &Model,
+    q: &[f64],
+    frame: usize,
+    impulse: Force<f64>,
+    given: &[usize],
+) -> Vec<f64> {
     let mut data = Data::<f64>::new(model);
     let (at_rest, mut change) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
     positions(model, &mut data, q);
     apply_external(model, &mut data, &[FrameWrench { frame, wrench: impulse }]);
-    forward_dynamics_recursion(model, &mut data, &at_rest, &at_rest, &mut change);
+    let mut locked = vec![false; model.joint_count()];
+    given.iter().for_each(|&joint| locked[joint] = true);
+    match given {
+        [] => forward_dynamics_recursion(model, &mut data, &at_rest, &at_rest, &mut change),
+        _ => locked_dynamics_recursion(model, &mut data, &at_rest, &at_rest, &locked, &[], &mut change),
+    }
     change
 }

@@ -8,14 +8,16 @@ mod event;
 mod groups;
 mod impulse;
 mod layout;
+mod seating;
 mod system;
 
 pub use assembly::{Assembly, BodyPlace, Member, assemble};
 pub use audit::{Balance, energy, energy_of_change};
 pub use check::{check_events, check_names};
 pub use error::WorldError;
-pub use event::{Action, Envelope, Event, FrameIndex, Weld, When};
+pub use event::{Action, Envelope, Event, FrameIndex, RigidPose, Seat, Seating, Weld, When};
 pub use groups::{groups, systems_of};
 pub use impulse::{Moving, connected_velocity, impulse_response};
 pub use layout::{Layout, SystemPlace};
+pub use seating::GivenJoint;
 pub use system::System;

@@ -25,6 +25,9 @@ pub struct System {
     pub reference: Option<TaskReference>,
     /// Largest distance and angle between the tool and the start of its reference, m and rad.
     pub reference_start_tolerance: [f64; 2],
+    /// Numbers in the world of the systems whose models the controllers know: while they are connected to this system, laws
+    /// that use a model use that of the connected tree.
+    pub knows: Vec<usize>,
     /// Coefficient of restitution of rigid stops at the position limits of joints; `None` for no stops.
     pub stops: Option<f64>,
 }
@@ -42,6 +45,7 @@ impl System {
             tool: None,
             reference: None,
             reference_start_tolerance: [0.05, 0.1],
+            knows: Vec::new(),
             stops: None,
         }
     }

@@ -41,7 +41,7 @@ pub fn wrenches(
     let gravity = Gravity::point_mass(MU_EARTH);
     let state = OrbitState { position: r, velocity: v, acceleration: Vector3::zeros() };
     let (mut wrenches, bodies) = (Wrenches::new(&[bodies.len()]), bodies.iter().copied().collect::<Bodies>());
-    let reference = Some(Reference { state, gravity: Some(&gravity), in_free_fall: true });
+    let reference = Some(Reference { state: &state, gravity: Some(&gravity), in_free_fall: true });
     let act = |scene: &Scene<'_>| effect.add_wrenches(scene, &mut wrenches);
     Scene::with((0.0, 1.0), 0.0, &bodies, reference, earth, act)?;
     Ok(wrenches.iter().collect())

@@ -62,6 +62,7 @@ pub(super) fn attach(
         frame: other_frame.map(str::to_owned),
         pose: pose.map(isometry).transpose()?.unwrap_or_default(),
         prefix: prefix.to_owned(),
+        ..Mount::default()
     };
     let other = model_or_part(other)?;
     let bus = &model.get().model;
@@ -92,7 +93,7 @@ fn model_or_part<'py>(other: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
 }
 
 /// Converts a (4, 4) homogeneous transform.
-fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
+pub(crate) fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
     let refuse = |message: &str| plain(pose.py(), "ModelError", message);
     let rows = fixed::<16>(pose, "pose", &[4, 4])?;
     if let Some(entry) = rows.iter().find(|entry| entry.abs() > 1e12) {

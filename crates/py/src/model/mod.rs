@@ -1,7 +1,7 @@
 //! The class `Model`. Its methods are in one block, as PyO3 requires; their bodies are in the files named in
 //! the calls, and `dynamics/`.
 
-mod attach;
+pub(crate) mod attach;
 mod builder;
 mod description;
 mod file;

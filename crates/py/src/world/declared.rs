@@ -4,7 +4,7 @@ use super::event::{events_of, names_of};
 use super::system::PySystem;
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
-use crate::errors::SimulationErrorExt;
+use crate::errors::{SimulationErrorExt, fields, raise};
 use crate::orbit::PyOrbit;
 use crate::simulation::{gravity_mode_named, set_environment};
 use onorbit_core::number_text::short;
@@ -98,7 +98,10 @@ impl PyWorld {
         let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));
         let names = names_of(py, &self.events)?;
         let systems = self.systems.iter().map(|system| system.get().system(py, orbit.as_ref(), &names));
-        let systems = systems.collect::<PyResult<Vec<_>>>()?;
+        let mut systems = systems.collect::<PyResult<Vec<_>>>()?;
+        for (number, system) in self.systems.iter().enumerate() {
+            systems[number].knows = known_systems(py, system.get(), &self.names())?;
+        }
         let events: Vec<_> = self.events.iter().map(|event| event.bind(py).clone()).collect();
         let events = events_of(&events, &systems)?;
         if systems.is_empty() {
@@ -116,6 +119,22 @@ impl PyWorld {
         set_environment(py, &mut simulation, &environment, &surfaces)?;
         Ok(simulation)
     }
+}
+
+/// Returns the numbers of the systems that a system knows; `names` are the names of all systems.
+fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResult<Vec<usize>> {
+    let number = |known: &String| {
+        let others = || names.iter().filter(|name| **name != system.name).map(String::as_str);
+        names.iter().position(|name| name == known && *name != system.name).ok_or_else(|| {
+            let others = others().collect::<Vec<_>>().join(", ");
+            let message = format!(
+                "the system '{}' knows '{known}', which is not another system ({others})",
+                system.name
+            );
+            raise(py, "WorldError", &message, &fields!(py, "name": &system.name, "got": known))
+        })
+    };
+    system.knows.iter().map(number).collect()
 }
 
 /// Warns of systems that start so far from the reference orbit that their positions lose digits.

@@ -2,8 +2,9 @@
 
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
+use crate::model::attach::isometry;
 use onorbit_core::model::Model;
-use onorbit_core::world::{Action, Envelope, FrameIndex, System, When};
+use onorbit_core::world::{Action, Envelope, FrameIndex, Seat, System, When};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -114,6 +115,11 @@ fn frame_at(
 ///     Largest relative speed, m/s, and angular speed, rad/s, at which the latch closes; default: any.
 /// held_for : float
 ///     Time for which the conditions of the latch must hold, s.
+/// seat : float, optional
+///     Time, s, in which the captured frame is pulled into ``pose`` after the capture, as latches and grapple fixtures do;
+///     the motion starts and ends at rest. By default the pose at the capture is kept.
+/// pose : (4, 4) array, optional
+///     Nominal pose of the captured frame in the capturing frame, m; by default the two frames coincide.
 #[pyclass(name = "Capture", frozen, module = "onorbit_rs")]
 pub(crate) struct PyCapture {
     /// Name of the event.
@@ -126,6 +132,7 @@ pub(crate) struct PyCapture {
     #[pyo3(get)]
     frame_b: String,
     condition: Condition,
+    seat: Option<Seat>,
 }
 
 #[pymethods]
@@ -133,7 +140,7 @@ impl PyCapture {
     #[new]
     #[pyo3(signature = (
         name, frame_a, frame_b, *, at=None, after=None, delay=0.0, on_command=false, within=None, slower_than=None,
-        held_for=0.0,
+        held_for=0.0, seat=None, pose=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -147,6 +154,8 @@ impl PyCapture {
         within: Option<&Bound<'_, PyAny>>,
         slower_than: Option<&Bound<'_, PyAny>>,
         held_for: f64,
+        seat: Option<f64>,
+        pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let within = within.map(|within| fixed(within, "within", &[2])).transpose()?;
         let slower = slower_than.map(|slower| fixed(slower, "slower_than", &[2])).transpose()?;
@@ -156,8 +165,14 @@ impl PyCapture {
         }
         let slower_than = slower.unwrap_or([f64::INFINITY; 2]);
         let latch = within.map(|within| Envelope { within, slower_than, held_for });
+        if seat.is_none() && pose.is_some() {
+            let message = format!("the event '{name}' has a pose, which belongs to seat; add the time in s");
+            return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
+        }
+        let pose = pose.map(isometry).transpose()?.unwrap_or_default();
+        let seat = seat.map(|duration| Seat { duration, pose: pose.into() });
         let condition = Condition::new(py, &name, (at, after, delay, on_command), latch)?;
-        Ok(Self { name, frame_a, frame_b, condition })
+        Ok(Self { name, frame_a, frame_b, condition, seat })
     }
 
     fn __repr__(&self) -> String {
@@ -243,13 +258,13 @@ pub(super) fn events_of(
     let read = |event: &Bound<'_, PyAny>| {
         let py = event.py();
         if let Ok(event) = event.cast::<PyCapture>() {
-            let PyCapture { name, frame_a, frame_b, condition } = event.get();
+            let PyCapture { name, frame_a, frame_b, condition, seat } = event.get();
             let (by, of) = (frame_at(py, name, frame_a, &systems)?, frame_at(py, name, frame_b, &systems)?);
             let when = condition.when(py, name, &names)?;
             return Ok(onorbit_core::world::Event {
                 name: name.clone(),
                 when,
-                action: Action::Capture { by, of },
+                action: Action::Capture { by, of, seat: *seat },
             });
         }
         let event = event.cast::<PyRelease>()?;

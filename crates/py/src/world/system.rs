@@ -22,7 +22,7 @@ use std::sync::Arc;
 ///     Initial velocity, m/s and rad/s.
 /// controller : control law, object or list of Control, optional
 ///     Control law for all joints, an object with ``update(t, state)``, or several controls. After a capture they
-///     still use the model of this system alone.
+///     still use the model of this system alone, unless it ``knows`` the other one.
 /// reference : Reference or JointReference, optional
 ///     Reference of the controller.
 /// tool : str, optional
@@ -38,6 +38,9 @@ use std::sync::Arc;
 /// surfaces : Surface or dict of str to Surface, optional
 ///     Surfaces of the links for ``Drag`` and ``RadiationPressure`` that have no ``surfaces``; the form is that of
 ///     ``Drag``. Default: ``Faces()``.
+/// knows : list of str
+///     Names of other systems whose models the controllers know. While such a system is connected to this one, laws that
+///     use a model use that of the connected tree, in which its joints have no motor torque.
 #[pyclass(name = "System", frozen, module = "onorbit_rs")]
 pub(crate) struct PySystem {
     /// Name of the system.
@@ -56,6 +59,7 @@ pub(crate) struct PySystem {
     restitution: f64,
     reference_start_tolerance: Option<Py<PyAny>>,
     pub(super) surfaces: Option<SurfaceAssignment>,
+    pub(super) knows: Vec<String>,
 }
 
 #[pymethods]
@@ -63,7 +67,7 @@ impl PySystem {
     #[new]
     #[pyo3(signature = (
         name, model, q, v, *, controller=None, reference=None, tool=None, control_period=None, enforce_limits=false,
-        restitution=0.0, reference_start_tolerance=None, surfaces=None,
+        restitution=0.0, reference_start_tolerance=None, surfaces=None, knows=Vec::new(),
     ))]
     fn new(
         py: Python<'_>,
@@ -79,6 +83,7 @@ impl PySystem {
         restitution: f64,
         reference_start_tolerance: Option<Py<PyAny>>,
         surfaces: Option<&Bound<'_, PyAny>>,
+        knows: Vec<String>,
     ) -> PyResult<Self> {
         let surfaces = surfaces.map(|surfaces| SurfaceAssignment::new(Some(surfaces))).transpose()?;
         let (q, v) = initial_state(py, &model.get().model, q, v)?;
@@ -95,6 +100,7 @@ impl PySystem {
             restitution,
             reference_start_tolerance,
             surfaces,
+            knows,
         })
     }
 

@@ -15,8 +15,11 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.yaml_lines import Location
 
 
-def check_control(scenario: Scenario) -> None:
-    """Raise an error for inconsistent controllers; set the default reference, a constant pose or position."""
+def check_control(scenario: Scenario, events: list[str]) -> None:
+    """Raise an error for inconsistent controllers; set the default reference, a constant pose or position.
+
+    ``events`` are the names of the events of the world, after which a control may start.
+    """
     if scenario.controllers is not None:
         if scenario.controller is not None:
             raise inconsistent(
@@ -26,7 +29,7 @@ def check_control(scenario: Scenario) -> None:
             raise inconsistent(
                 "reference", "'controllers' each have their own 'reference'; move it into one of them"
             )
-        _check_names(scenario.controllers)
+        _check_names(scenario.controllers, events)
         for index, control in enumerate(scenario.controllers):
             tool = tool_of(control, scenario.tool)
             control.reference = _checked(control, control.reference, tool, scenario, ("controllers", index))
@@ -38,7 +41,7 @@ def check_control(scenario: Scenario) -> None:
         )
 
 
-def _check_names(controls: list[Any]) -> None:
+def _check_names(controls: list[Any], events: list[str]) -> None:
     """Raise an error for duplicate names, an unknown name in ``after``, or ``after`` with ``start``."""
     names = [control.name for control in controls]
     for index, control in enumerate(controls):
@@ -49,10 +52,11 @@ def _check_names(controls: list[Any]) -> None:
             )
         if control.after is None:
             continue
-        others = [name for name in names if name != control.name]
+        others = [*(name for name in names if name != control.name), *events]
         if control.after not in others:
+            what = "other controller or event" if events else "other controller"
             hint = did_you_mean(control.after, others)
-            raise inconsistent((*at, "after"), f"no other controller is named {control.after!r}{hint}")
+            raise inconsistent((*at, "after"), f"no {what} is named {control.after!r}{hint}")
         if control.start != 0.0:
             raise inconsistent(
                 (*at, "start"), "give either 'start' (a time) or 'after' (another controller), not both"

@@ -13,6 +13,7 @@ use crate::control::control_state::{ControlMemory, ControlState};
 use crate::control::error::ControlError;
 use crate::control::goal::Outcome;
 use crate::control::hybrid_dynamics::HybridDynamics;
+use crate::control::known_tree::KnownTree;
 use crate::control::law::Law;
 use crate::control::pseudo_inverse::{PseudoInverse, ROWS};
 use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
@@ -55,21 +56,29 @@ pub struct ControllerSet<'a, S> {
     events: Vec<usize>,
     /// Efforts and rates of a group, and workspace of its law.
     group: [Vec<f64>; 3],
+    /// Tree of connected robots that the laws know.
+    known: Option<Box<KnownTree>>,
 }
 
 impl<'a, S: Scalar> ControllerSet<'a, S> {
-    /// Checks the controls, resets the users' controllers, and allocates the workspaces.
+    /// Checks the controls, resets the users' controllers, and allocates the workspaces. `knows_others` is true if
+    /// [`ControllerSet::know`] will be called.
     ///
     /// # Errors
     /// The errors of [`check_controls`] and of the users' controllers.
-    pub fn new(controls: &'a mut [Control], model: &Model, same_instant: f64) -> Result<Self, ControlError> {
+    pub fn new(
+        controls: &'a mut [Control],
+        model: &Model,
+        same_instant: f64,
+        knows_others: bool,
+    ) -> Result<Self, ControlError> {
         check_controls(controls, model)?;
         for control in controls.iter_mut() {
             control.law.control_law_mut().reset()?;
         }
         let (n, tasks) = (model.joint_count(), controls.len());
         let zeros = |count: usize| vec![0.0; count];
-        let is_whole = |control: &Control| task_on_all_joints(control, n).is_some();
+        let is_whole = |control: &Control| !knows_others && task_on_all_joints(control, n).is_some();
         let whole_robot = controls.iter().any(is_whole).then(|| Box::new(ComputedTorqueWork::new(model)));
         let needs_error = |control: &Control| control.law.control_law().uses_error() && !is_whole(control);
         let compensates =
@@ -100,7 +109,18 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             jacobian: zeros(ROWS * n),
             events: Vec::new(),
             group: [zeros(n), zeros(n), zeros(n)],
+            known: None,
         })
+    }
+
+    /// Sets the tree of connected robots whose models the laws use instead of that of the robot alone.
+    pub fn know(&mut self, known: Option<KnownTree>) {
+        self.known = known.map(Box::new);
+    }
+
+    /// Returns the tree of connected robots that the laws know, to be brought to the current state before an update.
+    pub fn known(&mut self) -> Option<&mut KnownTree> {
+        self.known.as_deref_mut()
     }
 
     /// Assumes the friction of an engine in which joints do not stick: it is proportional to the rate near rest.
@@ -284,7 +304,10 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         let laws = || running(self.controls, &self.states).map(|(control, _)| control.law.control_law());
         let has_accelerations = laws().any(|law| law.joint_command() != JointCommand::Effort);
         if has_accelerations || laws().any(ControlLaw::needs_jacobian) {
-            free_floating_recursion(model, data, q, v, 0, &mut self.reduced);
+            match &mut self.known {
+                Some(known) => known.reduce(&mut self.reduced),
+                None => free_floating_recursion(model, data, q, v, 0, &mut self.reduced),
+            }
         }
         self.efforts(t, model, data, q, v)?;
         if has_accelerations {

@@ -4,6 +4,7 @@ use super::{ControllerSet, running};
 use crate::control::control_law::{EffortInput, EffortWork, JointCommand};
 use crate::control::control_state::ControlState;
 use crate::control::error::ControlError;
+use crate::control::known_tree::KnownTree;
 use crate::control::observation::Observation;
 use crate::control::pseudo_inverse::ROWS;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_frame};
@@ -33,7 +34,12 @@ impl<S: Scalar> ControllerSet<'_, S> {
             rates.iter_mut().zip(joints).for_each(|(to, &j)| *to = self.v[BASE_NV + j]);
             let mut velocity_error = Motion::zero();
             if let Some((frame, reference)) = control.law.task().filter(|_| law.needs_jacobian()) {
-                reduce_to_frame(model, data, q, v, frame, reference, &mut self.reduced);
+                reduce_to_frame(
+                    (model, data, q, v),
+                    self.known.as_deref_mut(),
+                    (frame, reference),
+                    &mut self.reduced,
+                );
                 for (i, row) in self.reduced.jacobian.chunks_exact(n).enumerate() {
                     let group = self.jacobian[i * k..].iter_mut().zip(joints);
                     group.for_each(|(to, &j)| *to = row[j].value());
@@ -112,7 +118,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
 
     /// Computes the accelerations of all joints, and the torques of the joints with commanded accelerations.
     fn solve_dynamics(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
-        let Self { dynamics, reduced, tau, .. } = self;
+        let Self { dynamics, reduced, tau, known, .. } = self;
         dynamics.eliminate(&self.commands, tau);
         for (control, state) in running(self.controls, &self.states) {
             let law = control.law.control_law();
@@ -120,7 +126,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
             if law.joint_command() != JointCommand::Task {
                 continue;
             }
-            reduce_to_frame(model, data, q, v, frame, reference, reduced);
+            reduce_to_frame((model, data, q, v), known.as_deref_mut(), (frame, reference), reduced);
             // p̈r − d
             let acceleration = state.desired_pose.map_or(Motion::zero(), |desired| desired.acceleration);
             let (error, velocity_error) = (Motion::from_slice(&state.error), state.velocity_error(reduced));
@@ -145,18 +151,15 @@ impl ControlState {
 
 /// Computes Jacobian, velocity and drift of a frame, in W, or relative to the base if its reference is.
 fn reduce_to_frame<S: Scalar>(
-    model: &Model,
-    data: &Data<S>,
-    q: &[S],
-    v: &[S],
-    frame: usize,
-    reference: &TaskReference,
+    (model, data, q, v): (&Model, &Data<S>, &[S], &[S]),
+    known: Option<&mut KnownTree>,
+    (frame, reference): (usize, &TaskReference),
     out: &mut FreeFloating<S>,
 ) {
-    if reference.is_relative_to_base() {
-        base_relative_frame(model, data, v, frame, out);
-    } else {
-        free_floating_frame(model, data, q, v, frame, out);
+    match known {
+        _ if reference.is_relative_to_base() => base_relative_frame(model, data, v, frame, out),
+        Some(known) => known.reduce_frame(frame, out),
+        None => free_floating_frame(model, data, q, v, frame, out),
     }
 }
 

@@ -186,7 +186,7 @@ impl<'a> RowReader<'a> {
         let Self { model, data, at_rest, forces, locked, jump, .. } = self;
         kinematics(model, data, q, at_rest);
         data.clear_external();
-        locked_dynamics_recursion(model, data, at_rest, forces, locked, jump);
+        locked_dynamics_recursion(model, data, at_rest, forces, locked, &[], jump);
         Vec3::from_slice(&jump[3..])
     }
 

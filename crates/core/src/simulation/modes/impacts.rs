@@ -55,10 +55,11 @@ impl<S: Real> Tree<'_, S> {
         let mut impulse = at_rest.clone();
         impulse[BASE_NV + j] = S::of(sign);
         let stop = |i: usize| self.modes.stop(i, state.q[BASE_NQ + i].lane(0));
+        let rests_at_stop = |i: usize| stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0;
         let mut locked: Vec<bool> =
-            (0..n).map(|i| i != j && stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0).collect();
+            (0..n).map(|i| i != j && (self.modes.is_given(i) || rests_at_stop(i))).collect();
         for _ in 0..=n {
-            locked_dynamics_recursion(&self.model, &mut self.data, &at_rest, &impulse, &locked, &mut a);
+            locked_dynamics_recursion(&self.model, &mut self.data, &at_rest, &impulse, &locked, &[], &mut a);
             // a stop can only push: a joint that the stop would have to pull is released
             let pulls =
                 |i: &usize| locked[*i] && self.data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;

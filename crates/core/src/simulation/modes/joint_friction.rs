@@ -32,7 +32,15 @@ impl<S: Real> Tree<'_, S> {
         for pass in 0..4 * n + 8 {
             self.update_joint_forces(v);
             let Self { model, data, modes, forces, .. } = self;
-            locked_dynamics_recursion(model, data, v, forces, modes.is_locked_each(), &mut a);
+            locked_dynamics_recursion(
+                model,
+                data,
+                v,
+                forces,
+                modes.is_locked_each(),
+                modes.accelerations(),
+                &mut a,
+            );
             let mut has_changed = false;
             for j in 0..n {
                 let change = self.mode_change(j, q, v, &a);
@@ -92,7 +100,7 @@ impl<S: Real> Tree<'_, S> {
         let mut a = std::mem::take(&mut self.scratch);
         let Self { model, data, modes, forces, .. } = self;
         if let Some(locked) = modes.locked() {
-            locked_dynamics_recursion(model, data, v, forces, locked, &mut a);
+            locked_dynamics_recursion(model, data, v, forces, locked, modes.accelerations(), &mut a);
         }
         self.scratch = a;
         let locked = (0..self.model.joint_count()).filter(|&j| self.modes.is_locked(j));

@@ -2,6 +2,7 @@
 
 use crate::model::{BASE_NQ, BASE_NV, JointProperties, Model};
 use crate::spatial::Real;
+use crate::world::GivenJoint;
 use serde::{Deserialize, Serialize};
 
 /// Distance by which a joint may exceed a limit and still count as being at the limit, rad (m).
@@ -45,6 +46,10 @@ pub(crate) struct JointModes {
     any_locked: bool,
     /// Direction of slip of joints with friction: −1, 0 or 1.
     direction: Vec<f64>,
+    /// Joints whose positions are functions of time. They are locked: their accelerations do not depend on torques.
+    given: Vec<GivenJoint>,
+    /// Accelerations of the locked joints, `(n,)`, rad/s² (m/s²); empty if all are zero.
+    accelerations: Vec<f64>,
 }
 
 /// Modes of the joints in the last step, for checkpoints.
@@ -78,13 +83,16 @@ impl JointModes {
             locked: vec![false; n],
             any_locked: false,
             direction: vec![0.0; n],
+            given: Vec::new(),
+            accelerations: Vec::new(),
         }
     }
 
-    /// Returns the modes of a tree with `count` joints; each entry of `parts` is the modes of some of its joints and
-    /// their indices in the tree.
+    /// Returns the modes of a tree with `count` joints, of which `given` move as functions of time; each entry of `parts`
+    /// is the modes of some of its joints and their indices in the tree.
     pub(in crate::simulation) fn joined<'m>(
         count: usize,
+        given: Vec<GivenJoint>,
         parts: impl Iterator<Item = (&'m Self, &'m [usize])>,
     ) -> Self {
         let (zeros, free) = (vec![0.0; count], (f64::NEG_INFINITY, f64::INFINITY));
@@ -97,7 +105,9 @@ impl JointModes {
             is_active: false,
             locked: vec![false; count],
             any_locked: false,
-            direction: zeros,
+            direction: zeros.clone(),
+            accelerations: if given.is_empty() { Vec::new() } else { zeros },
+            given,
         };
         for (part, joints) in parts {
             for (own, &joint) in joints.iter().enumerate() {
@@ -109,8 +119,44 @@ impl JointModes {
             }
             all.is_active |= part.is_active;
         }
-        all.any_locked = all.locked.contains(&true);
+        all.lock_given();
         all
+    }
+
+    /// Locks the joints that move as functions of time.
+    fn lock_given(&mut self) {
+        self.given.iter().for_each(|given| self.locked[given.joint] = true);
+        self.any_locked = self.locked.contains(&true);
+    }
+
+    /// Returns true if joint `j` moves as a function of time.
+    pub(super) fn is_given(&self, j: usize) -> bool {
+        self.given.iter().any(|given| given.joint == j)
+    }
+
+    /// Returns the joints that move as functions of time.
+    pub(in crate::simulation) fn given(&self) -> &[GivenJoint] {
+        &self.given
+    }
+
+    /// Returns the accelerations of the locked joints, `(n,)`, rad/s² (m/s²); empty if all are zero.
+    pub(in crate::simulation) fn accelerations(&self) -> &[f64] {
+        &self.accelerations
+    }
+
+    /// Writes the positions and rates at `t`, s, of the joints that move as functions of time, to `q` and `v`.
+    pub(in crate::simulation) fn move_given<S: Real>(&self, t: f64, q: &mut [S], v: &mut [S]) {
+        for given in &self.given {
+            let [position, rate, _] = given.at(t);
+            (q[BASE_NQ + given.joint], v[BASE_NV + given.joint]) = (S::of(position), S::of(rate));
+        }
+    }
+
+    /// Computes the accelerations at `t`, s, of the joints that move as functions of time.
+    pub(in crate::simulation) fn accelerate_given(&mut self, t: f64) {
+        for given in &self.given {
+            self.accelerations[given.joint] = given.at(t)[2];
+        }
     }
 
     /// Takes the modes in a step from those of a tree; `joints` are the indices of the joints in the tree.
@@ -214,6 +260,9 @@ impl JointModes {
 
     /// Returns the bounds of the torque that holds a joint at rest: `−fs..fs`, unbounded where a stop pushes.
     pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
+        if self.is_given(j) {
+            return (f64::NEG_INFINITY, f64::INFINITY);
+        }
         let (f, stop) = (self.holding_friction(j), self.stop(j, q));
         let lowest = if stop > 0.0 { f64::NEG_INFINITY } else { -f };
         let highest = if stop < 0.0 { f64::INFINITY } else { f };
@@ -229,7 +278,7 @@ impl JointModes {
             self.locked[j] = rate == 0.0 && can_be_held;
             self.direction[j] = if rate == 0.0 { 0.0 } else { rate.signum() };
         }
-        self.any_locked = self.locked.contains(&true);
+        self.lock_given();
     }
 
     /// Sets the friction compensation for an external engine that has its own friction model and holds torques

@@ -1,0 +1,122 @@
+//! Reduced model of a robot that is connected to others whose models its controllers know.
+//!
+//! To the controllers of a robot, the links behind a grasp are a heavier robot with further joints, in which they have no
+//! motors. Eliminating these joints leaves a reduced model of the robot's own joints, with which all laws work unchanged.
+
+use crate::dynamics::{Data, FreeFloating, free_floating_frame, free_floating_recursion, kinematics};
+use crate::model::Model;
+use crate::spatial::{Motion, Scalar, cholesky_factor, cholesky_solve, dot};
+
+/// Tree of a robot and of the robots connected to it that its controllers know, rooted at its base.
+#[derive(Debug)]
+pub struct KnownTree {
+    /// Model of the tree.
+    pub model: Model,
+    /// Kinematics and external wrenches of the tree.
+    pub data: Data<f64>,
+    /// Configuration of the tree, `(nq,)`, m and rad.
+    pub q: Vec<f64>,
+    /// Velocity of the tree, `(nv,)`, m/s and rad/s.
+    pub v: Vec<f64>,
+    /// Index in the tree of each joint of the robot, and of all other joints.
+    own: Vec<usize>,
+    others: Vec<usize>,
+    /// Index in the tree of each frame of the robot.
+    frames: Vec<usize>,
+    full: FreeFloating<f64>,
+    /// Factor of `M_PP`, and `M_PP⁻¹ M_PO` with one row per joint of the robot.
+    factor: Vec<f64>,
+    gain: Vec<f64>,
+    /// `M_PP⁻¹ c_P` and `M_PP⁻¹ Q_P`.
+    bias: Vec<f64>,
+    external: Vec<f64>,
+}
+
+impl KnownTree {
+    /// Returns the tree with this model; `own` and `frames` are the indices in it of the joints and of the frames of the
+    /// robot.
+    pub fn new(model: Model, own: Vec<usize>, frames: Vec<usize>) -> Self {
+        let others: Vec<usize> = (0..model.joint_count()).filter(|joint| !own.contains(joint)).collect();
+        let zeros = |count: usize| vec![0.0; count];
+        let (n, p) = (own.len(), others.len());
+        Self {
+            data: Data::new(&model),
+            q: zeros(model.nq()),
+            v: zeros(model.nv()),
+            full: FreeFloating::new(&model),
+            factor: zeros(p * p),
+            gain: zeros(n * p),
+            bias: zeros(p),
+            external: zeros(p),
+            own,
+            others,
+            frames,
+            model,
+        }
+    }
+
+    /// Computes the kinematics of the tree and removes the external wrenches from its data.
+    pub fn update_kinematics(&mut self) {
+        kinematics(&self.model, &mut self.data, &self.q, &self.v);
+        self.data.clear_external();
+    }
+
+    /// Computes the reduced model of the robot's own joints, for accelerations of the other joints `P` without motor
+    /// torques: `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`.
+    ///
+    /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
+    pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {
+        let Self { model, data, q, v, full, own, others, factor, gain, bias, external, .. } = self;
+        free_floating_recursion(model, data, q, v, 0, full);
+        let (all, n, p) = (model.joint_count(), own.len(), others.len());
+        for (row, &i) in others.iter().enumerate() {
+            others.iter().enumerate().for_each(|(k, &j)| factor[row * p + k] = full.inertia[i * all + j]);
+            (bias[row], external[row]) = (full.bias[i], full.external[i]);
+        }
+        cholesky_factor(factor, p);
+        cholesky_solve(factor, p, bias);
+        cholesky_solve(factor, p, external);
+        for (row, &i) in own.iter().enumerate() {
+            let gain = &mut gain[row * p..(row + 1) * p];
+            gain.iter_mut().zip(&*others).for_each(|(g, &j)| *g = full.inertia[i * all + j]);
+            out.bias[row] = S::of(full.bias[i] - dot(gain, bias));
+            out.external[row] = S::of(full.external[i] - dot(gain, external));
+            cholesky_solve(factor, p, gain);
+        }
+        for (row, &i) in own.iter().enumerate() {
+            for (column, &j) in own.iter().enumerate() {
+                let coupling: f64 =
+                    others.iter().zip(&gain[column * p..]).map(|(&k, g)| full.inertia[i * all + k] * g).sum();
+                out.inertia[row * n + column] = S::of(full.inertia[i * all + j] - coupling);
+            }
+        }
+    }
+
+    /// Computes pose, twist, Jacobian and drift of a frame (index) of the robot. Expects the results of
+    /// [`KnownTree::reduce`].
+    ///
+    /// `J' = J_O − J_P M_PP⁻¹ M_PO`,  `d' = d + J_P M_PP⁻¹ (Q_P − c_P)`
+    pub(super) fn reduce_frame<S: Scalar>(&mut self, frame: usize, out: &mut FreeFloating<S>) {
+        let Self { model, data, q, v, full, own, others, frames, gain, bias, external, .. } = self;
+        free_floating_frame(model, data, q, v, frames[frame], full);
+        let (all, n, p) = (model.joint_count(), own.len(), others.len());
+        let mut drift = [0.0; 6];
+        full.drift.write(&mut drift);
+        for (i, row) in full.jacobian.chunks_exact(all).enumerate() {
+            for (column, &j) in own.iter().enumerate() {
+                let reaction: f64 = others.iter().zip(&gain[column * p..]).map(|(&k, g)| row[k] * g).sum();
+                out.jacobian[i * n + column] = S::of(row[j] - reaction);
+            }
+            drift[i] +=
+                others.iter().enumerate().map(|(k, &j)| row[j] * (external[k] - bias[k])).sum::<f64>();
+        }
+        out.drift = lift(Motion::from_slice(&drift));
+        out.velocity = lift(full.velocity);
+        out.pose.rot_wf = full.pose.rot_wf.map(|x| S::of(*x));
+        out.pose.pos_w = full.pose.pos_w.map(|x| S::of(*x));
+    }
+}
+
+fn lift<S: Scalar>(motion: Motion<f64>) -> Motion<S> {
+    Motion::new(motion.linear.map(|x| S::of(*x)), motion.angular.map(|x| S::of(*x)))
+}

@@ -1,0 +1,59 @@
+//! Trees of connected systems that the controllers of a system know.
+
+use super::error::SimulationError;
+use super::members::Place;
+use super::run_state::RunState;
+use super::run_system::RunSystem;
+use crate::control::KnownTree;
+use crate::model::{BASE_NQ, BASE_NV};
+use crate::spatial::Scalar;
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Compiles, for every system that knows others, the tree of those to which it is connected.
+    pub(super) fn find_known(&mut self) -> Result<(), SimulationError> {
+        let Self { systems, connections, .. } = self;
+        for (number, run) in systems.iter_mut().enumerate().filter(|(_, run)| !run.knows.is_empty()) {
+            let found = connections.known_tree(number, &run.knows)?;
+            let Some((model, members)) = found else {
+                run.controllers.set.know(None);
+                continue;
+            };
+            let frames = connections.frames_in(number, &model)?;
+            run.controllers.set.know(Some(KnownTree::new(model, members[0].joints.clone(), frames)));
+            run.known_members = members;
+        }
+        Ok(())
+    }
+
+    /// Brings the tree that the controllers of a system know to the states of its systems. The external wrenches are
+    /// added if the controllers compensate them. Expects the states of the parts.
+    pub(super) fn update_known(&mut self, number: usize) {
+        let members = &self.equations.members;
+        let RunSystem { controllers, known_members, .. } = &mut self.systems[number];
+        let compensates = controllers.set.compensates_environment();
+        let Some(known) = controllers.set.known() else { return };
+        let part = |system: usize| match members.places[system] {
+            Place::Part(part) => Some(&members.parts[part]),
+            Place::Tree(_) => None,
+        };
+        let copy =
+            |to: &mut [f64], from: &[S]| to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
+        for member in &*known_members {
+            let Some(part) = part(member.system) else { continue };
+            if member.system == number {
+                copy(&mut known.q[..BASE_NQ], &part.state.q);
+                copy(&mut known.v[..BASE_NV], &part.state.v);
+            }
+            for (own, &joint) in member.joints.iter().enumerate() {
+                known.q[BASE_NQ + joint] = part.state.q[BASE_NQ + own].value();
+                known.v[BASE_NV + joint] = part.state.v[BASE_NV + own].value();
+            }
+        }
+        known.update_kinematics();
+        for member in known_members.iter().filter(|_| compensates) {
+            if let Some(part) = part(member.system) {
+                part.add_wrenches(member, &mut known.data);
+            }
+        }
+    }
+}

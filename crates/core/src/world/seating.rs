@@ -1,0 +1,98 @@
+//! Seating: the motion of a captured frame, relative to the frame that captured it, to its nominal pose, as latches and
+//! grapple fixtures impose it.
+//!
+//! The captured frame moves on a straight line and turns about one axis, both with the same time law. In the tree these
+//! are a prismatic and a revolute joint whose positions are given functions of time.
+
+use super::event::{RigidPose, Weld};
+use crate::model::{Joint, JointKind};
+use crate::reference::TimeLaw;
+use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
+
+/// Joint of a tree whose position is a given function of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenJoint {
+    /// Index of the joint in the tree.
+    pub joint: usize,
+    /// Position at the end of the motion, rad (m); it is zero at the start.
+    pub travel: f64,
+    /// Start of the motion, s.
+    pub start: f64,
+    /// Progress of the motion since its start.
+    pub law: TimeLaw,
+}
+
+impl GivenJoint {
+    /// Returns position, rate and acceleration at `t`, s.
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        let (s, rate, acceleration) = self.law.at(t - self.start);
+        [s, rate, acceleration].map(|x| x * self.travel)
+    }
+}
+
+/// Connection that a weld makes in a tree: moving joints, the travel of each, and the constant pose behind them.
+pub(super) struct Path {
+    pub(super) joints: Vec<Joint>,
+    pub(super) travels: Vec<f64>,
+    pub(super) pose: Isometry3<f64>,
+}
+
+impl Weld {
+    /// Returns the time at which the captured frame reaches its nominal pose, s; `None` if it has.
+    pub fn seated_at(&self) -> Option<f64> {
+        self.seating.map(|seating| seating.start + seating.duration)
+    }
+
+    /// Returns the connection from the capturing frame to the captured one, or, if `is_reversed`, in the opposite
+    /// direction. `name` is the prefix of the names of its joints.
+    ///
+    /// `X(s) = (p₀ + s d, exp(s θ n) R₀)`, with `d = p₁ − p₀` and `exp(θ n) = R₁ R₀ᵀ`.
+    pub(super) fn path(&self, name: &str, is_reversed: bool) -> Path {
+        let start = self.pose.isometry();
+        let rotation = |turn| Isometry3::from_parts(Translation3::identity(), turn);
+        let (mut joints, mut travels) = (Vec::new(), Vec::new());
+        let mut add = |what: &str, kind: JointKind, travel: f64| {
+            joints.push(Joint::new(&format!("{name}:{what}"), kind, Isometry3::identity()));
+            travels.push(travel);
+        };
+        if let Some(end) = self.seating.map(|seating| seating.pose.isometry()) {
+            let path = end.translation.vector - start.translation.vector;
+            let sign = if is_reversed { -1.0 } else { 1.0 };
+            if let Some((direction, distance)) = Unit::<Vector3<f64>>::try_new_and_get(path, 0.0) {
+                add("slide", JointKind::Prismatic(direction.into_inner() * sign), distance);
+            }
+            if let Some((axis, angle)) = (end.rotation * start.rotation.inverse()).axis_angle() {
+                add("turn", JointKind::Revolute(axis.into_inner() * sign), angle);
+            }
+        }
+        // X = T(p₀) · slide · turn · R₀,  X⁻¹ = R₀⁻¹ · turn⁻¹ · slide⁻¹ · T(−p₀)
+        let (origin, mut pose) = if is_reversed {
+            joints.reverse();
+            travels.reverse();
+            (rotation(start.rotation.inverse()), Isometry3::from(start.translation.inverse()))
+        } else {
+            (Isometry3::from(start.translation), rotation(start.rotation))
+        };
+        match joints.first_mut() {
+            Some(first) => first.origin = origin,
+            None => pose = origin * pose,
+        }
+        Path { joints, travels, pose }
+    }
+}
+
+impl From<Isometry3<f64>> for RigidPose {
+    fn from(pose: Isometry3<f64>) -> Self {
+        let q = pose.rotation.coords;
+        Self { rotation: [q.x, q.y, q.z, q.w], position: pose.translation.vector.into() }
+    }
+}
+
+impl RigidPose {
+    /// Returns the pose as a transformation.
+    pub fn isometry(&self) -> Isometry3<f64> {
+        let [x, y, z, w] = self.rotation;
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
+        Isometry3::from_parts(Translation3::from(self.position), rotation)
+    }
+}

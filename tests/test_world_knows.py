@@ -1,0 +1,131 @@
+"""Controllers that know the model of what is captured."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import onorbit_rs as oo
+from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
+
+GRASPED = [0, 1.4260, 0, 1.3391, 0, -1.1943, 0]
+
+
+def systems(controller: Any, target: Any, knows: list[str], rates: float = 1.0) -> list[Any]:
+    servicer = oo.robots.load("servicer")
+    q = servicer.neutral()
+    q[JOINTS_Q] = GRASPED
+    q_target = target.neutral()
+    q_target[:3] = servicer.frame_pose(q, "tool")[:3, 3] - target.frame_pose(q_target, "handle")[:3, 3]
+    v_target = np.zeros(target.nv)
+    v_target[:6] = [0, 0, 0, 0.002 * rates, -0.003 * rates, 0.001 * rates]
+    v_target[JOINTS_V] = 0.02
+    first = oo.System("servicer", servicer, q, np.zeros(servicer.nv), controller=controller, knows=knows)
+    return [first, oo.System("target", target, q_target, v_target)]
+
+
+def panelled() -> Any:
+    """A target with a panel that turns freely."""
+    builder = oo.ModelBuilder("target", base="bus", mass=200, inertia=np.diag([40.0, 60, 50]))
+    builder.add_link(
+        "panel", parent="bus", joint="hinge", axis=[0, 1, 0], xyz=[0, 0.8, 0],
+        mass=20, com=[0.2, 0.5, 0], inertia=np.diag([4.0, 1, 5]),
+    )  # fmt: skip
+    builder.add_frame("handle", "bus", xyz=[-0.6, 0, 0])
+    return builder.build()
+
+
+def tracking_error(knows: list[str], target: Any, law: Any) -> float:
+    """Largest error of the joints from 1 s on; the capture is at 1 s and the reference moves from then on."""
+    path = oo.JointWaypoints([GRASPED, GRASPED, np.array(GRASPED) + 0.2], times=[0.0, 1.0, 6.0])
+    control = oo.Control(law, reference=path, name="arm")
+    world = oo.World(
+        systems([control], target, knows),
+        events=[oo.Capture("grasp", "servicer/tool", "target/handle", at=1.0)],
+    )
+    trace = oo.Simulation(world, time_step=2e-3, integrator="rk4").run(5.0)
+    assert all(passed for _, _, _, passed in trace.certificate())
+    error = trace["servicer"].tracking["arm"]
+    return float(np.abs(error[trace["servicer"].time > 3.0]).max())
+
+
+@pytest.mark.parametrize("target", ["target_satellite", "panelled"])
+def test_computed_torque_tracks_with_the_load_only_if_it_knows_it(target: str):
+    model = oo.robots.load(target) if target == "target_satellite" else panelled()
+    law = oo.JointComputedTorque(kp=49.0, kd=14.0)
+    known, unknown = (tracking_error(knows, model, law) for knows in (["target"], []))
+    assert known < 1e-5 < 0.1 < unknown, (known, unknown)
+
+
+def test_before_the_capture_knowledge_changes_nothing():
+    law = oo.JointComputedTorque(kp=49.0, kd=14.0)
+    q = {}
+    for knows in ([], ["target"]):
+        path = oo.JointWaypoints([GRASPED, np.array(GRASPED) + 0.1], times=[0.0, 2.0])
+        world = oo.World(
+            systems([oo.Control(law, reference=path, name="arm")], panelled(), knows),
+            events=[oo.Capture("grasp", "servicer/tool", "target/handle", at=1.5)],
+        )
+        trace = oo.Simulation(world, time_step=2e-3).run(1.5)
+        before = trace["servicer"].time < 1.5
+        q[bool(knows)] = trace["servicer"].q[before]
+    np.testing.assert_array_equal(q[True], q[False])
+
+
+@pytest.mark.parametrize(
+    ("known", "message"), [("tarjet", "not another system"), ("servicer", "not another")]
+)
+def test_unknown_systems_are_refused(known: str, message: str):
+    with pytest.raises(oo.exceptions.WorldError, match=message):
+        oo.World(systems(None, panelled(), [known]))
+
+
+def control(law: str, robot: Any, joints: list[str]) -> Any:
+    """Control of the arm by a law that uses the model of ``robot``."""
+    servicer = oo.robots.load("servicer")
+    q = servicer.neutral()
+    q[JOINTS_Q] = GRASPED
+    start = servicer.frame_pose(q, "tool")
+    end = start.copy()
+    end[:3, 3] += [0.1, -0.05, 0.08]
+    path = oo.Line(start, end, duration=2.0)
+    if law == "task":
+        return oo.Control(oo.ComputedTorque(robot, "tool", kp=4.0, kd=4.0), reference=path, joints=joints)
+    if law == "compliance":
+        compliance = oo.Compliance(robot, "tool", stiffness=20.0, damping=40.0)
+        return oo.Control(compliance, reference=path, joints=joints)
+    waypoints = oo.JointWaypoints([GRASPED, np.array(GRASPED) + 0.1], times=[0.0, 2.0])
+    return oo.Control(oo.JointComputedTorque(kp=4.0, kd=4.0), reference=waypoints, joints=joints)
+
+
+@pytest.mark.parametrize("law", ["task", "joints", "compliance"])
+def test_a_known_load_is_part_of_the_robot(law: str):
+    """The torques are those of the same law on one robot that carries the target, whose panel is passive."""
+    # compliance on a group of joints neglects the reaction of other joints, so its target has no joint
+    target = oo.robots.load("target_satellite") if law == "compliance" else panelled()
+    servicer = oo.robots.load("servicer")
+    joints = list(servicer.joint_names)
+    events = [oo.Capture("grasp", "servicer/tool", "target/handle", at=0.0)]
+    simulations = {}
+    for knows in ([], ["target"]):
+        first, second = systems([control(law, servicer, joints)], target, knows, rates=0.0)
+        simulations[bool(knows)] = oo.Simulation(oo.World([first, second], events=events), time_step=2e-3)
+    traces = {key: simulation.run(1.0) for key, simulation in simulations.items()}
+
+    q, q_target = traces[True]["servicer"].q[0], traces[True]["target"].q[0]
+    pose = np.linalg.inv(servicer.frame_pose(q, "tool")) @ target.frame_pose(q_target, "handle")
+    merged = oo.attach(servicer, "tool", target, "handle", pose=pose, prefix="target_")
+    own = [merged.joint_names.index(name) for name in joints]
+    q_merged, v_merged = merged.neutral(), np.zeros(merged.nv)
+    q_merged[JOINTS_Q][own] = GRASPED
+    if "target_hinge" in merged.joint_names:
+        v_merged[JOINTS_V][merged.joint_names.index("target_hinge")] = 0.02
+    alone = oo.Simulation(
+        merged, q_merged, v_merged, controller=[control(law, merged, joints)], time_step=2e-3
+    ).run(1.0)
+    tau = alone.tau[:, own]
+    assert np.abs(tau).max() > 0.1
+    np.testing.assert_allclose(traces[True]["servicer"].tau[-1], tau[-1], rtol=1e-9, atol=1e-9)
+    assert np.abs(traces[False]["servicer"].tau[-1] - tau[-1]).max() > 1e-2
