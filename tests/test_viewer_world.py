@@ -176,3 +176,19 @@ def test_a_recording_of_a_world_made_in_python_needs_no_scenario(tmp_path: Path)
     setting = viewer.WorldSetting({name: viewer.Setting(model, system=name) for name in ("a", "b")})
     moving, _ = rows_by_entity(viewer.write_world_recording(tmp_path / "run.rrd", trace, setting))
     assert moving["/frames/a/robot/base"] == moving["/frames/b/robot/base"] == 11
+
+
+def test_a_run_that_was_stopped_at_its_start_is_recorded(tmp_path: Path) -> None:
+    world, _ = pair()
+    trace = world.simulation.start(duration=1.0).finish()
+    path = viewer.write_world_recording(tmp_path / "run.rrd", trace, viewer.WorldSetting.of(world))
+    moving, _ = rows_by_entity(path)
+    assert moving["/plots/chaser/base_rate"] == 1 and moving["/connections/grasp"] == 1
+
+
+def test_spacecraft_have_the_colours_of_their_lines(tmp_path: Path) -> None:
+    world = built("formation")
+    path = viewer.write_world_recording(tmp_path / "run.rrd", ran(world), viewer.WorldSetting.of(world))
+    (lines,) = column(path, f"/{SHARED}radial", "SeriesLines:colors", static=True)
+    for name, color in zip(world.systems, lines, strict=True):
+        assert column(path, f"/world/{name}/flight/base", "Points3D:colors", static=True) == [[color]]

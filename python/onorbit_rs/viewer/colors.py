@@ -27,10 +27,11 @@ TARGET: Color = (205, 170, 90)
 
 MOMENTUM = Hue((230, 135, 40), (253, 206, 165))
 
-_OF_SYSTEMS: tuple[Color, ...] = (
-    (255, 220, 120), (85, 155, 250), (70, 200, 120), (240, 130, 50), (220, 140, 190), (130, 210, 245),
-    (245, 235, 100), (180, 180, 180),
+LINES: tuple[Color, ...] = (
+    (85, 155, 250), (240, 130, 50), (70, 200, 120), (220, 140, 190), (240, 190, 50), (130, 210, 245),
+    (180, 180, 180), (245, 235, 100),
 )  # fmt: skip
+"""Colours of the lines of a plot, and of spacecraft in the order of these lines."""
 
 _OF_EFFECTS = {
     "gravity": Hue((150, 112, 222), (222, 212, 255)),
@@ -52,4 +53,4 @@ def hues(effects: Iterable[str]) -> dict[str, Hue]:
 
 def of_systems(names: Iterable[str]) -> dict[str, Color]:
     """Return a colour for each spacecraft; the colours repeat after eight."""
-    return {name: _OF_SYSTEMS[index % len(_OF_SYSTEMS)] for index, name in enumerate(names)}
+    return {name: LINES[index % len(LINES)] for index, name in enumerate(names)}

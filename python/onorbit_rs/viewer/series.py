@@ -17,6 +17,7 @@ from onorbit_rs._core import COLUMNS
 from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V, QUATERNION
 from onorbit_rs.common.display_units import OR, joint_units, with_prefix
 from onorbit_rs.common.rotations import roll_pitch_yaw
+from onorbit_rs.viewer.colors import LINES
 from onorbit_rs.viewer.font import shown
 from onorbit_rs.viewer.wrenches import centers_of_bodies, net_force, torque_about_center
 
@@ -30,8 +31,6 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _XYZ = [(240, 95, 75), (70, 200, 120), (85, 155, 250)]
-_COLORS = [(85, 155, 250), (240, 130, 50), (70, 200, 120), (220, 140, 190), (240, 190, 50), (130, 210, 245),
-           (180, 180, 180), (245, 235, 100)]  # fmt: skip
 _OTHERS, OTHERS = (90, 94, 104), "others, smaller"
 AXES, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 SUM, _SUM = "sum", (235, 235, 235)
@@ -174,11 +173,11 @@ def _of_part(rows: TraceRows, group: str, path: str, title: str, column: str, pa
 def log_style(recording: rr.RecordingStream, series: Series) -> None:
     """Log names and colours of the lines of a plot."""
     count = len(series.names)
-    names, colors = list(series.names), list(_XYZ if series.names in (AXES, ANGLES) else _COLORS)
+    names, colors = list(series.names), list(_XYZ if series.names in (AXES, ANGLES) else LINES)
     if count > len(colors):  # no two lines have the same colour
         peaks = np.abs(series.values).max(axis=0)
         largest = np.sort(np.argsort(-peaks, kind="stable")[: len(colors)])
-        taken = dict(zip(largest.tolist(), _COLORS, strict=True))
+        taken = dict(zip(largest.tolist(), LINES, strict=True))
         colors = [taken.get(index, _OTHERS) for index in range(count)]
         names = [name if index in taken else OTHERS for index, name in enumerate(names)]
     elif names[-1] == SUM:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,6 +44,9 @@ if TYPE_CHECKING:
 Plots = list[tuple["TraceRows", Series]]
 """Plots with the rows whose times they have."""
 
+LIVE_MARGIN = 1.3
+"""Size of the scene of a live view, whose later motion is not known, in sizes of its start."""
+
 NEAR_ON_ORBIT = 0.02
 """Distance of spacecraft that share a label in the view of the orbit, as a fraction of its radius."""
 
@@ -56,10 +59,11 @@ class Stage:
     alone: dict[str, Viewpoint]
 
     @classmethod
-    def of(cls, world: WorldRows) -> Stage:
-        """Return the viewpoints for these rows."""
+    def of(cls, world: WorldRows, *, is_live: bool = False) -> Stage:
+        """Return the viewpoints for these rows; those of a live view are the first ones only."""
         alone = {name: Viewpoint.of(world[name], setting) for name, setting in world.setting.systems.items()}
-        return cls(common_viewpoint(world), alone)
+        common = common_viewpoint(world)
+        return cls(replace(common, size=LIVE_MARGIN * common.size) if is_live else common, alone)
 
     @property
     def size(self) -> float:
@@ -139,7 +143,8 @@ def log_world(
     is_live: bool = False,
 ) -> Stage:
     """Send the layout and log the static entities, from the first rows."""
-    setting, stage, bodies = world.setting, Stage.of(world), bodies_of(world)
+    setting, bodies = world.setting, bodies_of(world)
+    stage = Stage.of(world, is_live=is_live)
     send_blueprint(
         recording,
         world_layout(
