@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from pathlib import Path
 
 import numpy as np
@@ -125,7 +126,7 @@ def test_plots_of_all_systems_have_the_numbers_of_the_traces() -> None:
     np.testing.assert_allclose(plots["kinetic_energy"].values[:, -1], trace.kinetic_energy, rtol=1e-12)
     moving = [MovingFrame(world.systems[name].model, frame, trace[name].q, trace[name].v)
               for name, frame in (("chaser", "tool"), ("target", "handle"))]  # fmt: skip
-    np.testing.assert_array_equal(plots["grasp/position"].values, frame_motion(*moving).position)
+    np.testing.assert_array_equal(plots["connections/grasp/position"].values, frame_motion(*moving).position)
     assert "distance" in plots and "radial" in plots
 
 
@@ -192,3 +193,22 @@ def test_spacecraft_have_the_colours_of_their_lines(tmp_path: Path) -> None:
     (lines,) = column(path, f"/{SHARED}radial", "SeriesLines:colors", static=True)
     for name, color in zip(world.systems, lines, strict=True):
         assert column(path, f"/world/{name}/flight/base", "Points3D:colors", static=True) == [[color]]
+
+
+def test_a_plot_marks_only_the_events_of_its_systems(tmp_path: Path) -> None:
+    """Two pairs that never meet, each with its capture."""
+    values = data()
+    systems = values["systems"]
+    for name, other in (("tug", "chaser"), ("barge", "target")):
+        systems[name] = copy.deepcopy(systems[other])
+    systems["tug"]["initial"]["position"] = [0, 30.0, 0]
+    systems["barge"]["initial"]["frame"] = "tug/tool"
+    dock = {"name": "dock", "when": {"at": 0.2}, "do": {"capture": ["tug/tool", "barge/handle"]}}
+    values["events"].append(dock)
+    world = built(values)
+    path = viewer.write_world_recording(tmp_path / "run.rrd", ran(world), viewer.WorldSetting.of(world))
+    moving, _ = rows_by_entity(path)
+    counts = {"groups/chaser/kinetic_energy": 2, "groups/tug/kinetic_energy": 1,
+              "connections/grasp/position": 2, "connections/dock/position": 1}  # fmt: skip
+    assert {plot: moving[f"/{SHARED}{plot}/events"] for plot in counts} == counts
+    assert moving[f"/{SHARED}distance/events"] == moving["/events"] == 3

@@ -25,7 +25,7 @@ from onorbit_rs.viewer.recording import (
     send_craft,
 )
 from onorbit_rs.viewer.scene import MOST_TRAIL_PIECES
-from onorbit_rs.viewer.series import Series, log_style, send_series, series_of
+from onorbit_rs.viewer.series import SUM, Series, log_style, send_series, series_of
 from onorbit_rs.viewer.streams import release_streams, send_blueprint
 from onorbit_rs.viewer.viewpoint import Viewpoint
 from onorbit_rs.viewer.world_blueprint import world_layout
@@ -35,9 +35,11 @@ from onorbit_rs.viewer.world_series import SHARED, world_series
 from onorbit_rs.viewer.world_viewpoint import common_viewpoint
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import rerun as rr
 
-    from onorbit_rs._core import WorldTrace
+    from onorbit_rs._core import EventRecord, WorldTrace
     from onorbit_rs.viewer.trace_rows import TraceRows
     from onorbit_rs.viewer.world_setting import WorldSetting
 
@@ -112,7 +114,7 @@ def _encode(path: Path, trace: WorldTrace, setting: WorldSetting, notes: str) ->
     for times, series in plots:
         send_series(recording, times, series)
         if series.path.startswith(SHARED):
-            send_marks(recording, trace.events, times, series)
+            send_marks(recording, _events_of(series, setting, trace.events), times, series)
     send_world(recording, world, stage)
     for name, system in setting.systems.items():
         log_paths(recording, world[name], system, stage.alone[name])
@@ -191,6 +193,17 @@ def bodies_of(world: WorldRows) -> list[Body]:
     return [
         body for name, system in systems.items() for body in flight_bodies(world[name], system, colors[name])
     ]
+
+
+def _events_of(series: Series, setting: WorldSetting, events: Sequence[EventRecord]) -> list[EventRecord]:
+    """Return the events between the systems that a plot shows."""
+    systems = set(setting.names)
+    for connection in setting.connections:
+        if series.path.startswith(f"{SHARED}connections/{connection.name}/"):
+            systems = set(connection.systems)
+    if SUM in series.names:
+        systems = set(series.names)
+    return [event for event in events if set(event.systems) <= systems]
 
 
 def _orbit_labels(world: WorldRows) -> dict[str, str]:

@@ -65,7 +65,7 @@ def _relative(world: WorldRows, connection: Connection) -> Iterator[tuple[TraceR
     ):
         yield (
             chosen[0],
-            Series(CONNECTIONS, f"{SHARED}{connection.name}/{name}", title, unit, AXES, values),
+            Series(CONNECTIONS, f"{SHARED}connections/{connection.name}/{name}", title, unit, AXES, values),
         )
 
 
@@ -76,7 +76,7 @@ def _balance(world: WorldRows, group: Sequence[str]) -> Iterator[tuple[TraceRows
     momentum = group_momentum(
         [rows["momentum"] for rows in chosen], [rows["center_of_mass"] for rows in chosen], masses
     )
-    names, which = (*group, SUM), "" if len(world.setting.groups) == 1 else f"{group[0]}/"
+    names, which = (*group, SUM), "" if len(world.setting.groups) == 1 else f"groups/{group[0]}/"
     for part, (entries, unit) in COLUMNS["momentum"].parts.items():
         about = " about the common centre of mass" if part == "angular" else ""
         for axis, values in zip(AXES, np.moveaxis(momentum[:, :, entries], 2, 0), strict=True):
