@@ -38,10 +38,10 @@ def test_the_target_is_grasped_released_and_docked(run: oo.Run) -> None:
     assert run.summary["certificate_passed"], run.summary["certificate_failures"]
     grasp, let_go, docked = world(run).events
     assert [event.kind for event in (grasp, let_go, docked)] == ["capture", "release", "capture"]
-    assert 15.0 < grasp.time < 25.0 and let_go.time == docked.time == 140.0
+    assert 15.0 < grasp.time < 25.0 and (let_go.time, docked.time) == (140.0, 141.0)
     # the target of 410 kg drifts at 1 mm/s, and the arm yields
     assert 0.01 < np.linalg.norm(grasp.impulse[:3]) < 0.41
-    assert docked.energy_lost < 1e-6  # J: the port captures it at rest
+    assert 0.0 < docked.energy_lost < 1e-8  # J: gravity has moved it for a second
 
 
 def test_the_target_moves_into_the_port_along_its_axis(run: oo.Run) -> None:
@@ -49,17 +49,19 @@ def test_the_target_moves_into_the_port_along_its_axis(run: oo.Run) -> None:
     assert docking[0, 2, 3] == pytest.approx(0.32, abs=1e-9)
     near = (docking[:, 2, 3] < 0.05) & (time < 140.0)
     assert np.linalg.norm(docking[near, :2, 3], axis=1).max() < 5e-3 and angle(docking[near]).max() < 0.2
-    assert docking[:, 2, 3].min() > -2e-3  # it does not enter the port
-    held = docking[time > 140.0]
-    assert np.linalg.norm(held[0, :3, 3]) < 1e-3 and angle(held[0]) < 0.05
-    assert np.abs(held - held[0]).max() < 1e-12  # rigid from then on
+    assert docking[:, 2, 3].min() > -1e-9  # it does not enter the port
+    assert docking[time < 140.0, 2, 3][-1] == pytest.approx(0.02, abs=1e-3)
+    held = docking[time > 151.0]  # seated
+    assert np.abs(held - np.eye(4)).max() < 1e-9
 
 
 def test_the_grasp_is_rigid_and_the_arm_retreats(run: oo.Run) -> None:
     grasp, let_go, _ = world(run).events
     handle, time = relative(run, "tool", "handle"), world(run).time
-    held = handle[(time > grasp.time) & (time < let_go.time)]
-    assert np.linalg.norm(held[0, :3, 3]) < 0.01 and np.abs(held - held[0]).max() < 1e-12
+    caught = handle[np.flatnonzero(time == grasp.time)[-1]]
+    assert 1e-5 < np.linalg.norm(caught[:3, 3]) < 0.01
+    held = handle[(time > grasp.time + 5.0) & (time < let_go.time)]  # seated
+    assert np.abs(held - np.eye(4)).max() < 1e-9
     assert handle[-1, 0, 3] == pytest.approx(0.3, abs=2e-3)
     chaser = world(run)["chaser"]
     limits = [joint.velocity for joint in run.models["chaser"].joints]
