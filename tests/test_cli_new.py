@@ -42,7 +42,7 @@ def test_every_bundled_robot_gets_a_scenario_that_passes_its_certificate(robot: 
     assert checked.returncode == 0 and "ok: " in checked.stdout, checked
     summary = ran(tmp_path / "mine.yaml")
     if "a body without joints" in done.stdout:
-        assert load(tmp_path / "mine.yaml").robot.bundled in ("small_satellite", "target_satellite")
+        assert not oo.robots.load(load(tmp_path / "mine.yaml").robot.bundled).joints
         return
     assert summary["control_arm_result"] == "succeeded"
     assert summary["tracking_position_error_max_m"] < 1e-3
