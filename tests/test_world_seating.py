@@ -49,10 +49,6 @@ def relative_pose(trace: Any, row: int = -1) -> np.ndarray:
 
 
 def test_two_bodies_are_pulled_together_about_their_common_centre_of_mass():
-    systems = [
-        craft("a", 90.0, [9, 9, 9], [0, 0, 0], [0] * 6),
-        craft("b", 10.0, [1, 1, 1], [2, 0, 0], [0] * 6),
-    ]
     capture = oo.Capture("grasp", "a/base", "b/base", at=1.0, seat=SEAT, pose=pose([0, 0, 0], [1, 0, 0]))
     trace = run(pair(), [capture], 6.0)
     # the centre of mass stays: a moves by 10/100 of 1 m towards b
@@ -103,15 +99,11 @@ def test_the_order_of_declaration_of_root_and_captured_does_not_matter():
     there = run(moving(), [oo.Capture("g", "a/base", "b/base", at=0.5, seat=SEAT, pose=nominal)], 5.0)
     back = np.linalg.inv(nominal)
     here = run(moving(), [oo.Capture("g", "b/base", "a/base", at=0.5, seat=SEAT, pose=back)], 5.0)
-    # the path differs (the line is straight in other axes), the end of it does not, up to the motion of the pair
+    # the paths differ, because the line is straight in other axes; their ends do not
     assert np.abs(relative_pose(here) - relative_pose(there)).max() < 1e-14
 
 
 def test_a_release_during_the_seating_keeps_the_relative_velocity():
-    systems = [
-        craft("a", 90.0, [9, 9, 9], [0, 0, 0], [0] * 6),
-        craft("b", 10.0, [1, 1, 1], [2, 0, 0], [0] * 6),
-    ]
     capture = oo.Capture("grasp", "a/base", "b/base", at=0.0, seat=SEAT, pose=pose([0, 0, 0], [1, 0, 0]))
     trace = run(pair(), [capture, oo.Release("let_go", "grasp", at=SEAT / 2)], 3.0)
     speed = trace["b"].v[-1][0] - trace["a"].v[-1][0]

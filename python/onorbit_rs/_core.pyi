@@ -871,7 +871,7 @@ class Target:
         cls, pose: ArrayLike, *, velocity: ArrayLike | None = None, spin: ArrayLike | None = None
     ) -> Target: ...
 
-_Frame = Literal["world", "lvlh", "base"] | Target
+_Frame = Literal["world", "lvlh", "base"] | str | Target
 
 @final
 class Hold(Reference):

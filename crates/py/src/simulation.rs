@@ -10,6 +10,7 @@ use crate::gravity::gravity_of;
 use crate::interrupt::{period, prepare};
 use crate::model::PyModel;
 use crate::orbit::PyOrbit;
+use crate::reference::Around;
 use crate::shared_run::SharedRun;
 use crate::stepper::PyStepper;
 use crate::world::{PyWorld, Robotics, Systems, initial_state};
@@ -176,7 +177,8 @@ impl PySimulation {
             simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
             set_environment(py, &mut simulation, &effects(environment)?, &[None])?;
             let orbit = simulation.orbit.clone();
-            settings.apply(model.get(), (orbit.as_ref(), &[]), &mut simulation.systems[0])?;
+            let around = Around { orbit: orbit.as_ref(), ..Around::default() };
+            settings.apply(model.get(), &around, &mut simulation.systems[0])?;
             simulation.rereference_beyond = rereference_beyond;
             simulation
         };

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,6 +17,7 @@ from onorbit_rs.scenario.environment.earth import build_earth
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.locations import dotted, located, scenario_error
 from onorbit_rs.scenario.orbit import NumericalOrbit
+from onorbit_rs.scenario.reference.frame import moving_frame
 from onorbit_rs.scenario.reference.start import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.trial import Flight, about_controllers, about_start, try_effects, try_one_step
@@ -24,6 +26,7 @@ from onorbit_rs.scenario.warnings import warnings_of
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from onorbit_rs.scenario.initial import Neighbour
     from onorbit_rs.scenario.reference import AnyReference
     from onorbit_rs.scenario.world import WorldScenario
 
@@ -175,15 +178,19 @@ def controlled(
     orbit: _core.Orbit | None,
     *,
     runs_code: bool,
-    is_alone: bool = True,
+    neighbours: Mapping[str, Neighbour] | None = None,
 ) -> tuple[Any, Any]:
     """Return new controllers, and the reference of a single one.
 
-    If the system is alone, controls that start after an event of the world are left out.
+    Without ``neighbours``, the other systems of the world, those controls are left out that start after an
+    event or follow a frame of another system.
     """
     folder, tool = scenario.folder, scenario.tool
-    start = Start(model, q, orbit, folder)
+    start = Start(model, q, orbit, folder, neighbours=neighbours or {})
+    is_alone = neighbours is None
     if scenario.controller is not None:
+        if is_alone and _is_moving(scenario.reference):
+            return None, None
         with located(scenario, "controller"):
             law = scenario.controller.build_law(model, tool, folder, runs_code=runs_code)
         with located(scenario, "reference"):
@@ -191,7 +198,7 @@ def controlled(
     controls = []
     waiting = _waiting(scenario) if is_alone else set()
     for index, part in enumerate(scenario.controllers or []):
-        if part.name in waiting:
+        if part.name in waiting or (is_alone and _is_moving(part.reference)):
             continue
         at = ("controllers", index)
         with located(scenario, *at):
@@ -203,6 +210,11 @@ def controlled(
         with located(scenario, *at):
             controls.append(part.build_control(law, reference, joints))
     return controls or None, None
+
+
+def _is_moving(reference: Any) -> bool:
+    """Return True if a reference is given in a frame of another system."""
+    return moving_frame(getattr(reference, "frame", None)) is not None
 
 
 def _waiting(scenario: Scenario) -> set[str]:

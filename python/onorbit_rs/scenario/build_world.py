@@ -79,7 +79,10 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     _check_frames(scenario, models)
 
     def simulation() -> _core.Simulation:
-        crafts = [_system(scenario, name, built, runs_code=runs_code) for name, built in systems.items()]
+        others = {name: Neighbour(built.model, built.q, built.v) for name, built in systems.items()}
+        crafts = [
+            _system(scenario, name, built, others, runs_code=runs_code) for name, built in systems.items()
+        ]
         with _located_event(scenario):
             world = _core.World(
                 crafts, orbit=around.orbit, earth=around.earth, gravity_mode=scenario.gravity_mode,
@@ -143,18 +146,20 @@ def _check_frame(model: _core.Model, frame: str) -> None:
         )  # fmt: skip
 
 
-def _system(scenario: WorldScenario, name: str, built: Built, *, runs_code: bool) -> _core.System:
+def _system(
+    scenario: WorldScenario, name: str, built: Built, neighbours: dict[str, Neighbour], *, runs_code: bool
+) -> _core.System:
     """Return the system of the engine, with new controllers."""
     alone = built.scenario
     controller, reference = controlled(
-        alone, built.model, built.q, built.orbit, runs_code=runs_code, is_alone=False
+        alone, built.model, built.q, built.orbit, runs_code=runs_code, neighbours=neighbours
     )
     settings = alone.simulation.model_dump(include=set(ControlSettings.model_fields), exclude_none=True)
     with located(alone, "robot"):
         return _core.System(
             name, built.model, built.q, built.v, controller=controller, reference=reference,
-            tool=alone.tracked_tool, surfaces=build_surfaces(alone.surfaces), knows=scenario.systems[name].knows,
-            **settings,
+            tool=alone.tracked_tool, surfaces=build_surfaces(alone.surfaces),
+            knows=scenario.systems[name].knows, **settings,
         )  # fmt: skip
 
 

@@ -4,24 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
-import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from onorbit_rs import _core
-from onorbit_rs.common.rotations import matrix_from_quaternion
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
-from onorbit_rs.scenario.attitude import Attitude, quaternion_of
 from onorbit_rs.scenario.errors import inconsistent, invalid, shortened
-from onorbit_rs.scenario.fields import Length3, NotNegative, Positive, Time
+from onorbit_rs.scenario.fields import NotNegative, Positive, Time
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.pose import Pose
 from onorbit_rs.scenario.units import Dimension, parse_quantity
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 RESERVED = ("world", "lvlh", "base", "path")
 """Names of frames, which no system may have."""
@@ -101,19 +96,6 @@ class When(Part):
         return values | ({} if self.latch is None else self.latch.model_dump())
 
 
-class Pose(Part):
-    """Pose of a frame in another frame."""
-
-    position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    attitude: Attitude | None = None
-
-    def matrix(self) -> NDArray[np.float64]:
-        """Return the pose as a (4, 4) matrix."""
-        pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = matrix_from_quaternion(quaternion_of(self.attitude)), self.position
-        return pose
-
-
 class Action(Part):
     """Exactly one of ``capture`` and ``release``."""
 
@@ -163,7 +145,7 @@ class Event(Part):
         """Return the event of the engine."""
         values = self.when.arguments()
         if self.do.capture is not None:
-            pose = None if self.do.pose is None else self.do.pose.matrix()
+            pose = None if self.do.pose is None else self.do.pose.transform()
             return _core.Capture(self.name, *self.do.capture, seat=self.do.seat, pose=pose, **values)
         assert self.do.release is not None  # checked by Action
         return _core.Release(self.name, self.do.release, impulse=self.do.impulse, **values)

@@ -71,7 +71,7 @@ class Scenario(RobotKeys, Document):
         """Return the scenario of one system alone, from validated parts and the lines of the world."""
         scenario = cls.__new__(cls)
         try:
-            context = {"events": place.events}
+            context = {"events": place.events, "systems": place.systems}
             cls.__pydantic_validator__.validate_python(data, self_instance=scenario, context=context)
         except ValidationError as error:
             raise first_error(error, data, file, lines, lambda *at: place.location(at)) from None
@@ -105,7 +105,8 @@ class Scenario(RobotKeys, Document):
 
     @model_validator(mode="after")
     def _is_consistent(self, info: ValidationInfo) -> Scenario:
-        check_control(self, (info.context or {}).get("events", []))
+        context = info.context or {}
+        check_control(self, context.get("events", []), context.get("systems", []))
         check_engine(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
@@ -128,6 +129,8 @@ class InWorld(NamedTuple):
     """Index, in the environment of the world, of each effect on the system."""
     events: list[str]
     """Names of the events of the world, after which a control may start."""
+    systems: list[str]
+    """Names of the other systems, in whose frames references may be given."""
 
     def location(self, at: Location) -> Location:
         """Return the location in the file of an entry of the scenario of the system."""

@@ -76,7 +76,12 @@ class WorldScenario(Document):
             effects = self._effects_on(name)
             own["environment"] = list(effects.values())
             data = shared | own | {"simulation": settings | control}
-            found[name] = Scenario.of_system(InWorld(name, [*effects], events), data, self._file, self._lines)
+            found[name] = Scenario.of_system(
+                InWorld(name, [*effects], events, [other for other in self.systems if other != name]),
+                data,
+                self._file,
+                self._lines,
+            )
         return found
 
     @property

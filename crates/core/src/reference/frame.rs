@@ -5,7 +5,7 @@ use super::{Hold, ReferenceError, TaskSample};
 use crate::orbit::Orbit;
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::{Matrix3, Vector3};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Frame that gives the axes and the origin of a path.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +19,37 @@ pub enum ReferenceFrame {
     Base,
     /// The body frame of a second spacecraft.
     Target(Target),
+    /// A frame of another system of the same world.
+    System(MovingFrame),
+}
+
+/// Frame of another system of a world. The simulation sets its motion at each instant at which it evaluates references;
+/// copies share it.
+#[derive(Clone, Debug)]
+pub struct MovingFrame {
+    /// Number of the system in the world.
+    pub system: usize,
+    /// Index of the frame in the model of the system.
+    pub frame: usize,
+    motion: Arc<Mutex<TaskSample<f64>>>,
+}
+
+impl MovingFrame {
+    /// Returns a frame of a system, at the origin of W until its motion is set.
+    pub fn new(system: usize, frame: usize) -> Self {
+        let rest = TaskSample::at_rest(Mat3::identity(), Vec3::zero());
+        Self { system, frame, motion: Arc::new(Mutex::new(rest)) }
+    }
+
+    /// Returns the motion of the frame in W at the present instant.
+    pub fn motion(&self) -> TaskSample<f64> {
+        *self.motion.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Sets the motion of the frame in W at the present instant.
+    pub fn set_motion(&self, motion: TaskSample<f64>) {
+        *self.motion.lock().unwrap_or_else(PoisonError::into_inner) = motion;
+    }
 }
 
 /// Force-free spacecraft with constant velocity and angular velocity.

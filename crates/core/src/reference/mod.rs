@@ -2,7 +2,7 @@
 //! of time.
 //!
 //! References are evaluated in `f64`, once per instant, since all lanes share the time, and then
-//! [copied](TaskSample::lift) to the lanes. A path of a frame is a [`TaskPath`], given in one of four
+//! [copied](TaskSample::lift) to the lanes. A path of a frame is a [`TaskPath`], given in one of five
 //! [frames](ReferenceFrame); a path of joints is a [`JointPath`].
 
 mod error;
@@ -22,7 +22,7 @@ mod task_path;
 mod time_law;
 
 pub use error::ReferenceError;
-pub use frame::{ReferenceFrame, Target};
+pub use frame::{MovingFrame, ReferenceFrame, Target};
 pub use hold::Hold;
 pub use joint::{JointHold, JointPath, JointReference, JointSample, joint_start_offset};
 pub use joint_spline::JointSpline;

@@ -1,7 +1,7 @@
 //! Reference motion of a frame of the robot: a path and the frame in which it is given.
 
 use super::frame::lvlh_motion;
-use super::{ReferenceError, ReferenceFrame, TaskPath, TaskSample};
+use super::{MovingFrame, ReferenceError, ReferenceFrame, TaskPath, TaskSample};
 use crate::spatial::{Mat3, Vec3, log_rotation};
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ impl<P: TaskPath + 'static> From<P> for TaskReference {
 
 impl TaskReference {
     /// Returns the desired motion at `t`, s of simulation, on a path that starts at `start`: in W axes, or in
-    /// those of the base if [`TaskReference::is_relative_to_base`].
+    /// those of the base if [`TaskReference::is_relative_to_base`]. A frame of another system has its present motion.
     ///
     /// # Errors
     /// [`ReferenceError::Orbit`] if L is not defined at `t`.
@@ -33,12 +33,21 @@ impl TaskReference {
             ReferenceFrame::World | ReferenceFrame::Base => inner,
             ReferenceFrame::Lvlh(orbit) => lvlh_motion(&**orbit, t)?.carry(&inner),
             ReferenceFrame::Target(target) => target.sample(t).carry(&inner),
+            ReferenceFrame::System(moving) => moving.motion().carry(&inner),
         })
     }
 
     /// Returns true if samples are relative to the robot's base.
     pub fn is_relative_to_base(&self) -> bool {
         matches!(self.frame, ReferenceFrame::Base)
+    }
+
+    /// Returns the frame of another system in which the reference is given, if it is.
+    pub fn moving_frame(&self) -> Option<&MovingFrame> {
+        match &self.frame {
+            ReferenceFrame::System(moving) => Some(moving),
+            _ => None,
+        }
     }
 
     /// Returns true if samples require an orbit.

@@ -59,6 +59,7 @@ impl Simulation {
         if self.engine.is_some() && self.systems.len() > 1 {
             return Err(SimulationError::EngineOfWorld);
         }
+        self.place_moving_frames()?;
         self.systems.iter().try_for_each(check_system)
     }
 

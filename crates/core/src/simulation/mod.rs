@@ -33,6 +33,7 @@ mod look_ahead;
 mod members;
 mod modes;
 mod mover;
+mod moving_frames;
 mod only;
 mod recompile;
 mod record;

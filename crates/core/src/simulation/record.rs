@@ -96,6 +96,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Adds a row of every system, without its acceleration, for the current state, or for that of the row buffer if
     /// `is_within_step`. Expects its kinematics in the equations of motion.
     fn add_rows(&mut self, t: f64, is_within_step: bool) -> Result<(), SimulationError> {
+        self.update_moving_frames(is_within_step);
         let Self { systems, equations, state, row_buffers, row_states, .. } = self;
         let state = if is_within_step { &row_buffers.0 } else { &*state };
         let EquationsOfMotion { trees, members, loads, .. } = equations;

@@ -22,8 +22,9 @@ use super::trace::Trace;
 use super::tree::Tree;
 use super::tree_state::TreeState;
 use crate::earth::Earth;
+use crate::reference::MovingFrame;
 use crate::spatial::Scalar;
-use crate::world::{Layout, Weld};
+use crate::world::{FrameIndex, Layout, Weld};
 use std::sync::Arc;
 
 /// State of a run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at
@@ -39,6 +40,8 @@ pub(super) struct RunState<'a, S> {
     /// Controllers and recorder of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
+    /// Frames of systems in which references of other systems are given; their systems have the numbers of the run.
+    pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,
     pub(super) ledger: Ledger,
     /// Balance of the group; no rows if it has a single system.

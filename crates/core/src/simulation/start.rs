@@ -134,7 +134,8 @@ impl Simulation {
         }
     }
 
-    /// Returns pairs of systems that interact although no event connects them: those whose controls wait for an event.
+    /// Returns pairs of systems that interact although no event connects them: those whose controls wait for an event, or
+    /// track a frame of another system.
     pub(super) fn links(&self) -> Vec<(usize, usize)> {
         let waiting = self.systems.iter().enumerate().flat_map(|(system, declared)| {
             declared.controls.iter().filter_map(move |control| match control.begin {
@@ -146,7 +147,10 @@ impl Simulation {
             let events = self.events.get(event).map(|_| systems_of(&self.events, event))?;
             events.first().map(|first| (system, *first))
         });
-        links.collect()
+        let tracks = self.systems.iter().enumerate().flat_map(|(system, declared)| {
+            declared.moving_frames().map(move |moving| (system, moving.system))
+        });
+        links.chain(tracks).collect()
     }
 
     /// Returns the gravity field of the simulation: the given one, by default that of the orbit or, if the orbit has

@@ -25,6 +25,7 @@ use crate::environment::{Effect, GravityMode};
 use crate::gravity::Gravity;
 use crate::model::Model;
 use crate::orbit::Orbit;
+use crate::reference::MovingFrame;
 use crate::spatial::Scalar;
 use crate::world::{Action, Event, FrameIndex, Layout, System, When, systems_of};
 use std::borrow::Cow;
@@ -88,11 +89,16 @@ impl Shared {
         let numbers_of = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
         let starts: Vec<_> =
             systems.iter().map(|system| (numbers_of(&system.q), numbers_of(&system.v))).collect();
+        let local = |system: usize| numbers.iter().position(|number| *number == system);
+        let moving = systems.iter().flat_map(|system| system.moving_frames());
+        let place = |moving: &MovingFrame| {
+            Some((FrameIndex { system: local(moving.system)?, frame: moving.frame }, moving.clone()))
+        };
+        let moving_frames = moving.filter_map(place).collect();
         let (mut trees, mut members, mut models) = (Vec::new(), Vec::new(), Vec::new());
         for (number, system) in systems.into_iter().enumerate() {
             let System { model, controls, tool, reference, stops, knows, .. } = system;
-            let local = |system: &usize| numbers.iter().position(|number| number == system);
-            let knows: Vec<usize> = knows.iter().filter_map(local).collect();
+            let knows: Vec<usize> = knows.iter().filter_map(|system| local(*system)).collect();
             let model: &'a Model = model;
             let stops = stops.filter(|_| is_native); // an external engine has its own
             trees.push(Tree::new(Cow::Borrowed(model), stops));
@@ -133,6 +139,7 @@ impl Shared {
             equations,
             systems: members,
             connections,
+            moving_frames,
             events,
             ledger: Ledger::default(),
             group: GroupRows::default(),

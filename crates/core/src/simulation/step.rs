@@ -74,6 +74,7 @@ impl<S: Scalar> RunState<'_, S> {
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
         if is_due {
+            self.update_moving_frames(false);
             self.update_controllers(t, false)?;
         }
         if uses_loads {

@@ -22,6 +22,10 @@ pub enum WorldError {
         "the event '{event}' captures '{system}' by itself; the two frames must belong to different systems"
     )]
     OwnSystem { event: String, system: String },
+    #[error(
+        "a reference of the system '{system}' is given in a frame of the system itself or in one that does not exist"
+    )]
+    ReferenceFrame { system: String },
     #[error("the event '{event}' refers to system {system}; the world has {count} systems")]
     UnknownSystem { event: String, system: usize, count: usize },
     #[error("the event '{event}' refers to frame {frame} of '{system}', which has {count} frames")]

@@ -2,7 +2,7 @@
 
 use crate::control::Control;
 use crate::model::Model;
-use crate::reference::TaskReference;
+use crate::reference::{MovingFrame, TaskReference};
 use std::sync::Arc;
 
 /// One spacecraft of a world: its model, initial state and controls.
@@ -33,6 +33,12 @@ pub struct System {
 }
 
 impl System {
+    /// Returns the frames of other systems in which references of this system are given.
+    pub fn moving_frames(&self) -> impl Iterator<Item = &MovingFrame> {
+        let tracked = self.controls.iter().filter_map(|control| Some(control.law.task()?.1));
+        tracked.chain(&self.reference).filter_map(TaskReference::moving_frame)
+    }
+
     /// Returns a system without controls.
     pub fn new(name: &str, model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
         Self {

@@ -6,7 +6,7 @@ use crate::errors::{IntoPython, fields, plain, raise};
 use crate::interrupt::interruptible;
 use crate::model::PyModel;
 use crate::output::{outputs, pair};
-use crate::reference;
+use crate::reference::{self, Around};
 use crate::simulation::integrator_named;
 use onorbit_core::batch::{Rollout, RolloutControl};
 use onorbit_core::number_text::short;
@@ -100,7 +100,7 @@ pub(super) fn rollout<'py>(
     }
     let tau = tau.map(|tau| Input::new(tau, "tau")).transpose()?;
     let inputs: Vec<Input<'py>> = [q0, v0].into_iter().chain(tau).collect();
-    let reference = reference.map(|value| reference::extract(value, None)).transpose()?;
+    let reference = reference.map(|value| reference::extract(value, &Around::default())).transpose()?;
     let controller = controller.map(law_of).transpose()?;
     let control = match (inputs.get(2), controller, &reference) {
         (_, None, Some(_)) => {

@@ -157,7 +157,8 @@ impl PyControl {
             None => Begin::At(self.start),
             Some(after) => {
                 let control = names.iter().position(|other| other == after).map(Begin::After);
-                let event = || robot.events.iter().position(|event| event == after).map(Begin::AfterEvent);
+                let event =
+                    || robot.around.events.iter().position(|event| event == after).map(Begin::AfterEvent);
                 control.or_else(event).ok_or_else(|| {
                     let (control, after) = (name.to_owned(), after.clone());
                     ControlError::NoSuchControl { control, after }.into_python(py)
@@ -187,7 +188,7 @@ fn law_of(
     }
     let tracked = match (reference, tool) {
         (None, _) => None,
-        (Some(reference), Some(tool)) => Some((tool, reference::extract(reference, robot.orbit)?)),
+        (Some(reference), Some(tool)) => Some((tool, reference::extract(reference, &robot.around)?)),
         (Some(_), None) => {
             let message = "a controller with a reference requires the frame that tracks it; give 'tool'";
             return Err(plain(controller.py(), "ControlError", message));

@@ -1,10 +1,9 @@
 //! Interface between the Python class of a control law and the controls of a run.
 
 use crate::errors::plain;
-use crate::reference;
+use crate::reference::{self, Around};
 use onorbit_core::control::Law;
 use onorbit_core::model::Model;
-use onorbit_core::orbit::Orbit;
 use onorbit_core::reference::{JointReference, TaskReference};
 use pyo3::PyClass;
 use pyo3::prelude::*;
@@ -16,10 +15,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Robot, tool and orbit of the controls.
 pub(crate) struct Robot<'a> {
     pub(crate) model: &'a Arc<Model>,
-    pub(crate) orbit: Option<&'a Arc<dyn Orbit>>,
     pub(crate) tool: Option<usize>,
-    /// Names of the events of the world.
-    pub(crate) events: &'a [String],
+    pub(crate) around: Around<'a>,
 }
 
 /// Reference, joints and robot of a control, from which its law is constructed.
@@ -32,7 +29,7 @@ pub(super) struct Group<'a, 'py> {
 impl Group<'_, '_> {
     /// Returns the reference as one of a tool.
     pub(super) fn task(&self, py: Python<'_>) -> PyResult<TaskReference> {
-        reference::extract(self.required(py)?, self.robot.orbit)
+        reference::extract(self.required(py)?, &self.robot.around)
     }
 
     /// Returns the reference as one of joints.

@@ -21,6 +21,7 @@ impl IntoPython for WorldError {
             | Self::Number { event, .. }
             | Self::LatchWithoutCapture { event }
             | Self::AlreadyConnected { event, .. } => event.clone(),
+            Self::ReferenceFrame { system } => system.clone(),
         };
         raise(py, "WorldError", &message, &fields!(py, "name": name))
     }

@@ -3,8 +3,9 @@
 use super::{Any, pose};
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
+use onorbit_core::model::Model;
 use onorbit_core::orbit::Orbit;
-use onorbit_core::reference::{ReferenceFrame, Target};
+use onorbit_core::reference::{MovingFrame, ReferenceFrame, Target};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -45,12 +46,24 @@ impl PyTarget {
     }
 }
 
-/// Frame of a reference before the orbit of the simulation is known.
+/// What references and controls of a system refer to: the reference orbit, and the events and systems of its world.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Around<'a> {
+    pub(crate) orbit: Option<&'a Arc<dyn Orbit>>,
+    /// Names of the events.
+    pub(crate) events: &'a [String],
+    /// Names and models of the systems; empty for a robot alone.
+    pub(crate) systems: &'a [(String, Arc<Model>)],
+}
+
+/// Frame of a reference before the world of the simulation is known.
 pub(super) enum Frame {
     World,
     Lvlh,
     Base,
     Target(Target),
+    /// Path ``SYSTEM/FRAME``.
+    System(String),
 }
 
 impl Frame {
@@ -65,28 +78,45 @@ impl Frame {
             Some("world") => Ok(Self::World),
             Some("lvlh") => Ok(Self::Lvlh),
             Some("base") => Ok(Self::Base),
+            Some(path) if path.contains('/') => Ok(Self::System(path.to_owned())),
             _ => {
                 let py = value.py();
                 let got = value.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
-                let message = format!("frame is {got}; it must be 'world', 'lvlh', 'base' or a Target");
+                let message = format!(
+                    "frame is {got}; it must be 'world', 'lvlh', 'base', a frame of another system as SYSTEM/FRAME, or a Target"
+                );
                 Err(raise(py, "ControlError", &message, &fields!(py, "name": "frame", "got": got)))
             }
         }
     }
 
-    /// Returns the frame of the core; `"lvlh"` requires the orbit.
-    pub(super) fn bind(&self, py: Python<'_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<ReferenceFrame> {
+    /// Returns the frame of the core; `"lvlh"` requires the orbit, a frame of a system the systems.
+    pub(super) fn bind(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<ReferenceFrame> {
         Ok(match self {
             Self::World => ReferenceFrame::World,
             Self::Base => ReferenceFrame::Base,
             Self::Target(target) => ReferenceFrame::Target(target.clone()),
+            Self::System(path) => ReferenceFrame::System(moving_frame(py, path, around.systems)?),
             Self::Lvlh => {
                 let message = "a reference in the frame 'lvlh' requires an orbit; set orbit";
-                let orbit = orbit.ok_or_else(|| {
+                let orbit = around.orbit.ok_or_else(|| {
                     raise(py, "ControlError", message, &fields!(py, "name": "frame", "got": "lvlh"))
                 })?;
                 ReferenceFrame::Lvlh(Arc::clone(orbit))
             }
         })
     }
+}
+
+/// Returns the frame with the path ``SYSTEM/FRAME``.
+fn moving_frame(py: Python<'_>, path: &str, systems: &[(String, Arc<Model>)]) -> PyResult<MovingFrame> {
+    let (name, frame) = path.split_once('/').unwrap_or((path, ""));
+    let Some(system) = systems.iter().position(|(known, _)| known == name) else {
+        let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
+        let known = if known.is_empty() { "this run has one robot".to_owned() } else { known.join(", ") };
+        let message = format!("the frame '{path}' of the reference names no system of the world ({known})");
+        return Err(raise(py, "ControlError", &message, &fields!(py, "name": "frame", "got": path)));
+    };
+    let frame = systems[system].1.frame(frame).map_err(|error| error.into_python(py))?;
+    Ok(MovingFrame::new(system, frame))
 }

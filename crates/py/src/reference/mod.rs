@@ -9,12 +9,13 @@ mod pose_spline;
 mod screw;
 mod timing;
 
+pub(crate) use frame::Around;
+
 use crate::arrays::{Input, fixed, fresh, times, type_name, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use crate::orbit::PyOrbit;
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
-use onorbit_core::orbit::Orbit;
 use onorbit_core::reference::{
     Hold, JointPath, JointReference, ReferenceError, TaskPath, TaskReference, joint_table, task_table,
 };
@@ -41,7 +42,8 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 /// Base class of references of a tool: a pose with velocity and acceleration as functions of time.
 ///
 /// A reference is expressed in the axes of its ``frame``: ``"world"``, ``"lvlh"`` (of the simulation's
-/// orbit), ``"base"`` (relative to the robot's base) or a :class:`Target`.
+/// orbit), ``"base"`` (relative to the robot's base), a :class:`Target`, or a frame of another system of the same
+/// world, ``"SYSTEM/FRAME"``, with which it moves.
 #[pyclass(name = "Reference", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyReference {
     path: Arc<dyn TaskPath>,
@@ -93,8 +95,8 @@ impl PyReference {
     /// Raises
     /// ------
     /// ControlError
-    ///     If the reference is relative to the base, because its pose in W then depends on the robot, or it is
-    ///     in the frame ``"lvlh"`` and ``orbit`` is missing.
+    ///     If the reference is relative to the base or to another system, because its pose in W then depends on the
+    ///     run, or it is in the frame ``"lvlh"`` and ``orbit`` is missing.
     #[pyo3(signature = (t, *, orbit=None))]
     fn in_world<'py>(
         &self,
@@ -102,7 +104,12 @@ impl PyReference {
         t: Any<'_, 'py>,
         orbit: Option<&Bound<'py, PyOrbit>>,
     ) -> PyResult<Arrays<'py>> {
-        let reference = self.bind(py, orbit.map(|orbit| &orbit.get().orbit))?;
+        let message = "the reference is in a frame of another system, so its pose in W depends on the run";
+        if let frame::Frame::System(path) = &self.frame {
+            return Err(raise(py, "ControlError", message, &fields!(py, "name": "frame", "got": path)));
+        }
+        let orbit = orbit.map(|orbit| &orbit.get().orbit);
+        let reference = self.bind(py, &Around { orbit, ..Around::default() })?;
         if reference.is_relative_to_base() {
             let message = "the reference is relative to the robot's base, so its pose in W depends on the \
             state of the robot";
@@ -123,9 +130,9 @@ impl PyReference {
         Ok(Self { path: Arc::new(path), frame: frame::Frame::of(frame)? })
     }
 
-    /// Returns the reference of the core; one in the frame of the orbit moves on `orbit`.
-    fn bind(&self, py: Python<'_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<TaskReference> {
-        Ok(TaskReference { path: Arc::clone(&self.path), frame: self.frame.bind(py, orbit)? })
+    /// Returns the reference of the core, in frames of the orbit and the systems `around`.
+    fn bind(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<TaskReference> {
+        Ok(TaskReference { path: Arc::clone(&self.path), frame: self.frame.bind(py, around)? })
     }
 }
 
@@ -180,9 +187,9 @@ fn table<'py>(
 }
 
 /// Returns the reference of a tool in a Python object; one in the frame of the orbit moves on `orbit`.
-pub(crate) fn extract(value: Any<'_, '_>, orbit: Option<&Arc<dyn Orbit>>) -> PyResult<TaskReference> {
+pub(crate) fn extract(value: Any<'_, '_>, around: &Around<'_>) -> PyResult<TaskReference> {
     match value.cast::<PyReference>() {
-        Ok(reference) => reference.get().bind(value.py(), orbit),
+        Ok(reference) => reference.get().bind(value.py(), around),
         Err(_) => Err(no_reference(value, "Reference, such as Hold or LineParabola")),
     }
 }

@@ -6,6 +6,7 @@ use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{SimulationErrorExt, fields, raise};
 use crate::orbit::PyOrbit;
+use crate::reference::Around;
 use crate::simulation::{gravity_mode_named, set_environment};
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::Simulation;
@@ -97,7 +98,11 @@ impl PyWorld {
     pub(crate) fn simulation(&self, py: Python<'_>) -> PyResult<Simulation> {
         let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));
         let names = names_of(py, &self.events)?;
-        let systems = self.systems.iter().map(|system| system.get().system(py, orbit.as_ref(), &names));
+        let model = |system: &Py<PySystem>| Arc::clone(&system.get().model.get().model);
+        let models: Vec<_> =
+            self.systems.iter().map(|system| (system.get().name.clone(), model(system))).collect();
+        let around = Around { orbit: orbit.as_ref(), events: &names, systems: &models };
+        let systems = self.systems.iter().map(|system| system.get().system(py, &around));
         let mut systems = systems.collect::<PyResult<Vec<_>>>()?;
         for (number, system) in self.systems.iter().enumerate() {
             systems[number].knows = known_systems(py, system.get(), &self.names())?;

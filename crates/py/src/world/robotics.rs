@@ -3,12 +3,10 @@
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::control::{Robot, controls_of};
 use crate::model::PyModel;
-use crate::reference;
+use crate::reference::{self, Around};
 use onorbit_core::model::Model;
-use onorbit_core::orbit::Orbit;
 use onorbit_core::world::System;
 use pyo3::prelude::*;
-use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
@@ -24,25 +22,19 @@ pub(crate) struct Robotics<'a, 'py> {
 }
 
 impl Robotics<'_, '_> {
-    /// Sets controls, reference, tool and stops of a system; `orbit` is the reference orbit and `events` are the names
-    /// of the events of the world.
-    pub(crate) fn apply(
-        &self,
-        model: &PyModel,
-        (orbit, events): (Option<&Arc<dyn Orbit>>, &[String]),
-        system: &mut System,
-    ) -> PyResult<()> {
+    /// Sets controls, reference, tool and stops of a system.
+    pub(crate) fn apply(&self, model: &PyModel, around: &Around<'_>, system: &mut System) -> PyResult<()> {
         if let Some(tolerance) = self.reference_start_tolerance {
             system.reference_start_tolerance = fixed(tolerance, "reference_start_tolerance", &[2])?;
         }
         system.tool = self.tool.map(|tool| model.frame(tool)).transpose()?;
         if let Some(controller) = self.controller {
-            let robot = Robot { model: &model.model, orbit, tool: system.tool, events };
+            let robot = Robot { model: &model.model, tool: system.tool, around: *around };
             system.controls = controls_of(controller, self.reference, &robot)?;
             let tracked = system.controls.iter().find_map(|control| control.law.task());
             system.tool = system.tool.or(tracked.map(|(frame, _)| frame));
         } else if let Some(reference) = self.reference {
-            system.reference = Some(reference::extract(reference, orbit)?);
+            system.reference = Some(reference::extract(reference, around)?);
         }
         system.control_period = self.control_period;
         system.stops = self.enforce_limits.then_some(self.restitution);

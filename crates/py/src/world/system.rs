@@ -3,7 +3,7 @@
 use super::robotics::{Robotics, initial_state};
 use crate::environment::SurfaceAssignment;
 use crate::model::PyModel;
-use onorbit_core::orbit::Orbit;
+use crate::reference::Around;
 use onorbit_core::world::System;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -110,14 +110,8 @@ impl PySystem {
 }
 
 impl PySystem {
-    /// Returns the system of the core; `orbit` is the reference orbit of the world, and `events` are the names of its
-    /// events.
-    pub(super) fn system(
-        &self,
-        py: Python<'_>,
-        orbit: Option<&Arc<dyn Orbit>>,
-        events: &[String],
-    ) -> PyResult<System> {
+    /// Returns the system of the core, whose references and controls refer to what is `around`.
+    pub(super) fn system(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<System> {
         let bind = |value: &Option<Py<PyAny>>| value.as_ref().map(|value| value.bind(py).clone());
         let (controller, reference, tool) = (bind(&self.controller), bind(&self.reference), bind(&self.tool));
         let tolerance = bind(&self.reference_start_tolerance);
@@ -132,7 +126,7 @@ impl PySystem {
         };
         let model = self.model.get();
         let mut system = System::new(&self.name, Arc::clone(&model.model), self.q.clone(), self.v.clone());
-        settings.apply(model, (orbit, events), &mut system)?;
+        settings.apply(model, around, &mut system)?;
         Ok(system)
     }
 }

@@ -9,16 +9,18 @@ from onorbit_rs.scenario.control.law import JointLaw, TaskLaw
 from onorbit_rs.scenario.control.selection import tool_of
 from onorbit_rs.scenario.errors import inconsistent
 from onorbit_rs.scenario.reference import HoldReference, JointHoldReference, TaskReference
+from onorbit_rs.scenario.reference.frame import moving_frame
 
 if TYPE_CHECKING:
     from onorbit_rs.scenario.schema import Scenario
     from onorbit_rs.scenario.yaml_lines import Location
 
 
-def check_control(scenario: Scenario, events: list[str]) -> None:
+def check_control(scenario: Scenario, events: list[str], systems: list[str]) -> None:
     """Raise an error for inconsistent controllers; set the default reference, a constant pose or position.
 
-    ``events`` are the names of the events of the world, after which a control may start.
+    ``events`` are the names of the events of the world, after which a control may start, and ``systems``
+    those of the other systems, in whose frames references may be given.
     """
     if scenario.controllers is not None:
         if scenario.controller is not None:
@@ -33,8 +35,10 @@ def check_control(scenario: Scenario, events: list[str]) -> None:
         for index, control in enumerate(scenario.controllers):
             tool = tool_of(control, scenario.tool)
             control.reference = _checked(control, control.reference, tool, scenario, ("controllers", index))
+            _check_frame(control.reference, systems, ("controllers", index))
     elif scenario.controller is not None:
         scenario.reference = _checked(scenario.controller, scenario.reference, scenario.tool, scenario, ())
+        _check_frame(scenario.reference, systems, ())
     elif scenario.reference is not None:
         raise inconsistent(
             "reference", "a reference requires a 'controller' that tracks it; add one or remove the reference"
@@ -61,6 +65,14 @@ def _check_names(controls: list[Any], events: list[str]) -> None:
             raise inconsistent(
                 (*at, "start"), "give either 'start' (a time) or 'after' (another controller), not both"
             )
+
+
+def _check_frame(reference: Any, systems: list[str], at: Location) -> None:
+    """Raise an error if a reference is given in a frame of a system that does not exist."""
+    path = moving_frame(getattr(reference, "frame", None))
+    if path is not None and path[0] not in systems:
+        message = f"no other system is named {path[0]!r}{did_you_mean(path[0], systems)}"
+        raise inconsistent((*at, "reference", "frame"), message)
 
 
 def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at: Location) -> Any:

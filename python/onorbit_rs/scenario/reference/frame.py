@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, Tag
@@ -50,16 +50,24 @@ def _frame(value: Any) -> Any:
     """Return a valid frame name or the data of a target; raise an error for anything else."""
     if value in FRAMES or isinstance(value, (dict, TargetFrame)):
         return value
+    if isinstance(value, str) and all(value.partition("/")):
+        return value
     near = nearest(value, FRAMES) if isinstance(value, str) else None
     raise invalid(
         f"{shortened(value)} is not a frame{f' (did you mean {near!r}?)' if near else ''}; give one of "
-        f"{', '.join(FRAMES)}, or {{target: {{position: ..., velocity: ..., spin: ...}}}}"
+        f"{', '.join(FRAMES)}, SYSTEM/FRAME, or {{target: {{position: ..., velocity: ..., spin: ...}}}}"
     )
 
 
 Frame = Annotated[
-    Annotated[Literal["world", "lvlh", "base"], Tag("name")] | Annotated[TargetFrame, Tag("a target")],
+    Annotated[str, Tag("name")] | Annotated[TargetFrame, Tag("a target")],
     Discriminator(lambda value: "name" if isinstance(value, str) else "a target"),
     BeforeValidator(_frame),
 ]
-"""World W, the local orbital frame L, the base at time zero, or a target."""
+"""World W, the local orbital frame L, the base at time zero, a frame of another system, or a target."""
+
+
+def moving_frame(frame: Any) -> tuple[str, str] | None:
+    """Return the names of the system and of its frame, if a frame is one of another system."""
+    system, slash, name = frame.partition("/") if isinstance(frame, str) else ("", "", "")
+    return (system, name) if slash else None

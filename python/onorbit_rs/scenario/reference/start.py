@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,8 @@ from onorbit_rs.common.coordinates import JOINTS_Q
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
+    from onorbit_rs.scenario.initial import Neighbour
 
     Floats = NDArray[np.float64]
 
@@ -31,6 +34,8 @@ class Start:
     """Tracked frame of a reference of a tool."""
     joints: tuple[str, ...] | None = None
     """Joint group of a joint reference; default: all joints."""
+    neighbours: Mapping[str, Neighbour] = field(default_factory=dict)
+    """Other systems of the world, at time zero."""
 
     def tool_pose(self) -> Floats:
         """Return the pose (4, 4) of the tool in W."""

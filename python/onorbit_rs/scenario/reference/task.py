@@ -23,7 +23,7 @@ from onorbit_rs.scenario.fields import (
 )
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.pose import Pose
-from onorbit_rs.scenario.reference.frame import Frame, TargetFrame
+from onorbit_rs.scenario.reference.frame import Frame, TargetFrame, moving_frame
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,6 +95,9 @@ class TaskReference(Part):
         frame = np.eye(4)
         if isinstance(self.frame, TargetFrame):
             frame = self.frame.target.transform()
+        elif (path := moving_frame(self.frame)) is not None:
+            system = at.neighbours[path[0]]
+            frame = np.asarray(system.model.frame_pose(system.q, path[1]))
         elif self.frame == "base":
             frame[:3, :3], frame[:3, 3] = matrix_from_quaternion(at.q[QUATERNION]), at.q[POSITION]
         elif self.frame == "lvlh" and at.orbit is not None:

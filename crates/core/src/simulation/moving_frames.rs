@@ -1,0 +1,56 @@
+//! Frames of systems in which references of other systems are given.
+
+use super::error::SimulationError;
+use super::run_state::RunState;
+use super::settings::Simulation;
+use crate::dynamics::{
+    Data, forward_dynamics_recursion, frame_acceleration, frame_pose, frame_velocity, kinematics,
+};
+use crate::model::Model;
+use crate::reference::TaskSample;
+use crate::spatial::Scalar;
+use crate::world::WorldError;
+
+/// Returns the motion in W of a frame of a tree. Its acceleration is that without motor torques and environment.
+fn motion(model: &Model, q: &[f64], v: &[f64], frame: usize) -> TaskSample<f64> {
+    let mut data = Data::<f64>::new(model);
+    kinematics(model, &mut data, q, v);
+    let (pose, velocity) = (frame_pose(model, &data, q, frame), frame_velocity(model, &data, q, frame));
+    let (no_torques, mut a) = (vec![0.0; v.len()], vec![0.0; v.len()]);
+    forward_dynamics_recursion(model, &mut data, v, &no_torques, &mut a);
+    let acceleration = frame_acceleration(model, &data, q, frame);
+    TaskSample { rot_wd: pose.rot_wf, pos_w: pose.pos_w, velocity, acceleration }
+}
+
+impl Simulation {
+    /// Sets the motion of the frames of references at the initial state.
+    ///
+    /// # Errors
+    /// [`WorldError::ReferenceFrame`] for a frame of the system itself, or one that does not exist.
+    pub(super) fn place_moving_frames(&self) -> Result<(), SimulationError> {
+        for (number, system) in self.systems.iter().enumerate() {
+            for moving in system.moving_frames() {
+                let other = self.systems.get(moving.system).filter(|_| moving.system != number);
+                let other = other.filter(|other| moving.frame < other.model.frames().len());
+                let error = || WorldError::ReferenceFrame { system: system.name.clone() };
+                let other = other.ok_or_else(error)?;
+                moving.set_motion(motion(&other.model, &other.q, &other.v, moving.frame));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Sets the motion of the frames of references at the current state, or at that of the row buffer if
+    /// `is_within_step`.
+    pub(super) fn update_moving_frames(&self, is_within_step: bool) {
+        let state = if is_within_step { &self.row_buffers.0 } else { &self.state };
+        let values = |x: &[S]| x.iter().map(|x| x.value()).collect::<Vec<f64>>();
+        for (place, moving) in &self.moving_frames {
+            let (tree, frame) = self.frame_in_tree(*place);
+            let (model, state) = (&self.equations.trees[tree].model, &state.trees[tree]);
+            moving.set_motion(motion(model, &values(&state.q), &values(&state.v), frame));
+        }
+    }
+}
