@@ -52,7 +52,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "frame, misspelt": (
         LAW + "reference: {kind: hold, frame: wrold}\n",
         "5: reference.frame",
-        ("'wrold'", "did you mean 'world'?", "world, lvlh, base, or {target: {position"),
+        ("'wrold'", "did you mean 'world'?", "world, lvlh, base, SYSTEM/FRAME, or {target: {position"),
     ),
     "frame, a list": (
         LAW + "reference: {kind: hold, frame: [1, 0, 0]}\n",
