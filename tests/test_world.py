@@ -277,3 +277,26 @@ def test_events_of_others_leave_a_system_its_bits(integrator: str) -> None:
         alone = oo.Simulation(oo.World([bystander]), integrator=integrator).run(0.3)
         for column in alone.columns():
             assert getattr(among["bystander"], column).tobytes() == getattr(alone, column).tobytes(), column
+
+
+def test_a_tree_that_is_too_large_is_refused_before_the_run():
+    """2000 joints are the limit of a robot, also of one that a capture makes."""
+
+    def chain(joints: int) -> Any:
+        builder = oo.ModelBuilder("chain", base="base", mass=10.0, inertia=np.eye(3))
+        for joint in range(joints):
+            builder.add_link(
+                f"link_{joint}",
+                parent="base",
+                joint=f"joint_{joint}",
+                axis=[0, 0, 1],
+                mass=1.0,
+                inertia=np.eye(3),
+            )
+        return builder.build()
+
+    model = chain(1001)
+    q = model.neutral()
+    systems = [oo.System(name, model, q, np.zeros(model.nv)) for name in ("a", "b")]
+    with pytest.raises(oo.exceptions.WorldError, match="'grasp' connects two systems.*2000"):
+        oo.World(systems, events=[oo.Capture("grasp", "a/base", "b/base", at=1.0)])

@@ -4,6 +4,7 @@ use super::error::WorldError;
 use super::event::{Action, Event, FrameIndex, RigidPose, Seat, When};
 use super::groups::Union;
 use super::system::System;
+use crate::model::{Model, Mount};
 use crate::reference::TimeLaw;
 
 /// Names that a path or a frame of a reference already uses.
@@ -40,7 +41,8 @@ pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
 ///
 /// # Errors
 /// A [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a capture
-/// within one system, captures that would close a loop, numbers outside their range, or events that wait for each other.
+/// within one system, captures that would close a loop or make a tree that is not valid, numbers outside their range, or
+/// events that wait for each other.
 pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldError> {
     for (i, event) in events.iter().enumerate() {
         if events[..i].iter().any(|before| before.name == event.name) {
@@ -50,7 +52,19 @@ pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldErr
         check_when(events, event)?;
     }
     check_circles(events)?;
-    check_loops(systems.len(), events)
+    check_loops(systems.len(), events)?;
+    events.iter().try_for_each(|event| check_merged(systems, event))
+}
+
+/// Checks that the tree of two systems that a capture connects is a valid model. The pose of the capture does not matter.
+fn check_merged(systems: &[System], event: &Event) -> Result<(), WorldError> {
+    let Action::Capture { by, of, .. } = event.action else { return Ok(()) };
+    let [near, far] = [by, of].map(|place| &systems[place.system].model);
+    let name = |model: &Model, frame: usize| model.frames()[frame].name.clone();
+    let mount =
+        Mount { frame: Some(name(far, of.frame)), prefix: "captured/".to_owned(), ..Mount::default() };
+    let merged = near.attach(&name(near, by.frame), far, &mount);
+    merged.map(|_| ()).map_err(|source| WorldError::Merged { event: event.name.clone(), source })
 }
 
 fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(), WorldError> {

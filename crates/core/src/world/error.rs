@@ -1,5 +1,6 @@
 //! Errors of the systems and events of a world.
 
+use crate::model::ModelError;
 use crate::number_text::short;
 use thiserror::Error;
 
@@ -26,6 +27,8 @@ pub enum WorldError {
         "a reference of the system '{system}' is given in a frame of the system itself or in one that does not exist"
     )]
     ReferenceFrame { system: String },
+    #[error("the event '{event}' connects two systems to a robot that is not valid: {source}")]
+    Merged { event: String, source: ModelError },
     #[error("the event '{event}' refers to system {system}; the world has {count} systems")]
     UnknownSystem { event: String, system: usize, count: usize },
     #[error("the event '{event}' refers to frame {frame} of '{system}', which has {count} frames")]

@@ -18,6 +18,7 @@ impl IntoPython for WorldError {
             | Self::UnknownSystem { event, .. }
             | Self::UnknownFrame { event, .. }
             | Self::UnknownEvent { event, .. }
+            | Self::Merged { event, .. }
             | Self::Number { event, .. }
             | Self::LatchWithoutCapture { event }
             | Self::AlreadyConnected { event, .. } => event.clone(),
