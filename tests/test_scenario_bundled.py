@@ -53,18 +53,19 @@ def test_a_servicer_captures_a_tumbling_target_and_releases_it_at_rest() -> None
     result = oo.run("capture_tumbling_target", quiet=True)
     grasp, let_go = result.summary["events"]
     assert (grasp["kind"], let_go["kind"]) == ("capture", "release")
-    assert 5.0 < grasp["time_s"] < 10.0 and abs(let_go["time_s"] - grasp["time_s"] - 110.0) < 1e-9
-    assert 0.0 < grasp["energy_lost_j"] < 0.1 and let_go["energy_lost_j"] < 0.0  # the spring adds energy
+    assert 30.5 < grasp["time_s"] < 31.0 and abs(let_go["time_s"] - grasp["time_s"] - 95.0) < 1e-9
+    assert result.summary["systems"]["servicer"]["tracking_approach_position_error_max_m"] < 5e-3
+    assert 0.0 < grasp["energy_lost_j"] < 1e-6 and let_go["energy_lost_j"] < 0.0  # the spring adds energy
     trace = result.trace
     assert isinstance(trace, oo.WorldTrace)
     servicer, time = trace["servicer"], trace["servicer"].time
     rates = np.abs(servicer.v[:, 6:]).max(axis=1)
     before = (time > let_go["time_s"] - 2.0) & (time < let_go["time_s"])
     assert rates[before].max() < 0.2 * rates[time > grasp["time_s"]].max()
-    moved = servicer.q[[np.searchsorted(time, t) for t in (49.0, let_go["time_s"])]]
+    moved = servicer.q[[np.searchsorted(time, t) for t in (59.0, let_go["time_s"])]]
     moved[:, :7] = result.models["servicer"].neutral()[:7]
     places = result.models["servicer"].frame_pose(moved, "tool")[:, :3, 3]
-    np.testing.assert_allclose(places[1] - places[0], [-0.6, 0.0, 0.0], atol=1e-3)  # relative to the base
+    assert 0.5 < np.linalg.norm(places[1] - places[0]) < 0.7  # relative to the base
     limits = [joint.velocity for joint in result.models["servicer"].joints]
     assert np.all(np.abs(servicer.v[:, 6:]).max(axis=0) < limits)
     target = trace["target"]
@@ -76,16 +77,16 @@ def test_a_servicer_captures_a_tumbling_target_and_releases_it_at_rest() -> None
 
 
 def test_the_servicer_brings_the_pair_to_rest_because_it_knows_the_target() -> None:
-    """The same gains without the target's model leave the joints 70 degrees off."""
+    """The same gains without the target's model leave the joints far off."""
     data = load("capture_tumbling_target").resolved()
     rates, errors = [], []
     for known in (["target"], []):
         data["systems"]["servicer"]["knows"] = known
         run = oo.run(data, quiet=True)
         servicer = run.trace["servicer"]
-        settled = (servicer.time > 40.0) & (servicer.time < 50.0)
+        settled = (servicer.time > 50.0) & (servicer.time < 60.0)
         rates.append(np.abs(servicer.v[settled, 6:]).max())
-        errors.append(run.summary["systems"]["servicer"]["tracking_joint_error_max_rad"])
+        errors.append(run.summary["systems"]["servicer"]["tracking_rest_joint_error_max_rad"])
     assert rates[0] < 1e-5 and errors[0] < 0.1  # rad/s and rad
     assert rates[1] > 1e-2 and errors[1] > 1.0
 
