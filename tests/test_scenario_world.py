@@ -367,3 +367,18 @@ def test_a_capture_is_seated_and_known(file: Path):
     pose = np.linalg.inv(tool) @ target.frame_pose(trace["target"].q[row], "handle")
     np.testing.assert_allclose(pose[:3, 3], [0.02, 0, 0], atol=1e-13)
     assert trace.certificate() and all(passed for _, _, _, passed in trace.certificate())
+
+
+def test_a_control_that_an_event_starts_replaces_others(file: Path):
+    text = TEXT.replace(
+        "    controller: {kind: joint_computed_torque, kp: 1, kd: 2}\n",
+        "    controllers:\n"
+        "      - {name: hold, kind: joint_computed_torque, kp: 1, kd: 2}\n"
+        "      - {name: damp, kind: joint_computed_torque, kp: 0, kd: 50, after: grasp}\n",
+    )
+    file.write_text(text)
+    trace = oo.run(load(file)).trace
+    chaser = trace["chaser"]
+    after = chaser.time > trace.events[0].time
+    assert np.abs(chaser.tracking["hold"][~after]).max() > 0
+    assert not chaser.tracking["hold"][after].any()

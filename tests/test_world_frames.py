@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import onorbit_rs as oo
-from onorbit_rs.common.coordinates import JOINTS_Q
+from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
 from onorbit_rs.exceptions import ControlError, FrameError, ScenarioError
 from onorbit_rs.scenario import load
 
@@ -141,3 +141,21 @@ def test_a_scenario_approaches_the_handle(tmp_path: Path):
     file.write_text(TEXT.replace("target/handle", "target/handel"))
     with pytest.raises(FrameError, match=r"approach.yaml.*handle"):
         oo.run(load(file))
+
+
+def test_a_control_may_start_after_one_that_follows_a_frame(tmp_path: Path):
+    file = tmp_path / "approach.yaml"
+    single = TEXT[TEXT.index("    controller:") : TEXT.index("  target:")]
+    several = """\
+    controllers:
+      - name: approach
+        kind: computed_torque
+        kp: 25
+        kd: 10
+        reference: {kind: line, frame: target/handle, goal: {position: [-20 cm, 0, 0]}, duration: 1 s}
+        end: 1 s
+      - {name: rest, kind: joint_computed_torque, kp: 25, kd: 10, after: approach, starts_at_present: true}
+"""
+    file.write_text(TEXT.replace(single, several))
+    trace = oo.run(load(file)).trace["chaser"]
+    assert np.abs(trace.v[-1][JOINTS_V]).max() < 1e-3

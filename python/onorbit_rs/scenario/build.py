@@ -198,7 +198,7 @@ def controlled(
     controls = []
     waiting = _waiting(scenario) if is_alone else set()
     for index, part in enumerate(scenario.controllers or []):
-        if part.name in waiting or (is_alone and _is_moving(part.reference)):
+        if part.name in waiting:
             continue
         at = ("controllers", index)
         with located(scenario, *at):
@@ -218,9 +218,12 @@ def _is_moving(reference: Any) -> bool:
 
 
 def _waiting(scenario: Scenario) -> set[str]:
-    """Return the names of the controls that start after an event, also through other controls."""
-    found: set[str] = set()
-    controls, causes = scenario.controllers or [], set(scenario.event_names)
+    """Return the names of the controls that require other systems: those that start after an event or follow
+    a frame of another system, and those that start after one of them.
+    """
+    controls = scenario.controllers or []
+    found = {str(part.name) for part in controls if _is_moving(part.reference)}
+    causes = {*scenario.event_names, *found}
     while new := {str(part.name) for part in controls if part.after in causes} - found:
         found |= new
         causes |= new

@@ -61,7 +61,8 @@ impl PyGoal {
 /// end : float, optional
 ///     Simulation time at which the control ends, s; default: the end of the run.
 /// after : str, optional
-///     Name of another control; this one starts when the goal of the other is decided or when the other ends.
+///     Name of another control, when whose decided goal or end this one starts, or of an event of the world. A control
+///     that an event starts replaces those that drive its joints.
 /// goal : Goal, optional
 ///     Goal with tolerances.
 /// starts_at_present : bool

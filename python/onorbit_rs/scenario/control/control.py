@@ -54,7 +54,8 @@ class Control(Part):
     end: Annotated[Time, Positive] | None = None
     """Time at which the control ends. Default: the end of the run."""
     after: str | None = None
-    """Name of another control, when whose end or decided goal this one starts, or of an event."""
+    """Name of another control, when whose end or decided goal this one starts, or of an event. A control that
+    an event starts replaces those that drive its joints."""
     starts_at_present: bool = False
     """Whether the reference is moved to start at the present pose of the tool or position of the joints."""
 

@@ -2,7 +2,7 @@
 
 use super::ControllerSet;
 use crate::control::check::check_disjoint;
-use crate::control::control::Begin;
+use crate::control::control::{Begin, Control};
 use crate::control::control_state::Phase;
 use crate::control::error::ControlError;
 use crate::model::{BASE_NQ, Model};
@@ -41,8 +41,19 @@ impl<S: Scalar> ControllerSet<'_, S> {
                 }
             };
             if states[i].is_waiting() && is_due {
-                if let Begin::After(before) = controls[i].begin {
-                    states[before].memory.phase = Phase::Over;
+                match controls[i].begin {
+                    Begin::At(_) => {}
+                    Begin::After(before) => states[before].memory.phase = Phase::Over,
+                    // the time of an event may be unknown, so the control replaces those that drive its joints
+                    Begin::AfterEvent(_) => {
+                        let drives =
+                            |other: &Control| other.joints.iter().any(|j| controls[i].joints.contains(j));
+                        let replaced =
+                            states.iter_mut().zip(controls.iter()).filter(|(_, other)| drives(other));
+                        replaced
+                            .filter(|(state, _)| state.is_running())
+                            .for_each(|(state, _)| state.memory.phase = Phase::Over);
+                    }
                 }
                 let started = states[i].start(&controls[i], t, &self.q[BASE_NQ..]);
                 started.map_err(|source| ControlError::Reference { time: t, source })?;
