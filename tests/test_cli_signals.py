@@ -91,7 +91,8 @@ def test_sigterm_writes_a_last_checkpoint_and_says_how_to_resume(tmp_path: Path)
     assert f"continue with: onorbit resume {out}" in stderr
     record = json.loads((out / "checkpoint" / "state.json").read_text())
     with np.load(out / "trace.npz") as stored:
-        assert 0 < record["rows"] in (len(stored["time"]) - 1, len(stored["time"]))  # the time of the stop
+        rows = record["columns"]["time"]["rows"]
+        assert 0 < rows in (len(stored["time"]) - 1, len(stored["time"]))  # the time of the stop
     assert json.loads((out / "summary.json").read_text())["status"] == "interrupted"
 
 

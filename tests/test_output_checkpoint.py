@@ -64,6 +64,12 @@ def stopped_run(tmp_path: Path, data: dict[str, Any], how: signal.Signals) -> Pa
     return out
 
 
+def rows_of(out: Path, column: str = "time") -> int:
+    """Returns the number of rows of a column in the checkpoint of a folder."""
+    rows: int = json.loads((out / "checkpoint" / "state.json").read_text())["columns"][column]["rows"]
+    return rows
+
+
 def assert_same_trace(out: Path, whole: oo.Run) -> None:
     with np.load(out / "trace.npz") as stored:
         assert set(stored.files) == set(whole.trace.columns())
@@ -76,7 +82,7 @@ def test_a_resumed_run_has_the_same_bits(tmp_path: Path, how: signal.Signals) ->
     data = long_reach(record_every=3)
     whole = oo.run(data, quiet=True)
     out = stopped_run(tmp_path, data, how)
-    rows = json.loads((out / "checkpoint" / "state.json").read_text())["rows"]
+    rows = rows_of(out)
     assert 0 < rows < len(whole.trace)
     again = oo.resume(out, quiet=True)
     assert_same_trace(out, whole)
@@ -91,10 +97,10 @@ def test_a_run_killed_twice_and_while_rows_were_written_has_the_same_bits(tmp_pa
     out = stopped_run(tmp_path, data, signal.SIGKILL)
     with (out / "checkpoint" / "q.f64").open("ab") as stream:  # rows not included in the state's count
         stream.write(b"\x7f" * 1001)
-    first = json.loads((out / "checkpoint" / "state.json").read_text())["rows"]
+    first = rows_of(out)
     command = [sys.executable, "-m", "onorbit_rs", "resume", str(out), "--checkpoint-every", "0"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE)
-    while json.loads((out / "checkpoint" / "state.json").read_text())["rows"] == first:
+    while rows_of(out) == first:
         assert process.poll() is None, "ended before a second checkpoint"
         time.sleep(0.01)
     process.kill()
@@ -146,12 +152,13 @@ def first_tree(record: Any) -> Any:
             (out / "scenario.yaml").read_text().replace("kp: 100", "kp: 101")), "another scenario"),
         (lambda out, record: record["engine"].update(version="0.0.1"), "version 0.0.1"),
         (lambda out, record: record["engine"].update(instruction_set="sse9"), "ONORBIT_INSTRUCTION_SET=sse9"),
-        (lambda out, record: record.pop("rows"), "damaged"),
+        (lambda out, record: record.pop("columns"), "damaged"),
         (lambda out, record: first_tree(record).pop("q"), "damaged"),
-        (lambda out, record: record["widths"].update(q=13), "checksum"),
-        (lambda out, record: record["digests"].clear(), "damaged"),
-        (lambda out, record: record.update(rows=10**17), "damaged.*expected"),
-        (lambda out, record: record.update(widths={"../../out/checkpoint/v": 3}), "No such file"),
+        (lambda out, record: record["columns"]["q"].update(width=13), "checksum"),
+        (lambda out, record: record["columns"]["q"].pop("sha256"), "damaged"),
+        (lambda out, record: record["columns"]["q"].update(rows=10**17), "damaged.*expected"),
+        (lambda out, record: record.update(columns={"../../out/checkpoint/v": {"rows": 1, "width": 3}}),
+         "No such file"),
         (lambda out, record: (out / "checkpoint" / "v.f64").write_bytes(b"short"), "v.f64"),
         (lambda out, record: (out / "checkpoint" / "v.f64").unlink(), "damaged"),
     ],

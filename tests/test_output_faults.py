@@ -109,7 +109,8 @@ def test_a_full_disk_loses_checkpoints_but_not_the_run(small_disk: Path) -> None
             kept = [writer(oo.Checkpoint(engine, {"q": rows})) for _ in range(4)]
         assert kept == [True, True, False, False] and len(caught) == 1
         found = checkpoints.read_checkpoint(folder.path, "digest")
-        assert found.rows == 8000 and np.array_equal(found.checkpoint.columns["q"], np.vstack([rows, rows]))
+        assert found.rows == {"q": 8000}
+        assert np.array_equal(found.checkpoint.columns["q"], np.vstack([rows, rows]))
 
 
 def test_a_read_only_folder_is_rejected_for_writing_but_readable(tmp_path: Path) -> None:

@@ -15,7 +15,6 @@ from onorbit_rs.exceptions import (
     CheckpointError,
     EffectError,
     FrameError,
-    InputError,
     ScenarioError,
     ShapeError,
     WorldError,
@@ -24,7 +23,6 @@ from onorbit_rs.output.read import SavedRun
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build_world import build_world
 from onorbit_rs.simulation.run import resume
-from onorbit_rs.tools.comparison.recorded import recorded
 
 TEXT = """\
 orbit: {kind: kepler, semi_major_axis: 6778 km}
@@ -138,7 +136,7 @@ def test_the_folder_can_be_read_back_and_run_again(file: Path, tmp_path: Path) -
     assert trace.names == ["chaser", "target"]
     np.testing.assert_array_equal(trace["chaser"].q, run.trace["chaser"].q)
     np.testing.assert_array_equal(trace.momentum, run.trace.momentum)
-    assert trace.events["time"].shape == (2,) and trace.events["impulse"].shape == (2, 6)
+    assert trace.events == run.trace.events and len(trace.events) == 2
     with pytest.raises(WorldError, match="no system 'x'"):
         trace["x"]
     drawn = {path.stem for path in (out / "figures").iterdir()}
@@ -153,11 +151,8 @@ def test_the_folder_can_be_read_back_and_run_again(file: Path, tmp_path: Path) -
     again = oo.run(out / "scenario.yaml", quiet=True)
     assert isinstance(again.trace, oo.WorldTrace)
     np.testing.assert_array_equal(again.trace["target"].q, run.trace["target"].q)
-    with pytest.raises(CheckpointError, match="cannot resume"):
+    with pytest.raises(CheckpointError, match="the run ended"):
         resume(out)
-    for source in (out, run):
-        with pytest.raises(InputError, match="cannot be compared yet"):
-            recorded(source)
 
 
 def test_an_event_that_did_not_happen_gives_a_warning() -> None:

@@ -91,7 +91,7 @@ from onorbit_rs.simulation.controller import Controller
 
 if TYPE_CHECKING:
     from onorbit_rs import engines, layouts
-    from onorbit_rs.scenario import Scenario
+    from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.simulation.run import Run, resume, run
     from onorbit_rs.tools.comparison import Comparison, compare
 
@@ -160,6 +160,7 @@ __all__ = [
     "Trace",
     "Waypoints",
     "World",
+    "WorldScenario",
     "WorldTrace",
     "attach",
     "build_info",
@@ -180,7 +181,7 @@ __version__: str = build_info()["version"]
 
 _LAZY = {
     "Comparison": "tools.comparison", "compare": "tools.comparison", "Scenario": "scenario",
-    "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
+    "WorldScenario": "scenario", "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
 }  # fmt: skip
 """Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
 _LAZY_MODULES = ("engines", "layouts", "scenario")
@@ -205,7 +206,15 @@ def _reduced(trace: Trace) -> tuple[Any, ...]:
     return reduced(trace)
 
 
+def _reduced_world(trace: WorldTrace) -> tuple[Any, ...]:
+    """Return the pickled form of the trace of a world."""
+    from onorbit_rs.output.saved_world import reduced_world
+
+    return reduced_world(trace)
+
+
 copyreg.pickle(Trace, _reduced)
+copyreg.pickle(WorldTrace, _reduced_world)
 
 
 def __dir__() -> list[str]:

@@ -1,7 +1,8 @@
 //! Checkpoints of runs for Python.
 
-use crate::arrays::{Input, array_of};
+use crate::arrays::{Input, array_of, first_row};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
+use crate::world::Systems;
 use onorbit_core::number_text::{count, short};
 use onorbit_core::simulation::{self, NamedColumn, SimulationError, Stepper, TRACKING, Trace, WRENCHES};
 use pyo3::exceptions::PyUserWarning;
@@ -19,7 +20,8 @@ use std::time::{Duration, Instant};
 /// state : str
 ///     State of the run that its rows do not contain, as JSON.
 /// columns : dict of array
-///     Rows (k, width) of each column of the trace by its name, in the unit of the column.
+///     Rows (k, width) of each column of the trace by its name, in the unit of the column. In a world of several
+///     systems, the names are paths such as ``chaser/q``.
 /// wall_s : float
 ///     Wall-clock time of the run so far, s.
 #[pyclass(name = "Checkpoint", frozen, get_all, module = "onorbit_rs")]
@@ -95,19 +97,57 @@ fn prefix(system: &str, count: usize) -> String {
     if count == 1 { String::new() } else { format!("{system}/") }
 }
 
-/// Returns the rows of the systems with these names from `since` on, as a dict of columns.
+/// First row to return: of every system, or by the name of the system.
+pub(crate) enum Since {
+    Every(usize),
+    Each(Vec<(String, usize)>),
+}
+
+impl<'py> FromPyObject<'_, 'py> for Since {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let Ok(by_name) = value.cast::<PyDict>() else { return first_row(&value).map(Self::Every) };
+        let pairs = by_name.iter().map(|(name, row)| Ok((name.extract()?, first_row(&row)?)));
+        pairs.collect::<PyResult<_>>().map(Self::Each)
+    }
+}
+
+impl Since {
+    /// Returns the first row of each of the systems with these names; systems that are not named start at row 0.
+    pub(crate) fn rows(&self, py: Python<'_>, systems: &Systems) -> PyResult<Vec<usize>> {
+        match self {
+            Self::Every(row) => Ok(vec![*row; systems.names.len()]),
+            Self::Each(pairs) => {
+                let mut rows = vec![0; systems.names.len()];
+                for (name, row) in pairs {
+                    rows[systems.find(py, name)?] = *row;
+                }
+                Ok(rows)
+            }
+        }
+    }
+}
+
+/// Returns the number of rows that each system has recorded so far.
+pub(crate) fn row_counts(stepper: &Stepper<'_>, systems: usize) -> Vec<usize> {
+    (0..systems).map(|system| stepper.rows(system).rows()).collect()
+}
+
+/// Returns the rows of the systems with these names as a dict of columns; `since` is the first row of each system.
 pub(crate) fn columns_since<'py>(
     py: Python<'py>,
     stepper: &Stepper<'_>,
     names: &[String],
-    since: usize,
+    since: &[usize],
 ) -> PyResult<Bound<'py, PyDict>> {
     let columns = PyDict::new(py);
-    for (system, name) in names.iter().enumerate() {
+    for (system, (name, &since)) in names.iter().zip(since).enumerate() {
         let (trace, prefix) = (stepper.rows(system), prefix(name, names.len()));
         let rows = trace.rows();
         if since > rows {
-            let message = format!("since is {since}, but the run has {}", count(rows, "row"));
+            let whose = if names.len() == 1 { "the run".to_owned() } else { format!("system '{name}'") };
+            let message = format!("since is {since}, but {whose} has {}", count(rows, "row"));
             return Err(raise(py, "InputError", &message, &fields!(py, "name": "since", "got": since)));
         }
         for (name, column) in trace.columns().filter(|(_, column)| !column.is_empty()) {
@@ -119,12 +159,12 @@ pub(crate) fn columns_since<'py>(
     Ok(columns)
 }
 
-/// Returns a checkpoint of a run with its rows from `since` on.
+/// Returns a checkpoint of a run with its rows; `since` is the first row of each system.
 pub(crate) fn checkpoint_of(
     py: Python<'_>,
     stepper: &Stepper<'_>,
     names: &[String],
-    since: usize,
+    since: &[usize],
     wall_s: f64,
 ) -> PyResult<PyCheckpoint> {
     let checkpoint = stepper.checkpoint().map_err(|error| match error {
@@ -149,12 +189,12 @@ pub(crate) struct CheckpointCallback {
     names: Vec<String>,
     every: Duration,
     last: Instant,
-    /// Rows that the callback has accepted.
-    rows: usize,
+    /// Rows of each system that the callback has accepted.
+    rows: Vec<usize>,
 }
 
 impl CheckpointCallback {
-    pub(crate) fn new(to: Py<PyAny>, names: Vec<String>, every: Duration, rows: usize) -> Self {
+    pub(crate) fn new(to: Py<PyAny>, names: Vec<String>, every: Duration, rows: Vec<usize>) -> Self {
         Self { to: Some(to), names, every, last: Instant::now(), rows }
     }
 
@@ -167,7 +207,7 @@ impl CheckpointCallback {
     /// checkpoints.
     pub(crate) fn save(&mut self, py: Python<'_>, stepper: &Stepper<'_>, wall_s: f64) -> PyResult<()> {
         let Some(to) = &self.to else { return Ok(()) };
-        let checkpoint = match checkpoint_of(py, stepper, &self.names, self.rows, wall_s) {
+        let checkpoint = match checkpoint_of(py, stepper, &self.names, &self.rows, wall_s) {
             Ok(checkpoint) => checkpoint,
             Err(error) => {
                 self.to = None;
@@ -178,7 +218,8 @@ impl CheckpointCallback {
         let answer = to.call1(py, (checkpoint,))?;
         self.last = Instant::now();
         if !answer.bind(py).is(PyBool::new(py, false)) {
-            self.rows = stepper.rows(0).rows(); // if it was not stored, the next one contains its rows again
+            // if it was not stored, the next one contains its rows again
+            self.rows = row_counts(stepper, self.names.len());
         }
         Ok(())
     }

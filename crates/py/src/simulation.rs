@@ -239,7 +239,7 @@ impl PySimulation {
     ) -> PyResult<Py<PyAny>> {
         let every = period(py, "checkpoint_every", checkpoint_every)?;
         let stepper = self.start(py, Some(duration), resume)?;
-        let rows = stepper.row_count(py)?; // those of the checkpoint
+        let rows = stepper.row_counts(py)?; // those of the checkpoint
         let mut saver =
             checkpoint.map(|to| CheckpointCallback::new(to, self.systems.names.clone(), every, rows));
         stepper.run_to_end(py, duration, &mut |py, stepper, wall_s| {

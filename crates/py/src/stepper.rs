@@ -1,7 +1,7 @@
 //! Runs that are advanced step by step.
 
-use crate::arrays::{array_of, first_row};
-use crate::checkpoint::{PyCheckpoint, checkpoint_of, columns_since};
+use crate::arrays::array_of;
+use crate::checkpoint::{PyCheckpoint, Since, checkpoint_of, columns_since, row_counts};
 use crate::errors::{SimulationErrorExt, plain};
 use crate::interrupt::{PACE, period};
 use crate::run_failure::{interrupted, run_failure};
@@ -184,22 +184,21 @@ impl PyStepper {
     ///
     /// Parameters
     /// ----------
-    /// since : int, optional
-    ///     First row to return.
+    /// since : int or dict of int, optional
+    ///     First row to return; in a world, systems may record different numbers of rows: a dict has the first row
+    ///     by the name of the system (default: 0).
     ///
     /// Returns
     /// -------
     /// dict of array
-    ///     Rows (k, width) of each column of the trace by its name, in the unit of the column.
-    #[pyo3(signature = (since=0))]
-    fn columns(
-        &self,
-        py: Python<'_>,
-        #[pyo3(from_py_with = first_row)] since: usize,
-    ) -> PyResult<Py<PyDict>> {
+    ///     Rows (k, width) of each column of the trace by its name, in the unit of the column. In a world of several
+    ///     systems, the names are paths such as ``chaser/q``.
+    #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
+    fn columns(&self, py: Python<'_>, since: Since) -> PyResult<Py<PyDict>> {
+        let since = since.rows(py, &self.systems)?;
         let columns = self.with(py, |stepper| match stepper.has_ended() {
             true => Err(ended(py)),
-            false => columns_since(py, stepper, &self.systems.names, since),
+            false => columns_since(py, stepper, &self.systems.names, &since),
         })??;
         Ok(columns.unbind())
     }
@@ -208,8 +207,8 @@ impl PyStepper {
     ///
     /// Parameters
     /// ----------
-    /// since : int, optional
-    ///     First row of ``columns``; a checkpoint can be resumed only if it contains all rows.
+    /// since : int or dict of int, optional
+    ///     First row of ``columns``, as for :meth:`columns`; a checkpoint can be resumed only if it contains all rows.
     ///
     /// Returns
     /// -------
@@ -219,14 +218,11 @@ impl PyStepper {
     /// ------
     /// ControlError
     ///     If the state of a Python controller cannot be saved; the run is unchanged.
-    #[pyo3(signature = (since=0))]
-    fn checkpoint(
-        &self,
-        py: Python<'_>,
-        #[pyo3(from_py_with = first_row)] since: usize,
-    ) -> PyResult<PyCheckpoint> {
+    #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
+    fn checkpoint(&self, py: Python<'_>, since: Since) -> PyResult<PyCheckpoint> {
         let wall_s = self.run.lock(py)?.wall_s;
-        self.with(py, |stepper| checkpoint_of(py, stepper, &self.systems.names, since, wall_s))?
+        let since = since.rows(py, &self.systems)?;
+        self.with(py, |stepper| checkpoint_of(py, stepper, &self.systems.names, &since, wall_s))?
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
@@ -354,9 +350,9 @@ impl PyStepper {
         self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
     }
 
-    /// Returns the number of rows recorded so far.
-    pub(crate) fn row_count(&self, py: Python<'_>) -> PyResult<usize> {
-        self.with(py, |stepper| stepper.rows(0).rows())
+    /// Returns the number of rows that each system has recorded so far.
+    pub(crate) fn row_counts(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
+        self.with(py, |stepper| row_counts(stepper, self.systems.names.len()))
     }
 
     /// Calls `work`, in which a Python controller may run, and converts its error.

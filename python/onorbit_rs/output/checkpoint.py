@@ -2,7 +2,7 @@
 
 ``<column>.f64`` holds the rows of a column; new rows are appended. ``state.json`` is replaced atomically and
 contains the number of valid rows and the SHA-256 of each column, so the checkpoint is consistent after a kill
-at any instant.
+at any instant. Columns of different systems of a world may differ in their number of rows.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _MOST = 1 << 28
 
 
 class SavedCheckpoint(NamedTuple):
-    """A checkpoint read from a folder, with its number of rows and the running digests of its columns."""
+    """A checkpoint read from a folder, with the number of rows and the running digest of each column."""
 
     checkpoint: Checkpoint
-    rows: int
+    rows: dict[str, int]
     digests: dict[str, _Hash]
 
 
@@ -48,7 +48,7 @@ class CheckpointWriter:
     def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
         """Prepare to write checkpoints of the scenario with this digest; a resumed run has ``after``."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
-        self._digest, self._rows = digest, after.rows if after else 0
+        self._digest, self._rows = digest, dict(after.rows) if after else {}
         self._digests = dict(after.digests) if after else {}
         self._has_warned = False
 
@@ -80,20 +80,21 @@ class CheckpointWriter:
         """Append the new rows, then replace the state, which makes them valid."""
         files = {name: _file_name(name) for name in checkpoint.columns}
         self._folder.expect_checkpoint((STATE, *files.values()))
-        widths: dict[str, int] = {}
+        columns: dict[str, dict[str, int | str]] = {}
+        counts: dict[str, int] = {}
         digests: dict[str, _Hash] = {}
-        new_rows = 0
         for name, rows in checkpoint.columns.items():
-            new_rows, widths[name] = rows.shape
+            new_rows, width = rows.shape
+            before = self._rows.get(name, 0)
             content = np.ascontiguousarray(rows, dtype="<f8").tobytes()
-            _append(self._path / files[name], content, after=8 * self._rows * widths[name])
+            _append(self._path / files[name], content, after=8 * before * width)
+            counts[name] = before + new_rows
             digests[name] = self._digests.get(name, hashlib.sha256()).copy()
             digests[name].update(content)
+            columns[name] = {"rows": counts[name], "width": width, "sha256": digests[name].hexdigest()}
         record = {
             "fingerprint": self._digest,
-            "rows": self._rows + new_rows,
-            "widths": widths,
-            "digests": {name: digest.hexdigest() for name, digest in digests.items()},
+            "columns": columns,
             "wall_s": checkpoint.wall_s,
             "engine": json.loads(checkpoint.state),
         }
@@ -106,7 +107,7 @@ class CheckpointWriter:
         sync_folder(self._path)
         self._folder.replace(f"{CHECKPOINT}/{STATE}", content)
         sync_folder(self._path)
-        self._rows, self._digests = self._rows + new_rows, digests
+        self._rows, self._digests = counts, digests
 
 
 def has_checkpoint(folder: Path) -> bool:
@@ -134,18 +135,18 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
     try:
         with open_to_read(file) as stream:
             record = unsealed(read_bounded(stream, _MOST))
-        found, rows, wall = str(record["fingerprint"]), int(record["rows"]), float(record["wall_s"])
+        found, wall = str(record["fingerprint"]), float(record["wall_s"])
         if found != digest:
             raise _refused(
                 f"the checkpoint in {folder} belongs to another scenario: scenario.yaml, or a file it names, "
                 "was changed since; undo that or run the scenario again",
                 path,
             )
-        columns, digests = {}, {}
-        for name, width in record["widths"].items():
-            file = path / _file_name(name)
-            columns[name], digests[name] = _column(file, rows, int(width))
-            if digests[name].hexdigest() != record["digests"][name]:
+        columns, rows, digests = {}, {}, {}
+        for name, entry in record["columns"].items():
+            file, rows[name] = path / _file_name(name), int(entry["rows"])
+            columns[name], digests[name] = _column(file, rows[name], int(entry["width"]))
+            if digests[name].hexdigest() != entry["sha256"]:
                 raise ValueError("its rows do not match their checksum, so they were changed or damaged")
         state = json.dumps(record["engine"])
         return SavedCheckpoint(_core.Checkpoint(state, columns, wall_s=wall), rows, digests)

@@ -20,7 +20,7 @@ from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
 from onorbit_rs.output.npz import read_arrays
 from onorbit_rs.output.saved_trace import SavedTrace, check_shapes
-from onorbit_rs.output.saved_world import SavedWorldTrace, systems_in
+from onorbit_rs.output.saved_world import EVENTS, SavedWorldTrace, saved_world, system_in, systems_in
 from onorbit_rs.scenario import load
 
 if TYPE_CHECKING:
@@ -116,8 +116,19 @@ class SavedRun:
         return cast("Trace", SavedTrace(arrays))
 
     def world_trace(self) -> SavedWorldTrace:
-        """Return ``trace.npz`` of a run with several systems; raises as :func:`read_trace`."""
-        return SavedWorldTrace(self._arrays({"time", "momentum", "events/time"}))
+        """Return ``trace.npz`` of a run with several systems, with the names of events in the summary.
+
+        Raises
+        ------
+        NotFoundError, IntegrityError, ReadError
+            As :func:`read_trace` and :func:`read_summary`.
+        """
+        arrays = self._arrays({"time", "momentum", "kinetic_energy", *(f"events/{name}" for name in EVENTS)})
+        audits = self.summary().get("events", [])
+        try:
+            return saved_world(arrays, audits)
+        except (ValueError, TypeError, KeyError, IndexError) as error:
+            raise _unreadable(self.folder / TRACE, "trace", error) from error
 
     def _arrays(self, required: set[str]) -> dict[str, Any]:
         file = self.folder / TRACE
@@ -126,7 +137,7 @@ class SavedRun:
                 arrays = read_arrays(stream)
             if not required <= set(arrays):
                 raise ValueError("columns are missing")
-            for own in [SavedWorldTrace(arrays)[name].arrays for name in systems_in(arrays)] or [arrays]:
+            for own in [system_in(arrays, name).arrays for name in systems_in(arrays)] or [arrays]:
                 check_shapes(own)
         except OnOrbitError:
             raise

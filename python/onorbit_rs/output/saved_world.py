@@ -1,13 +1,23 @@
-"""The trace of a run with several systems, read from a file."""
+"""The trace of a run with several systems, read from a file or from a pickle."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from onorbit_rs import _core
 from onorbit_rs.exceptions import WorldError
 from onorbit_rs.output.saved_trace import SavedTrace
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import EventRecord, Trace, WorldTrace
+
+
+EVENTS = {"time": (), "impulse": (6,), "point": (3,), "energy_lost": (), "momentum_error": (2,)}
+"""Columns of the events, and the shape of the row of an event."""
 
 
 def systems_in(arrays: Mapping[str, Any]) -> list[str]:
@@ -15,38 +25,104 @@ def systems_in(arrays: Mapping[str, Any]) -> list[str]:
     return [path.removesuffix("/q") for path in arrays if path.endswith("/q")]
 
 
+def system_in(arrays: Mapping[str, Any], name: str) -> SavedTrace:
+    """Return the columns of a system among columns by path."""
+    prefix = f"{name}/"
+    own = {path.removeprefix(prefix): rows for path, rows in arrays.items() if path.startswith(prefix)}
+    return SavedTrace(own)
+
+
 @dataclass(frozen=True)
 class SavedWorldTrace:
-    """Columns by path, such as ``chaser/q`` and ``events/time``."""
+    """Trace of a world that is not in the memory of the engine; named as :class:`onorbit_rs.WorldTrace`."""
 
-    arrays: Mapping[str, Any]
+    systems: Mapping[str, Any]
+    """Trace of each system."""
+    events: Sequence[EventRecord]
+    """Events that happened, in order of time."""
+    time: Any
+    """Times of the rows that all systems recorded, (T,), s."""
+    momentum: Any
+    """Momentum of all systems, (T, 6), as that of :class:`onorbit_rs.WorldTrace`."""
+    kinetic_energy: Any
+    """Kinetic energy of all systems, (T,), J."""
 
     @property
     def names(self) -> list[str]:
         """Names of the systems."""
-        return systems_in(self.arrays)
+        return list(self.systems)
 
-    def __getitem__(self, name: str) -> SavedTrace:
-        """Return the columns of a system."""
-        if name not in self.names:
+    def __getitem__(self, name: str) -> Any:
+        """Return the trace of a system."""
+        if name not in self.systems:
             known = ", ".join(self.names)
             raise WorldError(f"there is no system {name!r}; the systems are: {known}", name=name)
-        prefix = f"{name}/"
-        return SavedTrace({path.removeprefix(prefix): values for path, values in self.arrays.items()
-                           if path.startswith(prefix)})  # fmt: skip
+        return self.systems[name]
 
-    @property
-    def time(self) -> Any:
-        """Times of the rows that all systems share, (T,), s."""
-        return self.arrays["time"]
+    def __len__(self) -> int:
+        """Return the number of rows that all systems recorded."""
+        return len(self.time)
 
-    @property
-    def momentum(self) -> Any:
-        """Momentum of all systems, (T, 6), as that of :class:`onorbit_rs.WorldTrace`."""
-        return self.arrays["momentum"]
 
-    @property
-    def events(self) -> dict[str, Any]:
-        """Columns of the events, one row each, by name; the summary has the names of the events."""
-        return {path.removeprefix("events/"): values for path, values in self.arrays.items()
-                if path.startswith("events/")}  # fmt: skip
+@dataclass(frozen=True)
+class PickledWorldTrace(SavedWorldTrace):
+    """Result of unpickling a :class:`onorbit_rs.WorldTrace`: the same attributes, read-only."""
+
+    is_complete: bool
+    wall_s: float
+    checks: Sequence[Any]
+
+    def __post_init__(self) -> None:
+        """Make the columns read-only."""
+        for column in (self.time, self.momentum, self.kinetic_energy):
+            column.setflags(write=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return the class and its fields."""
+        return PickledWorldTrace, tuple(getattr(self, part.name) for part in fields(self))
+
+    def certificate(self) -> Any:
+        """Return the certificate of the trace."""
+        return self.checks
+
+
+def saved_world(arrays: Mapping[str, Any], audits: Sequence[Mapping[str, Any]]) -> SavedWorldTrace:
+    """Return the trace of columns by path, such as ``chaser/q`` and ``events/time``.
+
+    Parameters
+    ----------
+    arrays : mapping of array
+        Columns by path.
+    audits : sequence of mapping
+        Entries of ``events`` in the summary, which have the names of the events.
+
+    Raises
+    ------
+    ValueError
+        If the events of the columns are not those of the summary.
+    """
+    systems = {name: system_in(arrays, name) for name in systems_in(arrays)}
+    if len(audits) != len(arrays["events/time"]):
+        raise ValueError(f"it has {len(arrays['events/time'])} events, but the summary has {len(audits)}")
+    events = [_event(arrays, row, audit) for row, audit in enumerate(audits)]
+    columns = (arrays[name] for name in ("time", "momentum", "kinetic_energy"))
+    return SavedWorldTrace(systems, events, *columns)
+
+
+def _event(arrays: Mapping[str, Any], row: int, audit: Mapping[str, Any]) -> EventRecord:
+    def value(name: str) -> Any:
+        return arrays[f"events/{name}"][row]
+
+    by, of = audit["systems"]
+    return _core.EventRecord(
+        audit["name"], audit["kind"], value("time"), (by, of), impulse=value("impulse"), point=value("point"),
+        energy_lost=value("energy_lost"), momentum_error=value("momentum_error"),
+    )  # fmt: skip
+
+
+def reduced_world(trace: WorldTrace) -> tuple[Any, ...]:
+    """Return the class and arguments that rebuild the trace of a world from a pickle."""
+    systems: dict[str, Trace] = {name: trace[name] for name in trace.names}
+    columns = (np.asarray(column) for column in (trace.time, trace.momentum, trace.kinetic_energy))
+    rest = (trace.is_complete, trace.wall_s, trace.certificate())
+    return PickledWorldTrace, (systems, trace.events, *columns, *rest)

@@ -10,6 +10,7 @@ import numpy as np
 from onorbit_rs.common.printable import json_value
 from onorbit_rs.output.checks import CHECKS
 from onorbit_rs.output.pickling import arrays_of
+from onorbit_rs.output.saved_world import EVENTS
 from onorbit_rs.output.summary import Summary, run_numbers, summarize
 
 if TYPE_CHECKING:
@@ -94,13 +95,7 @@ def world_arrays(trace: WorldTrace) -> dict[str, Any]:
         if len(own.rereferenced):
             arrays[f"{name}/rereferenced"] = np.asarray(own.rereferenced)
     records = trace.events
-    for name, width in (
-        ("time", ()),
-        ("impulse", (6,)),
-        ("point", (3,)),
-        ("energy_lost", ()),
-        ("momentum_error", (2,)),
-    ):
+    for name, shape in EVENTS.items():
         values = np.array([np.asarray(getattr(record, name)) for record in records], dtype=np.float64)
-        arrays[f"events/{name}"] = values.reshape(len(records), *width)
+        arrays[f"events/{name}"] = values.reshape(len(records), *shape)
     return arrays

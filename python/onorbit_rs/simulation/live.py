@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 import warnings
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.exceptions import ControlError, RunInterrupted
 from onorbit_rs.scenario.build_world import BuiltWorld
@@ -38,7 +39,7 @@ def watched(
             duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every,
             resume=resume,
         )  # fmt: skip
-    rows = 0 if resume is None else len(resume.columns["time"])
+    rows = 0 if resume is None else _row_counts(resume.columns)
     saver = _Saver(checkpoint, checkpoint_every, rows)
     trace = None
     try:
@@ -99,8 +100,8 @@ def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
 class _Saver:
     """Passes the checkpoints of a run to their writer, each with the rows since the previous one."""
 
-    def __init__(self, writer: CheckpointWriter | None, every_s: float, rows: int) -> None:
-        """Start after the first ``rows`` rows, which are already written."""
+    def __init__(self, writer: CheckpointWriter | None, every_s: float, rows: int | dict[str, int]) -> None:
+        """Start after the first ``rows`` rows (by the name of the system in a world), already written."""
         self._writer, self._every_s, self._rows = writer, every_s, rows
         self._last = time.monotonic()
 
@@ -123,4 +124,20 @@ class _Saver:
             return
         self._last = time.monotonic()
         if self._writer(checkpoint):
-            self._rows += len(checkpoint.columns.get("time", ()))
+            self._rows = _sum(self._rows, _row_counts(checkpoint.columns))
+
+
+def _row_counts(columns: Mapping[str, Any]) -> int | dict[str, int]:
+    """Return the number of rows of the columns of a run; in a world, by the name of the system."""
+    if not any(path.endswith("/time") for path in columns):
+        return len(columns.get("time", ()))
+    return {path.removesuffix("/time"): len(rows) for path, rows in columns.items() if path.endswith("/time")}
+
+
+def _sum(a: int | dict[str, int], b: int | dict[str, int]) -> int | dict[str, int]:
+    if isinstance(a, int) and isinstance(b, int):
+        return a + b
+    first, second = (
+        {} if isinstance(rows, int) else rows for rows in (a, b)
+    )  # 0 before the first checkpoint
+    return {name: first.get(name, 0) + second.get(name, 0) for name in {**first, **second}}

@@ -15,7 +15,6 @@ from onorbit_rs.common.numbers import finite_float
 from onorbit_rs.common.progress import doing, progress_bar
 from onorbit_rs.engines import versions
 from onorbit_rs.exceptions import (
-    CheckpointError,
     InputError,
     ModelError,
     NotFoundError,
@@ -85,19 +84,33 @@ class Run:
             raise AttributeError(f"the run has several systems, each with its own model: {names}")
         if self._ran is not None and not isinstance(self._ran, dict):
             return self._ran
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # these warnings were shown during the run
-            model = self.scenario.robot.build(self.scenario)
-        if was_changed(model, self.summary):
-            raise ModelError(CHANGED)
-        return model
+        return _loaded(self.scenario, self.summary)
 
-    @property
+    @cached_property
     def models(self) -> dict[str, Model]:
-        """Robots of the systems of a scenario with ``systems``, by the name of the system."""
-        if not isinstance(self._ran, dict):
+        """Robots of the systems of a scenario with ``systems``, by the name of the system; as :attr:`model`.
+
+        Raises
+        ------
+        OnOrbitError
+            As :attr:`model`.
+        """
+        if not isinstance(self.scenario, WorldScenario):
             raise AttributeError("the run has one robot: use model")
-        return self._ran
+        if isinstance(self._ran, dict):
+            return self._ran
+        systems = self.summary["systems"]
+        return {name: _loaded(alone, systems[name]) for name, alone in self.scenario.scenarios.items()}
+
+
+def _loaded(scenario: Scenario, summary: dict[str, Any]) -> Model:
+    """Return the robot of a scenario, which must be that of the summary."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # these warnings were shown during the run
+        model = scenario.robot.build(scenario)
+    if was_changed(model, summary):
+        raise ModelError(CHANGED)
+    return model
 
 
 def run(
@@ -143,9 +156,7 @@ def run(
     """
     every = _checked_period(checkpoint_every)
     checked = load(scenario)
-    if isinstance(checked, WorldScenario):
-        return _run_world(checked, out, force=force, quiet=quiet, view=view)
-    built = build(checked)
+    built = _built(checked)
     if out is None:
         return _simulate(built, None, quiet=quiet, view=view)
     with OutputFolder.claim(out, force=force) as folder:
@@ -195,30 +206,17 @@ def resume(
     with OutputFolder(path) as folder:
         folder.check_figures()
         scenario = load(path / "scenario.yaml")
-        if isinstance(scenario, WorldScenario):
-            raise CheckpointError(
-                "runs of a scenario with 'systems' write no checkpoints yet and cannot resume; run it again "
-                "with --force", path=str(path),
-            )  # fmt: skip
         digest = _digest(scenario)
         saved = read_checkpoint(path, digest)
         writer = CheckpointWriter(folder, digest, after=saved)
         return _simulate(
-            build(scenario), folder, quiet=quiet, view=view,
+            _built(scenario), folder, quiet=quiet, view=view,
             checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
         )  # fmt: skip
 
 
-def _run_world(
-    scenario: WorldScenario, out: str | os.PathLike[str] | None, *, force: bool, quiet: bool, view: bool
-) -> Run:
-    """Run a scenario with several systems; checkpoints do not support it yet."""
-    built = build_world(scenario)
-    if out is None:
-        return _simulate(built, None, quiet=quiet, view=view)
-    with OutputFolder.claim(out, force=force) as folder:
-        write_scenario(folder, scenario)
-        return _simulate(built, folder, quiet=quiet, view=view)
+def _built(scenario: Scenario | WorldScenario) -> Built | BuiltWorld:
+    return build_world(scenario) if isinstance(scenario, WorldScenario) else build(scenario)
 
 
 def _checked_period(checkpoint_every: float) -> float:
@@ -232,7 +230,7 @@ def _checked_period(checkpoint_every: float) -> float:
     return every
 
 
-def _digest(scenario: Scenario) -> str:
+def _digest(scenario: Scenario | WorldScenario) -> str:
     """Return the digest of the scenario, its files and the version of its engine."""
     return scenario_digest(with_absolute_paths(scenario) | versions(scenario.engine))
 

@@ -5,10 +5,11 @@ use super::connections::SavedMembers;
 use super::estimates::Estimates;
 use super::events::EventState;
 use super::every_step::SavedChecks;
+use super::group_balance::GroupBalance;
 use super::integrator::StepControl;
 use super::local_reference::LocalReference;
 use super::modes::SavedModes;
-use super::recording::{EventRecord, GroupRows, Ledger};
+use super::recording::{EventRecord, Ledger};
 use super::schedule::{Cursor, Schedule};
 use super::state::State;
 use super::state_range::{UNIT_NORM, attitude_norm};
@@ -88,9 +89,7 @@ pub(super) struct WorldProgress {
     pub(super) events: Vec<EventState>,
     pub(super) records: Vec<EventRecord>,
     pub(super) ledger: Ledger,
-    /// Number of rows of the balance of the group, and the first of them.
-    pub(super) group_rows: usize,
-    pub(super) group_start: GroupRows,
+    pub(super) balance: GroupBalance,
 }
 
 /// State of the controllers and torques of a run.
@@ -136,7 +135,7 @@ impl Checkpoint {
         self.groups.first().and_then(|group| group.schedule.duration())
     }
 
-    /// Returns the number of rows that were recorded before the checkpoint.
+    /// Returns the number of rows of the first system that were recorded before the checkpoint.
     pub fn rows(&self) -> usize {
         let first = self.groups.first().and_then(|group| group.progress.systems.first());
         first.map_or(0, |system| system.rows)
@@ -247,13 +246,17 @@ impl GroupCheckpoint {
             .try_for_each(|(saved, place)| saved.check_sizes(place))
     }
 
-    /// Checks the sizes of the states of trees with these numbers of coordinates and velocities.
-    pub(super) fn check_trees(&self, sizes: &[(usize, usize)]) -> Result<(), CheckpointError> {
+    /// Checks that the states of the trees have the sizes of `expected`.
+    pub(super) fn check_trees<S>(&self, expected: &State<S>) -> Result<(), CheckpointError> {
         let progress = &self.progress;
-        check_each([("trees", progress.trees.len(), sizes.len())])?;
-        for ((state, tree), (nq, nv)) in progress.state.trees.iter().zip(&progress.trees).zip(sizes) {
-            check_each([("coordinates", state.q.len(), *nq), ("velocities", state.v.len(), *nv)])?;
-            tree.check_sizes(nv - BASE_NV)?;
+        check_each([("trees", progress.trees.len(), expected.trees.len())])?;
+        for ((state, tree), own) in progress.state.trees.iter().zip(&progress.trees).zip(&expected.trees) {
+            check_each([
+                ("coordinates", state.q.len(), own.q.len()),
+                ("velocities", state.v.len(), own.v.len()),
+                ("members of a tree", state.shares.len(), own.shares.len()),
+            ])?;
+            tree.check_sizes(own.v.len() - BASE_NV)?;
         }
         Ok(())
     }
@@ -297,7 +300,9 @@ impl SystemControllers {
 }
 
 /// Returns an error for the first entry `(name, got, expected)` whose two numbers differ.
-fn check_each(sizes: impl IntoIterator<Item = (&'static str, usize, usize)>) -> Result<(), CheckpointError> {
+pub(super) fn check_each(
+    sizes: impl IntoIterator<Item = (&'static str, usize, usize)>,
+) -> Result<(), CheckpointError> {
     match sizes.into_iter().find(|(_, got, expected)| got != expected) {
         Some((name, got, expected)) => Err(CheckpointError::OtherSize { name, got, expected }),
         None => Ok(()),

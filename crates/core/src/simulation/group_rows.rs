@@ -1,7 +1,8 @@
 //! Rows of the balance of a group of several systems.
 
 use super::equations::EquationsOfMotion;
-use super::group_sum::{SystemRow, add_sum};
+use super::group_balance::GroupRow;
+use super::group_sum::{GroupSum, SystemRow};
 use super::recording::Ledger;
 use super::run_state::RunState;
 use super::state::State;
@@ -24,19 +25,19 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Adds a row of the balance for the state of the last rows of the systems.
-    pub(super) fn add_group_row(&mut self, t: f64, is_within_step: bool) {
+    pub(super) fn add_group_row(&mut self, is_within_step: bool) {
         if self.systems.len() < 2 {
             return;
         }
         let state = if is_within_step { &self.row_buffers.0 } else { &self.state };
-        let Ledger { impulse, work, dissipated } = self.totals(state);
+        let Ledger { impulse, work, .. } = self.totals(state);
         let EquationsOfMotion { trees, members, .. } = &self.equations;
         let system = |number: usize| members.system(number, trees, &state.trees);
         let rows = self.systems.iter().enumerate().map(|(number, run)| {
             let trace = &run.recorder.trace;
             SystemRow { trace, k: trace.rows() - 1, mass: system(number).1.model.mass() }
         });
-        let [center, velocity] = add_sum(t, &rows.collect::<Vec<_>>(), &mut self.group);
+        let GroupSum { momentum, kinetic_energy, center, velocity } = GroupSum::of(&rows.collect::<Vec<_>>());
         let mut scales = [0.0; 2];
         for number in 0..self.systems.len() {
             let (state, own) = system(number);
@@ -46,12 +47,6 @@ impl<S: Scalar> RunState<'_, S> {
             let balance = Balance::of(&own.model, &q, &v, center);
             scales = [0, 1].map(|i| scales[i] + balance.scales[i]);
         }
-        let group = &mut self.group;
-        for v in [impulse.linear, impulse.angular] {
-            group.impulse.extend([v.x, v.y, v.z]);
-        }
-        group.work.push(work);
-        group.dissipated.push(dissipated);
-        group.scales.extend(scales);
+        self.balance.add(&GroupRow { momentum, impulse, kinetic_energy, work, scales });
     }
 }

@@ -1,7 +1,7 @@
 //! Momentum and energy of several systems, from the rows of their traces.
 
-use super::recording::GroupRows;
 use super::trace::Trace;
+use crate::dynamics::Momentum;
 use crate::spatial::Vec3;
 
 /// Row `k` of the trace of a system, and the mass of the system, kg.
@@ -26,27 +26,36 @@ impl SystemRow<'_> {
     }
 }
 
-/// Adds a row with the momentum and the kinetic energy of several systems; returns their centre of mass in W, m, and its
-/// velocity, m/s.
-pub(super) fn add_sum(t: f64, systems: &[SystemRow<'_>], rows: &mut GroupRows) -> [Vec3<f64>; 2] {
-    let (mut mass, mut linear, mut first_moment) = (0.0, Vec3::zero(), Vec3::zero());
-    for system in systems {
-        mass += system.mass;
-        linear += system.linear();
-        first_moment += system.center() * system.mass;
+/// Momentum and kinetic energy of several systems.
+pub(super) struct GroupSum {
+    /// Momentum; its angular part is about the common centre of mass.
+    pub(super) momentum: Momentum<f64>,
+    /// Kinetic energy, J.
+    pub(super) kinetic_energy: f64,
+    /// Common centre of mass in W, m.
+    pub(super) center: Vec3<f64>,
+    /// Velocity of the common centre of mass, m/s.
+    pub(super) velocity: Vec3<f64>,
+}
+
+impl GroupSum {
+    /// Returns the sum over systems.
+    pub(super) fn of(systems: &[SystemRow<'_>]) -> Self {
+        let (mut mass, mut linear, mut first_moment) = (0.0, Vec3::zero(), Vec3::zero());
+        for system in systems {
+            mass += system.mass;
+            linear += system.linear();
+            first_moment += system.center() * system.mass;
+        }
+        let (center, velocity) = (first_moment * (1.0 / mass), linear * (1.0 / mass));
+        let (mut angular, mut kinetic_energy) = (Vec3::<f64>::zero(), 0.0);
+        for system in systems {
+            // L = Σ [L_i + (c_i − c) × (P_i − m_i v)]
+            let relative = system.linear() - velocity * system.mass;
+            let own = system.vector(&system.trace.momentum, 6, 3);
+            angular += own + (system.center() - center).cross(relative);
+            kinetic_energy += system.trace.kinetic_energy[system.k];
+        }
+        Self { momentum: Momentum { linear, angular }, kinetic_energy, center, velocity }
     }
-    let (center, velocity) = (first_moment * (1.0 / mass), linear * (1.0 / mass));
-    let (mut angular, mut energy) = (Vec3::<f64>::zero(), 0.0);
-    for system in systems {
-        // L = Σ [L_i + (c_i − c) × (P_i − m_i v)]
-        let relative = system.linear() - velocity * system.mass;
-        angular += system.vector(&system.trace.momentum, 6, 3) + (system.center() - center).cross(relative);
-        energy += system.trace.kinetic_energy[system.k];
-    }
-    rows.time.push(t);
-    for v in [linear, angular] {
-        rows.momentum.extend([v.x, v.y, v.z]);
-    }
-    rows.kinetic_energy.push(energy);
-    [center, velocity]
 }

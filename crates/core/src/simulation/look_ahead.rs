@@ -157,7 +157,7 @@ impl<S: Scalar> RunState<'_, S> {
             Ok(GroupRecording {
                 systems: run.systems.iter().map(|system| system.recorder.trace.clone()).collect(),
                 events: run.events.records.clone(),
-                group: run.group.clone(),
+                balance: run.balance.clone(),
             })
         })
     }

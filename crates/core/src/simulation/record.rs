@@ -110,7 +110,7 @@ impl<S: Scalar> RunState<'_, S> {
             let (state, system) = members.system(number, trees, &state.trees);
             run.add_row(t, state, system, loads, orbit)?;
         }
-        self.add_group_row(t, is_within_step);
+        self.add_group_row(is_within_step);
         Ok(())
     }
 

@@ -1,6 +1,7 @@
 //! Result of a run: the traces of its systems, the events, and the balances of groups of systems.
 
 use super::certificate::Check;
+use super::group_balance::GroupBalance;
 use super::trace::Trace;
 use crate::dynamics::Momentum;
 use serde::{Deserialize, Serialize};
@@ -13,7 +14,7 @@ pub struct Recording {
     /// Events that happened, in order of time.
     pub events: Vec<EventRecord>,
     /// Balances of the groups that have several systems.
-    pub groups: Vec<GroupRows>,
+    pub groups: Vec<GroupBalance>,
 }
 
 impl Recording {
@@ -101,81 +102,23 @@ impl EventRecord {
     }
 }
 
-/// Balance of momentum and energy of a group of several systems, one row per recorded step.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct GroupRows {
-    /// Numbers of the systems.
-    pub systems: Vec<usize>,
-    /// Time, s.
-    pub time: Vec<f64>,
-    /// Linear momentum, N s, and angular momentum about the centre of mass of the group, N m s, axes of W, `(T, 6)`.
-    pub momentum: Vec<f64>,
-    /// Time integral of the external forces and of their moments about the centre of mass of the group, `(T, 6)`.
-    pub impulse: Vec<f64>,
-    /// Kinetic energy, J.
-    pub kinetic_energy: Vec<f64>,
-    /// Work done on the group by motors, external wrenches and springs, less the energy lost in joints and captures, J.
-    pub work: Vec<f64>,
-    /// Energy lost in joints and captures, J.
-    pub dissipated: Vec<f64>,
-    /// Sum of the magnitudes of the momenta of the bodies: linear, N s, relative to the centre of mass of the group, and
-    /// angular about it, N m s, `(T, 2)`.
-    pub scales: Vec<f64>,
-}
-
-impl GroupRows {
-    /// Returns the number of rows.
-    pub fn rows(&self) -> usize {
-        self.time.len()
-    }
-
-    /// Returns the first row.
-    pub(super) fn first(&self) -> Self {
-        let start = |column: &[f64], width: usize| column[..width.min(column.len())].to_vec();
-        Self {
-            systems: self.systems.clone(),
-            time: start(&self.time, 1),
-            momentum: start(&self.momentum, 6),
-            impulse: start(&self.impulse, 6),
-            kinetic_energy: start(&self.kinetic_energy, 1),
-            work: start(&self.work, 1),
-            dissipated: start(&self.dissipated, 1),
-            scales: start(&self.scales, 2),
-        }
-    }
-
-    pub(super) fn truncate(&mut self, rows: usize) {
-        for (column, width) in [
-            (&mut self.time, 1),
-            (&mut self.momentum, 6),
-            (&mut self.impulse, 6),
-            (&mut self.kinetic_energy, 1),
-            (&mut self.work, 1),
-            (&mut self.dissipated, 1),
-            (&mut self.scales, 2),
-        ] {
-            column.truncate(rows * width);
-        }
-    }
-}
-
 /// Rows and events of one group.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GroupRecording {
     pub(super) systems: Vec<Trace>,
     pub(super) events: Vec<EventRecord>,
-    pub(super) group: GroupRows,
+    pub(super) balance: GroupBalance,
 }
 
 impl Recording {
     /// Returns the recording of a run whose groups have these systems.
     pub(super) fn of<'g>(parts: impl Iterator<Item = (&'g [usize], GroupRecording)>) -> Self {
         let (mut systems, mut all) = (Vec::new(), Self::default());
-        for (numbers, GroupRecording { systems: traces, events, group }) in parts {
+        for (numbers, GroupRecording { systems: traces, events, balance }) in parts {
             systems.extend(numbers.iter().copied().zip(traces));
             all.events.extend(events);
             if numbers.len() > 1 {
-                all.groups.push(GroupRows { systems: numbers.to_vec(), ..group });
+                all.groups.push(balance.of_systems(numbers));
             }
         }
         systems.sort_by_key(|(number, _)| *number);

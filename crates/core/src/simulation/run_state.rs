@@ -11,10 +11,11 @@ use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::estimates::Estimates;
 use super::events::Events;
+use super::group_balance::GroupBalance;
 use super::integrator::{Stages, StepSettings};
 use super::members::Place;
 use super::mover::Mover;
-use super::recording::{GroupRows, Ledger};
+use super::recording::Ledger;
 use super::run_system::RunSystem;
 use super::schedule::Schedule;
 use super::state::State;
@@ -44,8 +45,8 @@ pub(super) struct RunState<'a, S> {
     pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,
     pub(super) ledger: Ledger,
-    /// Balance of the group; no rows if it has a single system.
-    pub(super) group: GroupRows,
+    /// Balance of the group; without rows if it has a single system.
+    pub(super) balance: GroupBalance,
     pub(super) mover: Mover<'a, S>,
     pub(super) step_settings: StepSettings,
     pub(super) schedule: Schedule,
@@ -97,15 +98,13 @@ impl<S: Scalar> RunState<'_, S> {
                 events: self.events.states.clone(),
                 records: self.events.records.clone(),
                 ledger: self.ledger,
-                group_rows: self.group.rows(),
-                group_start: self.group.first(),
+                balance: self.balance.clone(),
             },
         }
     }
 
     /// Restores the state that [`RunState::progress`] returned and removes the rows recorded since then.
     pub(super) fn restore(&mut self, progress: Progress) -> Result<(), SimulationError> {
-        self.group.truncate(progress.world.group_rows);
         self.restore_world(progress.world)?;
         self.state = progress.state.map(|x| S::of(*x));
         self.schedule.set_cursor(progress.cursor);
@@ -123,9 +122,10 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Restores the connections and the events.
+    /// Restores the connections, the events and the balance of the group.
     fn restore_world(&mut self, world: WorldProgress) -> Result<(), SimulationError> {
         self.restore_members(world.members)?;
+        self.balance = world.balance;
         if !self.events.list.is_empty() {
             (self.events.states, self.events.records) = (world.events, world.records);
             self.ledger = world.ledger;
@@ -163,17 +163,15 @@ impl<S: Scalar> RunState<'_, S> {
     pub(super) fn resume(&mut self, from: GroupCheckpoint, rows: Vec<Trace>) -> Result<(), SimulationError> {
         let counts: Vec<usize> = rows.iter().map(Trace::rows).collect();
         from.check(&self.layout, &self.schedule, &counts, self.events.list.len())?;
+        self.check_connections(&from.progress.world)?;
         self.restore_members(from.progress.world.members.clone())?;
-        from.check_trees(
-            &self.state.trees.iter().map(|tree| (tree.q.len(), tree.v.len())).collect::<Vec<_>>(),
-        )?;
+        self.check_members(&from.progress.world)?;
+        from.check_trees(&self.state)?;
         let GroupCheckpoint { time, progress, local_reference, controllers: saved, .. } = from;
         self.check_estimates(&progress)?;
         for (run, rows) in self.systems.iter_mut().zip(rows) {
             run.recorder.resume(rows)?;
         }
-        // the rows before the checkpoint are not part of it; drifts are measured from the first row
-        self.group = progress.world.group_start.clone();
         self.restore(progress)?;
         self.time = time;
         if let Some(local) = local_reference {

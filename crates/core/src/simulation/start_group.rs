@@ -8,12 +8,13 @@ use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::events::Events;
+use super::group_balance::GroupBalance;
 use super::integrator::{Integrator, Stages, StepSettings};
 use super::modes::StepMethod;
 use super::mover::Mover;
 use super::recompile::follow_centers;
 use super::recorder::{RecordOptions, Recorder};
-use super::recording::{GroupRows, Ledger};
+use super::recording::Ledger;
 use super::run_state::RunState;
 use super::run_system::RunSystem;
 use super::schedule::{Clock, LONGEST_INTERVAL, Schedule};
@@ -142,7 +143,7 @@ impl Shared {
             moving_frames,
             events,
             ledger: Ledger::default(),
-            group: GroupRows::default(),
+            balance: GroupBalance::default(),
             mover,
             step_settings,
             schedule,

@@ -37,6 +37,9 @@ pub(super) struct Group<'a> {
 /// Number of regular steps by which the groups of a run with several groups advance in turn.
 const STEPS_IN_TURN: f64 = 64.0;
 
+/// Fraction of a turn by which its end may differ from the end of a step by rounding.
+const TURN_ROUNDING: f64 = 1e-6;
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Status {
     Running,
@@ -137,16 +140,21 @@ impl<'a> Stepper<'a> {
             return group.run.advance_to(t, monitor);
         }
         let turn = STEPS_IN_TURN * self.time_step;
-        while self.time() < t {
-            let next = (((self.time() / turn).floor() + 1.0) * turn).min(t);
+        // the end of a turn may be a rounding error later than the step that ends there
+        let mut turns = (self.time() / turn + TURN_ROUNDING).floor();
+        loop {
+            turns += 1.0;
+            let next = (turns * turn).min(t);
             for group in self.groups.iter_mut().filter(|group| group.run.time() < next) {
                 let _ = group.run.advance_to(next, &mut |_| ControlFlow::Continue(()))?;
             }
-            if next < t && monitor(next).is_break() {
+            if next >= t {
+                return Ok(ControlFlow::Continue(()));
+            }
+            if monitor(next).is_break() {
                 return Ok(ControlFlow::Break(()));
             }
         }
-        Ok(ControlFlow::Continue(()))
     }
 
     /// Writes the configuration `(nq,)` and the velocity `(nv,)` of a system at the current time to `q` and `v`.
@@ -373,7 +381,7 @@ impl<S: Scalar> Steps for RunState<'_, S> {
     fn take_rows(&mut self) -> GroupRecording {
         self.conclude();
         let systems = self.systems.iter_mut().map(|run| std::mem::take(&mut run.recorder.trace)).collect();
-        let (events, group) = (std::mem::take(&mut self.events.records), std::mem::take(&mut self.group));
-        GroupRecording { systems, events, group }
+        let (events, balance) = (std::mem::take(&mut self.events.records), std::mem::take(&mut self.balance));
+        GroupRecording { systems, events, balance }
     }
 }

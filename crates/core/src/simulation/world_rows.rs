@@ -1,14 +1,39 @@
 //! Momentum and energy of all systems of a world, from their traces.
 
-use super::group_sum::{SystemRow, add_sum};
-use super::recording::GroupRows;
+use super::group_sum::{GroupSum, SystemRow};
 use super::trace::Trace;
 use crate::model::Model;
 
-/// Returns the momentum and the kinetic energy of all systems at the times that their traces share. `impulse`, `work`,
-/// `dissipated` and `scales` stay empty.
-pub fn world_rows(systems: &[(&Trace, &Model)]) -> GroupRows {
-    let mut rows = GroupRows { systems: (0..systems.len()).collect(), ..GroupRows::default() };
+/// Momentum and kinetic energy of all systems of a world, one row per time that all of them recorded.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorldRows {
+    /// Time, s.
+    pub time: Vec<f64>,
+    /// Linear momentum, N s, and angular momentum about the common centre of mass, N m s, axes of W, `(T, 6)`.
+    pub momentum: Vec<f64>,
+    /// Kinetic energy, J.
+    pub kinetic_energy: Vec<f64>,
+}
+
+impl WorldRows {
+    /// Returns the number of rows.
+    pub fn rows(&self) -> usize {
+        self.time.len()
+    }
+
+    fn add(&mut self, t: f64, sum: &GroupSum) {
+        self.time.push(t);
+        for v in [sum.momentum.linear, sum.momentum.angular] {
+            self.momentum.extend([v.x, v.y, v.z]);
+        }
+        self.kinetic_energy.push(sum.kinetic_energy);
+    }
+}
+
+/// Returns the momentum and the kinetic energy of all systems at the times that their traces share. Where only some
+/// traces have one row before and one after an event, the row after it counts.
+pub fn world_rows(systems: &[(&Trace, &Model)]) -> WorldRows {
+    let mut rows = WorldRows::default();
     let mut at = vec![0; systems.len()];
     let time = |at: &[usize], i: usize| systems[i].0.time.get(at[i]).copied();
     while let Some(times) = (0..systems.len()).map(|i| time(&at, i)).collect::<Option<Vec<f64>>>() {
@@ -26,7 +51,7 @@ pub fn world_rows(systems: &[(&Trace, &Model)]) -> GroupRows {
         }
         let at_time = systems.iter().zip(&at);
         let at_time = at_time.map(|((trace, model), &k)| SystemRow { trace, k, mass: model.mass() });
-        add_sum(latest, &at_time.collect::<Vec<_>>(), &mut rows);
+        rows.add(latest, &GroupSum::of(&at_time.collect::<Vec<_>>()));
         at.iter_mut().for_each(|at| *at += 1);
     }
     rows

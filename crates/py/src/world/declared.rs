@@ -6,12 +6,14 @@ use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{SimulationErrorExt, fields, raise};
 use crate::orbit::PyOrbit;
+use crate::pickling::{ConstructorCall, Reduced};
 use crate::reference::Around;
 use crate::simulation::{gravity_mode_named, set_environment};
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::Simulation;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::ffi::CString;
 use std::sync::Arc;
 
@@ -86,6 +88,17 @@ impl PyWorld {
     #[getter]
     fn names(&self) -> Vec<String> {
         self.systems.iter().map(|system| system.get().name.clone()).collect()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("orbit", &self.orbit)?;
+        keywords.set_item("earth", &self.earth)?;
+        keywords.set_item("gravity_mode", &self.gravity_mode)?;
+        keywords.set_item("environment", &self.environment)?;
+        keywords.set_item("events", &self.events)?;
+        keywords.set_item("rereference_beyond", self.rereference_beyond)?;
+        ConstructorCall::new("World", (&self.systems,), &keywords)?.reduce(py)
     }
 
     fn __repr__(&self) -> String {

@@ -3,10 +3,12 @@
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
 use crate::model::attach::isometry;
+use crate::pickling::{ConstructorCall, Reduced, deep_copy};
 use onorbit_core::model::Model;
 use onorbit_core::world::{Action, Envelope, FrameIndex, Seat, System, When};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// When an event happens, as given in Python.
@@ -39,6 +41,22 @@ impl Condition {
         };
         let message = format!("the event '{name}' {problem}");
         Err(raise(py, "WorldError", &message, &fields!(py, "name": name)))
+    }
+
+    /// Writes the condition as keyword arguments of the event.
+    fn write_to(&self, keywords: &Bound<'_, PyDict>) -> PyResult<()> {
+        keywords.set_item("at", self.at)?;
+        keywords.set_item("after", &self.after)?;
+        keywords.set_item("delay", self.delay)?;
+        let is_planned = self.at.is_some() || self.after.is_some() || self.latch.is_some();
+        keywords.set_item("on_command", !is_planned)?;
+        if let Some(Envelope { within, slower_than, held_for }) = self.latch {
+            let is_limited = slower_than.iter().any(|rate| rate.is_finite());
+            keywords.set_item("within", within)?;
+            keywords.set_item("slower_than", is_limited.then_some(slower_than))?;
+            keywords.set_item("held_for", held_for)?;
+        }
+        Ok(())
     }
 
     /// Returns the condition of the core; `names` are the names of all events.
@@ -133,6 +151,8 @@ pub(crate) struct PyCapture {
     frame_b: String,
     condition: Condition,
     seat: Option<Seat>,
+    /// Pose of the seat as given in Python.
+    pose: Option<Py<PyAny>>,
 }
 
 #[pymethods]
@@ -169,10 +189,19 @@ impl PyCapture {
             let message = format!("the event '{name}' has a pose, which belongs to seat; add the time in s");
             return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
         }
-        let pose = pose.map(isometry).transpose()?.unwrap_or_default();
-        let seat = seat.map(|duration| Seat { duration, pose: pose.into() });
+        let nominal = pose.map(isometry).transpose()?.unwrap_or_default();
+        let seat = seat.map(|duration| Seat { duration, pose: nominal.into() });
+        let pose = deep_copy(pose)?.map(Bound::unbind);
         let condition = Condition::new(py, &name, (at, after, delay, on_command), latch)?;
-        Ok(Self { name, frame_a, frame_b, condition, seat })
+        Ok(Self { name, frame_a, frame_b, condition, seat, pose })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        self.condition.write_to(&keywords)?;
+        keywords.set_item("seat", self.seat.map(|seat| seat.duration))?;
+        keywords.set_item("pose", &self.pose)?;
+        ConstructorCall::new("Capture", (&self.name, &self.frame_a, &self.frame_b), &keywords)?.reduce(py)
     }
 
     fn __repr__(&self) -> String {
@@ -232,6 +261,13 @@ impl PyRelease {
         Ok(Self { name, capture, condition, impulse })
     }
 
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        self.condition.write_to(&keywords)?;
+        keywords.set_item("impulse", self.impulse)?;
+        ConstructorCall::new("Release", (&self.name, &self.capture), &keywords)?.reduce(py)
+    }
+
     fn __repr__(&self) -> String {
         format!("<Release '{}' of '{}'>", self.name, self.capture)
     }
@@ -258,7 +294,7 @@ pub(super) fn events_of(
     let read = |event: &Bound<'_, PyAny>| {
         let py = event.py();
         if let Ok(event) = event.cast::<PyCapture>() {
-            let PyCapture { name, frame_a, frame_b, condition, seat } = event.get();
+            let PyCapture { name, frame_a, frame_b, condition, seat, .. } = event.get();
             let (by, of) = (frame_at(py, name, frame_a, &systems)?, frame_at(py, name, frame_b, &systems)?);
             let when = condition.when(py, name, &names)?;
             return Ok(onorbit_core::world::Event {

@@ -2,6 +2,7 @@
 
 mod declared;
 mod event;
+mod event_record;
 mod robotics;
 mod system;
 mod systems;
@@ -21,5 +22,5 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<declared::PyWorld>()?;
     m.add_class::<systems::PySystemStepper>()?;
     m.add_class::<trace::PyWorldTrace>()?;
-    m.add_class::<trace::PyEventRecord>()
+    m.add_class::<event_record::PyEventRecord>()
 }

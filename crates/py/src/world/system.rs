@@ -3,9 +3,11 @@
 use super::robotics::{Robotics, initial_state};
 use crate::environment::SurfaceAssignment;
 use crate::model::PyModel;
+use crate::pickling::{ConstructorCall, Reduced, deep_copy};
 use crate::reference::Around;
 use onorbit_core::world::System;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// One spacecraft of a world: model, initial state and controllers.
@@ -59,6 +61,8 @@ pub(crate) struct PySystem {
     restitution: f64,
     reference_start_tolerance: Option<Py<PyAny>>,
     pub(super) surfaces: Option<SurfaceAssignment>,
+    /// Surfaces as given in Python.
+    given_surfaces: Option<Py<PyAny>>,
     pub(super) knows: Vec<String>,
 }
 
@@ -85,6 +89,7 @@ impl PySystem {
         surfaces: Option<&Bound<'_, PyAny>>,
         knows: Vec<String>,
     ) -> PyResult<Self> {
+        let given_surfaces = deep_copy(surfaces)?.map(Bound::unbind);
         let surfaces = surfaces.map(|surfaces| SurfaceAssignment::new(Some(surfaces))).transpose()?;
         let (q, v) = initial_state(py, &model.get().model, q, v)?;
         Ok(Self {
@@ -100,8 +105,24 @@ impl PySystem {
             restitution,
             reference_start_tolerance,
             surfaces,
+            given_surfaces,
             knows,
         })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("controller", &self.controller)?;
+        keywords.set_item("reference", &self.reference)?;
+        keywords.set_item("tool", &self.tool)?;
+        keywords.set_item("control_period", self.control_period)?;
+        keywords.set_item("enforce_limits", self.enforce_limits)?;
+        keywords.set_item("restitution", self.restitution)?;
+        keywords.set_item("reference_start_tolerance", &self.reference_start_tolerance)?;
+        keywords.set_item("surfaces", &self.given_surfaces)?;
+        keywords.set_item("knows", &self.knows)?;
+        let arguments = (&self.name, &self.model, &self.q, &self.v);
+        ConstructorCall::new("System", arguments, &keywords)?.reduce(py)
     }
 
     fn __repr__(&self) -> String {

@@ -1,27 +1,31 @@
 //! Result of a run of a world.
 
+use super::event_record::PyEventRecord;
 use crate::arrays::array_of;
 use crate::errors::{fields, raise};
 use crate::trace::PyTrace;
 use numpy::PyArrayDyn;
 use onorbit_core::number_text::{count, short};
-use onorbit_core::simulation::{EventRecord, GroupRows, certify_group, world_rows};
+use onorbit_core::simulation::{Check, EventRecord, GroupBalance, WorldRows, world_rows};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use std::sync::OnceLock;
 
 /// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
 ///
-/// ``trace["chaser"]`` is the :class:`Trace` of a system. The columns of the world have the times that all systems
-/// share.
+/// ``trace["chaser"]`` is the :class:`Trace` of a system, with all of its rows. The columns of the world have the rows
+/// whose times all systems recorded. Systems that events may connect have the same rows; those of different groups
+/// share the multiples of ``record_every`` steps and the end of the run, but not the rows at events, impacts and
+/// control ticks of one group. Where only some systems have one row before and one after an event, the row of the
+/// world is the one after it.
 #[pyclass(name = "WorldTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyWorldTrace {
     names: Vec<String>,
     traces: Vec<Py<PyTrace>>,
     records: Vec<EventRecord>,
-    groups: Vec<GroupRows>,
+    groups: Vec<GroupBalance>,
     /// Columns of the world, computed when they are first used.
-    rows: OnceLock<GroupRows>,
+    rows: OnceLock<WorldRows>,
     /// True if the run reached its end.
     #[pyo3(get)]
     is_complete: bool,
@@ -34,14 +38,14 @@ impl PyWorldTrace {
     pub(super) fn new(
         names: Vec<String>,
         traces: Vec<Py<PyTrace>>,
-        (records, groups): (Vec<EventRecord>, Vec<GroupRows>),
+        (records, groups): (Vec<EventRecord>, Vec<GroupBalance>),
         (is_complete, wall_s): (bool, f64),
     ) -> Self {
         Self { names, traces, records, groups, rows: OnceLock::new(), is_complete, wall_s }
     }
 
     /// Returns the columns of the world.
-    fn rows(&self) -> &GroupRows {
+    fn rows(&self) -> &WorldRows {
         self.rows.get_or_init(|| {
             let pairs = self.traces.iter().map(|trace| (&trace.get().trace, &*trace.get().model));
             world_rows(&pairs.collect::<Vec<_>>())
@@ -88,14 +92,10 @@ impl PyWorldTrace {
     /// Events that happened, in order of time.
     #[getter]
     fn events(&self) -> Vec<PyEventRecord> {
-        let record = |record: &EventRecord| PyEventRecord {
-            systems: record.systems.map(|system| self.names[system].clone()),
-            record: record.clone(),
-        };
-        self.records.iter().map(record).collect()
+        self.records.iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
     }
 
-    /// Times of the rows that all systems share, (T,), s.
+    /// Times of the rows that all systems recorded, (T,), s.
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         self.column(py, &self.rows().time, 1)
@@ -124,27 +124,18 @@ impl PyWorldTrace {
     ///     the event. The certificate of one system is ``trace[name].certificate()``.
     fn certificate(&self) -> Vec<(String, f64, f64, bool)> {
         let mut all = Vec::new();
+        let mut add =
+            |whose: &str, checks: Vec<Check>| {
+                let rows = checks.into_iter();
+                all.extend(rows.map(|check| {
+                    (format!("{whose}/{}", check.name), check.value, check.gate, check.passed())
+                }));
+            };
         for group in &self.groups {
             let names: Vec<&str> = group.systems.iter().map(|system| self.names[*system].as_str()).collect();
-            for check in certify_group(group) {
-                all.push((
-                    format!("{}/{}", names.join("+"), check.name),
-                    check.value,
-                    check.gate,
-                    check.passed(),
-                ));
-            }
+            add(&names.join("+"), group.checks());
         }
-        for record in &self.records {
-            for check in record.checks() {
-                all.push((
-                    format!("{}/{}", record.name, check.name),
-                    check.value,
-                    check.gate,
-                    check.passed(),
-                ));
-            }
-        }
+        self.records.iter().for_each(|record| add(&record.name, record.checks()));
         all
     }
 
@@ -158,71 +149,5 @@ impl PyWorldTrace {
         let state = if self.is_complete { "complete" } else { "stopped early" };
         let events = count(self.records.len(), "event");
         format!("<WorldTrace of {}: to t = {} s, {events}, {state}>", self.names.join(", "), short(end))
-    }
-}
-
-/// Event that happened, with its audit.
-#[pyclass(name = "EventRecord", frozen, module = "onorbit_rs")]
-pub(crate) struct PyEventRecord {
-    systems: [String; 2],
-    record: EventRecord,
-}
-
-#[pymethods]
-impl PyEventRecord {
-    /// Name of the event.
-    #[getter]
-    fn name(&self) -> &str {
-        &self.record.name
-    }
-
-    /// Kind: ``capture`` or ``release``.
-    #[getter]
-    fn kind(&self) -> &'static str {
-        self.record.kind.name()
-    }
-
-    /// Time, s.
-    #[getter]
-    fn time(&self) -> f64 {
-        self.record.time
-    }
-
-    /// Names of the two systems, the capturing one first.
-    #[getter]
-    fn systems(&self) -> (String, String) {
-        let [by, of] = self.systems.clone();
-        (by, of)
-    }
-
-    /// Impulse on the second system, with what it carries, (6,): N s, then N m s about ``point``, axes of W.
-    #[getter]
-    fn impulse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        array_of(py, &[6], &self.record.impulse)
-    }
-
-    /// Point at which the impulse acts, in W, (3,), m.
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        array_of(py, &[3], &self.record.point)
-    }
-
-    /// Kinetic energy lost, J; negative if a spring added energy.
-    #[getter]
-    fn energy_lost(&self) -> f64 {
-        self.record.energy_lost
-    }
-
-    /// Changes of the linear and of the angular momentum of the group, (2,), relative to the sums of the magnitudes of
-    /// the momenta of its bodies.
-    #[getter]
-    fn momentum_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
-        array_of(py, &[2], &self.record.momentum_error)
-    }
-
-    fn __repr__(&self) -> String {
-        let Self { systems: [by, of], record } = self;
-        let (kind, name, lost) = (record.kind.name(), &record.name, short(record.energy_lost));
-        format!("<{kind} '{name}' of {of} by {by} at t = {} s: {lost} J lost>", short(record.time))
     }
 }

@@ -1,0 +1,41 @@
+//! Checks that the connections of a checkpoint are those of systems and events of the run.
+
+use super::checkpoint::{WorldProgress, check_each};
+use super::checkpoint_error::CheckpointError;
+use super::run_state::RunState;
+use crate::spatial::Scalar;
+use crate::world::FrameIndex;
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Checks that connections and records refer to systems, frames and events that exist.
+    pub(super) fn check_connections(&self, world: &WorldProgress) -> Result<(), CheckpointError> {
+        let (count, active) = (self.systems.len(), &world.members.active);
+        let is_frame = |at: FrameIndex| at.system < count && at.frame < self.model(at.system).frames().len();
+        let reason = if active.roots.iter().any(|root| *root >= count) {
+            "the root of a tree is not a system of the run"
+        } else if active.welds.iter().any(|weld| weld.capture >= self.events.list.len()) {
+            "a connection does not belong to an event of the run"
+        } else if !active.welds.iter().all(|weld| is_frame(weld.by) && is_frame(weld.of)) {
+            "a connection does not belong to frames of the run"
+        } else if world.records.iter().flat_map(|record| record.systems).any(|n| !self.numbers.contains(&n)) {
+            "an event does not belong to systems of the run"
+        } else {
+            return Ok(());
+        };
+        Err(CheckpointError::Unreadable { reason: reason.to_owned() })
+    }
+
+    /// Checks the sizes of the states of systems that share trees. Expects these systems to be restored.
+    pub(super) fn check_members(&self, world: &WorldProgress) -> Result<(), CheckpointError> {
+        let parts = &self.equations.members.parts;
+        check_each([("systems that share trees", world.members.parts.len(), parts.len())])?;
+        for part in parts {
+            let (state, model) = (&part.state, &part.own.model);
+            check_each([
+                ("coordinates", state.q.len(), model.nq()),
+                ("velocities", state.v.len(), model.nv()),
+            ])?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,158 @@
+//! Events that happened.
+
+use crate::arrays::{Input, array_of, wrong_shape};
+use crate::errors::{fields, raise};
+use crate::pickling::{ConstructorCall, Reduced};
+use numpy::PyArrayDyn;
+use onorbit_core::number_text::short;
+use onorbit_core::simulation::{EventKind, EventRecord};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// Event that happened, with its audit; ``trace.events`` of a world has these records.
+///
+/// Parameters
+/// ----------
+/// name : str
+///     Name of the event.
+/// kind : {"capture", "release"}
+///     Kind.
+/// time : float
+///     Time, s.
+/// systems : (str, str)
+///     Names of the two systems, the capturing one first.
+/// impulse : (6,) array
+///     Impulse on the second system, with what it carries: N s, then N m s about ``point``, axes of W.
+/// point : (3,) array
+///     Point at which the impulse acts, in W, m.
+/// energy_lost : float
+///     Kinetic energy lost, J; negative if a spring added energy.
+/// momentum_error : (2,) array
+///     Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes of the
+///     momenta of its bodies.
+#[pyclass(name = "EventRecord", frozen, module = "onorbit_rs")]
+#[derive(PartialEq)]
+pub(crate) struct PyEventRecord {
+    /// Name of the event.
+    #[pyo3(get)]
+    name: String,
+    kind: EventKind,
+    /// Time, s.
+    #[pyo3(get)]
+    time: f64,
+    /// Names of the two systems, the capturing one first.
+    #[pyo3(get)]
+    systems: (String, String),
+    impulse: [f64; 6],
+    point: [f64; 3],
+    /// Kinetic energy lost, J; negative if a spring added energy.
+    #[pyo3(get)]
+    energy_lost: f64,
+    momentum_error: [f64; 2],
+}
+
+impl PyEventRecord {
+    /// Returns the record of an event of systems with these names.
+    pub(super) fn of(record: &EventRecord, names: &[String]) -> Self {
+        let EventRecord { name, kind, time, systems, impulse, point, energy_lost, momentum_error, .. } =
+            record;
+        let [by, of] = systems.map(|system| names[system].clone());
+        Self {
+            name: name.clone(),
+            kind: *kind,
+            time: *time,
+            systems: (by, of),
+            impulse: *impulse,
+            point: *point,
+            energy_lost: *energy_lost,
+            momentum_error: *momentum_error,
+        }
+    }
+}
+
+#[pymethods]
+impl PyEventRecord {
+    #[new]
+    #[pyo3(signature = (name, kind, time, systems, *, impulse, point, energy_lost, momentum_error))]
+    fn new(
+        py: Python<'_>,
+        name: String,
+        kind: &str,
+        time: f64,
+        systems: (String, String),
+        impulse: &Bound<'_, PyAny>,
+        point: &Bound<'_, PyAny>,
+        energy_lost: f64,
+        momentum_error: &Bound<'_, PyAny>,
+    ) -> PyResult<Self> {
+        let kinds = [EventKind::Capture, EventKind::Release];
+        let Some(kind) = kinds.into_iter().find(|known| known.name() == kind) else {
+            let message = format!("kind is '{kind}'; it must be 'capture' or 'release'");
+            return Err(raise(py, "InputError", &message, &fields!(py, "name": "kind", "got": kind)));
+        };
+        let (impulse, point) = (entries(impulse, "impulse")?, entries(point, "point")?);
+        let momentum_error = entries(momentum_error, "momentum_error")?;
+        Ok(Self { name, kind, time, systems, impulse, point, energy_lost, momentum_error })
+    }
+
+    /// Kind: ``capture`` or ``release``.
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.kind.name()
+    }
+
+    /// Impulse on the second system, with what it carries, (6,): N s, then N m s about ``point``, axes of W.
+    #[getter]
+    fn impulse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        array_of(py, &[6], &self.impulse)
+    }
+
+    /// Point at which the impulse acts, in W, (3,), m.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        array_of(py, &[3], &self.point)
+    }
+
+    /// Changes of the linear and of the angular momentum of the group, (2,), relative to the sums of the magnitudes of
+    /// the momenta of its bodies.
+    #[getter]
+    fn momentum_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
+        array_of(py, &[2], &self.momentum_error)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self == other
+    }
+
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (&self.name, self.kind.name(), &self.systems).hash(&mut hasher);
+        hasher.finish()
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("impulse", self.impulse)?;
+        keywords.set_item("point", self.point)?;
+        keywords.set_item("energy_lost", self.energy_lost)?;
+        keywords.set_item("momentum_error", self.momentum_error)?;
+        let arguments = (&self.name, self.kind.name(), self.time, &self.systems);
+        ConstructorCall::new("EventRecord", arguments, &keywords)?.reduce(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let (Self { name, time, energy_lost, .. }, (by, of)) = (self, &self.systems);
+        let (kind, lost) = (self.kind.name(), short(*energy_lost));
+        format!("<{kind} '{name}' of {of} by {by} at t = {} s: {lost} J lost>", short(*time))
+    }
+}
+
+/// Returns the entries of a vector, which are not finite in a run that diverged.
+fn entries<const N: usize>(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; N]> {
+    let input = Input::new(value, name)?;
+    match <[f64; N]>::try_from(input.data()) {
+        Ok(entries) if input.shape().len() == 1 => Ok(entries),
+        _ => Err(wrong_shape(value.py(), name, &format!("({N},)"), input.shape())),
+    }
+}
