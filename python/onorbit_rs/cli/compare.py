@@ -12,12 +12,11 @@ from onorbit_rs.cli.exit_codes import ignore_closed_pipe
 from onorbit_rs.cli.figure_files import check_figure_file
 from onorbit_rs.cli.options import JsonOption
 from onorbit_rs.cli.text_output import print_line
-from onorbit_rs.common.counting import count
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    from rich.console import Console
 
-    from onorbit_rs.tools.comparison import Comparison
+    from onorbit_rs.tools.comparison import Comparison, WorldComparison
 
 
 def compare(
@@ -59,29 +58,70 @@ def compare(
 
     check_figure_file("--out", out, force=force)
     compared = compare_runs(a, b, tolerance=tolerance)
+    figures = [] if out is None else _figures(compared, out, force=force)
     with ignore_closed_pipe():
         if as_json:
             print_json(compared.as_dict())
         else:
             print_comparison(compared)
-    if out is not None:
+    for file, one in figures:
         from onorbit_rs.figures import differences, save
 
-        save(differences(compared), out)
-    if out is not None and not as_json:
-        with ignore_closed_pipe():
-            print_line(f"figure: {out}")
+        save(differences(one), file)
+        if not as_json:
+            with ignore_closed_pipe():
+                print_line(f"figure: {file}")
     if not compared.agrees:
         raise typer.Exit(1)
 
 
-def print_comparison(compared: Comparison) -> None:
-    """Print a table of the differences and the time at which the runs diverge."""
-    from onorbit_rs.cli.console import new_console, print_table, text
+def _figures(
+    compared: Comparison | WorldComparison, out: Path, *, force: bool
+) -> list[tuple[Path, Comparison]]:
+    """Return the file and the content of each figure: one per system, named after it, for a world."""
+    from onorbit_rs.tools.comparison import Comparison
+
+    if isinstance(compared, Comparison):
+        return [(out, compared)]
+    figures = [(out.with_stem(f"{out.stem}_{name}"), one) for name, one in compared.systems.items()]
+    for file, _ in figures:
+        check_figure_file("--out", file, force=force)
+    return figures
+
+
+def print_comparison(compared: Comparison | WorldComparison) -> None:
+    """Print tables of the differences and the time at which the runs diverge."""
+    from onorbit_rs.cli.console import new_console, text
+    from onorbit_rs.tools.comparison import Comparison
+    from onorbit_rs.tools.comparison.text import rows_of, rows_of_world
 
     console = new_console()
     console.print(f"[bold]{text(compared.b)}[/bold] against [bold]{text(compared.a)}[/bold]", soft_wrap=True)
-    table = _table()
+    if isinstance(compared, Comparison):
+        _print_quantities(console, compared)
+        rows = rows_of(compared)
+    else:
+        for name, system in compared.systems.items():
+            console.print(f"[bold]{text(name)}[/bold]:")
+            _print_quantities(console, system)
+            _print_notes(console, system)
+        _print_events(console, compared)
+        rows = text(rows_of_world(compared))
+    _print_notes(console, compared)
+    if compared.agrees:
+        verdict = f"[green]the runs agree[/green] within {compared.tolerance:g} over {rows}"
+    else:
+        at, most = compared.parts_at, compared.tolerance
+        verdict = f"[red]the runs diverge[/red] at t = {at:.6g} s by more than {most:g}; {rows}"
+    console.print(verdict, soft_wrap=True)
+
+
+def _print_quantities(console: Console, compared: Comparison) -> None:
+    """Print the table of the quantities of a robot."""
+    from onorbit_rs.cli.console import new_table, print_table, text
+    from onorbit_rs.tools.comparison.text import HEAD
+
+    table = new_table(*HEAD)
     for difference in compared.differences:
         diverges_at = difference.parts_at
         table.add_row(
@@ -94,20 +134,27 @@ def print_comparison(compared: Comparison) -> None:
             difference.unit,
         )
     print_table(console, table)
+
+
+def _print_events(console: Console, compared: WorldComparison) -> None:
+    """Print the table of the events; differences that are not allowed are red."""
+    from onorbit_rs.cli.console import new_table, print_table, text
+    from onorbit_rs.tools.comparison.text import EVENTS_HEAD, event_cells
+
+    if not compared.events:
+        return
+    console.print("[bold]events[/bold]:")
+    table = new_table(*EVENTS_HEAD)
+    table.columns[1].justify = "left"
+    for event in compared.events:
+        *cells, difference, allowed, unit = map(text, event_cells(event))
+        colour = "green" if event.agrees else "red"
+        table.add_row(*cells, f"[{colour}]{difference}[/{colour}]", allowed, unit)
+    print_table(console, table)
+
+
+def _print_notes(console: Console, compared: Comparison | WorldComparison) -> None:
+    from onorbit_rs.cli.console import text
+
     for note in compared.notes:
         console.print(f"[yellow]note[/yellow]: {text(note)}", soft_wrap=True)
-    rows = f"{count(len(compared.time), 'row', 'rows')} from {compared.time[0]:g} to {compared.time[-1]:g} s"
-    if compared.agrees:
-        console.print(
-            f"[green]the runs agree[/green] within {compared.tolerance:g} over {rows}", soft_wrap=True
-        )
-    else:
-        at, most = compared.parts_at, compared.tolerance
-        verdict = f"[red]the runs diverge[/red] at t = {at:.6g} s by more than {most:g}"
-        console.print(f"{verdict}; {rows}", soft_wrap=True)
-
-
-def _table() -> Table:
-    from onorbit_rs.cli.console import new_table
-
-    return new_table("", "largest", "at, s", "at the end", "allowed", "diverges at, s", "unit")

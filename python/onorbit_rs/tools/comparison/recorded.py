@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs._core import WorldTrace
 from onorbit_rs.common.files import exists
 from onorbit_rs.exceptions import DtypeError, InputError, ModelError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
@@ -24,13 +23,15 @@ from onorbit_rs.simulation.run import Run, run
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | Run
+    from onorbit_rs._core import EventRecord
+
+Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | WorldScenario | Run
 """The output folder of a run, a scenario as accepted by :func:`onorbit_rs.run`, or a run."""
 
 
 @dataclass(frozen=True)
 class Recorded:
-    """Columns of a run by their names in ``trace.npz``, its scenario and its robot."""
+    """Columns of one robot by their names in ``trace.npz``, its scenario and its robot."""
 
     name: str
     columns: dict[str, NDArray[np.float64]]
@@ -39,6 +40,8 @@ class Recorded:
     """The run, if it is in memory."""
     fingerprint: str | None = None
     """Fingerprint of the robot at the time of the run; None for runs of earlier versions."""
+    system: str | None = None
+    """Name of the system in a run with several systems."""
 
     @property
     def robot(self) -> Any:
@@ -55,7 +58,8 @@ class Recorded:
             If the robot's file is missing, cannot be read or has changed.
         """
         if self.run is not None:
-            return list(self.run.model.joint_names)
+            model = self.run.model if self.system is None else self.run.models[self.system]
+            return list(model.joint_names)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # these warnings were shown during the run
             model = self.scenario.robot.build(self.scenario)
@@ -68,7 +72,17 @@ class Recorded:
         return list(model.joint_names)
 
 
-def recorded(source: Source) -> Recorded:
+@dataclass(frozen=True)
+class RecordedWorld:
+    """Columns of the systems of a run with several systems, and its events."""
+
+    name: str
+    systems: Mapping[str, Recorded]
+    events: Sequence[EventRecord]
+    scenario: WorldScenario
+
+
+def recorded(source: Source) -> Recorded | RecordedWorld:
     """Return the recorded columns of a run, given the run, its folder, or a scenario to simulate.
 
     Raises
@@ -84,7 +98,7 @@ def recorded(source: Source) -> Recorded:
         return _of_run(source)
     if isinstance(source, (str, os.PathLike)) and Path(source).is_dir():
         return _of_folder(Path(source))
-    if not isinstance(source, (str, os.PathLike, Mapping, Scenario)):
+    if not isinstance(source, (str, os.PathLike, Mapping, Scenario, WorldScenario)):
         kind = type(source).__name__
         raise DtypeError(
             f"a value of type {kind} cannot be compared; give the folder of a run, a scenario, or a Run",
@@ -93,40 +107,56 @@ def recorded(source: Source) -> Recorded:
     return _of_run(run(source))
 
 
-def on_the_other_engine(first: Recorded) -> Recorded:
-    """Simulate the same scenario on the other engine, and return its recorded columns."""
+def on_the_other_engine(first: Recorded | RecordedWorld) -> Recorded | RecordedWorld:
+    """Simulate the same scenario on the other engine, and return its recorded columns.
+
+    Raises
+    ------
+    InputError
+        If the scenario has several systems, which only the native engine simulates.
+    """
     scenario = first.scenario
+    if isinstance(scenario, WorldScenario):
+        raise InputError(
+            f"{first.name} has several systems, which only the native engine simulates; give a second run",
+            name="b", got=None, expected="run",
+        )  # fmt: skip
     other = {"native": "mujoco", "mujoco": "native"}[scenario.engine]
     return _of_run(run(with_absolute_paths(scenario) | {"engine": other}))
 
 
-def _of_run(made: Run) -> Recorded:
-    trace = made.trace
-    if isinstance(trace, WorldTrace) or isinstance(made.scenario, WorldScenario):
-        raise _several_systems(made.scenario.name)
-    columns = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
-    name = f"{made.scenario.name} ({made.scenario.engine})" if made.out is None else str(made.out)
-    return Recorded(name, columns, made.scenario, made, made.summary.get("robot_fingerprint"))
+def _of_run(made: Run) -> Recorded | RecordedWorld:
+    trace, scenario = made.trace, made.scenario
+    name = f"{scenario.name} ({scenario.engine})" if made.out is None else str(made.out)
+    if isinstance(scenario, WorldScenario):
+        return _of_world(name, trace, made.summary, scenario, made)
+    return Recorded(name, _columns(trace), scenario, made, made.summary.get("robot_fingerprint"))
 
 
-def _of_folder(folder: Path) -> Recorded:
+def _of_folder(folder: Path) -> Recorded | RecordedWorld:
     saved = SavedRun(folder)
     summary = saved.summary() if exists(folder / SUMMARY) else {}
-    if "systems" in summary:
-        raise _several_systems(str(folder))
-    trace = saved.trace()
+    trace: Any = saved.world_trace() if "systems" in summary else saved.trace()
     if not exists(folder / SCENARIO):
         raise NotFoundError(
             f"no run in this folder ({SCENARIO} is missing): {folder}", path=str(folder), kind="run"
         )
-    columns = {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}
     scenario = saved.scenario()
-    assert isinstance(scenario, Scenario)  # as in the summary
-    return Recorded(str(folder), columns, scenario, fingerprint=summary.get("robot_fingerprint"))
+    if isinstance(scenario, WorldScenario):
+        return _of_world(str(folder), trace, summary, scenario)
+    return Recorded(str(folder), _columns(trace), scenario, fingerprint=summary.get("robot_fingerprint"))
 
 
-def _several_systems(name: str) -> InputError:
-    return InputError(
-        f"{name}: runs of scenarios with 'systems' cannot be compared yet; compare the columns of trace.npz",
-        name="source", got=name,
-    )  # fmt: skip
+def _of_world(
+    run_name: str, trace: Any, summary: dict[str, Any], scenario: WorldScenario, made: Run | None = None
+) -> RecordedWorld:
+    systems = {}
+    for name, alone in scenario.scenarios.items():
+        fingerprint = summary["systems"][name].get("robot_fingerprint")
+        rows = _columns(trace[name])
+        systems[name] = Recorded(f"{run_name} ({name})", rows, alone, made, fingerprint, name)
+    return RecordedWorld(run_name, systems, trace.events, scenario)
+
+
+def _columns(trace: Any) -> dict[str, NDArray[np.float64]]:
+    return {name: np.asarray(getattr(trace, name), dtype=np.float64) for name in trace.columns()}

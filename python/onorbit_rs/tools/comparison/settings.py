@@ -7,7 +7,7 @@ from typing import Any
 
 from onorbit_rs.common.counting import count
 from onorbit_rs.output import with_absolute_paths
-from onorbit_rs.scenario import Scenario
+from onorbit_rs.scenario import Scenario, WorldScenario
 
 PARTS = (
     "epoch",
@@ -24,7 +24,7 @@ MOST = 6
 """Number of differences that are listed individually."""
 
 
-def differing_settings(a: Scenario, b: Scenario) -> list[str]:
+def differing_settings(a: Scenario | WorldScenario, b: Scenario | WorldScenario) -> list[str]:
     """Return a note for each compared setting that differs, and the number of those beyond :data:`MOST`."""
     first, second = (_compared_settings(scenario) for scenario in (a, b))
     found = [f"{where} differs: {_short(one)} and {_short(other)}"
@@ -33,11 +33,16 @@ def differing_settings(a: Scenario, b: Scenario) -> list[str]:
     return found if left <= 0 else [*found[:MOST], f"{left} more settings differ"]
 
 
-def _compared_settings(scenario: Scenario) -> dict[str, Any]:
+def _compared_settings(scenario: Scenario | WorldScenario) -> dict[str, Any]:
     resolved = with_absolute_paths(scenario)
     steps = resolved.get("simulation", {})
     settings = {name: resolved.get(name) for name in PARTS}
-    return settings | {name: steps.get(name) for name in ("time_step", "control_period", "integrator")}
+    settings |= {name: steps.get(name) for name in ("time_step", "control_period", "integrator")}
+    if "systems" not in resolved:
+        return settings
+    systems = {name: {part: own.get(part) for part in (*PARTS, "control_period")}
+               for name, own in resolved["systems"].items()}  # fmt: skip
+    return settings | {"systems": systems, "events": resolved.get("events")}
 
 
 def _differences(where: str, a: Any, b: Any) -> Iterator[tuple[str, Any, Any]]:

@@ -1,0 +1,164 @@
+"""Comparison of two runs of a world: each of its systems, and its events."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.common.printable import json_value
+from onorbit_rs.exceptions import CompareError
+from onorbit_rs.tools.comparison.robots import Comparison, compared_robots
+from onorbit_rs.tools.comparison.text import as_world_text
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import EventRecord
+    from onorbit_rs.tools.comparison.recorded import RecordedWorld
+
+
+@dataclass(frozen=True)
+class EventDifference:
+    """Difference of two runs in one quantity of an event."""
+
+    event: str
+    """Name of the event."""
+    quantity: str
+    unit: str
+    a: float | None
+    """Value in the first run, the magnitude of a vector; None if the event did not happen in it."""
+    b: float | None
+    difference: float
+    """Difference, of vectors the magnitude of it; infinite if the event happened in one run only."""
+    allowed: float
+    """The tolerance times the larger value, or times 1 in the unit if that is larger."""
+    time: float
+    """Time of the event in the run in which it is earlier, s."""
+
+    @property
+    def agrees(self) -> bool:
+        """True if the difference is allowed."""
+        return self.difference <= self.allowed
+
+
+@dataclass(frozen=True)
+class WorldComparison:
+    """Differences of run ``b`` of a world from run ``a``."""
+
+    a: str
+    b: str
+    tolerance: float
+    systems: Mapping[str, Comparison]
+    """Comparison of each system."""
+    events: tuple[EventDifference, ...]
+    """Differences of the events, five quantities each."""
+    notes: tuple[str, ...]
+    """Differing settings, and events that were not compared."""
+
+    @property
+    def agrees(self) -> bool:
+        """True if no quantity of a system or of an event exceeds the tolerance."""
+        return self.parts_at is None
+
+    @property
+    def parts_at(self) -> float | None:
+        """First time at which a quantity exceeds its tolerance, s; None if the runs agree."""
+        systems = [one.parts_at for one in self.systems.values() if one.parts_at is not None]
+        return min([*systems, *(event.time for event in self.events if not event.agrees)], default=None)
+
+    def __getitem__(self, name: str) -> Comparison:
+        """Return the comparison of a system."""
+        if name not in self.systems:
+            known = ", ".join(self.systems)
+            raise CompareError(
+                f"{name!r} is not a system of the runs; available: {known}", name=name, expected=known
+            )
+        return self.systems[name]
+
+    def __str__(self) -> str:
+        """Return the text that ``onorbit compare`` prints."""
+        return as_world_text(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data without the rows, as printed by ``onorbit compare --json``."""
+        names = ("event", "quantity", "unit", "a", "b", "difference", "allowed", "time", "agrees")
+        return {
+            "a": self.a,
+            "b": self.b,
+            "tolerance": self.tolerance,
+            "agrees": self.agrees,
+            "parts_at": self.parts_at,
+            "systems": {name: compared.as_dict() for name, compared in self.systems.items()},
+            "events": [{name: json_value(getattr(event, name)) for name in names} for event in self.events],
+            "notes": list(self.notes),
+        }
+
+
+def compared_worlds(
+    a: RecordedWorld, b: RecordedWorld, tolerance: float, settings: Sequence[str]
+) -> WorldComparison:
+    """Compare two runs of a world; ``settings`` are notes about differing settings.
+
+    Raises
+    ------
+    CompareError
+        If their systems have different names, or as for the runs of one robot.
+    """
+    if set(a.systems) != set(b.systems):
+        names = [", ".join(world.systems) for world in (a, b)]
+        raise CompareError(
+            f"{a.name} has the systems {names[0]} and {b.name} has {names[1]}; only runs with the same "
+            "systems can be compared",
+            name="systems", got=names[1], expected=names[0],
+        )  # fmt: skip
+    systems = {name: compared_robots(own, b.systems[name], tolerance) for name, own in a.systems.items()}
+    end = min(float(compared.time[-1]) for compared in systems.values())
+    events, notes = [], list(settings)
+    for name, pair in _pairs(a.events, b.events):
+        if min(record.time for record in pair if record is not None) > end:
+            notes.append(f"event {name!r} is not compared: it happened after the end of one of the runs")
+        else:
+            events += list(_differences(name, pair, tolerance))
+    return WorldComparison(a.name, b.name, tolerance, systems, tuple(events), tuple(notes))
+
+
+Pair = tuple["EventRecord | None", "EventRecord | None"]
+
+
+def _pairs(a: Sequence[EventRecord], b: Sequence[EventRecord]) -> Iterator[tuple[str, Pair]]:
+    """Yield the records of each event, in the order of the first run; an event happens once in a run."""
+    by_name = [{record.name: record for record in records} for records in (a, b)]
+    for name in dict.fromkeys([*by_name[0], *by_name[1]]):
+        yield name, (by_name[0].get(name), by_name[1].get(name))
+
+
+def _differences(name: str, pair: Pair, tolerance: float) -> Iterator[EventDifference]:
+    """Yield the differences of an event; only that of the time if it happened in one run only."""
+    first, second = pair
+    if first is None or second is None:
+        a, b = (None if record is None else record.time for record in pair)
+        at = b if a is None else a
+        assert at is not None  # it happened in one of the runs
+        yield EventDifference(name, "time", "s", a, b, math.inf, tolerance * max(1.0, at), at)
+        return
+    at = min(first.time, second.time)
+    values = [_quantities(record) for record in (first, second)]
+    for (quantity, unit, one), (_, _, other) in zip(*values, strict=True):
+        value_a, value_b = (float(v[0] if len(v) == 1 else np.linalg.norm(v)) for v in (one, other))
+        difference = float(np.linalg.norm(one - other))
+        allowed = tolerance * max(1.0, abs(value_a), abs(value_b))
+        yield EventDifference(name, quantity, unit, value_a, value_b, difference, allowed, at)
+
+
+def _quantities(record: EventRecord) -> list[tuple[str, str, Any]]:
+    """Return name, unit and value of the compared quantities, vectors in W."""
+    impulse = np.asarray(record.impulse)
+    return [
+        ("time", "s", np.array([record.time])),
+        ("impulse", "N s", impulse[:3]),
+        ("angular impulse", "N m s", impulse[3:]),
+        ("point", "m", np.asarray(record.point)),
+        ("energy lost", "J", np.array([record.energy_lost])),
+    ]
