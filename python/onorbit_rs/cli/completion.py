@@ -20,6 +20,11 @@ def robot_names(incomplete: str) -> list[str]:
     return [*_fitting(robots.names(), incomplete), *_files(incomplete, (".urdf", ".xacro"))]
 
 
+def robot_and_scenario_names(incomplete: str) -> list[str]:
+    """Return the bundled robots and scenarios, and their files."""
+    return list(dict.fromkeys([*robot_names(incomplete), *scenario_names(incomplete)]))
+
+
 def _fitting(names: list[str], incomplete: str) -> list[str]:
     return [name for name in names if name.startswith(incomplete)]
 

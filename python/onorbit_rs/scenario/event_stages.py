@@ -1,0 +1,120 @@
+"""Trees of connected systems after each event of a scenario, before it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from onorbit_rs.scenario.events import Event, split_path
+from onorbit_rs.scenario.world import WorldScenario
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Trees from an event on."""
+
+    event: str | None
+    """Name of the event; None at the start of the run."""
+    time: float | None
+    """Time, s; None if it is not known before the run."""
+    trees: tuple[tuple[str, ...], ...]
+    """Names of the systems of each tree, its root first."""
+    remark: str = ""
+    """Why the event changes no tree; otherwise empty."""
+
+
+@dataclass(frozen=True)
+class _Weld:
+    capture: str
+    by: str
+    of: str
+
+
+def stages(scenario: WorldScenario) -> list[Stage]:
+    """Return the start of the run, and the stages after its events in the order of :func:`expected_order`.
+
+    As in the engine, a tree keeps the root of the capturing system, and a part that is released has the
+    system of its frame as root, unless it contains the former root.
+    """
+    names = list(scenario.systems)
+    welds: list[_Weld] = []
+    roots: list[str] = []
+    found = [Stage(None, 0.0, _trees(names, welds, roots))]
+    for event, time in expected_order(scenario.events):
+        if time is not None and time > scenario.simulation.duration:
+            remark = "after the end of the run"
+        elif event.do.capture is not None:
+            remark = _capture(event, found[-1].trees, welds, roots)
+        else:
+            remark = _release(str(event.do.release), names, welds, roots)
+        found.append(Stage(event.name, time, _trees(names, welds, roots), remark))
+    return found
+
+
+def expected_order(events: Sequence[Event]) -> list[tuple[Event, float | None]]:
+    """Return the events with their times, in the order in which they are expected to happen.
+
+    The time is None for latches and commands, and for events that wait for them. These events are assumed
+    to happen in the order of declaration, after the event that they wait for.
+    """
+    by_name = {event.name: event for event in events}
+    times = {event.name: _time(event, by_name) for event in events}
+    waiting = list(events)
+    found: list[tuple[Event, float | None]] = []
+    while waiting:
+        known = [time for event in waiting if (time := times[event.name]) is not None]
+        placed = {event.name for event, _ in found}
+        ready = [event for event in waiting if event.when.after is None or event.when.after in placed]
+        due = [event for event in ready if times[event.name] in (None, min(known, default=None))]
+        waiting.remove(due[0])
+        found.append((due[0], times[due[0].name]))
+    return found
+
+
+def _time(event: Event, by_name: dict[str, Event]) -> float | None:
+    """Return the time of an event, s; None if it is not known before the run."""
+    if event.when.after is None:
+        return event.when.at
+    before = _time(by_name[event.when.after], by_name)
+    return None if before is None else before + event.when.delay
+
+
+def _capture(event: Event, trees: Sequence[Sequence[str]], welds: list[_Weld], roots: list[str]) -> str:
+    """Connect two systems; return why that is not possible, otherwise an empty text."""
+    by, of = (split_path(path)[0] for path in event.do.capture or ())
+    first, second = (next(tree for tree in trees if name in tree) for name in (by, of))
+    if first == second:
+        return f"stops the run: {by} and {of} are connected already"
+    welds.append(_Weld(event.name, by, of))
+    roots[:] = [root for root in roots if root not in (first[0], second[0])] + [first[0]]
+    return ""
+
+
+def _release(capture: str, names: Sequence[str], welds: list[_Weld], roots: list[str]) -> str:
+    """Separate two systems; return why nothing changes, otherwise an empty text."""
+    weld = next((weld for weld in welds if weld.capture == capture), None)
+    if weld is None:
+        return f"no effect: {capture} has not happened, or was released already"
+    welds.remove(weld)
+    for name in (weld.by, weld.of):
+        tree = next(tree for tree in _trees(names, welds, [*roots, name]) if name in tree)
+        if not set(tree) & set(roots):
+            roots.append(name)
+    return ""
+
+
+def _trees(names: Sequence[str], welds: Sequence[_Weld], roots: Sequence[str]) -> tuple[tuple[str, ...], ...]:
+    """Return the trees, in the order of the engine: those with a given root, then the others by system."""
+    placed: set[str] = set()
+    found = []
+    for root in (*roots, *names):
+        if root in placed:
+            continue
+        tree = [root]
+        for system in tree:  # grows while it is traversed
+            ends = ((weld.by, weld.of) if weld.by == system else (weld.of, weld.by) for weld in welds
+                    if system in (weld.by, weld.of))  # fmt: skip
+            tree += [far for _, far in ends if far not in tree]
+        placed.update(tree)
+        found.append(tuple(tree))
+    return tuple(found)
