@@ -124,12 +124,12 @@ def dynamics(urdf: str, values: str) -> str:
     return urdf.replace("<axis", f"<dynamics {values}/><axis")
 
 
-@pytest.mark.parametrize("quick", [trial._FAST, 1e9])
+@pytest.mark.parametrize("quick", [trial.FAST, 1e9])
 def test_stiff_dampers_use_the_adaptive_integrator(
     quick: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """This is detected before the first run, or after fixed steps fail."""
-    monkeypatch.setattr(trial, "_FAST", quick)
+    monkeypatch.setattr(trial, "FAST", quick)
     text, summary = drafted(dynamics(arm(SEVEN[:2], names="tool"), 'damping="200"'), tmp_path)
     assert "\n  integrator: dormand_prince " in text
     assert summary["certificate_passed"]

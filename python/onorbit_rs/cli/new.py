@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from onorbit_rs.cli.completion import robot_names
 from onorbit_rs.cli.figure_files import check_figure_file, save_portrait
 from onorbit_rs.cli.options import (
     ArgumentsOption,
@@ -26,14 +27,32 @@ from onorbit_rs.common.printable import shell_word
 from onorbit_rs.exceptions import InputError
 
 if TYPE_CHECKING:
-    from onorbit_rs.tools.new_scenario import Draft
+    from onorbit_rs.tools.new_scenario import CaptureDraft, Draft
 
 
 def new(
     robot: RobotArgument,
+    target: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[TARGET]",
+            help="A second craft, which the robot captures; a bundled name, a URDF or a xacro file.",
+            autocompletion=robot_names,
+            show_default=False,
+        ),
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Output file.")] = None,
     tool: Annotated[
-        str | None, typer.Option(metavar="FRAME", help="Frame to move; default: the most likely tool.")
+        str | None,
+        typer.Option(metavar="FRAME", help="Frame to move, or that captures; default: the most likely tool."),
+    ] = None,
+    target_frame: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FRAME",
+            help="Frame of the target to capture; only with a target; default: one that is named grapple, "
+            "handle, grasp, dock or berth, otherwise the base link.",
+        ),
     ] = None,
     bus: Annotated[
         str | None,
@@ -60,26 +79,39 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
     quiet: QuietOption = False,
 ) -> None:
-    """Write a commented scenario that moves a robot's arm.
+    """Write a commented scenario that moves a robot's arm, or captures TARGET with it.
 
     The scenario is simulated before it is written; without --out, it is printed. With --bus, the robot is
-    attached to a spacecraft from another file; --picture draws the result.
+    attached to a spacecraft from another file; --picture draws the result. With TARGET, the target
+    approaches the tool slowly, a latch captures it, and a spring separates both craft again.
     """
     given = reading_options(robot, packages, arguments, xacro, bus=bus)
     _check_options(out, picture, bus, at, prefix)
+    _check_target(target, target_frame)
     check_output_file(out, force=force)
     check_figure_file("--picture", picture, force=force)
     from onorbit_rs.common.progress import doing
+    from onorbit_rs.robots import is_file
     from onorbit_rs.robots.wording import COMMAND_LINE, worded
-    from onorbit_rs.tools.new_scenario import Source, draft
+    from onorbit_rs.tools.new_scenario import Source, draft, draft_capture
 
-    options = {"--tool": tool, "--bus": bus, "--at": at, "--prefix": prefix}
+    options = {
+        "--tool": tool, "--target-frame": target_frame, "--bus": bus, "--at": at, "--prefix": prefix,
+    }  # fmt: skip
     mounting = "".join(f" {option} {shell_word(value)}" for option, value in options.items() if value)
-    command = f"onorbit new {as_arguments(robot, packages, arguments, xacro)}{mounting}"
+    craft = as_arguments(robot, packages, arguments, xacro) + (f" {shell_word(target)}" if target else "")
+    command = f"onorbit new {craft}{mounting}"
     folder = out.absolute().parent if out else None
     with doing("trying motions", quiet=quiet), worded(COMMAND_LINE):
         source = Source(robot, **given, bus=bus, at=at, prefix=prefix)
-        result = draft(source, tool=tool, beside=folder, command=command)
+        result: Draft | CaptureDraft
+        if target is None:
+            result = draft(source, tool=tool, beside=folder, command=command)
+        else:
+            captured = Source(target, package_paths=packages if is_file(target) else None)
+            result = draft_capture(
+                source, captured, tool=tool, handle=target_frame, beside=folder, command=command
+            )
     save_portrait(
         picture, result.model, result.q, [frame for frame in (at, result.tool) if frame is not None]
     )
@@ -107,8 +139,21 @@ def _check_options(
         raise InputError("--at and --prefix apply only with a bus; add --bus ROBOT", name="bus", got=None)
 
 
-def _motion(result: Draft) -> str:
+def _check_target(target: str | None, frame: str | None) -> None:
+    """Raise InputError if the frame of the target is given without a target."""
+    if target is None and frame is not None:
+        raise InputError(
+            "--target-frame applies only with a target; write onorbit new ROBOT TARGET",
+            name="target_frame", got=frame,
+        )  # fmt: skip
+
+
+def _motion(result: Draft | CaptureDraft) -> str:
     """Describe the motion of a draft."""
+    from onorbit_rs.tools.new_scenario import CaptureDraft
+
+    if isinstance(result, CaptureDraft):
+        return f"chaser/{result.tool} captures target/{result.handle}"
     if result.joints:
         return f"{result.tool}, moved by {count(len(result.joints), 'joint', 'joints')}"
     return (

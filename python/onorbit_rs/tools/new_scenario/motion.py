@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Joint, Model
 
     Floats = NDArray[np.float64]
+    Weight = Callable[[Floats], Floats]
 
 _TRIES, _SEED = 512, 1
 _BENT = 1.2
@@ -32,11 +33,12 @@ _SPEED = 0.1
 """Average speed of the tool, m/s."""
 
 
-def home(model: Model, arm: Arm) -> dict[str, float]:
+def home(model: Model, arm: Arm, weight: Weight | None = None) -> dict[str, float]:
     """Return initial positions of the arm's joints, rad or m, rounded to 0.01.
 
     The neutral pose is used if its manipulability (that of the generalized Jacobian) is high enough,
-    otherwise the best of a number of random poses.
+    otherwise the best of a number of random poses. ``weight`` returns the factors by which the
+    manipulability of the configurations (batch, nq) is multiplied.
     """
     columns = [list(model.joint_names).index(name) for name in arm.joints]
     joints = [model.joints[column] for column in columns]
@@ -50,9 +52,18 @@ def home(model: Model, arm: Arm) -> dict[str, float]:
         :, :, columns
     ]
     rows = slice(0, 6 if len(columns) >= FULL_POSE_JOINTS else 3)
-    measure = manipulability(jacobian[:, rows])
+    measure = manipulability(jacobian[:, rows]) * (1.0 if weight is None else weight(q))
     best = 0 if measure[0] >= _GOOD_ENOUGH * measure.max() else int(np.argmax(measure))
     return dict(zip(arm.joints, poses[best].tolist(), strict=True))
+
+
+def start_positions(model: Model, arm: Arm | None, weight: Weight | None = None) -> dict[str, float]:
+    """Return the start positions of the arm's joints, see :func:`home`, and of joints that cannot be zero."""
+    pose = {} if arm is None else home(model, arm, weight)
+    for joint in model.joints:
+        if (arm is None or joint.name not in arm.joints) and at_rest(joint) != 0.0:
+            pose[joint.name] = float(f"{at_rest(joint):.3g}")
+    return pose
 
 
 def within(joint: Joint, value: float) -> float:

@@ -36,23 +36,19 @@ class Plan:
 
 def draft_text(plan: Plan, command: str) -> str:
     """Return YAML text that :func:`onorbit_rs.scenario.load` accepts."""
-    parts = (_head(plan, command), _ORBIT, _control(plan), _initial(plan), _simulation(plan))
+    parts = (_head(plan, command), ORBIT, _control(plan), _initial(plan), _simulation(plan))
     return "\n".join(part.strip("\n") + "\n" for part in parts if part)
 
 
 def _head(plan: Plan, command: str) -> str:
     what = _what(plan)
-    robot = (
-        _bus(plan.robot)
-        if isinstance(plan.robot, dict) and "bus" in plan.robot
-        else _line("robot", plan.robot, "a bundled name, or a URDF or xacro file relative to this file")
-    )
-    tool = _line("tool", plan.tool, "the frame that is recorded; 'onorbit info' lists all frames")
+    robot = robot_entry(plan.robot)
+    tool = keyed_line("tool", plan.tool, "the frame that is recorded; 'onorbit info' lists all frames")
     return f"""
-# Written by: {_one_line(command)}
+# Written by: {one_line(command)}
 # A free-floating robot in low Earth orbit {what}.
 # Numbers without a unit are in SI (m, kg, s, rad); with a unit: 400 km, 51.6 deg, 2 ms.
-name: {_flow(plan.name)}
+name: {flow(plan.name)}
 description: A free-floating robot in low Earth orbit {what}.
 
 {robot}{tool if plan.tool is not None else ""}
@@ -65,6 +61,13 @@ def _what(plan: Plan) -> str:
     return "holds its joints" if plan.others else "rotates freely"
 
 
+def robot_entry(robot: dict[str, Any] | str, indent: int = 0) -> str:
+    """Return the ``robot`` entry of a scenario or of a system."""
+    if isinstance(robot, dict) and "bus" in robot:
+        return textwrap.indent(_bus(robot), " " * indent)
+    return keyed_line("robot", robot, "a bundled name, or a URDF or xacro file relative to this file", indent)
+
+
 def _bus(robot: dict[str, Any]) -> str:
     """Return the ``robot`` entry of a bus with one arm."""
     (arm,) = robot["arms"]
@@ -75,17 +78,17 @@ def _bus(robot: dict[str, Any]) -> str:
         "xacro": "expand the file as xacro", "at": "a link or frame of the bus",
         "prefix": "prefix of the arm's links, joints and frames",
     }  # fmt: skip
-    lines = "".join(_line(key, value, comments[key], 6) for key, value in arm.items())
+    lines = "".join(keyed_line(key, value, comments[key], 6) for key, value in arm.items())
     return f"""\
 robot:                          # a bus with an arm; the base of the robot is that of the bus
-{_line("bus", robot["bus"], "a bundled name, or a URDF or xacro file relative to this file", 2)}\
+{keyed_line("bus", robot["bus"], "a bundled name, or a URDF or xacro file relative to this file", 2)}\
   arms:
     -{lines[5:]}\
       # pose: {{position: [0, 0, 10 cm], attitude: {{roll_pitch_yaw: [0, 90 deg, 0]}}}}   # in the frame 'at'
 """
 
 
-_ORBIT = """
+ORBIT = """
 orbit:                          # an orbit implies gravity, evaluated at the position of every link
   kind: kepler                  # or sgp4, numerical (uses all gravity below), custom_path, fixed_frame
   semi_major_axis: 6778 km      # 400 km above the equator
@@ -128,10 +131,12 @@ _FAILED = "All joints are held, since trial runs of arm motions failed"
 
 
 def _task_law(plan: Plan) -> str:
-    displacement = _line("displacement", plan.displacement, "m, axes of W: those of the base at the start", 8)
+    displacement = keyed_line(
+        "displacement", plan.displacement, "m, axes of W: those of the base at the start", 8
+    )
     return f"""\
     kind: computed_torque       # controls the pose of the tool with the generalized Jacobian
-    tool: {_flow(plan.tool)}
+    tool: {flow(plan.tool)}
     kp: 25                      # 1/s^2, gain of the pose error
     kd: 10                      # 1/s, gain of the velocity error; 2 sqrt(kp) is critical damping
     null_space_damping: 2       # 1/s, damps joint motion that does not move the tool
@@ -152,14 +157,14 @@ def _joint_law(plan: Plan) -> str:
     reference:
       kind: joint_waypoints
       points:                   # rad, or m for prismatic joints
-        - {_flow(plan.goal)}
+        - {flow(plan.goal)}
 {_slowed(plan, "times", f"[{plan.move_s:g} s]")}"""
 
 
 def _slowed(plan: Plan, key: str, value: str) -> str:
     """Return the entry for the duration of the motion."""
     entry = f"      {key}: {value}"
-    return _commented(entry, "long enough for the limits of the joints") if plan.is_slowed else f"{entry}\n"
+    return commented(entry, "long enough for the limits of the joints") if plan.is_slowed else f"{entry}\n"
 
 
 _HOLD = """\
@@ -178,7 +183,7 @@ def _initial(plan: Plan) -> str:
 initial:
   angular_velocity: [0.2 deg/s, 1 deg/s, 0.3 deg/s]   # of the base, body axes
 """
-    joints = "\n".join(f"    {_flow(name)}: {value:g}" for name, value in plan.home.items())
+    joints = "\n".join(f"    {flow(name)}: {value:g}" for name, value in plan.home.items())
     return f"""
 initial:                        # the base is at rest at the origin of W, which follows the orbit
   joints:                       # rad, or m for prismatic joints; others are zero
@@ -189,8 +194,8 @@ initial:                        # the base is at rest at the origin of W, which 
 def _simulation(plan: Plan) -> str:
     return f"""
 simulation:
-{_line("duration", f"{plan.duration_s:g} s", "simulated", 2)}\
-{_line("time_step", f"{1e3 * plan.time_step_s:g} ms", "of the integrator and the controllers", 2)}\
+{keyed_line("duration", f"{plan.duration_s:g} s", "simulated", 2)}\
+{keyed_line("time_step", f"{1e3 * plan.time_step_s:g} ms", "of the integrator and the controllers", 2)}\
 {_INTEGRATORS[plan.integrator]}\
   # record_wrenches: true       # force and torque of every effect on every link
 """
@@ -206,7 +211,7 @@ def _wrapped(names: Sequence[str], indent: int = 13) -> str:
     """Return a list of names, wrapped over several lines."""
     lines, line = [], ""
     for name in names:
-        word = f"{_flow(name)}, "
+        word = f"{flow(name)}, "
         if line and len(line) + len(word) > 100 - indent:
             lines.append(line.rstrip())
             line = ""
@@ -214,16 +219,17 @@ def _wrapped(names: Sequence[str], indent: int = 13) -> str:
     return "[" + ("\n" + " " * indent).join([*lines, line.rstrip(", ")]) + "]"
 
 
-def _line(key: str, value: object, comment: str, indent: int = 0) -> str:
+def keyed_line(key: str, value: object, comment: str, indent: int = 0) -> str:
     """Return an entry with its comment, aligned with the other comments."""
-    return _commented(f"{' ' * indent}{key}: {_flow(value)}", comment)
+    return commented(f"{' ' * indent}{key}: {flow(value)}", comment)
 
 
-def _commented(entry: str, comment: str) -> str:
+def commented(entry: str, comment: str) -> str:
+    """Return a line of YAML with a comment, aligned with the other comments."""
     return f"{entry:<31} # {comment}\n"
 
 
-def _flow(value: object) -> str:
+def flow(value: object) -> str:
     """Return a value as YAML on one line: JSON, without quotes for words and numbers with units."""
     is_plain = isinstance(value, str) and _PLAIN.fullmatch(value) and value.lower() not in _NO_WORDS
     return str(value) if is_plain else json_text(value)
@@ -233,5 +239,6 @@ _PLAIN = re.compile(r"(\./)?[A-Za-z][\w./-]*|[\d.]+ [a-z]+")
 _NO_WORDS = ("true", "false", "null", "yes", "no", "on", "off", "y", "n")
 
 
-def _one_line(text: str) -> str:
+def one_line(text: str) -> str:
+    """Return a text without line breaks."""
     return " ".join(text.split())

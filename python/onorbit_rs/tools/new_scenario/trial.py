@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -36,7 +36,7 @@ _ATTEMPTS = 4
 """Largest number of runs of one motion, each slower than the previous one."""
 _INERTIAL = 0.9
 """Efforts are not inertial if a slower run leaves them above this fraction of their previous value."""
-_FAST = 500.0
+FAST = 500.0
 """Decay rate, 1/s, for which a fixed step of 1 ms is half a time constant."""
 _FIRST_ESTIMATE_S, _OVERTIME = 2.0, 1.2
 """After ``_FIRST_ESTIMATE_S``, a run is stopped if it would take ``_OVERTIME`` times the remaining time."""
@@ -54,7 +54,7 @@ class Trials:
         """Start with fixed steps, unless dampers are too fast for them."""
         self._model = model
         self._damped, self._decay = fastest_damper(model)
-        self._integrator = _ADAPTIVE if self._decay > _FAST else _FIXED
+        self._integrator = _ADAPTIVE if self._decay > FAST else _FIXED
         self._failures: Counter[str] = Counter()
         self._is_late = False
 
@@ -76,7 +76,7 @@ class Trials:
     def failures(self) -> list[str]:
         """Return the most frequent reasons for failures, and a damper too fast for motion, if any."""
         reasons = [f"{what} ({count(times, 'run', 'runs')})" for what, times in self._failures.most_common(4)]
-        if self._decay > _FAST:
+        if self._decay > FAST:
             reasons.append(f"the damper of {self._damped} stops it within {1.0 / self._decay:.1g} s")
         return reasons
 
@@ -113,7 +113,7 @@ class Trials:
         plan = replace(plan, integrator=self._integrator)
         try:
             trace = _trace(plan, ends)
-        except _OverTimeError:
+        except OverTimeError:
             self._is_late = True  # later plans of this kind would also take too long
             self._failures["too slow to simulate"] += 1
             return None
@@ -141,22 +141,27 @@ class Trials:
         return bool(is_near)
 
 
-class _OverTimeError(Exception):
+class OverTimeError(Exception):
     """The wall-clock time limit of a run was exceeded."""
 
 
 def _trace(plan: Plan, ends: float) -> Trace:
-    """Return the trace of a plan; raise ``_OverTimeError`` if the run would end after ``ends``."""
+    """Return the trace of a plan; raise ``OverTimeError`` if the run would end after ``ends``."""
+    built = build(Scenario(**yaml.safe_load(draft_text(plan, "trial"))))
+    return built.simulation.run(plan.duration_s, progress=clock(ends))
+
+
+def clock(ends: float) -> Callable[[float, float], None]:
+    """Return the progress callback that raises ``OverTimeError`` if the run would end after ``ends``."""
     began = perf_counter()
 
-    def check_clock(reached_s: float, total_s: float) -> None:
+    def check(reached_s: float, total_s: float) -> None:
         now = perf_counter()
         is_slow = (now - began) * total_s > _OVERTIME * (ends - began) * reached_s
         if now >= ends or (is_slow and now - began > _FIRST_ESTIMATE_S):
-            raise _OverTimeError
+            raise OverTimeError
 
-    built = build(Scenario(**yaml.safe_load(draft_text(plan, "trial"))))
-    return built.simulation.run(plan.duration_s, progress=check_clock)
+    return check
 
 
 def _rotation(trace: Trace) -> float:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from onorbit_rs.exceptions import FrameError, ScenarioError
 from onorbit_rs.tools.new_scenario.arm import FULL_POSE_JOINTS, Arm, find_arm
-from onorbit_rs.tools.new_scenario.motion import at_rest, configuration, home, joint_goals, lines
+from onorbit_rs.tools.new_scenario.motion import configuration, joint_goals, lines, start_positions
 from onorbit_rs.tools.new_scenario.source import Source
 from onorbit_rs.tools.new_scenario.text import Plan, draft_text
 from onorbit_rs.tools.new_scenario.trial import Trials
@@ -114,7 +114,7 @@ def _kinds(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Iterable[Plan]
     if arm is None:
         yield [replace(plan, duration_s=60.0, time_step_s=1e-2)]
         return
-    pose = _start(model, arm)
+    pose = start_positions(model, arm)
     others = [name for name in model.joint_names if name not in arm.joints]
     plan = replace(plan, tool=arm.tool, arm=arm.joints, others=others, home=pose)
     if len(arm.joints) >= FULL_POSE_JOINTS:
@@ -126,12 +126,3 @@ def _kinds(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Iterable[Plan]
     yield (replace(plan, goal=goal) for goal in joint_goals(model, here, (0.5, 0.2, 0.05)))
     yield (replace(plan, goal=goal, move_s=1.0, duration_s=1.5) for goal in joint_goals(model, here, (0.02,)))
     yield [replace(plan, arm=[], others=list(model.joint_names), duration_s=1.0)]
-
-
-def _start(model: Model, arm: Arm) -> dict[str, float]:
-    """Return the start positions of the arm's joints, and of other joints that cannot be zero."""
-    pose = home(model, arm)
-    for joint in model.joints:
-        if joint.name not in arm.joints and at_rest(joint) != 0.0:
-            pose[joint.name] = float(f"{at_rest(joint):.3g}")
-    return pose
