@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from commands import onorbit, refusal
+from test_scenario_world import TEXT
 
 import onorbit_rs as oo
 from onorbit_rs.scenario import WorldScenario, load
@@ -99,21 +100,22 @@ def test_a_capture_of_what_is_connected_is_pointed_out() -> None:
     assert found[-1].remark == "stops the run: b and a are connected already"
 
 
-def test_the_command_shows_systems_events_and_trees() -> None:
-    done = onorbit("info", "capture_tumbling_target")
+def test_the_command_shows_systems_events_and_trees(tmp_path: Path) -> None:
+    (tmp_path / "pair.yaml").write_text(TEXT)
+    done = onorbit("info", "pair.yaml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     rows = [line.split() for line in done.stdout.splitlines()]
-    assert "capture_tumbling_target: 2 systems, 2 events" in done.stdout
-    assert ["servicer", "servicer", "1088", "7", "joint_pid"] in rows
+    assert "pair: 2 systems, 2 events" in done.stdout
+    assert ["chaser", "servicer", "1088", "7", "joint_computed_torque"] in rows
     assert ["target", "target_satellite", "500", "0", "-"] in rows
-    assert "latch: within 10 mm and 2 deg, slower than 50 mm/s and 1 deg/s, held for 0.1 s" in done.stdout
-    assert "servicer/tool captures target/handle" in done.stdout
-    assert "160 s after grasp" in done.stdout and "releases grasp with 4 N s and 0.378 N m s" in done.stdout
-    assert ["the", "start", "0", "servicer", "7", "1088"] in rows
-    assert ["grasp", "-", "servicer", "+", "target", "7", "1588"] in rows
-    assert ["let_go", "-", "servicer", "7", "1088"] in rows
+    assert "latch: within 50 mm and 2 deg, slower than 150 mm/s and 5 deg/s, held for 0.1 s" in done.stdout
+    assert "chaser/tool captures target/handle" in done.stdout
+    assert "0.2 s after grasp" in done.stdout and "releases grasp with 2 N s" in done.stdout
+    assert ["the", "start", "0", "chaser", "7", "1088"] in rows
+    assert ["grasp", "-", "chaser", "+", "target", "7", "1588"] in rows
+    assert ["let_go", "-", "chaser", "7", "1088"] in rows
     assert "order of declaration" in done.stdout
-    assert done.stdout.endswith("next: onorbit run capture_tumbling_target --out DIR\n")
+    assert done.stdout.endswith("next: onorbit run pair.yaml --out DIR\n")
 
 
 def test_the_command_prints_json() -> None:

@@ -73,14 +73,14 @@ def test_a_world_is_pickled_with_its_systems_and_events() -> None:
         oo.System("a", torso, torso.neutral(), np.full(torso.nv, 0.01), tool="tool", control_period=0.01,
                   enforce_limits=True, restitution=0.5, reference_start_tolerance=[0.1, 0.2]),
         oo.System("b", target, [5.0, *target.neutral()[1:]], [0.1, 0, 0, 0, 0, 0.1],
-                  surfaces=oo.Cannonball(4.0, 2.2), knows=["a"]),
+                  surfaces=oo.Cannonball(4.0), knows=["a"]),
     ]  # fmt: skip
     events: list[oo.Capture | oo.Release] = [
         oo.Capture("late", "a/tool", "b/handle", within=[1.0, 2.0], slower_than=[3.0, 4.0], held_for=0.5),
-        oo.Capture("soon", "a/tool", "b/handle", at=0.05, seat=0.02, pose=5.0 * np.eye(4) - np.diag([4, 4, 4, 4])),
+        oo.Capture("soon", "a/tool", "b/handle", at=0.05),
         oo.Release("off", "soon", after="soon", delay=0.1, impulse=[1e-3, 2e-3, 3e-3, 4e-5, 5e-5, 6e-5]),
         oo.Capture("told", "a/tool", "b/handle", on_command=True),
-        oo.Capture("any", "a/tool", "b/handle", within=[0.1, 0.1]),
+        oo.Capture("any", "a/tool", "b/handle", within=[0.1, 0.1], seat=2.0),
     ]
     here = oo.World(
         systems, orbit=oo.Kepler(semi_major_axis=7e6), environment=[oo.GravityGradient()], events=events[1:3],

@@ -43,7 +43,7 @@ fn simulation() -> Simulation {
         Event {
             name: "grasp".into(),
             when: When::Latch(envelope),
-            action: Action::Capture { by: grip(0), of: grip(2) },
+            action: Action::Capture { by: grip(0), of: grip(2), seat: None },
         },
         Event {
             name: "let_go".into(),

@@ -22,7 +22,7 @@ fn three_spheres() -> Simulation {
     };
     let base = |system: usize| FrameIndex { system, frame: 0 };
     let mut simulation = Simulation::of((0..3).map(system).collect());
-    let action = Action::Capture { by: base(1), of: base(2) };
+    let action = Action::Capture { by: base(1), of: base(2), seat: None };
     simulation.events = vec![Event { name: "grasp".into(), when: When::OnCommand, action }];
     simulation.time_step = 0.1;
     simulation

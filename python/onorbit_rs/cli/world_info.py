@@ -127,7 +127,8 @@ def _what(event: Event) -> str:
     """Return the action of an event in words."""
     if event.do.capture is not None:
         by, of = event.do.capture
-        return f"{by} captures {of}"
+        seated = "" if event.do.seat is None else f", and seats it in {event.do.seat:g} s"
+        return f"{by} captures {of}{seated}"
     words = f"releases {event.do.release}"
     if event.do.impulse is None:
         return words
