@@ -68,7 +68,7 @@ fn force(
 ) -> Vector3<f64> {
     let velocity = Vector3::from(VELOCITY);
     let state = OrbitState { position: at.1, velocity, acceleration: Vector3::zeros() };
-    let reference = Some(Reference { state, gravity: Some(gravity), in_free_fall: false });
+    let reference = Some(Reference { state: &state, gravity: Some(gravity), in_free_fall: false });
     let (mut wrenches, bodies) = (Wrenches::new(&[1]), Bodies::from_iter([b]));
     let act = |scene: &Scene<'_>| DifferentialGravity { gravity_mode }.add_wrenches(scene, &mut wrenches);
     Scene::with((at.0, at.0 + step), at.0, &bodies, reference, None, act).unwrap();
@@ -166,7 +166,7 @@ fn a_gradient_beyond_the_expansion_is_computed_once() {
     let gravity = Gravity::point_mass(3.986004415e14).and(Arc::clone(&moon) as Arc<dyn ThirdBody>);
     let (origin, zero) = (vector(&fixture()["origin"]), Vector3::zeros());
     let state = OrbitState { position: origin, velocity: zero, acceleration: zero };
-    let reference = Some(Reference { state, gravity: Some(&gravity), in_free_fall: true });
+    let reference = Some(Reference { state: &state, gravity: Some(&gravity), in_free_fall: true });
     let asked = |offset: f64| {
         let (mut wrenches, bodies) = (Wrenches::new(&[1]), Bodies::from_iter([body(Vector3::x() * offset)]));
         let before = moon.0.load(Ordering::Relaxed);

@@ -1,7 +1,7 @@
 //! Compiles connected systems to trees: one model for the systems that welds connect, rooted at one of them.
 
 use super::event::{Seating, Weld};
-use super::seating::{GivenJoint, Path};
+use super::seating::{Chain, GivenJoint};
 use crate::model::{Model, ModelError, Mount};
 use crate::reference::TimeLaw;
 use crate::spatial::{Mat3, Quat, Vec3};
@@ -68,8 +68,8 @@ pub fn assemble(models: &[Model], welds: &[Weld], roots: &[usize]) -> Result<Vec
                 is_placed[far.system] = true;
                 order.push(far.system);
                 let name = |system: usize, frame: usize| models[system].frames()[frame].name.as_str();
-                let Path { joints, travels, pose } =
-                    weld.path(&format!("capture {}", weld.capture), is_reversed);
+                let Chain { joints, travels, pose } =
+                    weld.chain(&format!("capture {}", weld.capture), is_reversed);
                 if let Some(seating) = weld.seating {
                     let names = joints.iter().map(|joint| joint.name.clone());
                     moving.extend(names.zip(travels).map(|(name, travel)| (name, travel, seating)));

@@ -31,7 +31,7 @@ impl GivenJoint {
 }
 
 /// Connection that a weld makes in a tree: moving joints, the travel of each, and the constant pose behind them.
-pub(super) struct Path {
+pub(super) struct Chain {
     pub(super) joints: Vec<Joint>,
     pub(super) travels: Vec<f64>,
     pub(super) pose: Isometry3<f64>,
@@ -47,7 +47,7 @@ impl Weld {
     /// direction. `name` is the prefix of the names of its joints.
     ///
     /// `X(s) = (p₀ + s d, exp(s θ n) R₀)`, with `d = p₁ − p₀` and `exp(θ n) = R₁ R₀ᵀ`.
-    pub(super) fn path(&self, name: &str, is_reversed: bool) -> Path {
+    pub(super) fn chain(&self, name: &str, is_reversed: bool) -> Chain {
         let start = self.pose.isometry();
         let rotation = |turn| Isometry3::from_parts(Translation3::identity(), turn);
         let (mut joints, mut travels) = (Vec::new(), Vec::new());
@@ -77,7 +77,7 @@ impl Weld {
             Some(first) => first.origin = origin,
             None => pose = origin * pose,
         }
-        Path { joints, travels, pose }
+        Chain { joints, travels, pose }
     }
 }
 

@@ -28,6 +28,7 @@ from onorbit_rs.tools.validation import (
     relative,
     robots,
     rotation,
+    seating,
     secular,
     sgp4,
     worlds,
@@ -40,7 +41,7 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, capture, worlds, order, against_pinocchio, against_mujoco, against_sgp4, against_spart,
+        conservation, capture, seating, worlds, order, against_pinocchio, against_mujoco, against_sgp4, against_spart,
     )
     for case in module.CASES
 )  # fmt: skip
