@@ -24,7 +24,7 @@ ARM = robots.path("humanoid_torso").read_text()
 @pytest.fixture(autouse=True)
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
-    monkeypatch.setattr("onorbit_rs.report.write._pictures", lambda *_: [])
+    monkeypatch.setattr("onorbit_rs.report.write._pictures", lambda *_, **__: [])
 
 
 def scenario(robot: Path) -> dict[str, Any]:

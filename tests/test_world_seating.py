@@ -150,3 +150,39 @@ def test_pieces_and_checkpoints_during_the_seating_have_the_same_bits():
 def test_bad_seating_is_refused(arguments: dict[str, Any], message: str):
     with pytest.raises(oo.OnOrbitError, match=message):
         run(moving(), [oo.Capture("grasp", "a/base", "b/base", at=0.0, **arguments)], 1.0)
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5])
+def test_a_joint_that_reaches_its_stop_during_the_seating_keeps_the_energy_balance(restitution: float):
+    builder = oo.ModelBuilder("a", base="base", mass=80, inertia=np.diag([8.0, 9, 10]))
+    builder.add_link(
+        "slider", parent="base", joint="slide", kind="prismatic", axis=[1, 0, 0],
+        mass=4.0, inertia=0.1 * np.eye(3), lower=-0.02, upper=0.05,
+    )  # fmt: skip
+    model, target = builder.build(), oo.Model.rigid_body(40.0, np.diag([3.0, 4, 5]))
+    q = target.neutral()
+    q[0] = 1.0
+    systems = [
+        oo.System(
+            "a", model, model.neutral(), [0] * 6 + [0.02], enforce_limits=True, restitution=restitution
+        ),
+        oo.System("b", target, q, [-0.01, 0, 0, 0, 0, 0]),
+    ]
+    events = [oo.Capture("g", "a/slider", "b/base", at=0.5, seat=2.0, pose=pose([0, 0, 0], [0.5, 0, 0]))]
+    trace = oo.Simulation(oo.World(systems, events=events), time_step=1e-3).run(4.0)
+    assert trace["a"].q[:, 7].max() == pytest.approx(0.05, abs=1e-9)
+    assert [check for check in trace.certificate() if "energy" in check[0] and not check[3]] == []
+
+
+@pytest.mark.parametrize("steps", [0.01, 1, 5, 20])
+def test_a_seating_of_few_steps_is_resolved(steps: float):
+    """The engine takes shorter steps during a short motion."""
+    seat, step = steps * 0.01, 0.01
+    capture = oo.Capture("grasp", "a/base", "b/base", at=0.1, seat=seat, pose=pose([0.3, 0.1, 0], [1.2, 0, 0]))
+    trace = oo.Simulation(oo.World(moving(), events=[capture]), time_step=step).run(0.5)
+    assert [check for check in trace.certificate() if not check[3]] == []
+
+
+def test_a_seating_below_the_resolution_of_the_schedule_is_refused():
+    with pytest.raises(oo.exceptions.WorldError, match="a thousandth of time_step"):
+        run(moving(), [oo.Capture("grasp", "a/base", "b/base", at=0.0, seat=1e-6)], 1.0)

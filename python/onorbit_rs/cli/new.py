@@ -79,7 +79,7 @@ def new(
     force: Annotated[bool, typer.Option("--force", help="Replace existing files.")] = False,
     quiet: QuietOption = False,
 ) -> None:
-    """Write a commented scenario that moves a robot's arm, or captures TARGET with it.
+    """Write a commented scenario that moves an arm or captures TARGET.
 
     The scenario is simulated before it is written; without --out, it is printed. With --bus, the robot is
     attached to a spacecraft from another file; --picture draws the result. With TARGET, the target

@@ -8,7 +8,7 @@ use super::state_range::{UNIT_NORM, attitude_norm, check_range};
 use crate::control::check_controls;
 use crate::environment::BodyIndex;
 use crate::model::{BASE_NQ, Model};
-use crate::world::{System, check_events, check_names};
+use crate::world::{Action, Event, Seat, System, WorldError, check_events, check_names};
 
 /// Range of accepted time steps, s; a value outside this range is probably given in a wrong unit.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
@@ -56,6 +56,7 @@ impl Simulation {
         }
         check_names(&self.systems)?;
         check_events(&self.systems, &self.events)?;
+        check_seats(&self.events, self.time_step)?;
         if self.engine.is_some() && self.systems.len() > 1 {
             return Err(SimulationError::EngineOfWorld);
         }
@@ -96,6 +97,19 @@ impl Simulation {
         let body = &model.body_frame(body).name;
         if self.systems.len() == 1 { body.clone() } else { format!("{name}/{body}") }
     }
+}
+
+/// Checks that the motions to nominal poses are long enough for the resolution of the schedule.
+fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> {
+    for Event { name, action, .. } in events {
+        let Action::Capture { seat: Some(Seat { duration, .. }), .. } = action else { continue };
+        if *duration < 1e-3 * time_step {
+            let (event, what, unit) = (name.clone(), "the time of seating", "s");
+            let expected = "at least a thousandth of time_step";
+            return Err(WorldError::Number { event, what, value: *duration, unit, expected }.into());
+        }
+    }
+    Ok(())
 }
 
 /// Checks the controls and the reference of a system.

@@ -25,7 +25,7 @@ use super::tree_state::TreeState;
 use crate::earth::Earth;
 use crate::reference::MovingFrame;
 use crate::spatial::Scalar;
-use crate::world::{FrameIndex, Layout, Weld};
+use crate::world::{FrameIndex, Layout};
 use std::sync::Arc;
 
 /// State of a run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at
@@ -137,8 +137,10 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Passes the events that have happened to the controllers, and the times at which others are due to the schedule.
     pub(super) fn events_changed(&mut self) {
-        let seated = self.connections.active.welds.iter().filter_map(Weld::seated_at);
-        self.schedule.set_due(self.events.due_times().into_iter().chain(seated).collect());
+        let step = self.schedule.time_step();
+        let seatings = self.connections.active.welds.iter().filter_map(|weld| weld.seating);
+        let seatings = seatings.flat_map(|seating| seating.cuts(step));
+        self.schedule.set_due(self.events.due_times().into_iter().chain(seatings).collect());
         let happened = self.events.happened();
         self.systems.iter_mut().for_each(|run| run.controllers.set.set_events(&happened));
     }

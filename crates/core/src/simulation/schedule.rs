@@ -88,6 +88,12 @@ impl Schedule {
         self.due = due;
     }
 
+    /// Returns the first instant of an event between `t` and `end`, s, or `end` if there is none.
+    pub(super) fn first_due(&self, t: f64, end: f64) -> f64 {
+        let is_between = |due: &f64| *due > t + self.tolerance() && *due < end - self.tolerance();
+        self.due.iter().copied().filter(is_between).fold(end, f64::min)
+    }
+
     /// Returns the current cut, the instant at which the current step begins, s.
     pub(super) fn now(&self) -> f64 {
         self.at.now

@@ -24,7 +24,7 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     fn order_of_execution(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
-        self.begin(interval, end)?;
+        let end = self.begin(interval, end)?;
         // 7 row at the start of the step
         let is_row = self.is_row_due(interval);
         self.has_event = false;
@@ -39,8 +39,9 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Computes kinematics, impacts, loads, controllers and modes at the start of a step in `interval` that is to end
-    /// at `end`; also used for the last row, which no step follows.
-    pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
+    /// at `end`; also used for the last row, which no step follows. Returns the end of the step, s, which is earlier if an
+    /// event has made a cut within the interval.
+    pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<f64, SimulationError> {
         let t = interval.start;
         // 1 kinematics, and the base twist projected onto the momentum
         self.state.set_clocks(t);
@@ -51,6 +52,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.accuracy.end_step(t, &self.state, &self.equations);
         // 2 events: captures and releases
         self.happen(t, (t, end))?;
+        let end = self.schedule.first_due(t, end);
         // 3 impacts of joints at their stops
         self.impacts(t, (t, end))?;
         if self.has_controls() {
@@ -62,7 +64,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.mover.solve_modes(&mut self.equations, &self.state);
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
         members.parts.iter_mut().for_each(|part| part.take_modes(&trees[part.tree]));
-        Ok(())
+        Ok(end)
     }
 
     /// Computes the loads and updates the controllers that are due. Controllers that compensate the environment are

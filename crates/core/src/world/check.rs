@@ -13,6 +13,9 @@ const RESERVED: [&str; 4] = ["world", "lvlh", "base", "path"];
 /// Largest difference from 1 of the norm of a quaternion.
 const UNIT_NORM: f64 = 1e-9;
 
+/// Longest motion to a nominal pose, s.
+const LONGEST: f64 = 1e9;
+
 /// Checks the names of the systems of a world. A single system may have any name.
 ///
 /// # Errors
@@ -113,8 +116,8 @@ fn check_seat(event: &Event, seat: &Seat) -> Result<(), WorldError> {
     let wrong = |what, value, unit, expected| {
         Err(WorldError::Number { event: event.name.clone(), what, value, unit, expected })
     };
-    if TimeLaw::quintic(seat.duration).is_err() {
-        return wrong("the time of seating", seat.duration, "s", "positive, at least 1e-9 s, and finite");
+    if TimeLaw::quintic(seat.duration).is_err() || seat.duration > LONGEST {
+        return wrong("the time of seating", seat.duration, "s", "from 1e-12 s to 1e9 s");
     }
     let RigidPose { rotation, position } = &seat.pose;
     if let Some(value) = position.iter().copied().find(|x| !x.is_finite()) {

@@ -4,7 +4,7 @@
 //! The captured frame moves on a straight line and turns about one axis, both with the same time law. In the tree these
 //! are a prismatic and a revolute joint whose positions are given functions of time.
 
-use super::event::{RigidPose, Weld};
+use super::event::{RigidPose, Seating, Weld};
 use crate::model::{Joint, JointKind};
 use crate::reference::TimeLaw;
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
@@ -27,6 +27,19 @@ impl GivenJoint {
     pub fn at(&self, t: f64) -> [f64; 3] {
         let (s, rate, acceleration) = self.law.at(t - self.start);
         [s, rate, acceleration].map(|x| x * self.travel)
+    }
+}
+
+/// Number of steps over which a motion must extend at least, so that a fixed-step integrator resolves it.
+const STEPS: usize = 64;
+
+impl Seating {
+    /// Returns the times at which steps must end, s: the end of the motion and, if `time_step` (s) is long against it,
+    /// times at equal distances within it.
+    pub fn cuts(&self, time_step: f64) -> impl Iterator<Item = f64> + use<> {
+        let Self { start, duration, .. } = *self;
+        let parts = if duration < STEPS as f64 * time_step { STEPS } else { 1 };
+        (1..=parts).map(move |part| start + duration * (part as f64 / parts as f64))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Impacts of joints on the stops at their position limits.
 
-use crate::dynamics::locked_dynamics_recursion;
+use crate::dynamics::{kinetic_energy, locked_dynamics_recursion};
 use crate::model::{BASE_NQ, BASE_NV};
 use crate::simulation::tree::Tree;
 use crate::simulation::tree_state::TreeState;
@@ -26,6 +26,7 @@ impl<S: Real> Tree<'_, S> {
         for round in 0..4 * n + 4 {
             let Some(j) = self.first_impact(state) else { break };
             let rate = state.v[BASE_NV + j].lane(0);
+            let before = self.kinetic_energy(state);
             let e = if round < 2 * n && !is_endless { self.modes.restitution[j] } else { 0.0 };
             let response = self.impulse_response(j, -rate.signum(), state);
             let impulse = -(1.0 + e) * rate / response;
@@ -34,13 +35,20 @@ impl<S: Real> Tree<'_, S> {
             }
             state.v[BASE_NV + j] = S::of(-e * rate);
             let lost = S::of(-0.5 * (1.0 - e) * impulse * rate);
-            state.work += -lost;
             state.dissipated += lost;
             if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {
                 state.shares[share] += lost;
             }
             self.project_momentum(state);
+            // the drives of joints with a given motion work too while they keep their rates
+            state.work +=
+                if self.modes.given().is_empty() { -lost } else { self.kinetic_energy(state) - before };
         }
+    }
+
+    /// Returns the kinetic energy of `state`, whose kinematics are in `data`, J.
+    fn kinetic_energy(&self, state: &TreeState<S>) -> S {
+        kinetic_energy(&self.model, &self.data, &state.v)
     }
 
     /// Writes the change of velocity for a unit impulse at joint `j` to `scratch`; returns `(M⁻¹)_jj`, the change of
