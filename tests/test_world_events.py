@@ -296,3 +296,43 @@ def test_a_run_in_pieces_with_resuming_between_chained_captures_has_the_same_bit
         )
     records = [[event.energy_lost for event in trace.events] for trace in (whole, pieces)]
     assert records[0] == records[1] and len(records[0]) == 6
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.05])
+@pytest.mark.parametrize("time", [0.5, 0.501, 0.77])
+def test_pieces_that_end_near_an_event_have_the_bits_of_one_run(time: float, friction: float):
+    """A trial step past the event leaves the torques that were held before it."""
+
+    def simulation() -> Any:
+        builder = oo.ModelBuilder("target", base="bus", mass=200, inertia=np.diag([40.0, 60, 50]))
+        builder.add_link(
+            "panel", parent="bus", joint="hinge", axis=[0, 1, 0], xyz=[0, 0.8, 0],
+            mass=20, com=[0.2, 0.5, 0], inertia=np.diag([4.0, 1, 5]), friction=friction,
+        )  # fmt: skip
+        target, craft = builder.build(), oo.Model.rigid_body(50.0, np.diag([5.0, 6, 7]))
+        q = target.neutral()
+        q[0] = 2
+        path = oo.JointWaypoints([[0.0], [0.2]], times=[0, 3])
+        control = oo.Control(oo.JointComputedTorque(kp=5.0, kd=3.0), reference=path, name="turn")
+        pid = oo.Control(oo.JointPid(p=1.0, i=0.5, d=2.0), reference=path, name="pid", after="g")
+        systems = [
+            oo.System("a", craft, craft.neutral(), [0.05, 0, 0, 0.01, 0.02, 0]),
+            oo.System("t", target, q, [0, 0, 0, 0.02, 0.03, 0.05, 0], controller=[control, pid]),
+        ]
+        events = [
+            oo.Capture("g", "a/base", "t/panel", at=0.5),
+            oo.Release("r", "g", at=0.7696, impulse=[1, 0, 0, 0, 0.1, 0]),
+        ]
+        return oo.Simulation(oo.World(systems, events=events), time_step=4e-3)
+
+    whole, stepper = simulation().run(1.0), simulation().start(duration=1.0)
+    stepper.advance_to(time)
+    assert stepper["t"].q.shape == (8,)
+    resumed = simulation().start(resume=stepper.checkpoint())
+    for run in (stepper, resumed):
+        run.advance_to(1.0)
+        for name in ("a", "t"):
+            got, expected = run.trace()[name], whole[name]
+            rows = len(expected.time) - len(got.time)
+            for column in ("q", "v", "tau", "acceleration", "work"):
+                np.testing.assert_array_equal(getattr(got, column), getattr(expected, column)[rows:])

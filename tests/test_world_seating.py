@@ -178,7 +178,8 @@ def test_a_joint_that_reaches_its_stop_during_the_seating_keeps_the_energy_balan
 def test_a_seating_of_few_steps_is_resolved(steps: float):
     """The engine takes shorter steps during a short motion."""
     seat, step = steps * 0.01, 0.01
-    capture = oo.Capture("grasp", "a/base", "b/base", at=0.1, seat=seat, pose=pose([0.3, 0.1, 0], [1.2, 0, 0]))
+    nominal = pose([0.3, 0.1, 0], [1.2, 0, 0])
+    capture = oo.Capture("grasp", "a/base", "b/base", at=0.1, seat=seat, pose=nominal)
     trace = oo.Simulation(oo.World(moving(), events=[capture]), time_step=step).run(0.5)
     assert [check for check in trace.certificate() if not check[3]] == []
 

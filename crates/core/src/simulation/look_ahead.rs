@@ -4,10 +4,12 @@
 use super::checkpoint::Progress;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
+use super::members::Place;
 use super::recording::GroupRecording;
 use super::run_state::RunState;
 use super::schedule::{Cursor, Interval};
 use super::stepper::Monitor;
+use super::tree::Tree;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
 
@@ -66,15 +68,56 @@ impl<S: Scalar> RunState<'_, S> {
         records_before: f64,
         work: impl FnOnce(&mut Self) -> Result<R, SimulationError>,
     ) -> Result<R, SimulationError> {
-        let before: Progress = self.progress();
-        let controllers_updated = self.controllers_updated || self.schedule.is_any_tick();
+        let (before, held): (Progress, _) = (self.progress(), self.commands());
+        let (was_updated, updates) = (self.controllers_updated, self.controller_updates);
+        let taken: Vec<_> = self.systems.iter_mut().map(|run| run.updated.clone()).collect();
         self.records_before = records_before;
         let result = work(self);
         self.records_before = f64::INFINITY;
         self.has_event = false;
+        let updated = self.commands();
         self.restore(before)?;
-        self.controllers_updated = controllers_updated;
+        // a row before an event at this cut has the torques that were held until then
+        let has_updated = self.controller_updates != updates;
+        for ((run, updated), taken) in self.systems.iter_mut().zip(updated).zip(taken) {
+            run.updated = if has_updated { Some(updated) } else { taken };
+        }
+        self.controllers_updated = was_updated || has_updated;
+        self.set_commands(held);
         result
+    }
+
+    /// Returns torques and requested accelerations of the joints of every system.
+    fn commands(&self) -> Vec<(Vec<S>, Vec<Option<f64>>)> {
+        let EquationsOfMotion { trees, members, .. } = &self.equations;
+        let system = |number| members.system(number, trees, &self.state.trees).1;
+        let of = |tree: &Tree<'_, S>| (tree.command.clone(), tree.modes.requested().to_vec());
+        (0..self.systems.len()).map(|number| of(system(number))).collect()
+    }
+
+    /// Sets torques and requested accelerations of the joints of every system.
+    fn set_commands(&mut self, commands: Vec<(Vec<S>, Vec<Option<f64>>)>) {
+        let EquationsOfMotion { trees, members, .. } = &mut self.equations;
+        for (place, (command, requested)) in members.places.iter().zip(commands) {
+            let tree = match *place {
+                Place::Tree(tree) => &mut trees[tree],
+                Place::Part(part) => &mut members.parts[part].own,
+            };
+            tree.command.copy_from_slice(&command);
+            tree.modes.requested_mut().copy_from_slice(&requested);
+            if let Place::Part(part) = *place {
+                let part = &members.parts[part];
+                part.drive(&mut trees[part.tree]);
+            }
+        }
+    }
+
+    /// Takes over the commands of an update that a trial step has made at the current cut.
+    pub(super) fn take_updated_commands(&mut self) {
+        let held = self.commands();
+        let updated = self.systems.iter_mut().map(|run| run.updated.take());
+        let commands = updated.zip(held).map(|(updated, held)| updated.unwrap_or(held)).collect();
+        self.set_commands(commands);
     }
 
     /// Ends the current step at the current time, which becomes the current cut.

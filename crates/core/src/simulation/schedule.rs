@@ -178,11 +178,6 @@ impl Schedule {
         is_now(nearest_tick(t, *period) * period) || switches.iter().any(|&switch| is_now(switch))
     }
 
-    /// Returns true if the controllers of any system are due at the current cut.
-    pub(super) fn is_any_tick(&self) -> bool {
-        (0..self.clocks.len()).any(|system| self.is_tick(system, self.at.now))
-    }
-
     /// Returns the first regular tick of a clock after the current cut, s.
     fn next_tick(&self, period: f64) -> f64 {
         let count = nearest_tick(self.at.now, period); // a product, so that rounding errors do not accumulate

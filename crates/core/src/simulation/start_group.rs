@@ -113,6 +113,7 @@ impl Shared {
             members.push(RunSystem {
                 controllers,
                 recorder,
+                updated: None,
                 is_due: false,
                 knows,
                 known_members: Vec::new(),
@@ -152,6 +153,7 @@ impl Shared {
             steps: 0,
             time: 0.0,
             controllers_updated: false,
+            controller_updates: 0,
             has_event: false,
             records_before: f64::INFINITY,
             rereference_beyond,

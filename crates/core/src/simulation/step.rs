@@ -72,6 +72,9 @@ impl<S: Scalar> RunState<'_, S> {
     /// whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
+        if self.controllers_updated && self.systems.iter().any(|run| run.updated.is_some()) {
+            self.take_updated_commands();
+        }
         let is_due = !self.controllers_updated && self.find_due(t);
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
@@ -84,6 +87,7 @@ impl<S: Scalar> RunState<'_, S> {
             self.update_controllers(t, true)?;
         }
         self.controllers_updated |= is_due;
+        self.controller_updates += usize::from(is_due);
         if !uses_loads || end != interval.end {
             self.equations.apply_loads(t, (t, end), &self.state)?;
         }
