@@ -12,7 +12,7 @@ from commands import onorbit, refusal
 from test_scenario_world import data
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import CompareError, InputError
+from onorbit_rs.exceptions import CompareError
 from onorbit_rs.tools.comparison import WorldComparison
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
@@ -110,8 +110,6 @@ def test_worlds_with_other_systems_and_single_robots_are_rejected(folder: Path) 
     values["events"] = []
     with pytest.raises(CompareError, match=r"\(target\) has 0 joints and that of .* 7"):
         oo.compare(folder, values)
-    with pytest.raises(InputError, match="several systems, which only the native engine simulates"):
-        oo.compare(folder)
     with pytest.raises(CompareError, match="'chase' is not a system of the runs; available: chaser, target"):
         compared(folder, folder)["chase"]
 

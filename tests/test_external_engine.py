@@ -213,8 +213,8 @@ def test_wrenches_are_available_during_a_step_only(model: oo.Model) -> None:
         reach(Lost(model)).run(0.05)
 
 
-def test_a_world_of_several_systems_is_refused_at_once(model: oo.Model) -> None:
+def test_an_engine_of_one_robot_is_refused_at_once_in_a_world(model: oo.Model) -> None:
     start = model.neutral(), np.zeros(model.nv)
     world = oo.World([oo.System(name, model, *start) for name in ("a", "b")])
-    with pytest.raises(EngineError, match="moves one robot; a world of several systems"):
+    with pytest.raises(EngineError, match="a world of several systems needs a method step_world"):
         oo.Simulation(world, engine=Euler(model))

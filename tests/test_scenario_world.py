@@ -250,7 +250,11 @@ INVALID: dict[str, tuple[str, str, str]] = {
     ),
     "knows itself": ("    tool: tool", "    knows: [chaser]", r":6: systems.chaser.knows\[0\]: .*itself"),
     "contacts": ("events:\n", "contacts: []\nevents:\n", r":17: contacts: .*not available yet"),
-    "engine": ("systems:\n", "engine: mujoco\nsystems:\n", r":3: engine: .*does not support 'systems'"),
+    "engine": (
+        "systems:\n",
+        "engine: mujoco\nsystems:\n",
+        r":24: events\[1\].do.impulse: engine mujoco does not support 'impulse'",
+    ),
     "body without system": (
         "[gravity_gradient]",
         "[gravity_gradient, {kind: body_wrench, body: base, force: [1, 0, 0]}]",

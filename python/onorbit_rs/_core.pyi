@@ -36,6 +36,19 @@ class _Engine(Protocol):
         /,
     ) -> tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike, float, float]: ...
 
+class _WorldEngine(Protocol):
+    def step_world(
+        self,
+        start: float,
+        end: float,
+        q: _Array,
+        v: _Array,
+        tau: _Array,
+        wrenches: Callable[[float, _Array, _Array], _Array],
+        welds: list[tuple[tuple[int, int], tuple[int, int], _Array, _Array]],
+        /,
+    ) -> tuple[ArrayLike, ...]: ...
+
 class _Result(TypedDict):
     name: str
     outcome: Literal["succeeded", "path_tolerance_violated", "goal_tolerance_violated", "unfinished"]
@@ -1178,7 +1191,7 @@ class Simulation:
         restitution: float = 0.0,
         record_wrenches: bool = False,
         rereference_beyond: float = 1e5,
-        engine: _Engine | None = None,
+        engine: _Engine | _WorldEngine | None = None,
     ) -> Simulation: ...
     def run(
         self,

@@ -7,7 +7,7 @@ use common::slider::{BASE, SLIDER, moving, slider};
 use nalgebra::Vector3;
 use onorbit_core::environment::BodyWrench;
 use onorbit_core::simulation::{
-    Engine, EnvironmentQuery, Integrator, Simulation, SimulationError, StepInput, StepOutput, Trace,
+    Engine, EnvironmentQuery, Exchange, Integrator, Simulation, SimulationError, StepInput, StepOutput, Trace,
 };
 use std::sync::Arc;
 
@@ -38,8 +38,8 @@ impl Engine for ClosedForm {
         (crossed.q[0], crossed.v[0]) = (now.q[0] + moved, now.v[0] + h * base);
         crossed.q[7] += h * now.v[6] + 0.5 * h * h * rate;
         crossed.v[6] += h * rate;
-        crossed.impulse = [h * wrenches[0], 0.0, 0.0, 0.0, 0.0, 0.0];
-        (crossed.work, crossed.dissipated) = (wrenches[0] * moved, 0.0);
+        let impulse = [h * wrenches[0], 0.0, 0.0, 0.0, 0.0, 0.0];
+        crossed.systems[0] = Exchange { impulse, work: wrenches[0] * moved, ..Exchange::default() };
         Ok(())
     }
 }
@@ -103,7 +103,7 @@ fn without_the_impulse_of_the_engine_the_certificate_fails() {
     impl Engine for Silent {
         fn step(&mut self, now: &StepInput<'_>, crossed: &mut StepOutput) -> Result<(), SimulationError> {
             self.0.step(now, crossed)?;
-            crossed.impulse = [0.0; 6];
+            crossed.systems[0].impulse = [0.0; 6];
             Ok(())
         }
     }

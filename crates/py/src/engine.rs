@@ -1,10 +1,11 @@
 //! External engines that are implemented in Python.
 
 use crate::arrays::{Input, array_of, finite, wrong_shape};
-use crate::errors::SimulationErrorExt;
+use crate::errors::{SimulationErrorExt, fields, raise};
 use onorbit_core::simulation::{
-    Engine, EnvironmentQuery, Simulation, SimulationError, StepInput, StepOutput,
+    BodyWeld, Engine, EnvironmentQuery, Simulation, SimulationError, StepInput, StepOutput,
 };
+use onorbit_core::spatial::Vec3;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -57,30 +58,56 @@ fn state<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input
     Ok(input)
 }
 
-/// Python object with `step(start, end, q, v, tau, wrenches)` as the engine of a run.
+/// Python object with `step(start, end, q, v, tau, wrenches)`, or `step_world` for several systems, as the engine of a
+/// run.
 pub(crate) struct PythonEngine {
     object: Py<PyAny>,
     wrenches: Py<PyWrenches>,
+    is_world: bool,
 }
 
 impl PythonEngine {
     /// Wraps the engine of a simulation, to which all effects must have been added before.
     pub(crate) fn new(engine: &Bound<'_, PyAny>, simulation: &Simulation) -> PyResult<Self> {
-        let model = &simulation.systems[0].model;
-        let sizes = [model.nq(), model.nv(), model.nodes().len()];
+        let py = engine.py();
+        let models = || simulation.systems.iter().map(|system| &system.model);
+        let (nq, nv) = (models().map(|model| model.nq()).sum(), models().map(|model| model.nv()).sum());
+        let sizes = [nq, nv, models().map(|model| model.nodes().len()).sum()];
+        let is_world = simulation.systems.len() > 1;
+        if is_world && !engine.hasattr("step_world")? {
+            let message = "an engine of a world of several systems needs a method step_world; see the notes of \
+                           Simulation, or use the native equations of motion";
+            return Err(raise(py, "EngineError", message, &fields!(py, "name": "engine")));
+        }
         let query = Mutex::new((simulation.outside(), (0.0, 0.0)));
-        let wrenches = Py::new(engine.py(), PyWrenches { query, sizes })?;
-        Ok(Self { object: engine.clone().unbind(), wrenches })
+        let wrenches = Py::new(py, PyWrenches { query, sizes })?;
+        Ok(Self { object: engine.clone().unbind(), wrenches, is_world })
     }
 
-    /// Calls `step` and copies its results to `output`.
+    /// Calls the engine and copies its results to `output`.
     fn call(&self, py: Python<'_>, input: &StepInput<'_>, output: &mut StepOutput) -> PyResult<()> {
         let array = |values: &[f64]| array_of(py, &[values.len()], values);
         let (start, end) = input.interval;
         self.wrenches.get().lock().1 = input.interval;
-        let arguments = (start, end, array(input.q), array(input.v), array(input.tau), &self.wrenches);
-        let result = self.object.bind(py).call_method1("step", arguments)?;
-        let [q, v, a, impulse, work, dissipated]: [Bound<'_, PyAny>; 6] = result.extract()?;
+        let state = (array(input.q), array(input.v), array(input.tau));
+        let object = self.object.bind(py);
+        let [q, v, a] = if self.is_world {
+            let welds: Vec<_> = input.welds.iter().map(|weld| described(py, weld)).collect();
+            let arguments = (start, end, state.0, state.1, state.2, &self.wrenches, welds);
+            let result = object.call_method1("step_world", arguments)?;
+            let [q, v, a, impulse, work, loss, weld_impulse, weld_work, orbital]: [Bound<'_, PyAny>; 9] =
+                result.extract()?;
+            read_exchange(output, [&impulse, &work, &loss, &weld_impulse, &weld_work, &orbital])?;
+            [q, v, a]
+        } else {
+            let arguments = (start, end, state.0, state.1, state.2, &self.wrenches);
+            let result = object.call_method1("step", arguments)?;
+            let [q, v, a, impulse, work, loss]: [Bound<'_, PyAny>; 6] = result.extract()?;
+            let done = &mut output.systems[0];
+            done.impulse.copy_from_slice(vector(&impulse, IMPULSE, 6)?.data());
+            (done.work, done.dissipated) = (work.extract()?, loss.extract()?);
+            [q, v, a]
+        };
         for (name, value, to) in [
             ("the q that the engine returned", q, &mut output.q),
             ("the v that the engine returned", v, &mut output.v),
@@ -89,11 +116,51 @@ impl PythonEngine {
             let n = to.len();
             to.copy_from_slice(vector(&value, name, n)?.data());
         }
-        let name = "the impulse that the engine returned";
-        output.impulse.copy_from_slice(vector(&impulse, name, 6)?.data());
-        (output.work, output.dissipated) = (work.extract()?, dissipated.extract()?);
         Ok(())
     }
+}
+
+const IMPULSE: &str = "the impulse that the engine returned";
+
+/// A connection in Python: system and body of both sides, the two points, and the rotation.
+type Described<'py> = ((usize, usize), (usize, usize), Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+fn described<'py>(py: Python<'py>, weld: &BodyWeld) -> Described<'py> {
+    let [by, of] = weld.bodies.map(|body| (body.system, body.body));
+    let rows = |vectors: &[Vec3<f64>]| vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect::<Vec<f64>>();
+    let turned = weld.rotation.transpose(); // stored by columns
+    let (points, rotation) = (rows(&weld.points), rows(&[turned.x, turned.y, turned.z]));
+    (by, of, array_of(py, &[2, 3], &points).into_any(), array_of(py, &[3, 3], &rotation).into_any())
+}
+
+/// Reads what each system received in a step of a world: impulse, work and loss; impulse and work of the connections;
+/// and the moment about the common centre of mass.
+fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyResult<()> {
+    let [impulse, work, loss, weld_impulse, weld_work, orbital] = values;
+    let n = output.systems.len();
+    let impulses =
+        [(IMPULSE, impulse), ("the impulse of the connections that the engine returned", weld_impulse)];
+    for (k, (name, value)) in impulses.into_iter().enumerate() {
+        let rows = Input::new(value, name)?;
+        if rows.shape() != [n, 6] {
+            return Err(wrong_shape(value.py(), name, &format!("({n}, 6)"), rows.shape()));
+        }
+        for (done, row) in output.systems.iter_mut().zip(rows.data().chunks_exact(6)) {
+            let to = if k == 0 { &mut done.impulse } else { &mut done.weld_impulse };
+            to.copy_from_slice(row);
+        }
+    }
+    let scalars = |value, name| vector(value, name, n);
+    let work = scalars(work, "the work that the engine returned")?;
+    let loss = scalars(loss, "the loss that the engine returned")?;
+    let weld_work = scalars(weld_work, "the work of the connections that the engine returned")?;
+    for (k, done) in output.systems.iter_mut().enumerate() {
+        (done.work, done.dissipated) = (work.data()[k], loss.data()[k]);
+        done.weld_work = weld_work.data()[k];
+    }
+    let name = "the moment about the common centre of mass that the engine returned";
+    output.orbital.copy_from_slice(vector(orbital, name, 3)?.data());
+    Ok(())
 }
 
 impl Engine for PythonEngine {

@@ -89,6 +89,16 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// the force, N, through the centre of mass of each body, and the torque about it, N m. The object must not
 /// keep state between calls. ``integrator``, ``enforce_limits``, ``restitution`` and ``rereference_beyond``
 /// apply only to the native equations of motion.
+///
+/// A world of several systems needs ``engine.step_world(start, end, q, v, tau, wrenches, welds)``. Its arrays,
+/// and those of ``wrenches``, hold the values of all systems one after another. ``welds`` lists the rigid
+/// connections during the step: ``(system, body)`` of the capturing and of the captured side, by index; the
+/// origin of the captured frame in the axes of each body, (2, 3), m; and the rotation from the axes of the
+/// second body to those of the first, (3, 3). It returns a tuple: ``q``, ``v``, the acceleration, then for
+/// each system the impulse (systems, 6), the work (systems,) and the loss (systems,) as above; the impulse,
+/// (systems, 6), and the work, (systems,), of the connections on each system; and the integral of the moments
+/// of the external forces, acting at the centres of mass of the systems, about the common centre of mass,
+/// (3,), N m s. Captures have no impact then: the engine removes the relative velocity during the next steps.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     run: SharedRun,
@@ -189,10 +199,8 @@ impl PySimulation {
         simulation.record_wrenches = record_wrenches;
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         if let Some(engine) = engine {
-            if simulation.systems.len() > 1 {
-                return Err(SimulationError::EngineOfWorld.into_python_with(py, None));
-            }
             simulation.engine = Some(Box::new(PythonEngine::new(engine, &simulation)?));
+            simulation.check().map_err(|error| error.into_python_with(py, None))?;
         }
         let orbit = simulation.orbit.clone();
         let systems = Arc::new(Systems::of(&simulation));

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from onorbit_rs.common.coordinates import ANGULAR, LINEAR, QUATERNION
 from onorbit_rs.engines.mujoco_log import without_log
-from onorbit_rs.engines.mujoco_model import import_mujoco, link_name, mujoco_model
+from onorbit_rs.engines.mujoco_model import import_mujoco, world_model
+from onorbit_rs.engines.mujoco_share import connect, exchanged, shares
 from onorbit_rs.exceptions import EngineError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model
+    from onorbit_rs.engines.mujoco_share import Share, Weld
 
     Floats = NDArray[np.float64]
     Wrenches = Callable[[float, Floats, Floats], Floats]
@@ -27,24 +29,26 @@ _WEIGHTS = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
 
 
 class Mujoco:
-    """Engine that integrates the robot with MuJoCo: ``onorbit_rs.Simulation(..., engine=Mujoco(model))``.
+    """Engine that integrates the motion with MuJoCo: ``onorbit_rs.Simulation(..., engine=Mujoco(model))``.
 
     ``rk4`` is the Runge-Kutta method of MuJoCo 4, with the environment's wrenches evaluated at every stage.
     It does not project momentum, so momentum drifts with fourth order in the step. ``semi_implicit_euler`` is
     MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are MuJoCo's soft constraints with
-    their stiffest settings; the restitution of stops is close to zero. One simulation at a time may use an
-    instance; a concurrent step is refused. MuJoCo's log settings, which are global to the process, are
-    disabled during a step and restored after it.
+    their stiffest settings; the restitution of stops is close to zero. The connections of a world are welds,
+    also soft: a capture removes the relative velocity within a few steps instead of at once. One simulation
+    at a time may use an instance; a concurrent step is refused. MuJoCo's log settings, which are global to
+    the process, are disabled during a step and restored after it.
 
     Parameters
     ----------
-    model : Model
+    model : Model or dict of str to Model
+        Robot, or the models of the systems of a world by their names, in its order.
     time_step : float
         Longest step of the run, s.
     integrator : str
         ``rk4`` or ``semi_implicit_euler``.
-    enforce_limits : bool
-        Whether rigid stops keep the joints within their position limits.
+    enforce_limits : bool or list of str
+        Whether rigid stops keep the joints within their position limits, or the systems in which they do.
 
     Raises
     ------
@@ -56,13 +60,13 @@ class Mujoco:
 
     def __init__(
         self,
-        model: Model,
+        model: Model | Mapping[str, Model],
         *,
         time_step: float = 1e-3,
         integrator: Literal["rk4", "semi_implicit_euler"] = "rk4",
-        enforce_limits: bool = False,
+        enforce_limits: bool | Collection[str] = False,
     ) -> None:
-        """Build MuJoCo's model of the robot."""
+        """Build MuJoCo's model of the robot or of the world."""
         if integrator not in ("rk4", "semi_implicit_euler"):
             raise EngineError(
                 f"integrator '{integrator}' is not available with MuJoCo; use 'rk4' or 'semi_implicit_euler'",
@@ -70,14 +74,16 @@ class Mujoco:
             )  # fmt: skip
         self._mujoco = import_mujoco()
         self._is_euler = integrator == "semi_implicit_euler"
-        self._model = mujoco_model(model, time_step=time_step, enforce_limits=enforce_limits)
+        models = dict(model) if isinstance(model, Mapping) else {"": model}
+        stops = enforce_limits if isinstance(enforce_limits, Collection) else [*models] * enforce_limits
+        self._model = world_model(models, time_step=time_step, with_stops=stops)
         self._data = self._mujoco.MjData(self._model)
-        self._bodies = np.array([self._model.body(link_name(name)).id for name in model.body_names])
-        joints = [self._model.joint(name) for name in model.joint_names]
-        self._dofs = np.array([joint.dofadr[0] for joint in joints], dtype=int)
-        # MuJoCo's quaternion is wxyz
-        self._q_columns = np.array([0, 1, 2, 4, 5, 6, 3, *(joint.qposadr[0] for joint in joints)])
-        self._v_columns = np.array([*range(6), *self._dofs])
+        self._shares = shares(self._model, models)
+        self._is_world = isinstance(model, Mapping)
+        self._bodies, self._dofs, self._q_columns, self._v_columns = (
+            np.concatenate([getattr(part, name) for part in self._shares])
+            for name in ("bodies", "dofs", "q_columns", "v_columns")
+        )
         self._lock = threading.Lock()
 
     @property
@@ -125,6 +131,74 @@ class Mujoco:
         EngineError
             If another simulation is in a step of this instance, or MuJoCo raises a fatal error.
         """
+        qpos, qvel, acceleration, done = self._advance((start, end), (q, v, tau), wrenches, [])
+        return qpos, qvel, acceleration, done[:6], float(done[6]), float(done[7])
+
+    def step_world(
+        self,
+        start: float,
+        end: float,
+        q: Floats,
+        v: Floats,
+        tau: Floats,
+        wrenches: Wrenches,
+        welds: Sequence[Weld],
+    ) -> tuple[Floats, ...]:
+        """Integrate one step of all systems of a world; as :meth:`step` with the arrays of all systems.
+
+        Parameters
+        ----------
+        start, end : float
+            Time at the ends of the step, s.
+        q, v, tau : arrays
+            Configurations, velocities and joint torques of the systems, one after another, units of
+            :meth:`step`.
+        wrenches : callable
+            ``wrenches(t, q, v)``: the environment on the bodies of all systems.
+        welds : list
+            Connections: ``(system, body)`` of both sides, the captured origin in the axes of each body,
+            (2, 3), m, and the rotation from the axes of the second body to those of the first, (3, 3).
+
+        Returns
+        -------
+        q, v, acceleration : arrays
+            As of :meth:`step`, of all systems.
+        impulse : (systems, 6) array
+            Impulse of the environment on each system, as of :meth:`step`.
+        work, loss : (systems,) arrays
+            Work of motors and environment minus the loss in the joints, and that loss, J.
+        weld_impulse : (systems, 6) array
+            Impulse of the welds on each system.
+        weld_work : (systems,) array
+            Work of the welds on each system, J.
+        orbital : (3,) array
+            Integral of the moments of the environment's forces, acting at the centres of mass of the systems,
+            about the common centre of mass, axes of W, N m s.
+
+        Raises
+        ------
+        EngineError
+            As :meth:`step`, and if the instance was made for other systems.
+        """
+        if not self._is_world or len(q) != self._model.nq or len(tau) != len(self._dofs):
+            raise EngineError(
+                f"this engine has {self._model.nq} coordinates in {len(self._shares)} systems, the world has "
+                f"{len(q)}; create Mujoco({{name: model, ...}}) with all systems in the order of the world",
+                name="engine", got="mujoco",
+            )  # fmt: skip
+        qpos, qvel, acceleration, done = self._advance((start, end), (q, v, tau), wrenches, welds)
+        of = done[:-3].reshape(len(self._shares), 15)
+        return (
+            qpos, qvel, acceleration, of[:, :6], of[:, 6], of[:, 7], of[:, 8:14], of[:, 14], done[-3:]
+        )  # fmt: skip
+
+    def _advance(
+        self,
+        interval: tuple[float, float],
+        state: tuple[Floats, Floats, Floats],
+        wrenches: Wrenches,
+        welds: Sequence[Weld],
+    ) -> tuple[Floats, Floats, Floats, Floats]:
         if not self._lock.acquire(blocking=False):
             raise EngineError(
                 "this engine is in use by another simulation; create one Mujoco(model) for each simulation",
@@ -133,13 +207,14 @@ class Mujoco:
         try:
             # numpy's warnings in a diverging run are redundant: the run raises an error
             with without_log(self._mujoco), np.errstate(all="ignore"):
-                return self._step(start, end, q, v, tau, wrenches)
+                connect(self._mujoco, self._model, self._data, self._shares, welds)
+                return self._step(*interval, *state, wrenches)
         finally:
             self._lock.release()
 
     def _step(
         self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
-    ) -> tuple[Floats, Floats, Floats, Floats, float, float]:
+    ) -> tuple[Floats, Floats, Floats, Floats]:
         h, nv = end - start, self._model.nv
         qpos, qvel = self._to_mujoco(q, v)
         self._data.qfrc_applied[self._dofs] = tau
@@ -152,14 +227,16 @@ class Mujoco:
         elif h > 0.0:
             rates = [first]
             for fraction in _STAGES[1:]:
-                rotation = fraction * h * rates[-1][ANGULAR]
-                stage = self._moved(qpos, qvel, fraction * h, rates[-1])
-                rates.append(self._rate(start + fraction * h, *stage, wrenches))
-                rates[-1][ANGULAR] = _rotation_vector_rate(rotation, rates[-1][ANGULAR])
+                last = rates[-1]
+                rotations = [fraction * h * last[part.angular] for part in self._shares]
+                stage = self._moved(qpos, qvel, fraction * h, last)
+                rate = self._rate(start + fraction * h, *stage, wrenches)
+                for part, rotation in zip(self._shares, rotations, strict=True):
+                    rate[part.angular] = _rotation_vector_rate(rotation, rate[part.angular])
+                rates.append(rate)
             mean = _WEIGHTS @ np.array(rates)
             qpos, qvel = self._moved(qpos, qvel, h, mean)
-        done = h * mean[2 * nv :]
-        return (*self._from_mujoco(qpos, qvel), acceleration, done[:6], float(done[6]), float(done[7]))
+        return (*self._from_mujoco(qpos, qvel), acceleration, h * mean[2 * nv :])
 
     def _moved(self, qpos: Floats, qvel: Floats, h: float, rate: Floats) -> tuple[Floats, Floats]:
         """Return the state advanced by `h` at a constant rate, as in MuJoCo's stages."""
@@ -168,10 +245,14 @@ class Mujoco:
         return moved, qvel + h * rate[nv : 2 * nv]
 
     def _rate(self, t: float, qpos: Floats, qvel: Floats, wrenches: Wrenches) -> Floats:
-        """Return ``[qvel, qacc, ΣF, ΣT about the centre of mass, power, power dissipated in the joints]``."""
+        """Return ``[qvel, qacc, ΣF, ΣT about the centre of mass, power, power dissipated in the joints]``.
+
+        In a world, the values of all systems follow ``qacc``; see :func:`exchanged`.
+        """
         data = self._data
         if not (np.isfinite(qpos).all() and np.isfinite(qvel).all()):
-            return np.full(2 * self._model.nv + 8, np.nan)  # MuJoCo would write a log file
+            count = 15 * len(self._shares) + 3 if self._is_world else 8
+            return np.full(2 * self._model.nv + count, np.nan)  # MuJoCo would write a log file
         outer = wrenches(t, *self._from_mujoco(qpos, qvel))
         data.qpos[:], data.qvel[:] = qpos, qvel
         data.xfrc_applied[self._bodies] = outer
@@ -181,6 +262,9 @@ class Mujoco:
             raise EngineError(
                 f"MuJoCo failed at t = {t:g} s: {error}", name="engine", got="mujoco"
             ) from error
+        if self._is_world:
+            parts = exchanged(self._mujoco, self._model, data, self._shares, outer)
+            return np.concatenate([qvel, data.qacc, parts])
         force, arm = outer[:, :3], data.xipos[self._bodies] - data.subtree_com[self._bodies[0]]
         moment = (
             outer[:, 3:] + arm[:, [1, 2, 0]] * force[:, [2, 0, 1]] - arm[:, [2, 0, 1]] * force[:, [1, 2, 0]]
@@ -193,24 +277,28 @@ class Mujoco:
         """Return MuJoCo's ``[p, quat wxyz, joints]`` and ``[ṗ in W, w in B, rates]``."""
         qpos, qvel = np.empty_like(q), np.empty_like(v)
         qpos[self._q_columns], qvel[self._v_columns] = q, v
-        qvel[:3] = self._rot_wb(qpos) @ v[:3]
+        for part in self._shares:
+            qvel[part.linear] = self._rot_wb(qpos, part) @ v[part.linear]
         return qpos, qvel
 
     def _from_mujoco(self, qpos: Floats, qvel: Floats) -> tuple[Floats, Floats]:
         q, v = qpos[self._q_columns], qvel[self._v_columns]
-        v[:3] = qvel[:3] @ self._rot_wb(qpos)
+        for part in self._shares:
+            v[part.linear] = qvel[part.linear] @ self._rot_wb(qpos, part)
         return q, v
 
     def _acceleration(self, qpos: Floats, rate: Floats) -> Floats:
         """Return the derivative of `v`; with `v = Rᵀ ṗ`, `v̇ = Rᵀ p̈ − w × v`."""
-        nv, rot_wb = self._model.nv, self._rot_wb(qpos)
+        nv = self._model.nv
         a: Floats = rate[nv : 2 * nv][self._v_columns]
-        a[LINEAR] = a[LINEAR] @ rot_wb - _cross(rate[ANGULAR], rate[LINEAR] @ rot_wb)
+        for part in self._shares:
+            rot_wb, linear = self._rot_wb(qpos, part), part.linear
+            a[linear] = a[linear] @ rot_wb - _cross(rate[part.angular], rate[linear] @ rot_wb)
         return a
 
-    def _rot_wb(self, qpos: Floats) -> Any:
+    def _rot_wb(self, qpos: Floats, part: Share) -> Any:
         flat = np.empty(9)
-        self._mujoco.mju_quat2Mat(flat, qpos[QUATERNION])
+        self._mujoco.mju_quat2Mat(flat, qpos[part.quaternion])
         return flat.reshape(3, 3)
 
 

@@ -1,7 +1,8 @@
-"""Converts a robot to a MuJoCo model: bodies, joints and rotors, without gravity and contacts."""
+"""Converts robots to a MuJoCo model: bodies, joints and rotors, without gravity and contacts."""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -55,9 +56,19 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
         If MuJoCo cannot represent a body or joint, such as a body without mass or inertia, or a joint whose
         static friction exceeds its kinetic friction.
     """
+    return world_model({"": model}, time_step=time_step, with_stops=[""] if enforce_limits else [])
+
+
+def world_model(models: Mapping[str, Model], *, time_step: float, with_stops: Collection[str]) -> Any:
+    """Return one ``mujoco.MjModel`` of several systems; the names of their links and joints are paths.
+
+    It has an inactive weld for each connection that the systems can have at a time: one less than there are
+    systems, since connections close no loops. ``with_stops`` names the systems with rigid stops. The errors
+    are those of :func:`mujoco_model`.
+    """
     mujoco = import_mujoco()
     spec = mujoco.MjSpec()
-    spec.modelname = model.name
+    spec.modelname = next(iter(models.values())).name
     spec.compiler.degree = spec.compiler.alignfree = spec.compiler.autolimits = False
     spec.option.gravity = np.zeros(3)
     spec.option.timestep = time_step
@@ -65,20 +76,16 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
     bit = mujoco.mjtDisableBit
     # without warm start the step depends on the state only, so a resumed run gives the same bits
     spec.option.disableflags = int(bit.mjDSBL_WARMSTART | bit.mjDSBL_CONTACT | bit.mjDSBL_AUTORESET)
-    joints = {joint.child: joint for joint in model.joints}
-    bodies: dict[str, Any] = {}
     moments: dict[str, Floats] = {}
-    for body in model.bodies:
-        joint = joints.get(body.name)
-        bodies[body.name] = new = (spec.worldbody if joint is None else bodies[joint.parent]).add_body()
-        new.name, new.mass = link_name(body.name), body.mass
-        new.ipos, new.explicitinertial = np.array(body.com), True
-        moments[body.name], new.iquat = _principal(mujoco, body)
-        new.inertia = np.full(3, moments[body.name].mean())
-        if joint is None:
-            new.add_freejoint().align = mujoco.mjtAlignFree.mjALIGNFREE_FALSE
-        else:
-            _attach(mujoco, new, joint, time_step=time_step, enforce_limits=enforce_limits)
+    for name, model in models.items():
+        stops = name in with_stops
+        moments |= _add_robot(mujoco, spec, model, name, time_step=time_step, enforce_limits=stops)
+    bases = [link_name(path(name, model.body_names[0])) for name, model in models.items()]
+    for _ in bases[1:]:
+        weld = spec.add_equality()
+        weld.type, weld.objtype = mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY
+        weld.name1, weld.name2, weld.active = bases[0], bases[1], False  # replaced by each connection
+        weld.solref, weld.solimp = np.array([2.0 * time_step, 1.0]), np.array(HARDEST)
     try:
         compiled = spec.compile()
     except ValueError as error:
@@ -86,9 +93,36 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
     # set after compilation, since the compiler rejects moments that violate the triangle inequality, which
     # occur in published robots
     for name, moment in moments.items():
-        compiled.body(link_name(name)).inertia[:] = moment
+        compiled.body(name).inertia[:] = moment
     mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
     return compiled
+
+
+def _add_robot(
+    mujoco: ModuleType, spec: Any, model: Model, system: str, *, time_step: float, enforce_limits: bool
+) -> dict[str, Floats]:
+    """Add the bodies and joints of a robot; return the principal moments of inertia of each body."""
+    joints = {joint.child: joint for joint in model.joints}
+    bodies: dict[str, Any] = {}
+    moments: dict[str, Floats] = {}
+    for body in model.bodies:
+        joint = joints.get(body.name)
+        bodies[body.name] = new = (spec.worldbody if joint is None else bodies[joint.parent]).add_body()
+        new.name, new.mass = link_name(path(system, body.name)), body.mass
+        new.ipos, new.explicitinertial = np.array(body.com), True
+        moments[new.name], new.iquat = _principal(mujoco, body)
+        new.inertia = np.full(3, moments[new.name].mean())
+        if joint is None:
+            new.add_freejoint().align = mujoco.mjtAlignFree.mjALIGNFREE_FALSE
+        else:
+            moving = _attach(mujoco, new, joint, time_step=time_step, enforce_limits=enforce_limits)
+            moving.name = path(system, joint.name)
+    return moments
+
+
+def path(system: str, name: str) -> str:
+    """Return the name of a link or joint in a world, ``SYSTEM/NAME``; the name itself for a single robot."""
+    return f"{system}/{name}" if system else name
 
 
 def link_name(name: str) -> str:
@@ -111,15 +145,15 @@ def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
     return moments, quat
 
 
-def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, enforce_limits: bool) -> None:
-    """Set the pose of a body in its parent and add its joint."""
+def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, enforce_limits: bool) -> Any:
+    """Set the pose of a body in its parent, and add and return its joint."""
     pose = np.array(joint.pose)
     quat = np.empty(4)
     mujoco.mju_mat2Quat(quat, pose[:3, :3].ravel())
     body.pos, body.quat = pose[:3, 3], quat
     kinds = mujoco.mjtJoint
     moving = body.add_joint()
-    moving.name, moving.axis, moving.pos = joint.name, np.array(joint.axis), np.array(joint.anchor)
+    moving.axis, moving.pos = np.array(joint.axis), np.array(joint.anchor)
     moving.type = kinds.mjJNT_HINGE if joint.kind == "revolute" else kinds.mjJNT_SLIDE
     if joint.static_friction > joint.friction:
         unit = "N m" if joint.kind == "revolute" else "N"
@@ -141,3 +175,4 @@ def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, en
     if enforce_limits and (np.isfinite(lower) or np.isfinite(upper)):
         moving.limited = True
         moving.range = np.clip([lower, upper], -1e9, 1e9)
+    return moving

@@ -23,6 +23,7 @@ from onorbit_rs.scenario.build import (
     check_record_every,
     controlled,
 )
+from onorbit_rs.scenario.engine import build_world_engine
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.events import split_path
 from onorbit_rs.scenario.initial import Neighbour
@@ -89,8 +90,10 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
                 environment=around.effects, events=[event.build() for event in scenario.events],
                 rereference_beyond=drift,
             )  # fmt: skip
+        with located(scenario, "engine"):
+            engine = build_world_engine(scenario, models)
         with located(scenario, "simulation"):
-            return _core.Simulation(world, **settings)
+            return _core.Simulation(world, engine=engine, **settings)
 
     settings = scenario.simulation.arguments()
     drift = settings.pop("rereference_beyond")

@@ -10,6 +10,7 @@ from onorbit_rs.scenario.errors import inconsistent
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
     from onorbit_rs.scenario.schema import Scenario
+    from onorbit_rs.scenario.world import WorldScenario
 
 
 def check_engine(scenario: Scenario) -> None:
@@ -30,6 +31,21 @@ def check_engine(scenario: Scenario) -> None:
         )
 
 
+def check_world_engine(scenario: WorldScenario) -> None:
+    """Raise an error for events and systems that the engine does not support."""
+    if scenario.engine == "native":
+        return
+    for index, event in enumerate(scenario.events):
+        for key in ("seat", "impulse"):
+            if getattr(event.do, key, None) is not None:
+                message = f"engine {scenario.engine} does not support {key!r}; omit it, or use engine: native"
+                raise inconsistent(("events", index, "do", key), message)
+    for name, system in scenario.systems.items():
+        if system.knows:
+            message = f"engine {scenario.engine} does not support 'knows'; omit it, or use engine: native"
+            raise inconsistent(("systems", name, "knows"), message)
+
+
 def build_engine(scenario: Scenario, model: Model) -> engines.Mujoco | None:
     """Return the physics engine of the run, or None for the native one."""
     if scenario.engine == "native":
@@ -41,4 +57,18 @@ def build_engine(scenario: Scenario, model: Model) -> engines.Mujoco | None:
         time_step=settings.time_step,
         integrator=settings.integrator,
         enforce_limits=settings.enforce_limits,
+    )
+
+
+def build_world_engine(scenario: WorldScenario, models: dict[str, Model]) -> engines.Mujoco | None:
+    """Return the physics engine of a run of several systems, or None for the native one."""
+    if scenario.engine == "native":
+        return None
+    settings = scenario.simulation
+    assert settings.integrator != "dormand_prince"  # check_engine raises an error for it
+    return engines.Mujoco(
+        models,
+        time_step=settings.time_step,
+        integrator=settings.integrator,
+        enforce_limits=[name for name, system in scenario.systems.items() if system.enforce_limits],
     )

@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.scenario.document import Document
+from onorbit_rs.scenario.engine import check_world_engine
 from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect
 from onorbit_rs.scenario.environment.paths import split_link
 from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
@@ -114,10 +115,6 @@ class WorldScenario(Document):
     @model_validator(mode="after")
     def _is_consistent(self) -> WorldScenario:
         names = list(self.systems)
-        if self.engine != "native":
-            raise inconsistent(
-                "engine", f"engine {self.engine} moves one robot and does not support 'systems'; use native"
-            )
         for index, effect in enumerate(self.environment):
             if isinstance(effect, (SurfaceEffect, BodyWrenchEffect)):
                 self._check_surfaces(index, effect)
@@ -128,6 +125,7 @@ class WorldScenario(Document):
             self._check_start(name, system)
             self._check_knows(name, system)
         check_events(self.events, names)
+        check_world_engine(self)
         return self
 
     def _check_surfaces(self, index: int, effect: AnyEffect) -> None:

@@ -57,11 +57,35 @@ impl Simulation {
         check_names(&self.systems)?;
         check_events(&self.systems, &self.events)?;
         check_seats(&self.events, self.time_step)?;
-        if self.engine.is_some() && self.systems.len() > 1 {
-            return Err(SimulationError::EngineOfWorld);
+        if self.engine.is_some() {
+            self.check_engine()?;
         }
         self.place_moving_frames()?;
         self.systems.iter().try_for_each(check_system)
+    }
+
+    /// Rejects settings that only the native equations of motion support: they need the tree of connected systems.
+    fn check_engine(&self) -> Result<(), SimulationError> {
+        let cannot = |name: &str, what, remedy| {
+            Err(SimulationError::EngineOfWorld { name: name.to_owned(), what, remedy })
+        };
+        for event in &self.events {
+            match event.action {
+                Action::Capture { seat: Some(_), .. } => {
+                    return cannot(&event.name, "a capture that seats its frames", "remove the seat");
+                }
+                Action::Release { impulse, .. } if impulse != [0.0; 6] => {
+                    return cannot(&event.name, "a release with an impulse", "remove the impulse");
+                }
+                _ => {}
+            }
+        }
+        match self.systems.iter().find(|system| !system.knows.is_empty()) {
+            Some(system) => {
+                cannot(&system.name, "a system whose controllers know other systems", "remove 'knows'")
+            }
+            None => Ok(()),
+        }
     }
 
     /// Rejects effects that act on none of the systems, and two effects that would count twice on a body, including the

@@ -32,6 +32,22 @@ impl Connections {
         Ok(Self { prefixed: prefixed.collect::<Result<_, _>>()?, active: ActiveWelds::default() })
     }
 
+    /// Returns the systems that are connected to a system, itself included, in the order of their numbers.
+    pub(super) fn connected_to(&self, system: usize) -> Vec<usize> {
+        let (mut found, mut next) = (vec![system], 0);
+        while let Some(&system) = found.get(next) {
+            next += 1;
+            for [a, b] in self.active.welds.iter().map(|weld| [weld.by.system, weld.of.system]) {
+                let other = if a == system { b } else { a };
+                if [a, b].contains(&system) && !found.contains(&other) {
+                    found.push(other);
+                }
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
     /// Returns the trees for the active connections.
     pub(super) fn assemble(&self) -> Result<Vec<Assembly>, ModelError> {
         assemble(&self.prefixed, &self.active.welds, &self.active.roots)

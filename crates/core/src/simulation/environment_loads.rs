@@ -186,20 +186,24 @@ fn state_and_rate(orbit: &dyn Orbit, t: f64) -> Result<(OrbitState, Vector3<f64>
 }
 
 impl EnvironmentLoads {
-    /// Computes the wrenches on the bodies of `system`, which must be the only system of these loads.
-    pub(super) fn apply_to_one<S: Scalar>(
+    /// Computes the wrenches on the bodies of `systems`, which must be all systems of these loads.
+    pub(super) fn apply_to<S: Scalar>(
         &mut self,
-        mut system: LoadedSystem<'_, S>,
+        systems: &mut [LoadedSystem<'_, S>],
         t: f64,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
         if self.effects.is_empty() {
             return Ok(());
         }
-        system.gather_bodies(0, self.reads_velocities, &mut self.bodies);
+        for (number, system) in systems.iter().enumerate() {
+            system.gather_bodies(number, self.reads_velocities, &mut self.bodies);
+        }
         self.interval = interval;
         self.sum_effects(t, 0..self.effects.len())?;
-        system.scatter_wrenches(0, &self.wrenches);
+        for (number, system) in systems.iter_mut().enumerate() {
+            system.scatter_wrenches(number, &self.wrenches);
+        }
         Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! Evaluates the environment of a run at any state of the robot, for external engines.
+//! Evaluates the environment of a run at any state of its systems, for external engines.
 
 use super::body_states::LoadedSystem;
 use super::environment_loads::EnvironmentLoads;
@@ -9,25 +9,26 @@ use crate::model::Model;
 use crate::spatial::Vec3;
 use std::sync::Arc;
 
-/// Evaluates the environment at any state of the robot.
+/// Evaluates the environment at any state of the systems.
 #[derive(Debug)]
 pub struct EnvironmentQuery {
-    model: Arc<Model>,
-    data: Data<f64>,
+    systems: Vec<(Arc<Model>, Data<f64>)>,
     loads: EnvironmentLoads,
 }
 
 impl Simulation {
     /// Returns a query of the environment of the run, for an [`Engine`](super::Engine).
     pub fn outside(&self) -> EnvironmentQuery {
-        let model = Arc::clone(&self.systems[0].model);
-        EnvironmentQuery { data: Data::new(&model), loads: self.environment_loads(), model }
+        let models = self.systems.iter().map(|system| Arc::clone(&system.model));
+        let systems = models.map(|model| (Arc::clone(&model), Data::new(&model))).collect();
+        EnvironmentQuery { systems, loads: self.environment_loads() }
     }
 }
 
 impl EnvironmentQuery {
     /// Writes to `out`, `(bodies, 6)`, the wrench on each body at time `t`, s, and state `(q, v)` within the step
     /// `interval`, s: the force, N, through the centre of mass of the body and the torque, N m, about it, W axes.
+    /// `q`, `v` and `out` are those of all systems, one after another.
     ///
     /// # Errors
     /// Errors of the orbit and of the effects.
@@ -35,19 +36,28 @@ impl EnvironmentQuery {
         &mut self,
         t: f64,
         interval: (f64, f64),
-        (q, v): (&[f64], &[f64]),
+        (mut q, mut v): (&[f64], &[f64]),
         out: &mut [f64],
     ) -> Result<(), SimulationError> {
-        let Self { model, data, loads } = self;
-        kinematics(model, data, q, v);
-        let system = LoadedSystem { data: &mut *data, q, frame_velocity: Vec3::zero() };
-        loads.apply_to_one(system, t, interval)?;
-        let rot_wb = base_rotation(q);
-        for (body, out) in data.bodies.iter().zip(out.chunks_exact_mut(6)) {
-            let force = body.external.linear;
-            let torque = body.external.angular - body.inertia.com.cross(force);
-            (rot_wb * force).write(out);
-            (rot_wb * torque).write(&mut out[3..]);
+        let Self { systems, loads } = self;
+        let mut loaded = Vec::with_capacity(systems.len());
+        for (model, data) in systems {
+            let (own_q, own_v);
+            (own_q, q) = q.split_at(model.nq());
+            (own_v, v) = v.split_at(model.nv());
+            kinematics(model, data, own_q, own_v);
+            loaded.push(LoadedSystem { data, q: own_q, frame_velocity: Vec3::zero() });
+        }
+        loads.apply_to(&mut loaded, t, interval)?;
+        let mut rows = out.chunks_exact_mut(6);
+        for LoadedSystem { data, q, .. } in &loaded {
+            let rot_wb = base_rotation(q);
+            for (body, out) in data.bodies.iter().zip(&mut rows) {
+                let force = body.external.linear;
+                let torque = body.external.angular - body.inertia.com.cross(force);
+                (rot_wb * force).write(out);
+                (rot_wb * torque).write(&mut out[3..]);
+            }
         }
         Ok(())
     }

@@ -144,9 +144,16 @@ pub enum SimulationError {
     #[error(transparent)]
     Model(#[from] ModelError),
     #[error(
-        "an external engine moves one robot; a world of several systems needs the native equations of motion"
+        "an external engine does not support {what} ('{name}'); {remedy}, or use the native equations of motion"
     )]
-    EngineOfWorld,
+    EngineOfWorld {
+        /// Event or system.
+        name: String,
+        /// Setting that only the native equations of motion support.
+        what: &'static str,
+        /// What to change instead.
+        remedy: &'static str,
+    },
 }
 
 impl From<ControlError> for SimulationError {

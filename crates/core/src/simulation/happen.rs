@@ -121,7 +121,7 @@ impl<S: Scalar> RunState<'_, S> {
         seat: Option<Seat>,
         t: f64,
     ) -> Result<EventRecord, SimulationError> {
-        if self.tree_of(by.system) == self.tree_of(of.system) {
+        if self.connections.connected_to(by.system).contains(&of.system) {
             let name = |place: FrameIndex| self.layout.systems()[place.system].name.clone();
             let (event, first, second) = (self.events.list[number].name.clone(), name(by), name(of));
             return Err(WorldError::AlreadyConnected { event, time: t, first, second }.into());
@@ -143,6 +143,9 @@ impl<S: Scalar> RunState<'_, S> {
         active.roots.push(roots[0]);
         self.recompile(t)?;
         let mut record = self.audit(number, EventKind::Capture, t, (by, of), (&before, &captured), point);
+        if self.mover.is_external() {
+            return Ok(record); // the engine removes the relative velocity during the next steps
+        }
         let after = self.snapshots();
         let twist = |snapshots: &[Snapshot]| self.relative_twist((by, of), snapshots);
         let (left, was) = (twist(&after), twist(&before));
@@ -162,6 +165,10 @@ impl<S: Scalar> RunState<'_, S> {
         let Weld { by, of, .. } = self.connections.active.welds.remove(weld);
         let before = self.snapshots();
         self.recompile(t)?;
+        if self.mover.is_external() {
+            let point = self.pose_and_twist(by, &before).0.pos_w;
+            return Ok(self.audit(number, EventKind::Release, t, (by, of), (&before, &[]), point));
+        }
         // the part that the root has left gets its own root
         for place in [by, of] {
             let root = self.root_of(place.system);

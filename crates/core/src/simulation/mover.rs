@@ -1,12 +1,11 @@
 //! Moves the trees over a step with the native equations of motion or with an external engine.
 
-use super::engine::ExternalEngine;
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
+use super::external_engine::ExternalEngine;
 use super::integrator::{Integration, StepControl};
 use super::modes::StepMethod;
-use super::only::{only, only_mut};
 use super::recorder::Recorder;
 use super::state::State;
 use super::tree_state::TreeState;
@@ -15,8 +14,8 @@ use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
-/// The native integrator or an external engine; the order of execution in a step is the same for both. An external
-/// engine moves one robot, the only tree of its run.
+/// The native integrator or an external engine; the order of execution in a step is the same for both. With an
+/// external engine every system remains a separate tree, also while it is connected.
 pub(super) enum Mover<'a, S> {
     Native(StepMethod<S>),
     External(ExternalEngine<'a>),
@@ -44,7 +43,9 @@ impl<S: Scalar> Mover<'_, S> {
         match self {
             Self::Native(_) => equations.solve_modes(state),
             Self::External(_) => {
-                only_mut(&mut equations.trees).modes.compensate_by_rate(&only(&state.trees).v);
+                for (tree, state) in equations.trees.iter_mut().zip(&state.trees) {
+                    tree.modes.compensate_by_rate(&state.v);
+                }
             }
         }
     }
@@ -79,10 +80,7 @@ impl<S: Scalar> Mover<'_, S> {
     ) -> Result<f64, SimulationError> {
         match self {
             Self::Native(method) => method.advance(equations, state, interval),
-            Self::External(engine) => {
-                let (tree, state) = (only(&equations.trees), only_mut(&mut state.trees));
-                engine.advance(tree, state, interval).map(|()| interval.1)
-            }
+            Self::External(engine) => engine.advance(&equations.trees, state, interval).map(|()| interval.1),
         }
     }
 
@@ -101,7 +99,7 @@ impl<S: Scalar> Mover<'_, S> {
             Self::Native(method) => {
                 recorder.record_acceleration(model, &method.integration.stages.first[number].acceleration);
             }
-            Self::External(engine) => match engine.first_acceleration() {
+            Self::External(engine) => match engine.first_acceleration(number) {
                 Some(acceleration) => recorder.record_acceleration(model, acceleration),
                 None => recorder.drop_last_row(),
             },
@@ -112,7 +110,7 @@ impl<S: Scalar> Mover<'_, S> {
     pub(super) fn work_of_step(&self, number: usize, state: &TreeState<S>) -> f64 {
         match self {
             Self::Native(method) => (state.work - method.integration.stages.start.trees[number].work).value(),
-            Self::External(engine) => engine.work_of_step(),
+            Self::External(engine) => engine.work_of_step(number),
         }
     }
 

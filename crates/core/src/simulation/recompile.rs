@@ -29,8 +29,14 @@ struct Loose<'a, S> {
 impl<'a, S: Scalar> RunState<'a, S> {
     /// Compiles the trees for the active connections at `t`, s. Trees whose members do not change stay as they are. The others
     /// take over the states of their members, whose momenta they keep. Expects the kinematics of the state, relative
-    /// to W, in the trees, and the states of the parts; afterwards the new trees hold their kinematics.
+    /// to W, in the trees, and the states of the parts; afterwards the new trees hold their kinematics. An external engine
+    /// gets the connections instead, and its trees stay the systems.
     pub(super) fn recompile(&mut self, t: f64) -> Result<(), SimulationError> {
+        if self.mover.is_external() {
+            self.pass_welds();
+            self.find_latches();
+            return Ok(());
+        }
         self.conclude_trees();
         let assemblies = self.connections.assemble()?;
         let members = std::mem::replace(&mut self.equations.members, Members::alone(0));
@@ -88,7 +94,8 @@ impl<'a, S: Scalar> RunState<'a, S> {
                 continue;
             };
             let frames = [by, of].map(|place| self.frame_in_tree(place));
-            if state.happened.is_none() && frames[0].0 != frames[1].0 {
+            let is_apart = !self.connections.connected_to(by.system).contains(&of.system);
+            if state.happened.is_none() && is_apart {
                 latches.push(Latch { event, frames, envelope, is_held: state.is_held });
             }
         }

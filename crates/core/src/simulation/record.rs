@@ -68,6 +68,9 @@ impl<S: Scalar> RunState<'_, S> {
     /// Adds a row before a jump of the velocities at the current cut.
     pub(super) fn record_before_jump(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         self.equations.apply_loads(t, interval, &self.state)?;
+        if self.mover.is_external() {
+            return self.record_before_event(t);
+        }
         self.record(t)?;
         self.add_accelerations(false);
         self.equations.project_momentum(&mut self.state);

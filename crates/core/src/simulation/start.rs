@@ -79,7 +79,10 @@ impl Simulation {
         duration: Option<f64>,
         from: Option<(Checkpoint, Vec<Trace>)>,
     ) -> Result<Stepper<'_>, SimulationError> {
-        let groups = groups(self.systems.len(), &self.events, &self.links());
+        let groups = match self.engine {
+            None => groups(self.systems.len(), &self.events, &self.links()),
+            Some(_) => vec![(0..self.systems.len()).collect()], // an external engine moves all systems at once
+        };
         let count = self.systems.len();
         let resumed = match from {
             Some((checkpoint, rows)) => {

@@ -3,11 +3,12 @@
 use super::accuracy::Accuracy;
 use super::connections::Connections;
 use super::controllers::Controllers;
-use super::engine::{Engine, ExternalEngine};
+use super::engine::Engine;
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::events::Events;
+use super::external_engine::ExternalEngine;
 use super::group_balance::GroupBalance;
 use super::integrator::{Integrator, Stages, StepSettings};
 use super::modes::StepMethod;
@@ -123,13 +124,15 @@ impl Shared {
         }
         let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(numbers, &models));
         let mut state = State::at(&mut equations.trees, starts);
-        follow_centers(&equations.trees, &mut state.trees);
+        if is_native {
+            follow_centers(&equations.trees, &mut state.trees);
+        }
         let is_fixed = is_native && !is_adaptive;
         let measures = (is_fixed, is_fixed && !has_every_step);
         let accuracy = Accuracy::of(&equations.trees, &state, measures, schedule.grid_steps())?;
         let mover = match engine {
             None => Mover::Native(StepMethod::new(&state, &step_settings)),
-            Some(engine) => Mover::External(ExternalEngine::new(engine, models[0])),
+            Some(engine) => Mover::External(ExternalEngine::new(engine, &models)),
         };
         let mut run = RunState {
             layout,

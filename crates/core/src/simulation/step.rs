@@ -3,6 +3,7 @@
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
 use super::members::{Part, Place};
+use super::mover::Mover;
 use super::record::complete_rows;
 use super::run_state::RunState;
 use super::schedule::Interval;
@@ -144,13 +145,16 @@ impl<S: Scalar> RunState<'_, S> {
     /// reached, s.
     fn integrate(&mut self, interval: &Interval, end: f64, is_row: bool) -> Result<f64, SimulationError> {
         let span = (interval.start, end);
-        let Self { state, equations, mover, accuracy, systems, .. } = self;
+        let Self { state, equations, mover, accuracy, systems, ledger, .. } = self;
         accuracy.start_step(self.steps, span, state, equations, mover)?;
         let result = mover.advance(equations, state, span);
         if is_row {
             complete_rows(systems, mover, equations, &self.row_states);
         }
         let reached = result?;
+        if let Mover::External(engine) = mover {
+            engine.remove_exchanged(ledger);
+        }
         for (run, &place) in systems.iter_mut().zip(&equations.members.places) {
             let tree = equations.members.tree_at(place);
             run.recorder.trace.work_done += mover.work_of_step(tree, &state.trees[tree]).abs();

@@ -110,7 +110,9 @@ impl SimulationErrorExt for SimulationError {
             }
             Self::World(source) => source.into_python(py),
             Self::Model(source) => source.into_python(py),
-            Self::EngineOfWorld => plain(py, "EngineError", &message),
+            Self::EngineOfWorld { name, .. } => {
+                raise(py, "EngineError", &message, &fields!(py, "name": name, "got": "engine"))
+            }
             Self::Engine(source) => match source.downcast::<PyErr>() {
                 Ok(raised) => {
                     let _ = raised.value(py).setattr("trace", trace);

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.common.files import exists
-from onorbit_rs.exceptions import DtypeError, InputError, ModelError, NotFoundError
+from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
 from onorbit_rs.output.manifest import SCENARIO, SUMMARY
 from onorbit_rs.output.read import SavedRun
@@ -108,19 +108,8 @@ def recorded(source: Source) -> Recorded | RecordedWorld:
 
 
 def on_the_other_engine(first: Recorded | RecordedWorld) -> Recorded | RecordedWorld:
-    """Simulate the same scenario on the other engine, and return its recorded columns.
-
-    Raises
-    ------
-    InputError
-        If the scenario has several systems, which only the native engine simulates.
-    """
+    """Simulate the same scenario on the other engine, and return its recorded columns."""
     scenario = first.scenario
-    if isinstance(scenario, WorldScenario):
-        raise InputError(
-            f"{first.name} has several systems, which only the native engine simulates; give a second run",
-            name="b", got=None, expected="run",
-        )  # fmt: skip
     other = {"native": "mujoco", "mujoco": "native"}[scenario.engine]
     return _of_run(run(with_absolute_paths(scenario) | {"engine": other}))
 

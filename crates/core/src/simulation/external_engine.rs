@@ -1,0 +1,126 @@
+//! The external engine of a run, with buffers for its input and output.
+
+use super::engine::{BodyWeld, Engine, StepInput, StepOutput};
+use super::error::SimulationError;
+use super::recording::Ledger;
+use super::state::State;
+use super::state_range::attitude_norm;
+use super::tree::Tree;
+use crate::model::Model;
+use crate::spatial::{Force, Scalar, Vec3};
+use std::ops::Range;
+
+/// Largest deviation from 1 of the norm of the quaternion that an engine returns.
+const UNIT: f64 = 1e-9;
+
+/// External engine of a run; its systems are the trees of the run, connected or not.
+pub(super) struct ExternalEngine<'a> {
+    engine: &'a mut dyn Engine,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    tau: Vec<f64>,
+    /// Ranges of each system in the lists of all configurations and of all velocities.
+    ranges: Vec<[Range<usize>; 2]>,
+    pub(super) welds: Vec<BodyWeld>,
+    output: StepOutput,
+    /// True if the engine completed its last step.
+    has_output: bool,
+}
+
+impl<'a> ExternalEngine<'a> {
+    pub(super) fn new(engine: &'a mut dyn Engine, models: &[&Model]) -> Self {
+        let output = StepOutput::new(models);
+        let (mut ranges, mut next) = (Vec::new(), [0; 2]);
+        for model in models {
+            let [nq, nv] = next;
+            next = [nq + model.nq(), nv + model.nv()];
+            ranges.push([nq..next[0], nv..next[1]]);
+        }
+        let tau = vec![0.0; models.iter().map(|model| model.joint_count()).sum()];
+        let (q, v) = (output.q.clone(), output.v.clone());
+        Self { engine, q, v, tau, ranges, welds: Vec::new(), output, has_output: false }
+    }
+
+    /// Returns the acceleration of a system at the start of the last step, `(nv,)`; `None` if the engine failed.
+    pub(super) fn first_acceleration(&self, system: usize) -> Option<&[f64]> {
+        let [_, range] = &self.ranges[system];
+        self.has_output.then(|| &self.output.acceleration[range.clone()])
+    }
+
+    /// Returns the work done on a system in the last step minus the energy that its joints dissipated, J.
+    pub(super) fn work_of_step(&self, system: usize) -> f64 {
+        let done = &self.output.systems[system];
+        done.work + done.weld_work
+    }
+
+    /// Removes from the amounts of a group what the connections exchanged between its systems in the last step. The
+    /// work of the connections remains: it is the energy that they absorb.
+    pub(super) fn remove_exchanged(&self, ledger: &mut Ledger) {
+        for done in &self.output.systems {
+            let impulse = Force::from_slice(&done.weld_impulse);
+            ledger.impulse.linear += -impulse.linear;
+            ledger.impulse.angular += -impulse.angular;
+            ledger.dissipated -= done.weld_work;
+        }
+    }
+
+    /// Moves `state` over `interval` with the torques of the trees.
+    pub(super) fn advance<S: Scalar>(
+        &mut self,
+        trees: &[Tree<'_, S>],
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<(), SimulationError> {
+        let Self { engine, q, v, tau, ranges, welds, output, has_output } = self;
+        for (state, [q_range, v_range]) in state.trees.iter().zip(ranges) {
+            for (to, from) in [(&mut q[q_range.clone()], &state.q), (&mut v[v_range.clone()], &state.v)] {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
+            }
+        }
+        let torques = trees.iter().flat_map(|tree| tree.torques());
+        tau.iter_mut().zip(torques).for_each(|(to, tau)| *to = tau.value());
+        *has_output = false;
+        engine.step(&StepInput { interval, q, v, tau, welds }, output)?;
+        *has_output = true;
+        self.check_output(interval.0)?;
+        self.update_state(state);
+        Ok(())
+    }
+
+    /// Checks the output of a step that started at `t`, s.
+    fn check_output(&self, t: f64) -> Result<(), SimulationError> {
+        let is_finite = |[q, v]: &&[Range<usize>; 2]| {
+            let values = self.output.q[q.clone()].iter().chain(&self.output.v[v.clone()]);
+            values.chain(&self.output.acceleration[v.clone()]).all(|x| x.is_finite())
+        };
+        if !self.output.is_finite() {
+            let [q, v] = self.ranges.iter().find(|range| !is_finite(range)).unwrap_or(&self.ranges[0]);
+            let (q, v) = (self.q[q.clone()].to_vec(), self.v[v.clone()].to_vec());
+            return Err(SimulationError::Diverged { time: t, q, v });
+        }
+        for [q, _] in &self.ranges {
+            let length = attitude_norm(&self.output.q[q.clone()]);
+            if (length - 1.0).abs() > UNIT {
+                return Err(SimulationError::EngineAttitude { time: t, length });
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the output of a step to `state`.
+    fn update_state<S: Scalar>(&self, state: &mut State<S>) {
+        let output = &self.output;
+        let vector = |x: &[f64]| Vec3::new(S::of(x[0]), S::of(x[1]), S::of(x[2]));
+        for ((state, [q, v]), done) in state.trees.iter_mut().zip(&self.ranges).zip(&output.systems) {
+            for (to, from) in [(&mut state.q, &output.q[q.clone()]), (&mut state.v, &output.v[v.clone()])] {
+                to.iter_mut().zip(from).for_each(|(to, from)| *to = S::of(*from));
+            }
+            let both: [f64; 6] = std::array::from_fn(|k| done.impulse[k] + done.weld_impulse[k]);
+            state.impulse.linear += vector(&both);
+            state.impulse.angular += vector(&both[3..]);
+            state.work += S::of(done.work + done.weld_work);
+            state.dissipated += S::of(done.dissipated);
+        }
+        state.orbital += vector(&output.orbital);
+    }
+}

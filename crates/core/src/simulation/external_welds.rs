@@ -1,0 +1,43 @@
+//! Passes the connections of the systems to the external engine, which holds them by its own constraints.
+
+use super::engine::BodyWeld;
+use super::error::SimulationError;
+use super::mover::Mover;
+use super::record::complete_rows;
+use super::run_state::RunState;
+use crate::environment::BodyIndex;
+use crate::spatial::{Quat, Scalar, Vec3};
+use crate::world::Weld;
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Passes the active connections to the external engine.
+    pub(super) fn pass_welds(&mut self) {
+        let welds = self.connections.active.welds.iter().map(|weld| self.body_weld(weld)).collect();
+        if let Mover::External(engine) = &mut self.mover {
+            engine.welds = welds;
+        }
+    }
+
+    /// Returns a connection of two frames as that of their bodies.
+    fn body_weld(&self, weld: &Weld) -> BodyWeld {
+        let [by, of] = [weld.by, weld.of].map(|place| &self.model(place.system).frames()[place.frame]);
+        let rot_by_of = Quat::from_xyzw(&weld.pose.rotation).matrix();
+        let point = by.rot_kf * Vec3::from_slice(&weld.pose.position) + by.pos_kf;
+        let body = |system: usize, body: usize| BodyIndex { system: self.numbers[system], body };
+        BodyWeld {
+            bodies: [body(weld.by.system, by.body), body(weld.of.system, of.body)],
+            points: [point, of.pos_kf],
+            rotation: by.rot_kf * rot_by_of * of.rot_kf.transpose(),
+        }
+    }
+
+    /// Adds a row for the current state before an event, with the accelerations of the external engine there.
+    pub(super) fn record_before_event(&mut self, t: f64) -> Result<(), SimulationError> {
+        self.record(t)?;
+        let Self { state, equations, mover, systems, row_states, .. } = self;
+        let mut copy = state.clone();
+        let asked = mover.advance(equations, &mut copy, (t, t)); // a step of zero length
+        complete_rows(systems, mover, equations, row_states);
+        asked.map(|_| ())
+    }
+}

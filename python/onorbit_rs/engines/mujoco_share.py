@@ -1,0 +1,112 @@
+"""Places of the systems in a MuJoCo model, and the welds that connect them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.engines.mujoco_model import link_name, path
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from types import ModuleType
+
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model
+
+    Floats = NDArray[np.float64]
+    Indices = NDArray[np.intp]
+    Weld = tuple[tuple[int, int], tuple[int, int], Floats, Floats]
+    """System and body of both sides, the captured origin in both bodies, rotation of second to first axes."""
+
+
+@dataclass(frozen=True)
+class Share:
+    """Part of a system in the arrays of a MuJoCo model; its part in the arrays of a run is the same."""
+
+    velocities: slice
+    linear: slice
+    angular: slice
+    quaternion: slice
+    origin: slice
+    bodies: Indices
+    """MuJoCo's bodies, in the order of the system."""
+    rows: slice
+    """Its part of the list of all bodies of the run."""
+    q_columns: Indices
+    """Index in MuJoCo's configuration of each coordinate of the system."""
+    v_columns: Indices
+    dofs: Indices
+    """Index in MuJoCo's velocity of each joint rate."""
+
+
+def shares(compiled: Any, models: Mapping[str, Model]) -> list[Share]:
+    """Return the place of each system in a compiled MuJoCo model."""
+    found: list[Share] = []
+    q, v, row = 0, 0, 0
+    for name, model in models.items():
+        joints = [compiled.joint(path(name, joint)) for joint in model.joint_names]
+        dofs = np.array([joint.dofadr[0] for joint in joints], dtype=int)
+        bodies = np.array([compiled.body(link_name(path(name, body))).id for body in model.body_names])
+        # MuJoCo's quaternion is wxyz
+        base = q + np.array([0, 1, 2, 4, 5, 6, 3])
+        found.append(
+            Share(
+                velocities=slice(v, v + model.nv), linear=slice(v, v + 3), angular=slice(v + 3, v + 6),
+                quaternion=slice(q + 3, q + 7), origin=slice(q, q + 3),
+                bodies=bodies, rows=slice(row, row + len(bodies)),
+                q_columns=np.array([*base, *(joint.qposadr[0] for joint in joints)]),
+                v_columns=np.array([*range(v, v + 6), *dofs]), dofs=dofs,
+            )
+        )  # fmt: skip
+        q, v, row = q + model.nq, v + model.nv, row + len(bodies)
+    return found
+
+
+def connect(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], welds: Sequence[Weld]) -> None:
+    """Activate a weld for each connection, and deactivate the others.
+
+    MuJoCo holds the captured point of both bodies together, and the axes of the second body at the given
+    rotation in those of the first.
+    """
+    data.eq_active[:] = 0
+    for k, (by, of, points, rotation) in enumerate(welds):
+        model.eq_obj1id[k], model.eq_obj2id[k] = (parts[system].bodies[body] for system, body in (by, of))
+        quat = np.empty(4)
+        mujoco.mju_mat2Quat(quat, np.ascontiguousarray(rotation).ravel())
+        pose = [*points[1], *points[0], *quat]  # in MuJoCo's order
+        model.eq_data[k, : len(pose)] = pose
+        data.eq_active[k] = 1
+
+
+def exchanged(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], outer: Floats) -> Floats:
+    """Return what each system receives per second, and the moment of the environment on all of them.
+
+    For each system: the environment's force and its torque about the centre of mass, the power of motors and
+    environment minus the loss in the joints, that loss, and force, torque and power of its welds. Then the
+    moment of the environment's forces, at the centres of mass of the systems, about the common one.
+    """
+    weld = np.zeros(model.nv)
+    if data.eq_active.any():
+        is_weld = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+        mujoco.mj_mulJacTVec(model, data, weld, np.where(is_weld, data.efc_force, 0.0))
+    inner = data.qfrc_constraint - weld
+    motors, joints = data.qfrc_smooth + data.qfrc_bias + inner, data.qfrc_passive + inner
+    found, forces, centers, masses = [], [], [], []
+    for part in parts:
+        base, velocity = part.bodies[0], data.qvel[part.velocities]
+        center, wrench = data.subtree_com[base], outer[part.rows]
+        force, own = wrench[:, :3], part.velocities
+        moment = wrench[:, 3:] + np.cross(data.xipos[part.bodies] - center, force)
+        pull, arm = weld[part.linear], data.qpos[part.origin] - center
+        turn = data.xmat[base].reshape(3, 3) @ weld[part.angular] + np.cross(arm, pull)
+        powers = motors[own] @ velocity, -joints[own] @ velocity
+        found += [force.sum(axis=0), moment.sum(axis=0), powers, pull, turn, [weld[own] @ velocity]]
+        forces.append(force.sum(axis=0))
+        centers.append(center)
+        masses.append(model.body_subtreemass[base])
+    middle = np.average(centers, axis=0, weights=masses)
+    return np.concatenate([*found, np.cross(np.array(centers) - middle, forces).sum(axis=0)])
