@@ -329,10 +329,10 @@ def test_pieces_that_end_near_an_event_have_the_bits_of_one_run(time: float, fri
     stepper.advance_to(time)
     assert stepper["t"].q.shape == (8,)
     resumed = simulation().start(resume=stepper.checkpoint())
-    for run in (stepper, resumed):
-        run.advance_to(1.0)
+    for advanced in (stepper, resumed):
+        advanced.advance_to(1.0)
         for name in ("a", "t"):
-            got, expected = run.trace()[name], whole[name]
+            got, expected = advanced.trace()[name], whole[name]
             rows = len(expected.time) - len(got.time)
             for column in ("q", "v", "tau", "acceleration", "work"):
                 np.testing.assert_array_equal(getattr(got, column), getattr(expected, column)[rows:])
