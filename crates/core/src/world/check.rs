@@ -56,6 +56,7 @@ pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldErr
     }
     check_circles(events)?;
     check_loops(systems.len(), events)?;
+    check_timed_loops(systems.len(), events)?;
     events.iter().try_for_each(|event| check_merged(systems, event))
 }
 
@@ -198,4 +199,58 @@ fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
         }
     }
     Ok(())
+}
+
+/// Checks that captures whose times are known before the run do not connect systems that are connected then. Captures
+/// that an event at an unknown time may release are not considered.
+fn check_timed_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
+    let mut due: Vec<Option<f64>> = events.iter().map(at).collect();
+    let mut order = Vec::new();
+    let first = |due: &[Option<f64>]| {
+        let known = due.iter().enumerate().filter_map(|(number, t)| Some((number, (*t)?)));
+        known.min_by(|(_, a), (_, b)| a.total_cmp(b))
+    };
+    while let Some((number, t)) = first(&due) {
+        due[number] = None;
+        order.push(number);
+        for (other, event) in events.iter().enumerate() {
+            if let When::After { event, delay } = event.when
+                && event == number
+            {
+                due[other] = Some(t + delay);
+            }
+        }
+    }
+    let releases =
+        |event: &Event, of: usize| matches!(event.action, Action::Release { capture, .. } if capture == of);
+    let is_certain = |capture: usize| {
+        let mut all = events.iter().enumerate().filter(|(_, event)| releases(event, capture));
+        all.all(|(number, _)| order.contains(&number))
+    };
+    let mut active: Vec<usize> = Vec::new();
+    for &number in &order {
+        match events[number].action {
+            Action::Release { capture, .. } => active.retain(|other| *other != capture),
+            Action::Capture { .. } => {
+                active.push(number);
+                let (mut union, mut names) = (Union::new(systems), Vec::new());
+                for &capture in active.iter().filter(|&&capture| capture == number || is_certain(capture)) {
+                    let Action::Capture { by, of, .. } = events[capture].action else { continue };
+                    names.push(events[capture].name.as_str());
+                    if !union.join(by.system, of.system) {
+                        return Err(WorldError::Loop { names: names.join(", ") });
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Returns the time at which an event is declared to happen, s.
+fn at(event: &Event) -> Option<f64> {
+    match event.when {
+        When::At(t) => Some(t),
+        _ => None,
+    }
 }
