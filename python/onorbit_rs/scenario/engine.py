@@ -48,27 +48,21 @@ def check_world_engine(scenario: WorldScenario) -> None:
 
 def build_engine(scenario: Scenario, model: Model) -> engines.Mujoco | None:
     """Return the physics engine of the run, or None for the native one."""
-    if scenario.engine == "native":
-        return None
-    settings = scenario.simulation
-    assert settings.integrator != "dormand_prince"  # check_engine raises an error for it
-    return engines.Mujoco(
-        model,
-        time_step=settings.time_step,
-        integrator=settings.integrator,
-        enforce_limits=settings.enforce_limits,
-    )
+    return _build(scenario, model, scenario.simulation.enforce_limits)
 
 
 def build_world_engine(scenario: WorldScenario, models: dict[str, Model]) -> engines.Mujoco | None:
     """Return the physics engine of a run of several systems, or None for the native one."""
+    return _build(scenario, models, [name for name, one in scenario.systems.items() if one.enforce_limits])
+
+
+def _build(
+    scenario: Scenario | WorldScenario, model: Model | dict[str, Model], enforce_limits: bool | list[str]
+) -> engines.Mujoco | None:
     if scenario.engine == "native":
         return None
     settings = scenario.simulation
     assert settings.integrator != "dormand_prince"  # check_engine raises an error for it
     return engines.Mujoco(
-        models,
-        time_step=settings.time_step,
-        integrator=settings.integrator,
-        enforce_limits=[name for name, system in scenario.systems.items() if system.enforce_limits],
+        model, time_step=settings.time_step, integrator=settings.integrator, enforce_limits=enforce_limits
     )

@@ -30,11 +30,7 @@ pub(super) struct Events {
 impl Events {
     /// Returns the events at the start of a run.
     pub(super) fn new(list: Vec<Event>, numbers: Vec<usize>) -> Self {
-        let due = |event: &Event| match event.when {
-            When::At(t) => Some(t),
-            _ => None,
-        };
-        let states = list.iter().map(|event| EventState { due: due(event), ..EventState::default() });
+        let states = list.iter().map(|event| EventState { due: event.when.time(), ..EventState::default() });
         Self { states: states.collect(), list, numbers, records: Vec::new() }
     }
 

@@ -41,8 +41,7 @@ impl<S: Scalar> RunState<'_, S> {
         let mut scales = [0.0; 2];
         for number in 0..self.systems.len() {
             let (state, own) = system(number);
-            let values = |x: &[S]| x.iter().map(|x| x.value()).collect::<Vec<f64>>();
-            let (q, mut v) = (values(&state.q), values(&state.v));
+            let [q, mut v] = state.values();
             (Vec3::from_slice(&v) - base_rotation::<f64>(&q).transpose_mul(velocity)).write(&mut v);
             let balance = Balance::of(&own.model, &q, &v, center);
             scales = [0, 1].map(|i| scales[i] + balance.scales[i]);

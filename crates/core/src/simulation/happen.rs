@@ -196,7 +196,7 @@ impl<S: Scalar> RunState<'_, S> {
         for (place, impulse) in [(by, -impulse), (of, on_of)] {
             let (tree, frame) = self.frame_in_tree(place);
             let (moved, state) = (&mut self.equations.trees[tree], &mut self.state.trees[tree]);
-            let q: Vec<f64> = state.q.iter().map(|x| x.value()).collect();
+            let [q, _] = state.values();
             let given: Vec<usize> = moved.modes.given().iter().map(|given| given.joint).collect();
             let change = impulse_response(&moved.model, &q, frame, impulse, &given);
             moved.jump(state, &change);
@@ -270,10 +270,10 @@ impl<S: Scalar> RunState<'_, S> {
     /// Returns the states of all systems. Expects the states of the parts.
     fn snapshots(&self) -> Vec<Snapshot> {
         let EquationsOfMotion { trees, members, .. } = &self.equations;
-        let values = |x: &[S]| x.iter().map(|x| x.value()).collect();
         let snapshot = |system| {
             let state = members.system(system, trees, &self.state.trees).0;
-            Snapshot { q: values(&state.q), v: values(&state.v) }
+            let [q, v] = state.values();
+            Snapshot { q, v }
         };
         (0..self.systems.len()).map(snapshot).collect()
     }

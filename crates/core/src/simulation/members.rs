@@ -208,8 +208,7 @@ impl<'a, S: Scalar> Part<'a, S> {
 
     /// Returns the acceleration of the system, `(nv,)`, from the state (W) and the acceleration of its tree.
     pub(super) fn acceleration(&self, tree: &Tree<'_, S>, state: &TreeState<S>, a: &[S]) -> Vec<S> {
-        let values = |x: &[S]| x.iter().map(|x| x.value()).collect::<Vec<f64>>();
-        let (q, v, a) = (values(&state.q), values(&state.v), values(a));
+        let ([q, v], a) = (state.values(), a.iter().map(|x| x.value()).collect::<Vec<f64>>());
         let mut data = Data::<f64>::new(&tree.model);
         inverse_dynamics(&tree.model, &mut data, &q, &v, &a, &[], &mut vec![0.0; v.len()]);
         let base = &self.member.bodies[0];

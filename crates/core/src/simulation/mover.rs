@@ -155,7 +155,7 @@ impl<S: Scalar> Mover<'_, S> {
         let current = &state.trees[number];
         match self {
             Self::Native(method) if !current.is_finite() => method.integration.stages.start_state(number),
-            _ => [&current.q, &current.v].map(|x| x.iter().map(|x| x.value()).collect()),
+            _ => current.values(),
         }
     }
 }

@@ -46,11 +46,10 @@ impl<S: Scalar> RunState<'_, S> {
     /// `is_within_step`.
     pub(super) fn update_moving_frames(&self, is_within_step: bool) {
         let state = if is_within_step { &self.row_buffers.0 } else { &self.state };
-        let values = |x: &[S]| x.iter().map(|x| x.value()).collect::<Vec<f64>>();
         for (place, moving) in &self.moving_frames {
             let (tree, frame) = self.frame_in_tree(*place);
-            let (model, state) = (&self.equations.trees[tree].model, &state.trees[tree]);
-            moving.set_motion(motion(model, &values(&state.q), &values(&state.v), frame));
+            let (model, [q, v]) = (&self.equations.trees[tree].model, state.trees[tree].values());
+            moving.set_motion(motion(model, &q, &v, frame));
         }
     }
 }

@@ -212,11 +212,10 @@ fn join<'a, S: Scalar>(
     new: &mut Members<'a, S>,
 ) -> (Tree<'a, S>, TreeState<S>) {
     let loose: Vec<Loose<'a, S>> = members.iter().map(|member| old.take(member.system)).collect();
-    let values = |x: &[S]| x.iter().map(|x| x.value()).collect::<Vec<f64>>();
-    let states: Vec<_> = loose.iter().map(|one| (values(&one.state.q), values(&one.state.v))).collect();
+    let states: Vec<_> = loose.iter().map(|one| one.state.values()).collect();
     let mut q = vec![0.0; model.nq()];
-    q[..BASE_NQ].copy_from_slice(&states[0].0[..BASE_NQ]);
-    for (member, (own, _)) in members.iter().zip(&states) {
+    q[..BASE_NQ].copy_from_slice(&states[0][0][..BASE_NQ]);
+    for (member, [own, _]) in members.iter().zip(&states) {
         member.joints.iter().enumerate().for_each(|(j, &joint)| q[BASE_NQ + joint] = own[BASE_NQ + j]);
     }
     let mut rates = Vec::new();
@@ -227,7 +226,7 @@ fn join<'a, S: Scalar>(
     }
     let parts = members.iter().zip(&loose).zip(&states);
     let moving: Vec<_> =
-        parts.map(|((member, one), (q, v))| Moving { member, model: &one.own.model, q, v }).collect();
+        parts.map(|((member, one), [q, v])| Moving { member, model: &one.own.model, q, v }).collect();
     let v = connected_velocity(&model, &q, &moving, &rates);
     let modes = loose.iter().zip(&members).map(|(one, member)| (&one.own.modes, &member.joints[..]));
     let modes = JointModes::joined(model.joint_count(), given, modes);

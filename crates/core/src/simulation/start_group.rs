@@ -220,10 +220,7 @@ impl Shared {
         // in `Carried` mode the acceleration of the reference orbit, and with it its jumps, does not act on the robot
         let orbit = self.orbit.iter().filter(|_| self.gravity_mode == GravityMode::True);
         let jumps = orbit.flat_map(|orbit| orbit.event_times());
-        let times = events.iter().filter_map(|event| match event.when {
-            When::At(t) => Some(t),
-            _ => None,
-        });
+        let times = events.iter().filter_map(|event| event.when.time());
         let effects = self.effects.iter().flat_map(|effect| effect.event_times());
         let clock = |system: &&mut System| {
             let has_ticks = !self.is_adaptive() || !system.controls.is_empty();

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Data, Momentum, kinematics, momentum};
 use crate::model::{BASE_NQ, BASE_NV, Model};
-use crate::spatial::{Quat, Real, Vec3, exp_so3};
+use crate::spatial::{Quat, Real, Scalar, Vec3, exp_so3};
 use serde::{Deserialize, Serialize};
 
 /// Integrated quantities of one tree: configuration, velocity, momentum and energies.
@@ -216,5 +216,12 @@ impl<S: Real> TreeState<S> {
         if let (Some(clock), Some(rate)) = (from.clock, rate.clock) {
             self.clock = Some(rate.mul_add(h, clock));
         }
+    }
+}
+
+impl<S: Scalar> TreeState<S> {
+    /// Returns configuration and velocity in `f64`.
+    pub(super) fn values(&self) -> [Vec<f64>; 2] {
+        [&self.q, &self.v].map(|x| x.iter().map(|x| x.value()).collect())
     }
 }

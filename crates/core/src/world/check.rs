@@ -182,15 +182,10 @@ fn check_circles(events: &[Event]) -> Result<(), WorldError> {
 
 /// Checks that captures that no event releases do not connect the same systems twice.
 fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
-    let is_released = |number: usize| {
-        let releases =
-            |event: &Event| matches!(event.action, Action::Release { capture, .. } if capture == number);
-        events.iter().any(releases)
-    };
     let (mut union, mut names) = (Union::new(systems), Vec::new());
     for (number, event) in events.iter().enumerate() {
         let Action::Capture { by, of, .. } = event.action else { continue };
-        if is_released(number) {
+        if releases_of(events, number).next().is_some() {
             continue;
         }
         names.push(event.name.as_str());
@@ -204,7 +199,7 @@ fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
 /// Checks that captures whose times are known before the run do not connect systems that are connected then. Captures
 /// that an event at an unknown time may release are not considered.
 fn check_timed_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
-    let mut due: Vec<Option<f64>> = events.iter().map(at).collect();
+    let mut due: Vec<Option<f64>> = events.iter().map(|event| event.when.time()).collect();
     let mut order = Vec::new();
     let first = |due: &[Option<f64>]| {
         let known = due.iter().enumerate().filter_map(|(number, t)| Some((number, (*t)?)));
@@ -221,12 +216,7 @@ fn check_timed_loops(systems: usize, events: &[Event]) -> Result<(), WorldError>
             }
         }
     }
-    let releases =
-        |event: &Event, of: usize| matches!(event.action, Action::Release { capture, .. } if capture == of);
-    let is_certain = |capture: usize| {
-        let mut all = events.iter().enumerate().filter(|(_, event)| releases(event, capture));
-        all.all(|(number, _)| order.contains(&number))
-    };
+    let is_certain = |capture| releases_of(events, capture).all(|number| order.contains(&number));
     let mut active: Vec<usize> = Vec::new();
     for &number in &order {
         match events[number].action {
@@ -247,10 +237,9 @@ fn check_timed_loops(systems: usize, events: &[Event]) -> Result<(), WorldError>
     Ok(())
 }
 
-/// Returns the time at which an event is declared to happen, s.
-fn at(event: &Event) -> Option<f64> {
-    match event.when {
-        When::At(t) => Some(t),
-        _ => None,
-    }
+/// Returns the numbers of the events that release a capture.
+fn releases_of(events: &[Event], capture: usize) -> impl Iterator<Item = usize> {
+    let releases =
+        move |event: &Event| matches!(event.action, Action::Release { capture: of, .. } if of == capture);
+    events.iter().enumerate().filter(move |(_, event)| releases(event)).map(|(number, _)| number)
 }

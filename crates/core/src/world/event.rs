@@ -40,6 +40,16 @@ pub enum When {
     Latch(Envelope),
 }
 
+impl When {
+    /// Returns the time at which an event is declared to happen, s; `None` if it depends on the run or on other events.
+    pub fn time(&self) -> Option<f64> {
+        match *self {
+            Self::At(t) => Some(t),
+            _ => None,
+        }
+    }
+}
+
 /// Envelope of a latch: the frames must be close to each other and slow relative to each other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Envelope {
