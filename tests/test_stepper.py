@@ -207,3 +207,20 @@ def test_a_command_within_a_step_cuts_it() -> None:
     fine.command(np.full(7, 1e-3))
     fine.advance_to(0.3)
     np.testing.assert_allclose(stepper.q, fine.q, atol=1e-9)
+
+
+def test_a_command_after_a_look_at_the_rows_is_not_lost():
+    """Reading the rows takes a trial step, after which a command still holds."""
+    robot = oo.robots.load("servicer")
+    traces = []
+    for looks in (False, True):
+        simulation = oo.Simulation(robot, robot.neutral(), np.zeros(robot.nv), time_step=1e-2)
+        stepper = simulation.start(duration=1.0)
+        stepper.advance_to(0.5)
+        if looks:
+            stepper.trace()
+        stepper.command(np.ones(len(robot.joint_names)))
+        stepper.advance_to(1.0)
+        traces.append(stepper.trace())
+    np.testing.assert_array_equal(traces[1].q, traces[0].q)
+    assert traces[1].tau[-1].all()

@@ -110,8 +110,8 @@ pub(super) struct SystemControllers {
     pub(super) commanded: Vec<Option<f64>>,
     /// Accelerations requested for joints whose friction is compensated, `(n,)`, rad/s² (m/s²).
     pub(super) requested: Vec<Option<f64>>,
-    /// Torques and requested accelerations of an update at the current cut that a trial step has made.
-    pub(super) updated: Option<(Vec<f64>, Vec<Option<f64>>)>,
+    /// Torques and requested accelerations before an update that a trial step made at the current cut.
+    pub(super) held: Option<(Vec<f64>, Vec<Option<f64>>)>,
     pub(super) controls: Vec<ControlMemory>,
 }
 
@@ -297,8 +297,8 @@ impl SystemControllers {
             ("torques", self.command.len(), n),
             ("commands", self.commanded.len(), n),
             ("accelerations", self.requested.len(), n),
-            ("updated torques", self.updated.as_ref().map_or(n, |(command, _)| command.len()), n),
-            ("updated accelerations", self.updated.as_ref().map_or(n, |(_, requested)| requested.len()), n),
+            ("held torques", self.held.as_ref().map_or(n, |(command, _)| command.len()), n),
+            ("held accelerations", self.held.as_ref().map_or(n, |(_, requested)| requested.len()), n),
         ])
     }
 }

@@ -70,20 +70,16 @@ impl<S: Scalar> RunState<'_, S> {
     ) -> Result<R, SimulationError> {
         let (before, held): (Progress, _) = (self.progress(), self.commands());
         let (was_updated, updates) = (self.controllers_updated, self.controller_updates);
-        let taken: Vec<_> = self.systems.iter_mut().map(|run| run.updated.clone()).collect();
         self.records_before = records_before;
         let result = work(self);
         self.records_before = f64::INFINITY;
         self.has_event = false;
-        let updated = self.commands();
         self.restore(before)?;
-        // a row before an event at this cut has the torques that were held until then
         let has_updated = self.controller_updates != updates;
-        for ((run, updated), taken) in self.systems.iter_mut().zip(updated).zip(taken) {
-            run.updated = if has_updated { Some(updated) } else { taken };
+        for (run, held) in self.systems.iter_mut().zip(held).filter(|_| has_updated) {
+            run.held = Some(held);
         }
         self.controllers_updated = was_updated || has_updated;
-        self.set_commands(held);
         result
     }
 
@@ -112,12 +108,22 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Takes over the commands of an update that a trial step has made at the current cut.
-    pub(super) fn take_updated_commands(&mut self) {
-        let held = self.commands();
-        let updated = self.systems.iter_mut().map(|run| run.updated.take());
-        let commands = updated.zip(held).map(|(updated, held)| updated.unwrap_or(held)).collect();
-        self.set_commands(commands);
+    /// Calls `record` with the torques that were held before the controllers were updated at the current cut, as a row
+    /// before a jump at this cut has them; a trial step may have updated them.
+    pub(super) fn with_held_commands(
+        &mut self,
+        record: impl FnOnce(&mut Self) -> Result<(), SimulationError>,
+    ) -> Result<(), SimulationError> {
+        if !self.controllers_updated {
+            return record(self);
+        }
+        let updated = self.commands();
+        let held = self.systems.iter().zip(&updated);
+        let held = held.map(|(run, updated)| run.held.as_ref().unwrap_or(updated).clone()).collect();
+        self.set_commands(held);
+        let result = record(self);
+        self.set_commands(updated);
+        result
     }
 
     /// Ends the current step at the current time, which becomes the current cut.

@@ -69,10 +69,13 @@ impl<S: Scalar> RunState<'_, S> {
     pub(super) fn record_before_jump(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         self.equations.apply_loads(t, interval, &self.state)?;
         if self.mover.is_external() {
-            return self.record_before_event(t);
+            return self.with_held_commands(|run| run.record_before_event(t));
         }
-        self.record(t)?;
-        self.add_accelerations(false);
+        self.with_held_commands(|run| {
+            run.record(t)?;
+            run.add_accelerations(false);
+            Ok(())
+        })?;
         self.equations.project_momentum(&mut self.state);
         Ok(())
     }

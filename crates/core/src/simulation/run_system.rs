@@ -18,9 +18,8 @@ use crate::world::Member;
 pub(super) struct RunSystem<'a, S> {
     pub(super) controllers: Controllers<'a, S>,
     pub(super) recorder: Recorder,
-    /// Torques, `(n,)`, and requested accelerations of an update of the controllers at the current cut that a trial step has
-    /// made; the step itself takes them over.
-    pub(super) updated: Option<(Vec<S>, Vec<Option<f64>>)>,
+    /// Torques, `(n,)`, and requested accelerations before an update of the controllers that a trial step made at its cut.
+    pub(super) held: Option<(Vec<S>, Vec<Option<f64>>)>,
     /// True if the controllers are due at the current cut.
     pub(super) is_due: bool,
     /// Systems whose models the controllers know.
@@ -57,8 +56,8 @@ impl<S: Scalar> RunSystem<'_, S> {
             command: system.command.iter().map(|x| x.value()).collect(),
             commanded: self.controllers.set.commanded().to_vec(),
             requested: system.modes.requested().to_vec(),
-            updated: self
-                .updated
+            held: self
+                .held
                 .as_ref()
                 .map(|(command, requested)| (command.iter().map(|x| x.value()).collect(), requested.clone())),
             controls: self.controllers.set.save()?,
@@ -71,9 +70,9 @@ impl<S: Scalar> RunSystem<'_, S> {
         saved: SystemControllers,
         system: &mut Tree<'_, S>,
     ) -> Result<(), SimulationError> {
-        let SystemControllers { command, commanded, requested, updated, controls } = saved;
+        let SystemControllers { command, commanded, requested, held, controls } = saved;
         let lift = |command: Vec<f64>| command.into_iter().map(S::of).collect();
-        self.updated = updated.map(|(command, requested)| (lift(command), requested));
+        self.held = held.map(|(command, requested)| (lift(command), requested));
         system.command.iter_mut().zip(command).for_each(|(to, from)| *to = S::of(from));
         self.controllers.set.command(&commanded);
         system.modes.requested_mut().copy_from_slice(&requested);

@@ -114,7 +114,7 @@ impl Shared {
             members.push(RunSystem {
                 controllers,
                 recorder,
-                updated: None,
+                held: None,
                 is_due: false,
                 knows,
                 known_members: Vec::new(),

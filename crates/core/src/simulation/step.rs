@@ -73,9 +73,6 @@ impl<S: Scalar> RunState<'_, S> {
     /// whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
-        if self.controllers_updated && self.systems.iter().any(|run| run.updated.is_some()) {
-            self.take_updated_commands();
-        }
         let is_due = !self.controllers_updated && self.find_due(t);
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
