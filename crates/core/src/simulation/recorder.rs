@@ -69,7 +69,7 @@ impl Recorder {
         (number, model): (usize, &Model),
         options: RecordOptions,
         controls: &[Control],
-        has_every_step: bool,
+        rows_suffice: bool,
     ) -> Result<Self, SimulationError> {
         let tracked = controls.iter().filter(|control| control.has_column && control.width() > 0);
         let column = |name: &str, width| NamedColumn { name: name.to_owned(), width, values: Vec::new() };
@@ -79,7 +79,7 @@ impl Recorder {
         let widths = COLUMNS.iter().map(|column| options.width(column, model));
         let widths: Vec<usize> =
             widths.chain(tracking.iter().chain(&wrenches).map(|column| column.width)).collect();
-        let mut trace = Trace { has_every_step, tracking, wrenches, ..Trace::default() };
+        let mut trace = Trace { rows_suffice, tracking, wrenches, ..Trace::default() };
         for ((_, column), width) in trace.columns_mut().zip(&widths) {
             let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
             column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;

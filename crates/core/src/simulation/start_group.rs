@@ -80,6 +80,8 @@ impl Shared {
         let rows = self.row_count(&schedule);
         let (is_native, is_adaptive) = (engine.is_none(), self.is_adaptive());
         let has_every_step = self.record_every == 1 && !is_adaptive;
+        // the rows of one system do not contain the accelerations that torques on the rest of its tree cause
+        let rows_suffice = has_every_step && (events.list.is_empty() || !is_native);
         let rereference_beyond = self.local_reference_distance(&systems);
         let Self { integrator, tolerance, time_step, .. } = *self;
         let horizon = duration.unwrap_or(LONGEST_INTERVAL * time_step);
@@ -105,7 +107,7 @@ impl Shared {
             let stops = stops.filter(|_| is_native); // an external engine has its own
             trees.push(Tree::new(Cow::Borrowed(model), stops));
             let options = self.record_options(model, controls, *tool, reference.is_some());
-            let recorder = Recorder::new(rows, (number, model), options, controls, has_every_step)?;
+            let recorder = Recorder::new(rows, (number, model), options, controls, rows_suffice)?;
             let tracked = (*tool, reference.as_ref());
             let mut controllers = Controllers::new(controls, tracked, model, time_step, !knows.is_empty())?;
             if !is_native {
@@ -128,7 +130,7 @@ impl Shared {
             follow_centers(&equations.trees, &mut state.trees);
         }
         let is_fixed = is_native && !is_adaptive;
-        let measures = (is_fixed, is_fixed && !has_every_step);
+        let measures = (is_fixed, is_fixed && !rows_suffice);
         let accuracy = Accuracy::of(&equations.trees, &state, measures, schedule.grid_steps())?;
         let mover = match engine {
             None => Mover::Native(StepMethod::new(&state, &step_settings)),

@@ -38,11 +38,12 @@ macro_rules! define_trace {
             /// Accumulated differences between steps and halved steps: one entry for the base's origin, then one per
             /// joint. Empty for an adaptive integrator and for an external engine.
             pub step_doubling: Vec<CoordinateDrift>,
-            /// Results of the checks that need every step, evaluated during a fixed-step run in which not every step
-            /// is a row; `None` otherwise.
+            /// Results of the checks that compare neighbouring steps, evaluated during a fixed-step run whose rows do
+            /// not suffice for them; `None` otherwise.
             pub pair_checks: Option<PairChecks>,
-            /// True if every step of the run is a row.
-            pub has_every_step: bool,
+            /// True if every step of the run is a row and no capture can make the system a part of a larger tree, so
+            /// that the rows suffice for the checks that compare neighbouring steps.
+            pub rows_suffice: bool,
         }
 
         impl Trace {

@@ -24,7 +24,7 @@ pub fn free_motion(model: &Model, q: &[f64], v: &[f64], h: f64, steps: usize, tu
     let zeros = vec![0.0; model.nv()];
     kinematics(model, &mut data, &q, &v);
     let start = momentum(&data, &q);
-    let mut trace = Trace { has_every_step: true, ..Trace::default() };
+    let mut trace = Trace { rows_suffice: true, ..Trace::default() };
     for k in 0..=steps {
         kinematics(model, &mut data, &q, &v);
         projected_base_twist(&data, &q, &v, start).write(&mut v);

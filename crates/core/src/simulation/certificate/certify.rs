@@ -24,7 +24,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         // an impact has two rows at the same time, without a step between them
         if let Some(before) = last.as_ref().filter(|before: &&TraceRow<'_>| before.time < now.time) {
             center.add(&before.mass_motion(), &now.mass_motion());
-            if trace.has_every_step {
+            if trace.rows_suffice {
                 base_rows.add(model, before, &now);
                 attitude.add(&before.base, &now.base);
             }
@@ -35,7 +35,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     let is_free = trace.impulse.iter().all(|x| *x == 0.0);
     let doubling = StepDoubling { model, trace, size: balance.size(), gate: JOINT_STEP_DOUBLING };
     let center_error = center.error(balance.size(), CENTER);
-    let pairs = if trace.has_every_step {
+    let pairs = if trace.rows_suffice {
         Some(PairChecks {
             center_of_mass_error_rel: center_error,
             base_rows_residual_rel: base_rows.largest.residual(balance.size()),

@@ -27,7 +27,8 @@ pub(super) const ATTITUDE: f64 = 0.1;
 /// Errors of a trace with respect to the laws of mechanics, each relative to a nonzero scale unless a unit is given.
 ///
 /// An integrator that integrates momentum conserves both momenta by construction; the other values are independent
-/// checks. Checks that compare neighbouring steps are evaluated during the run if not every step is a row. They are
+/// checks. Checks that compare neighbouring steps are evaluated during the run if not every step is a row or if captures may
+/// connect the system with others. They are
 /// `None` for an adaptive integrator, whose rows are interpolated, and for sparse rows of an external engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
