@@ -199,6 +199,34 @@ def test_invalid_worlds_are_refused(case: str) -> None:
         make()
 
 
+WRONG_TYPES: dict[str, tuple[Callable[..., Any], str]] = {
+    "knows": (
+        lambda: oo.System("a", BOX, BOX.neutral(), np.zeros(6), knows="b"),
+        'of type str.*such as ["b"]',
+    ),
+    "set": (lambda: oo.System("a", BOX, BOX.neutral(), np.zeros(6), knows={"b"}), "of type set"),  # no order
+    "name": (lambda: oo.System("a", BOX, BOX.neutral(), np.zeros(6), knows=[3]), "entry of type int"),
+    "system": (lambda: oo.World(systems()[0]), "systems is of type System; expected a list"),
+    "event": (lambda: oo.World(systems(), events=GRASP), "events is of type Capture; expected a list"),
+    "entry": (lambda: oo.World(systems(), events=["grasp"]), "events contains an entry of type str"),
+    "capture": (lambda: oo.Release("r", GRASP, at=1.0), "capture is of type Capture; expected the name"),
+    "after": (lambda: oo.Release("r", "grasp", after=["grasp"]), "after is of type list; expected the name"),
+    "frame": (
+        lambda: oo.Capture("c", ["a", "b"], "c/d", at=1.0),
+        "frame_a is of type list; expected a frame",
+    ),
+    "joints": (lambda: oo.Control(oo.JointPid(p=1.0), joints="elbow"), 'joints is of type str.*["elbow"]'),
+    "control": (lambda: oo.Control(oo.JointPid(p=1.0), after=["grasp"]), "after is of type list; expected"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG_TYPES)
+def test_lists_and_names_of_the_wrong_type_name_the_accepted_form(case: str) -> None:
+    call, message = WRONG_TYPES[case]
+    with pytest.raises(oo.exceptions.DtypeError, match=message.replace("[", r"\[")):
+        call()
+
+
 def test_what_belongs_to_the_world_is_no_argument_of_its_simulation() -> None:
     with pytest.raises(TypeError, match="belongs to the world"):
         oo.Simulation(world(GRASP), tool="tool")

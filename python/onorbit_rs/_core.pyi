@@ -1036,7 +1036,7 @@ class System:
         restitution: float = 0.0,
         reference_start_tolerance: ArrayLike | None = None,
         surfaces: Surface | Mapping[str, Surface] | None = None,
-        knows: Sequence[str] = ...,
+        knows: Sequence[str] | None = None,
     ) -> System: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property

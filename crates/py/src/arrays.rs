@@ -4,10 +4,11 @@ use crate::errors::{fields, raise, shape_error};
 use numpy::{
     IxDyn, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods,
 };
+use pyo3::PyTypeInfo;
 use pyo3::exceptions::PyOverflowError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyString, PyTuple};
-use pyo3::{PyClass, PyTypeInfo};
+use pyo3::type_object::PyTypeCheck;
+use pyo3::types::{PyBool, PySet, PyString, PyTuple};
 
 /// Returns the name of an object's type, for messages.
 pub(crate) fn type_name(value: &Bound<'_, PyAny>) -> String {
@@ -77,28 +78,55 @@ impl<'py> FromPyObject<'_, 'py> for Threads {
     }
 }
 
-/// Returns the entries of an iterable, but not of text, whose entries all have the class `T`; `what` is its name in messages.
-pub(crate) fn list_of<'py, T: PyClass>(
+/// Returns the entries of an iterable, but not of text or of a set without order, whose entries all have the class `T`;
+/// `what` is its name in messages.
+pub(crate) fn list_of<'py, T: PyTypeCheck>(
     value: &Bound<'py, PyAny>,
     name: &str,
     what: &str,
 ) -> PyResult<Vec<Bound<'py, T>>> {
-    let py = value.py();
-    let refuse = |says: &str, got: &Bound<'py, PyAny>| {
-        let got = type_name(got);
-        let message = format!("{name} {says} type {got}; expected a list of {what}");
-        raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
-    };
-    if value.is_instance_of::<PyString>() {
-        return Err(refuse("is of", value));
+    if value.is_instance_of::<PyString>() || value.is_instance_of::<PySet>() {
+        return Err(no_list(value, name, what));
     }
-    let entries = value.try_iter().map_err(|_| refuse("is of", value))?;
+    let entries = value.try_iter().map_err(|_| no_list(value, name, what))?;
     entries
-        .map(|entry| {
-            let entry = entry?;
-            entry.cast_into::<T>().map_err(|error| refuse("contains an entry of", &error.into_inner()))
-        })
+        .map(|entry| entry?.cast_into::<T>().map_err(|error| wrong_entry(&error.into_inner(), name, what)))
         .collect()
+}
+
+/// Returns the error for a value that is not a list of `what`.
+fn no_list(value: &Bound<'_, PyAny>, name: &str, what: &str) -> PyErr {
+    let (py, got) = (value.py(), type_name(value));
+    let message = format!("{name} is of type {got}; expected a list of {what}");
+    raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
+}
+
+/// Returns the error for an entry of a list of `what`.
+pub(crate) fn wrong_entry(entry: &Bound<'_, PyAny>, name: &str, what: &str) -> PyErr {
+    let (py, got) = (entry.py(), type_name(entry));
+    let message = format!("{name} contains an entry of type {got}; expected a list of {what}");
+    raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
+}
+
+/// Returns names in a list; `what` describes them in messages, which show text given instead of a list as one.
+pub(crate) fn names_in(
+    value: &Bound<'_, PyAny>,
+    name: &str,
+    what: &str,
+    example: &str,
+) -> PyResult<Vec<String>> {
+    let example = value.extract().unwrap_or_else(|_| example.to_owned());
+    let entries = list_of::<PyString>(value, name, &format!("{what}, such as [\"{example}\"]"))?;
+    entries.iter().map(|entry| entry.extract()).collect()
+}
+
+/// Returns text; `what` describes it in messages.
+pub(crate) fn text(value: &Bound<'_, PyAny>, name: &str, what: &str) -> PyResult<String> {
+    value.extract().map_err(|_| {
+        let (py, got) = (value.py(), type_name(value));
+        let message = format!("{name} is of type {got}; expected {what}");
+        raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
+    })
 }
 
 /// Contiguous array of `f64`, borrowed for reading.

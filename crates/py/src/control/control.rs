@@ -4,6 +4,7 @@ use super::LAWS;
 use super::gains::per_joint;
 use super::native_law::{Group, Robot};
 use super::user::PythonController;
+use crate::arrays::{names_in, text};
 use crate::errors::{IntoPython, plain};
 use crate::reference;
 use onorbit_core::control::{Begin, Control, ControlError, Goal, Law};
@@ -91,17 +92,22 @@ impl PyControl {
     fn new(
         controller: Py<PyAny>,
         reference: Option<Py<PyAny>>,
-        joints: Option<Vec<String>>,
+        joints: Option<Any<'_, '_>>,
         tool: Option<String>,
         name: Option<String>,
         start: f64,
         end: Option<f64>,
-        after: Option<String>,
+        after: Option<Any<'_, '_>>,
         goal: Option<Py<PyGoal>>,
         starts_at_present: bool,
-    ) -> Self {
+    ) -> PyResult<Self> {
+        let joints =
+            joints.map(|joints| names_in(joints, "joints", "names of joints", "elbow")).transpose()?;
+        let after = after
+            .map(|after| text(after, "after", "the name of a control or of an event (str)"))
+            .transpose()?;
         let end = end.unwrap_or(f64::INFINITY);
-        Self { controller, reference, joints, tool, name, start, end, after, goal, starts_at_present }
+        Ok(Self { controller, reference, joints, tool, name, start, end, after, goal, starts_at_present })
     }
 }
 

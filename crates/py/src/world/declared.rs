@@ -1,7 +1,8 @@
 //! Worlds of several spacecraft.
 
-use super::event::{events_of, names_of};
+use super::event::{events_in, events_of, names_of};
 use super::system::PySystem;
+use crate::arrays::list_of;
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{SimulationErrorExt, fields, raise};
@@ -60,22 +61,24 @@ impl PyWorld {
     ))]
     fn new(
         py: Python<'_>,
-        systems: Vec<Py<PySystem>>,
+        systems: &Bound<'_, PyAny>,
         orbit: Option<Py<PyOrbit>>,
         earth: Option<Py<PyEarth>>,
         gravity_mode: &str,
         environment: Option<&Bound<'_, PyAny>>,
-        events: Option<Vec<Py<PyAny>>>,
+        events: Option<&Bound<'_, PyAny>>,
         rereference_beyond: f64,
     ) -> PyResult<Self> {
+        let systems = list_of(systems, "systems", "systems, such as [oo.System(…)]")?;
+        let events = events.map_or(Ok(Vec::new()), events_in)?;
         let environment = effects(environment)?.into_iter().map(Bound::unbind).collect();
         let world = Self {
-            systems,
+            systems: systems.into_iter().map(Bound::unbind).collect(),
             orbit,
             earth,
             gravity_mode: gravity_mode.to_owned(),
             environment,
-            events: events.unwrap_or_default(),
+            events,
             rereference_beyond,
         };
         let simulation = world.simulation(py)?;

@@ -1,12 +1,11 @@
 //! Events of a world: captures and releases.
 
-use crate::arrays::fixed;
+use crate::arrays::{fixed, list_of, text, wrong_entry};
 use crate::errors::{IntoPython, fields, raise};
 use crate::model::attach::isometry;
 use crate::pickling::{ConstructorCall, Reduced, deep_copy};
 use onorbit_core::model::Model;
 use onorbit_core::world::{Action, Envelope, FrameIndex, Seat, System, When};
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -164,11 +163,11 @@ impl PyCapture {
     ))]
     fn new(
         py: Python<'_>,
-        name: String,
-        frame_a: String,
-        frame_b: String,
+        name: &Bound<'_, PyAny>,
+        frame_a: &Bound<'_, PyAny>,
+        frame_b: &Bound<'_, PyAny>,
         at: Option<f64>,
-        after: Option<String>,
+        after: Option<&Bound<'_, PyAny>>,
         delay: f64,
         on_command: bool,
         within: Option<&Bound<'_, PyAny>>,
@@ -177,6 +176,9 @@ impl PyCapture {
         seat: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let name = event_name(name, "name")?;
+        let (frame_a, frame_b) = (frame_path(frame_a, "frame_a")?, frame_path(frame_b, "frame_b")?);
+        let after = after.map(|after| event_name(after, "after")).transpose()?;
         let within = within.map(|within| fixed(within, "within", &[2])).transpose()?;
         let slower = slower_than.map(|slower| fixed(slower, "slower_than", &[2])).transpose()?;
         if within.is_none() && (slower.is_some() || held_for != 0.0) {
@@ -248,14 +250,16 @@ impl PyRelease {
     #[pyo3(signature = (name, capture, *, at=None, after=None, delay=0.0, on_command=false, impulse=None))]
     fn new(
         py: Python<'_>,
-        name: String,
-        capture: String,
+        name: &Bound<'_, PyAny>,
+        capture: &Bound<'_, PyAny>,
         at: Option<f64>,
-        after: Option<String>,
+        after: Option<&Bound<'_, PyAny>>,
         delay: f64,
         on_command: bool,
         impulse: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let (name, capture) = (event_name(name, "name")?, event_name(capture, "capture")?);
+        let after = after.map(|after| event_name(after, "after")).transpose()?;
         let impulse = impulse.map_or(Ok([0.0; 6]), |impulse| fixed(impulse, "impulse", &[6]))?;
         let condition = Condition::new(py, &name, (at, after, delay, on_command), None)?;
         Ok(Self { name, capture, condition, impulse })
@@ -273,13 +277,31 @@ impl PyRelease {
     }
 }
 
+/// Reads the name of an event.
+pub(crate) fn event_name(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<String> {
+    text(value, argument, "the name of an event (str), such as 'grasp'")
+}
+
+fn frame_path(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<String> {
+    text(value, argument, "a frame as SYSTEM/FRAME (str), such as 'chaser/tool'")
+}
+
+/// Reads a list of captures and releases.
+pub(super) fn events_in(value: &Bound<'_, PyAny>) -> PyResult<Vec<Py<PyAny>>> {
+    const WHAT: &str = "captures and releases, such as [oo.Capture(…)]";
+    let events = list_of::<PyAny>(value, "events", WHAT)?;
+    let is_event = |event: &&Bound<'_, PyAny>| {
+        event.is_instance_of::<PyCapture>() || event.is_instance_of::<PyRelease>()
+    };
+    match events.iter().find(|event| !is_event(event)) {
+        Some(other) => Err(wrong_entry(other, "events", WHAT)),
+        None => Ok(events.into_iter().map(Bound::unbind).collect()),
+    }
+}
+
 /// Returns the names of events.
 pub(super) fn names_of(py: Python<'_>, events: &[Py<PyAny>]) -> PyResult<Vec<String>> {
-    let name = |event: &Py<PyAny>| match event.bind(py).getattr("name") {
-        Ok(name) => name.extract(),
-        Err(_) => Err(PyTypeError::new_err("events must be a list of Capture and Release")),
-    };
-    events.iter().map(name).collect()
+    events.iter().map(|event| event.bind(py).getattr("name")?.extract()).collect()
 }
 
 /// Reads the events of a world.

@@ -1,6 +1,7 @@
 //! One spacecraft of a world.
 
 use super::robotics::{Robotics, initial_state};
+use crate::arrays::names_in;
 use crate::environment::SurfaceAssignment;
 use crate::model::PyModel;
 use crate::pickling::{ConstructorCall, Reduced, deep_copy};
@@ -40,7 +41,7 @@ use std::sync::Arc;
 /// surfaces : Surface or dict of str to Surface, optional
 ///     Surfaces of the links for ``Drag`` and ``RadiationPressure`` that have no ``surfaces``; the form is that of
 ///     ``Drag``. Default: ``Faces()``.
-/// knows : list of str
+/// knows : list of str, optional
 ///     Names of other systems whose models the controllers know. While such a system is connected to this one, laws that
 ///     use a model use that of the connected tree, in which its joints have no motor torque.
 #[pyclass(name = "System", frozen, module = "onorbit_rs")]
@@ -71,7 +72,7 @@ impl PySystem {
     #[new]
     #[pyo3(signature = (
         name, model, q, v, *, controller=None, reference=None, tool=None, control_period=None, enforce_limits=false,
-        restitution=0.0, reference_start_tolerance=None, surfaces=None, knows=Vec::new(),
+        restitution=0.0, reference_start_tolerance=None, surfaces=None, knows=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -87,8 +88,10 @@ impl PySystem {
         restitution: f64,
         reference_start_tolerance: Option<Py<PyAny>>,
         surfaces: Option<&Bound<'_, PyAny>>,
-        knows: Vec<String>,
+        knows: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let names = |knows| names_in(knows, "knows", "names of other systems", "target");
+        let knows = knows.map_or(Ok(Vec::new()), names)?;
         let given_surfaces = deep_copy(surfaces)?.map(Bound::unbind);
         let surfaces = surfaces.map(|surfaces| SurfaceAssignment::new(Some(surfaces))).transpose()?;
         let (q, v) = initial_state(py, &model.get().model, q, v)?;
