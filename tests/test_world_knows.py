@@ -111,6 +111,34 @@ def test_unknown_systems_are_refused(known: str, message: str):
         oo.World(systems(None, panelled(), [known]))
 
 
+@pytest.mark.parametrize(
+    ("knows", "captures", "message"),
+    [
+        (["c"], ["ab", "bc"], "only through 'b'; add 'b' to knows"),
+        (["d"], ["ab", "bc", "cd"], "only through 'b' and 'c'; add 'b' and 'c' to knows"),
+        (["d", "b"], ["ab", "bc", "cd"], "only through 'c'; add 'c' to knows"),
+        (["b", "c"], ["ab"], "knows 'c' without effect, because no capture connects them"),
+        (["b", "c"], ["ab", "bc"], None),
+        (["c"], ["ab", "bc", "ca"], None),
+    ],
+)
+def test_knowledge_without_effect_is_warned_of(knows: list[str], captures: list[str], message: str | None):
+    body = oo.Model.rigid_body(10.0, np.eye(3))
+    crafts = [
+        oo.System(name, body, [3.0 * i, 0, 0, 0, 0, 0, 1], np.zeros(6), knows=knows if name == "a" else ())
+        for i, name in enumerate("abcd")
+    ]
+    events: list[Any] = [
+        oo.Capture(n, f"{n[0]}/base", f"{n[1]}/base", at=1.0 + i) for i, n in enumerate(captures)
+    ]
+    events += [oo.Release(f"end_{n}", n, on_command=True) for n in captures]
+    if message is None:
+        oo.World(crafts, events=events)  # a warning would be an error
+        return
+    with pytest.warns(UserWarning, match=message):
+        oo.World(crafts, events=events)
+
+
 def control(law: str, robot: Any, joints: list[str]) -> Any:
     """Control of the arm by a law that uses the model of ``robot``."""
     servicer = oo.robots.load("servicer")

@@ -16,6 +16,9 @@ const UNIT_NORM: f64 = 1e-9;
 /// Longest motion to a nominal pose, s.
 const LONGEST: f64 = 1e9;
 
+/// Largest distance of a nominal pose from the capturing frame, m: more than the size of any spacecraft.
+const FARTHEST: f64 = 1e3;
+
 /// Checks the names of the systems of a world. A single system may have any name.
 ///
 /// # Errors
@@ -123,6 +126,11 @@ fn check_seat(event: &Event, seat: &Seat) -> Result<(), WorldError> {
     let RigidPose { rotation, position } = &seat.pose;
     if let Some(value) = position.iter().copied().find(|x| !x.is_finite()) {
         return wrong("the position of the pose", value, "m", "finite");
+    }
+    let distance = position.iter().fold(0.0, |sum: f64, x| sum.hypot(*x));
+    if distance > FARTHEST {
+        let expected = "at most 1000 m; give the position of the captured frame in the capturing frame in m";
+        return wrong("the distance of the nominal pose", distance, "m", expected);
     }
     let norm = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
     if (norm - 1.0).abs() > UNIT_NORM || norm.is_nan() {

@@ -12,6 +12,7 @@ use crate::reference::Around;
 use crate::simulation::{gravity_mode_named, set_environment};
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::Simulation;
+use onorbit_core::world::idle_knowledge;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -84,6 +85,7 @@ impl PyWorld {
         let simulation = world.simulation(py)?;
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         warn_of_distance(py, &simulation)?;
+        warn_of_knowledge(py, &simulation)?;
         Ok(world)
     }
 
@@ -156,6 +158,29 @@ fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResul
         })
     };
     system.knows.iter().map(number).collect()
+}
+
+/// Warns of systems that others know without effect.
+fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
+    let name = |system: usize| &simulation.systems[system].name;
+    for idle in idle_knowledge(&simulation.systems, &simulation.events) {
+        let (system, known) = (name(idle.system), name(idle.known));
+        let through: Vec<String> = idle.through.iter().map(|&system| format!("'{}'", name(system))).collect();
+        let through = through.join(" and ");
+        let message = if through.is_empty() {
+            format!(
+                "system '{system}' knows '{known}' without effect, because no capture connects them; add a capture, or \
+                 remove '{known}' from knows"
+            )
+        } else {
+            format!(
+                "system '{system}' knows '{known}' without effect, because captures connect them only through {through}; \
+                 add {through} to knows"
+            )
+        };
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 2)?;
+    }
+    Ok(())
 }
 
 /// Warns of systems that start so far from the reference orbit that their positions lose digits.

@@ -136,7 +136,8 @@ fn frame_at(
 ///     Time, s, in which the captured frame is pulled into ``pose`` after the capture, as latches and grapple fixtures do;
 ///     the motion starts and ends at rest. By default the pose at the capture is kept.
 /// pose : (4, 4) array, optional
-///     Nominal pose of the captured frame in the capturing frame, m; by default the two frames coincide.
+///     Nominal pose of the captured frame in the capturing frame, m; by default the two frames coincide. Its distance
+///     is at most 1000 m.
 #[pyclass(name = "Capture", frozen, module = "onorbit_rs")]
 pub(crate) struct PyCapture {
     /// Name of the event.
