@@ -88,6 +88,34 @@ fn a_resumed_world_has_the_bits_and_the_certificate_of_an_uninterrupted_run() {
     }
 }
 
+/// Regression: the tree that remained after a release was rooted at another system than in its checkpoint, and a resumed
+/// run read its coordinates as those of the other system.
+#[test]
+fn a_tree_that_its_root_has_left_resumes_with_the_same_bits() {
+    let grip = |system: usize| FrameIndex { system, frame: 1 };
+    let event = |name: &str, t: f64, action: Action| Event { name: name.into(), when: When::At(t), action };
+    let capture = |by: usize, of: usize| Action::Capture { by: grip(by), of: grip(of), seat: None };
+    let make = || {
+        let mut simulation = simulation();
+        simulation.events = vec![
+            event("pair", 0.1, capture(2, 1)),
+            event("carry", 0.2, capture(0, 2)),
+            event("let_go", 0.3, Action::Release { capture: 1, impulse: [1.0, 0.0, 0.0, 0.0, 0.1, 0.0] }),
+        ];
+        simulation
+    };
+    let whole = make().run(DURATION).unwrap();
+    let (mut first, mut second) = (make(), make());
+    let mut stepper = first.start(Some(DURATION)).unwrap();
+    stepper.advance_to(0.5).unwrap();
+    let rows = (0..3).map(|system| stepper.rows(system).clone()).collect();
+    let mut rest = second.resume(None, stepper.checkpoint().unwrap(), rows).unwrap();
+    rest.advance_to(DURATION).unwrap();
+    let rest = rest.finish().unwrap();
+    whole.systems.iter().zip(&rest.systems).for_each(|(a, b)| assert_same_bits(a, b));
+    assert_eq!(whole.groups, rest.groups);
+}
+
 /// Regression: with these steps, the end of a turn is rounded to a number after the step that ends there, and the run
 /// did not end.
 #[test]

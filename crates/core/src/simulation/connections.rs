@@ -17,7 +17,7 @@ pub(super) struct Connections {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct ActiveWelds {
     pub(super) welds: Vec<Weld>,
-    /// Systems that are roots of trees with several members.
+    /// Roots of the trees with several members, and of those that had several.
     pub(super) roots: Vec<usize>,
 }
 
@@ -46,6 +46,31 @@ impl Connections {
         }
         found.sort_unstable();
         found
+    }
+
+    /// Removes a weld. Of its two systems, the one whose tree has lost its root becomes the root of this tree.
+    pub(super) fn remove(&mut self, weld: usize) {
+        let Weld { by, of, .. } = self.active.welds.remove(weld);
+        for system in [by.system, of.system] {
+            if self.root_of(system).is_none() {
+                self.active.roots.push(system);
+            }
+        }
+    }
+
+    /// Adds a weld. The tree of the capturing frame keeps its root.
+    pub(super) fn add(&mut self, weld: Weld) {
+        let root = self.root_of(weld.by.system).unwrap_or(weld.by.system);
+        self.active.welds.push(weld);
+        let tree = self.connected_to(root);
+        self.active.roots.retain(|root| !tree.contains(root));
+        self.active.roots.push(root);
+    }
+
+    /// Returns the root of the tree that contains a system; `None` if the system has always been alone.
+    fn root_of(&self, system: usize) -> Option<usize> {
+        let tree = self.connected_to(system);
+        self.active.roots.iter().copied().find(|root| tree.contains(root))
     }
 
     /// Returns the trees for the active connections.

@@ -1,24 +1,14 @@
-//! Events at a cut: captures and releases, with their audits.
+//! Events at a cut: captures and releases.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
+use super::event_audit::{Applied, Snapshot};
 use super::latch::Latch;
 use super::members::Part;
 use super::recording::{EventKind, EventRecord};
 use super::run_state::RunState;
-use crate::dynamics::{Data, FramePose, frame_pose, frame_velocity, kinematics};
-use crate::model::Model;
-use crate::spatial::{Force, Motion, Quat, Scalar, Vec3};
-use crate::world::{
-    Action, Balance, FrameIndex, RigidPose, Seat, Seating, Weld, WorldError, energy, energy_of_change,
-    impulse_response,
-};
-
-/// State of a system in `f64`.
-struct Snapshot {
-    q: Vec<f64>,
-    v: Vec<f64>,
-}
+use crate::spatial::{Force, Quat, Scalar, Vec3};
+use crate::world::{Action, FrameIndex, RigidPose, Seat, Seating, Weld, WorldError, impulse_response};
 
 impl<S: Scalar> RunState<'_, S> {
     /// Applies the events that are due at `t`, s, in the order of their declaration. There is one row before them and
@@ -73,7 +63,7 @@ impl<S: Scalar> RunState<'_, S> {
 
     fn execute(&mut self, number: usize, t: f64) -> Result<EventRecord, SimulationError> {
         let record = self.keep_balance(|run| match run.events.list[number].action {
-            Action::Capture { by, of, seat } => run.capture(number, (by, of), seat, t),
+            Action::Capture { by, of, seat } => run.capture(number, [by, of], seat, t),
             Action::Release { capture, impulse } => run.release(number, capture, impulse, t),
         })?;
         self.ledger.work -= record.energy_lost;
@@ -117,40 +107,37 @@ impl<S: Scalar> RunState<'_, S> {
     fn capture(
         &mut self,
         number: usize,
-        (by, of): (FrameIndex, FrameIndex),
+        frames: [FrameIndex; 2],
         seat: Option<Seat>,
         t: f64,
     ) -> Result<EventRecord, SimulationError> {
+        let [by, of] = frames;
         if self.connections.connected_to(by.system).contains(&of.system) {
             let name = |place: FrameIndex| self.layout.systems()[place.system].name.clone();
             let (event, first, second) = (self.events.list[number].name.clone(), name(by), name(of));
             return Err(WorldError::AlreadyConnected { event, time: t, first, second }.into());
         }
-        let (roots, captured) =
-            ([self.root_of(by.system), self.root_of(of.system)], self.tree_members(of.system));
+        let captured = self.connections.connected_to(of.system);
         let before = self.snapshots();
-        let [pose_by, pose_of] = [by, of].map(|place| self.pose_and_twist(place, &before).0);
-        let point = pose_of.pos_w;
+        let [pose_by, pose_of] = frames.map(|place| self.pose_and_twist(place, &before).0);
         let rot_by_of = pose_by.rot_wf.transpose() * pose_of.rot_wf;
         let (mut rotation, mut position) = ([0.0; 4], [0.0; 3]);
         Quat::from_matrix(&rot_by_of).normalized().write_xyzw(&mut rotation);
         pose_by.rot_wf.transpose_mul(pose_of.pos_w - pose_by.pos_w).write(&mut position);
-        let active = &mut self.connections.active;
         let pose = RigidPose { rotation, position };
         let seating = seat.map(|Seat { duration, pose }| Seating { start: t, duration, pose });
-        active.welds.push(Weld { capture: number, by, of, pose, seating });
-        active.roots.retain(|root| !roots.contains(root));
-        active.roots.push(roots[0]);
+        self.connections.add(Weld { capture: number, by, of, pose, seating });
         self.recompile(t)?;
-        let mut record = self.audit(number, EventKind::Capture, t, (by, of), (&before, &captured), point);
-        if self.mover.is_external() {
-            return Ok(record); // the engine removes the relative velocity during the next steps
-        }
-        let after = self.snapshots();
-        let twist = |snapshots: &[Snapshot]| self.relative_twist((by, of), snapshots);
-        let (left, was) = (twist(&after), twist(&before));
-        record.twist_left = [ratio(left.linear, was.linear), ratio(left.angular, was.angular)];
-        Ok(record)
+        Ok(self.audit(&Applied {
+            number,
+            kind: EventKind::Capture,
+            time: t,
+            frames,
+            before: &before,
+            pushed: &captured,
+            point: pose_of.pos_w,
+            spring_work: 0.0,
+        }))
     }
 
     /// Removes a connection; `impulse` acts on the system of the captured frame.
@@ -162,38 +149,37 @@ impl<S: Scalar> RunState<'_, S> {
         t: f64,
     ) -> Result<EventRecord, SimulationError> {
         let weld = self.weld_of(capture).expect("the capture is active");
-        let Weld { by, of, .. } = self.connections.active.welds.remove(weld);
+        let Weld { by, of, .. } = self.connections.active.welds[weld];
         let before = self.snapshots();
+        self.connections.remove(weld);
         self.recompile(t)?;
-        if self.mover.is_external() {
-            let point = self.pose_and_twist(by, &before).0.pos_w;
-            return Ok(self.audit(number, EventKind::Release, t, (by, of), (&before, &[]), point));
-        }
-        // the part that the root has left gets its own root
-        for place in [by, of] {
-            let root = self.root_of(place.system);
-            if root == place.system && !self.connections.active.roots.contains(&root) {
-                self.connections.active.roots.push(root);
-            }
-        }
-        let point = self.pose_and_twist(by, &before).0.pos_w;
-        if impulse != [0.0; 6] {
-            self.push_apart((by, of), impulse, &before);
-        }
-        let released = self.tree_members(of.system);
-        Ok(self.audit(number, EventKind::Release, t, (by, of), (&before, &released), point))
+        let spring_work = if impulse == [0.0; 6] { 0.0 } else { self.push_apart([by, of], impulse, &before) };
+        Ok(self.audit(&Applied {
+            number,
+            kind: EventKind::Release,
+            time: t,
+            frames: [by, of],
+            before: &before,
+            pushed: &self.connections.connected_to(of.system),
+            point: self.pose_and_twist(by, &before).0.pos_w,
+            spring_work,
+        }))
     }
 
-    /// Applies an impulse, given in the axes of the frame `by` at its origin, to the tree of `of`, and the opposite one
-    /// to the tree of `by`.
-    fn push_apart(&mut self, (by, of): (FrameIndex, FrameIndex), impulse: [f64; 6], states: &[Snapshot]) {
-        let [pose_by, pose_of] = [by, of].map(|place| self.pose_and_twist(place, states).0);
+    /// Applies an impulse, given in the axes of the first frame at its origin, to the tree of the second frame, and the
+    /// opposite one to the tree of the first. Returns the work of the impulses, J: `½ Σ iᵀ (u⁻ + u⁺)` with the twists `u`
+    /// of the frames.
+    fn push_apart(&mut self, frames: [FrameIndex; 2], impulse: [f64; 6], states: &[Snapshot]) -> f64 {
+        let [(pose_by, twist_by), (pose_of, twist_of)] =
+            frames.map(|place| self.pose_and_twist(place, states));
         let impulse = Force::from_slice(&impulse);
         let force = pose_by.rot_wf * impulse.linear;
-        let moment = pose_by.rot_wf * impulse.angular + (pose_by.pos_w - pose_of.pos_w).cross(force);
+        let moment = pose_by.rot_wf * impulse.angular;
+        let on_by = -Force::new(force, moment);
+        let on_of = Force::new(force, moment + (pose_by.pos_w - pose_of.pos_w).cross(force));
         let to_of = |vector: Vec3<f64>| pose_of.rot_wf.transpose_mul(vector);
-        let on_of = Force::new(to_of(force), to_of(moment));
-        for (place, impulse) in [(by, -impulse), (of, on_of)] {
+        let in_frames = [-impulse, Force::new(to_of(on_of.linear), to_of(on_of.angular))];
+        for (place, impulse) in frames.into_iter().zip(in_frames) {
             let (tree, frame) = self.frame_in_tree(place);
             let (moved, state) = (&mut self.equations.trees[tree], &mut self.state.trees[tree]);
             let [q, _] = state.values();
@@ -203,98 +189,8 @@ impl<S: Scalar> RunState<'_, S> {
         }
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
         members.follow(trees, &self.state.trees);
-    }
-
-    /// Returns the record of an event: the balances of all systems before it and now. The impulse is that on the systems
-    /// `others`, about `point`.
-    fn audit(
-        &mut self,
-        number: usize,
-        kind: EventKind,
-        t: f64,
-        (by, of): (FrameIndex, FrameIndex),
-        (before, others): (&[Snapshot], &[usize]),
-        point: Vec3<f64>,
-    ) -> EventRecord {
         let after = self.snapshots();
-        let (mut totals, mut energies, mut lost) = ([Balance::default(); 2], [0.0; 2], 0.0);
-        let mut impulse = Force::zero();
-        for system in 0..self.systems.len() {
-            let model = self.model(system);
-            let states = [&before[system], &after[system]];
-            let balances = states.map(|state| Balance::of(model, &state.q, &state.v, point));
-            for (i, state) in states.into_iter().enumerate() {
-                totals[i].add(&balances[i]);
-                energies[i] += energy(model, &state.q, &state.v);
-            }
-            if others.contains(&system) {
-                impulse += balances[1].momentum - balances[0].momentum;
-            }
-            lost += energy_of_change(model, &before[system].q, &before[system].v, &after[system].v);
-        }
-        // a joint whose rate is given does work during the impulse, which is not part of `lost`
-        let is_driven = self.equations.trees.iter().any(|tree| !tree.modes.given().is_empty());
-        let energy_lost = match kind {
-            EventKind::Capture if !is_driven => lost,
-            _ => energies[0] - energies[1],
-        };
-        let (mut impulse_w, mut point_w) = ([0.0; 6], [0.0; 3]);
-        impulse.write(&mut impulse_w);
-        point.write(&mut point_w);
-        EventRecord {
-            name: self.events.list[number].name.clone(),
-            kind,
-            time: t,
-            systems: [by, of].map(|place| self.numbers[place.system]),
-            impulse: impulse_w,
-            point: point_w,
-            energy_lost,
-            momentum_error: totals[1].error_since(&totals[0]),
-            twist_left: [0.0; 2],
-            energy_error: ((energies[0] - energies[1]) - energy_lost).abs()
-                / energies[0].max(energies[1]).max(f64::MIN_POSITIVE),
-        }
+        let [after_by, after_of] = frames.map(|place| self.pose_and_twist(place, &after).1);
+        0.5 * ((twist_by + after_by).dot(on_by) + (twist_of + after_of).dot(on_of))
     }
-
-    /// Returns the model of a system.
-    pub(super) fn model(&self, system: usize) -> &Model {
-        let EquationsOfMotion { trees, members, .. } = &self.equations;
-        &members.system(system, trees, &self.state.trees).1.model
-    }
-
-    /// Returns the systems in the same tree as a system.
-    fn tree_members(&self, system: usize) -> Vec<usize> {
-        (0..self.systems.len()).filter(|&other| self.tree_of(other) == self.tree_of(system)).collect()
-    }
-
-    /// Returns the states of all systems. Expects the states of the parts.
-    fn snapshots(&self) -> Vec<Snapshot> {
-        let EquationsOfMotion { trees, members, .. } = &self.equations;
-        let snapshot = |system| {
-            let state = members.system(system, trees, &self.state.trees).0;
-            let [q, v] = state.values();
-            Snapshot { q, v }
-        };
-        (0..self.systems.len()).map(snapshot).collect()
-    }
-
-    /// Returns the pose and the twist in W of a frame of a system.
-    fn pose_and_twist(&self, place: FrameIndex, states: &[Snapshot]) -> (FramePose<f64>, Motion<f64>) {
-        let (model, Snapshot { q, v }) = (self.model(place.system), &states[place.system]);
-        let mut data = Data::<f64>::new(model);
-        kinematics(model, &mut data, q, v);
-        (frame_pose(model, &data, q, place.frame), frame_velocity(model, &data, q, place.frame))
-    }
-
-    /// Returns the twist of the second frame relative to the first, at the origin of the second.
-    fn relative_twist(&self, (by, of): (FrameIndex, FrameIndex), states: &[Snapshot]) -> Motion<f64> {
-        let (pose_by, twist_by) = self.pose_and_twist(by, states);
-        let (pose_of, twist_of) = self.pose_and_twist(of, states);
-        twist_of - twist_by.referred_to(pose_of.pos_w - pose_by.pos_w)
-    }
-}
-
-/// Returns the magnitude of a vector relative to that of another one, or to 1 if that is larger.
-fn ratio(left: Vec3<f64>, was: Vec3<f64>) -> f64 {
-    left.norm() / was.norm().max(1.0)
 }

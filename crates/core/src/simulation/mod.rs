@@ -19,6 +19,7 @@ mod environment_query;
 mod equations;
 mod error;
 mod estimates;
+mod event_audit;
 mod events;
 mod every_step;
 mod external_engine;

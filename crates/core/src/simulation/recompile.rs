@@ -113,18 +113,6 @@ impl<'a, S: Scalar> RunState<'a, S> {
             }
         }
     }
-
-    /// Returns the number of the tree that contains a system.
-    pub(super) fn tree_of(&self, system: usize) -> usize {
-        self.equations.members.tree_at(self.equations.members.places[system])
-    }
-
-    /// Returns the root of the tree that contains a system.
-    pub(super) fn root_of(&self, system: usize) -> usize {
-        let tree = self.tree_of(system);
-        let is_root = |root: &usize| self.tree_of(*root) == tree;
-        self.connections.active.roots.iter().copied().find(is_root).unwrap_or(system)
-    }
 }
 
 /// Returns the momentum of systems, the angular part about `center` in W.

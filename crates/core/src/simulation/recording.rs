@@ -73,10 +73,11 @@ pub struct EventRecord {
     /// Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes of the
     /// momenta of its bodies.
     pub momentum_error: [f64; 2],
-    /// Relative velocity, m/s, and relative angular velocity, rad/s, of the connected frames after a capture, relative
-    /// to those before it.
+    /// Relative velocity and relative angular velocity of the connected frames after a capture, relative to those before
+    /// it, or to 1 m/s and 1 rad/s if these are larger; zero for a release.
     pub twist_left: [f64; 2],
-    /// Difference between `energy_lost` and the change of the kinetic energy, relative to the kinetic energy before.
+    /// Difference between the change of the kinetic energy and `½ Δvᵀ M Δv` of a capture, or the work of the spring of a
+    /// release, relative to the larger of the kinetic energies before and after; zero while a seating drives joints.
     pub energy_error: f64,
 }
 
