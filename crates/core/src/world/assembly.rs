@@ -1,6 +1,6 @@
 //! Compiles connected systems to trees: one model for the systems that welds connect, rooted at one of them.
 
-use super::event::{Seating, Weld};
+use super::event::{FrameIndex, Seating, Weld};
 use super::seating::{Chain, GivenJoint};
 use crate::model::{Model, ModelError, Mount};
 use crate::reference::TimeLaw;
@@ -48,49 +48,75 @@ pub fn assemble(models: &[Model], welds: &[Weld], roots: &[usize]) -> Result<Vec
     let mut is_placed = vec![false; models.len()];
     let mut assemblies = Vec::new();
     for root in roots.iter().copied().chain(0..models.len()) {
-        if is_placed[root] {
-            continue;
+        if !is_placed[root] {
+            let tree = GrowingTree::from_root(root, models, welds)?;
+            tree.order.iter().for_each(|&system| is_placed[system] = true);
+            assemblies.push(tree.finish()?);
         }
-        is_placed[root] = true;
-        let (mut order, mut model, mut next) = (vec![root], None::<Model>, 0);
-        let mut moving = Vec::new();
-        while let Some(&system) = order.get(next) {
-            next += 1;
-            for weld in welds {
-                let (near, far, is_reversed) = match (weld.by, weld.of) {
-                    (by, of) if by.system == system => (by, of, false),
-                    (by, of) if of.system == system => (of, by, true),
-                    _ => continue,
-                };
-                if is_placed[far.system] {
-                    continue;
-                }
-                is_placed[far.system] = true;
-                order.push(far.system);
-                let name = |system: usize, frame: usize| models[system].frames()[frame].name.as_str();
-                let Chain { joints, travels, pose } =
-                    weld.chain(&format!("capture {}", weld.capture), is_reversed);
-                if let Some(seating) = weld.seating {
-                    let names = joints.iter().map(|joint| joint.name.clone());
-                    moving.extend(names.zip(travels).map(|(name, travel)| (name, travel, seating)));
-                }
-                let frame = Some(name(far.system, far.frame).to_owned());
-                let mount = Mount { frame, joints, pose, prefix: String::new() };
-                let tree = model.as_ref().unwrap_or(&models[root]);
-                model = Some(tree.attach(name(near.system, near.frame), &models[far.system], &mount)?);
-            }
-        }
-        let tree = model.as_ref().unwrap_or(&models[root]);
-        let members = order.iter().map(|&system| Member::of(system, &models[system], tree));
-        let members = members.collect::<Result<_, _>>()?;
-        let given = moving.into_iter().map(|(name, travel, Seating { start, duration, .. })| {
-            let (joint, law) = (tree.joint(&name)?, TimeLaw::quintic(duration).expect("a checked duration"));
-            Ok(GivenJoint { joint, travel, start, law })
-        });
-        let given = given.collect::<Result<_, ModelError>>()?;
-        assemblies.push(Assembly { members, given, model });
     }
     Ok(assemblies)
+}
+
+/// Tree to which connected systems are added one at a time.
+struct GrowingTree<'m> {
+    models: &'m [Model],
+    /// Model of the tree; `None` while it has a single system.
+    model: Option<Model>,
+    /// Systems of the tree, the root first.
+    order: Vec<usize>,
+    /// Name and travel of each joint that a seating moves.
+    moving: Vec<(String, f64, Seating)>,
+}
+
+impl<'m> GrowingTree<'m> {
+    /// Returns the tree of all systems that `welds` connect to a root, breadth first.
+    fn from_root(root: usize, models: &'m [Model], welds: &[Weld]) -> Result<Self, ModelError> {
+        let mut tree = Self { models, model: None, order: vec![root], moving: Vec::new() };
+        let mut next = 0;
+        while let Some(&system) = tree.order.get(next) {
+            next += 1;
+            for weld in welds {
+                if weld.by.system == system && !tree.order.contains(&weld.of.system) {
+                    tree.add(weld, false)?;
+                } else if weld.of.system == system && !tree.order.contains(&weld.by.system) {
+                    tree.add(weld, true)?;
+                }
+            }
+        }
+        Ok(tree)
+    }
+
+    /// Adds the captured system of a weld, or the capturing one if `is_reversed`, to the other one, which is in the tree.
+    fn add(&mut self, weld: &Weld, is_reversed: bool) -> Result<(), ModelError> {
+        let (near, far) = if is_reversed { (weld.of, weld.by) } else { (weld.by, weld.of) };
+        let Chain { joints, travels, pose } = weld.chain(&format!("capture {}", weld.capture), is_reversed);
+        if let Some(seating) = weld.seating {
+            let names = joints.iter().map(|joint| joint.name.clone());
+            self.moving.extend(names.zip(travels).map(|(name, travel)| (name, travel, seating)));
+        }
+        let name = |place: FrameIndex| &*self.models[place.system].frames()[place.frame].name;
+        let mount = Mount { frame: Some(name(far).to_owned()), joints, pose, prefix: String::new() };
+        let model = self.tree().attach(name(near), &self.models[far.system], &mount)?;
+        self.model = Some(model);
+        self.order.push(far.system);
+        Ok(())
+    }
+
+    fn tree(&self) -> &Model {
+        self.model.as_ref().unwrap_or(&self.models[self.order[0]])
+    }
+
+    fn finish(self) -> Result<Assembly, ModelError> {
+        let tree = self.tree();
+        let members = self.order.iter().map(|&system| Member::of(system, &self.models[system], tree));
+        let members = members.collect::<Result<_, _>>()?;
+        let given = self.moving.iter().map(|(name, travel, Seating { start, duration, .. })| {
+            let (joint, law) = (tree.joint(name)?, TimeLaw::quintic(*duration).expect("a checked duration"));
+            Ok(GivenJoint { joint, travel: *travel, start: *start, law })
+        });
+        let given = given.collect::<Result<_, ModelError>>()?;
+        Ok(Assembly { members, given, model: self.model })
+    }
 }
 
 impl Member {
