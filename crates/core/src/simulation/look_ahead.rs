@@ -68,19 +68,24 @@ impl<S: Scalar> RunState<'_, S> {
         records_before: f64,
         work: impl FnOnce(&mut Self) -> Result<R, SimulationError>,
     ) -> Result<R, SimulationError> {
-        let (before, held): (Progress, _) = (self.progress(), self.commands());
-        let (was_updated, updates) = (self.controllers_updated, self.controller_updates);
+        let before: Progress = self.progress();
+        self.keeps_commands = !self.controllers_updated;
         self.records_before = records_before;
         let result = work(self);
         self.records_before = f64::INFINITY;
         self.has_event = false;
         self.restore(before)?;
-        let has_updated = self.controller_updates != updates;
-        for (run, held) in self.systems.iter_mut().zip(held).filter(|_| has_updated) {
-            run.held = Some(held);
-        }
-        self.controllers_updated = was_updated || has_updated;
+        self.controllers_updated = !std::mem::take(&mut self.keeps_commands);
         result
+    }
+
+    /// Keeps torques and requested accelerations of every system before the first update of the controllers in a trial
+    /// step; does nothing otherwise.
+    pub(super) fn keep_commands(&mut self) {
+        if std::mem::take(&mut self.keeps_commands) {
+            let held = self.commands();
+            self.systems.iter_mut().zip(held).for_each(|(run, held)| run.held = Some(held));
+        }
     }
 
     /// Returns torques and requested accelerations of the joints of every system.

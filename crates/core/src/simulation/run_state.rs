@@ -60,8 +60,8 @@ pub(super) struct RunState<'a, S> {
     pub(super) time: f64,
     /// True if the controllers have been updated at the current cut.
     pub(super) controllers_updated: bool,
-    /// Number of updates of the controllers so far, including those of trial steps.
-    pub(super) controller_updates: usize,
+    /// True while [`RunState::peek`] takes trial steps that have not updated the controllers yet.
+    pub(super) keeps_commands: bool,
     /// True if an event has happened at the current cut, whose row is then due.
     pub(super) has_event: bool,
     /// Only rows before this time are recorded, s; infinity except while [`RunState::peek`] takes trial steps.

@@ -158,7 +158,7 @@ impl Shared {
             steps: 0,
             time: 0.0,
             controllers_updated: false,
-            controller_updates: 0,
+            keeps_commands: false,
             has_event: false,
             records_before: f64::INFINITY,
             rereference_beyond,

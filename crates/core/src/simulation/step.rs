@@ -77,6 +77,7 @@ impl<S: Scalar> RunState<'_, S> {
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
         if is_due {
+            self.keep_commands();
             self.update_moving_frames(false);
             self.update_controllers(t, false)?;
         }
@@ -85,7 +86,6 @@ impl<S: Scalar> RunState<'_, S> {
             self.update_controllers(t, true)?;
         }
         self.controllers_updated |= is_due;
-        self.controller_updates += usize::from(is_due);
         if !uses_loads || end != interval.end {
             self.equations.apply_loads(t, (t, end), &self.state)?;
         }
