@@ -7,7 +7,7 @@ use super::error::EnvironmentError;
 use super::scene::Scene;
 use super::soa::on_lanes;
 use super::surfaces::Surfaces;
-use super::wrenches::{WrenchLanes, Wrenches};
+use super::wrenches::Wrenches;
 use crate::earth::Earth;
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
@@ -101,18 +101,16 @@ impl Drag {
             Ok(self.atmosphere.density(&AtmospherePoint::new(earth, scene.time, &r)?)?)
         };
         let (r_ref, v_ref) = (Vec3::from(reference.position), Vec3::from(reference.velocity));
-        for system in scene.bodies.systems().iter().filter(|rows| self.acts_on(rows.number)) {
+        for system in self.surfaces.systems_of(scene) {
             let base = reference.position + scene.bodies.base_com(system);
             let local = self.local(system.number, earth, scene.time, &base)?;
             let earth_rate = Vec3::<S>::of(&local.earth_rate.into());
-            scene.add_lanes_to::<S>(
-                std::slice::from_ref(system),
+            self.surfaces.add_lanes::<S>(
+                scene,
+                system,
                 wrenches,
                 #[inline(always)]
-                |group| {
-                    let Some(surfaces) = self.surfaces.block(group.first) else {
-                        return Ok(WrenchLanes::zero());
-                    };
+                |surfaces, group| {
                     let r = Vec3::<S>::of(&r_ref) + group.coms();
                     let counts = |i: usize| i < group.count && self.surfaces.covers(group.body(i));
                     let density = local.densities(r, counts, model)?;

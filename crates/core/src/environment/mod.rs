@@ -24,6 +24,7 @@ mod radiation_pressure;
 mod scene;
 mod shadow;
 mod soa;
+mod surface_lanes;
 pub mod surfaces;
 mod wrenches;
 

@@ -7,7 +7,7 @@ use super::scene::Scene;
 use super::shadow::sunlit;
 use super::soa::on_lanes;
 use super::surfaces::{SurfaceError, Surfaces, not_negative};
-use super::wrenches::{WrenchLanes, Wrenches};
+use super::wrenches::Wrenches;
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
@@ -153,7 +153,7 @@ impl RadiationPressure {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let (reference, earth) = scene.reference_and_earth(NAME)?;
         let sun = scene.sun(earth)?;
-        for system in scene.bodies.systems().iter().filter(|rows| self.acts_on(rows.number)) {
+        for system in self.surfaces.systems_of(scene) {
             let base = scene.bodies.base_com(system);
             let at_base = self.light(&(reference.position + base), &sun);
             let near = |com: Vector3<f64>| (com - base).norm_squared() <= UNIFORM_RADIUS * UNIFORM_RADIUS;
@@ -163,14 +163,12 @@ impl RadiationPressure {
                     com => self.light(&(reference.position + com), &sun),
                 })
             };
-            scene.add_lanes_to::<S>(
-                std::slice::from_ref(system),
+            self.surfaces.add_lanes::<S>(
+                scene,
+                system,
                 wrenches,
                 #[inline(always)]
-                |group| {
-                    let Some(surfaces) = self.surfaces.block(group.first) else {
-                        return Ok(WrenchLanes::zero());
-                    };
+                |surfaces, group| {
                     let com = group.coms::<S>();
                     let offset = com - Vec3::of(&base.into());
                     let is_far = S::any(S::of(UNIFORM_RADIUS * UNIFORM_RADIUS).less(offset.dot(offset)));

@@ -20,3 +20,4 @@ pub use error::SurfaceError;
 pub(super) use error::not_negative;
 pub use optics::Optics;
 pub use surface::Surface;
+pub(super) use surface_block::SurfaceBlock;
