@@ -39,7 +39,6 @@ ORDER = (
 LONGEST = 400
 LONGER_WITH_REASON = {
     "python/onorbit_rs/_core.pyi": "one module, one stub",
-    "crates/py/src/model/mod.rs": "PyO3 takes the methods of a class in one block",
     "crates/core/tests/simulation_nasa.rs": "NASA's tables stand beside the cases they belong to",
 }
 

@@ -1,7 +1,7 @@
 //! Attachment of one robot to another.
 
-use super::PyModel;
 use super::part::PyRobotPart;
+use super::{Any, PyModel};
 use crate::arrays::{fixed, type_name};
 use crate::errors::{IntoPython, fields, plain, raise};
 use crate::pickling::{ConstructorCall, deep_copy};
@@ -11,8 +11,6 @@ use onorbit_core::number_text::short;
 use onorbit_core::reference::Hold;
 use pyo3::prelude::*;
 use std::path::PathBuf;
-
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Attach one robot to another, such as an arm to a bus, and return the combined robot.
 ///

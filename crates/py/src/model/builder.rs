@@ -1,14 +1,12 @@
 //! Robots built link by link.
 
-use super::PyModel;
+use super::{Any, PyModel};
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::ConstructorCall;
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use onorbit_core::model::{Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder};
 use pyo3::prelude::*;
-
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Builder of a robot, link by link; the first link is the free-floating base.
 ///

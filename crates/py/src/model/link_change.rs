@@ -1,7 +1,7 @@
 //! Changes of link properties, as given from Python.
 
-use super::PyModel;
 use super::builder::vector;
+use super::{Any, PyModel};
 use crate::arrays::{fixed, type_name};
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, deep_copy};
@@ -9,8 +9,6 @@ use nalgebra::Matrix3;
 use onorbit_core::model::LinkChange;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Returns a copy of the robot with the inertial properties of one link replaced.
 pub(super) fn with_link(

@@ -1,17 +1,13 @@
 //! Robots with another base, and their states.
 
-use super::PyModel;
+use super::{Any, Array, PyModel};
 use crate::arrays::{Input, array_of, wrong_shape};
 use crate::errors::IntoPython;
 use crate::pickling::ConstructorCall;
-use numpy::PyArrayDyn;
 use onorbit_core::dynamics;
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-
-type Any<'a, 'py> = &'a Bound<'py, PyAny>;
-type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Returns the robot with the link `link` as its base.
 pub(super) fn rerooted(model: &Bound<'_, PyModel>, link: &str) -> PyResult<PyModel> {

@@ -1,0 +1,208 @@
+//! Methods of `Model` that construct robots, and convert states between them.
+
+use super::file::{self, read_file};
+use super::{Any, Array, PyModel, builder, link_change, reroot};
+use crate::pickling::{ConstructorCall, Reduced};
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+#[pymethods]
+impl PyModel {
+    /// Load a robot from a URDF or xacro file; its root link is free-floating.
+    ///
+    /// A file named ``.xacro``, or any file with ``xacro=True`` or ``xacro_arguments``, is first expanded
+    /// with PyPI's ``xacro`` (``pip install 'onorbit-rs[xacro]'``). Its expressions are evaluated by
+    /// onorbit_rs; Python code in the file is not executed.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : path
+    ///     File.
+    /// package_paths : list of path, optional
+    ///     ROS packages or folders that contain them, searched for ``package://`` and ``$(find ...)``.
+    /// xacro_arguments : dict of str to object, optional
+    ///     Values of ``$(arg name)``.
+    /// xacro : bool
+    ///     If True, the file is expanded as xacro regardless of its name.
+    /// links : dict of str to dict, optional
+    ///     ``{name: {"mass": kg, "com": (3,) m, "inertia": (3, 3) kg m²}}``: values that replace those of the
+    ///     file before the robot is validated; :meth:`with_link` replaces them afterwards.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     If the file does not describe a valid robot, or ``links`` is invalid.
+    /// NotFoundError, ReadError
+    ///     If the file does not exist or cannot be read.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false, links=None))]
+    fn from_urdf(
+        py: Python<'_>,
+        path: PathBuf,
+        package_paths: Option<Vec<PathBuf>>,
+        xacro_arguments: Option<&Bound<'_, PyDict>>,
+        xacro: bool,
+        links: Option<&Bound<'_, PyDict>>,
+    ) -> PyResult<Self> {
+        let (model, keywords) = read_file(py, &path, package_paths, xacro_arguments, xacro, links, false)?;
+        let call = ConstructorCall::with_keywords("Model.from_urdf", &keywords)?;
+        Self::wrap(py, model, Some(call), &[])
+    }
+
+    /// Load a robot from the text of a URDF.
+    ///
+    /// Parameters
+    /// ----------
+    /// text : str
+    ///     URDF.
+    /// folder : path, optional
+    ///     Folder to which relative paths of meshes refer.
+    /// package_paths : list of path, optional
+    ///     As for :meth:`from_urdf`.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     If the text does not describe a valid robot.
+    #[staticmethod]
+    #[pyo3(signature = (text, *, folder=None, package_paths=None))]
+    fn from_urdf_string(
+        py: Python<'_>,
+        text: &str,
+        folder: Option<PathBuf>,
+        package_paths: Option<Vec<PathBuf>>,
+    ) -> PyResult<Self> {
+        file::from_urdf_string(py, text, folder, package_paths)
+    }
+
+    /// Return a spacecraft without joints.
+    ///
+    /// Its body is named ``base``, and its origin is the centre of mass.
+    ///
+    /// Parameters
+    /// ----------
+    /// mass : float
+    ///     Mass, kg.
+    /// inertia : (3, 3) array
+    ///     Inertia about the centre of mass, kg m².
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// ModelError
+    ///     If the mass or the inertia is not physical.
+    #[staticmethod]
+    fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<Self> {
+        builder::rigid_body(py, mass, inertia)
+    }
+
+    /// Return a copy of the robot with the inertial properties of one link replaced.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the link.
+    /// mass : float, optional
+    ///     Mass, kg. The inertia does not scale with it.
+    /// com : (3,) array, optional
+    ///     Centre of mass in link axes, m.
+    /// inertia : (3, 3) array, optional
+    ///     Inertia about the centre of mass in link axes, kg m².
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If no link has this name.
+    /// ModelError
+    ///     If the values are not physical, or the link has no inertial and no mass is given.
+    #[pyo3(signature = (name, *, mass=None, com=None, inertia=None))]
+    fn with_link(
+        slf: &Bound<'_, Self>,
+        name: &str,
+        mass: Option<f64>,
+        com: Option<Any<'_, '_>>,
+        inertia: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
+        link_change::with_link(slf, name, mass, com, inertia)
+    }
+
+    /// Return the same robot with another link as its floating base.
+    ///
+    /// Links, frames and joints keep their names, and joints the signs of their positions, rates and torques. Bodies
+    /// and joints are numbered depth first from the new base.
+    ///
+    /// Parameters
+    /// ----------
+    /// link : str
+    ///     Name of the link that becomes the base.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If no link has this name.
+    fn rerooted(slf: &Bound<'_, Self>, link: &str) -> PyResult<Self> {
+        reroot::rerooted(slf, link)
+    }
+
+    /// Convert a state to the coordinates of another model of the same links, such as a :meth:`rerooted` one.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : (nq,) array
+    ///     Configuration of this model.
+    /// v : (nv,) array
+    ///     Velocity of this model.
+    /// to : Model
+    ///     Other model. All its joints and the link of its base exist in this model.
+    ///
+    /// Returns
+    /// -------
+    /// (nq,) array, (nv,) array
+    ///     Configuration and velocity of ``to`` that place and move its links as ``q`` and ``v`` do those of this model.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If a joint or the base of ``to`` is not in this model.
+    fn transfer_state<'py>(
+        &self,
+        py: Python<'py>,
+        q: Any<'_, '_>,
+        v: Any<'_, '_>,
+        to: &Self,
+    ) -> PyResult<(Array<'py>, Array<'py>)> {
+        reroot::transfer_state(py, &self.model, (q, v), &to.model)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
+        match &slf.get().constructor_call {
+            Some(call) => call.reduce_robot(slf),
+            None => Err(PyTypeError::new_err(
+                "a model built link by link cannot be pickled; build it in the process that uses it, or \
+                 write it as \
+                 URDF and load the file",
+            )),
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Methods of `Model` for the reduced model of a free-floating manipulator.
+
+use super::{Any, External, PyModel};
+use crate::arrays::Threads;
+use crate::dynamics::{PyFreeFloating, PyFreeFloatingDerivatives, free_floating, free_floating_derivatives};
+use pyo3::prelude::*;
+
+#[pymethods]
+impl PyModel {
+    /// Return the reduced model ``M*, c*, Q*, Jg, d`` for one frame, exact for any momentum and wrench.
+    ///
+    /// ``out`` is the result of an earlier call with the same number of states, which is overwritten.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : (nq,) or (B, nq) array
+    ///     Configuration.
+    /// v : (nv,) or (B, nv) array
+    ///     Velocity.
+    /// frame : str
+    ///     Name of the frame.
+    /// external : dict of str to (6,) or (B, 6) array, optional
+    ///     Wrench by frame: force, N, and moment, N m, in the frame's axes about its origin.
+    /// threads, out
+    ///     As described for :class:`Model`.
+    ///
+    /// Returns
+    /// -------
+    /// FreeFloating
+    #[pyo3(signature = (q, v, frame, *, external=None, threads=None, out=None))]
+    fn free_floating<'py>(
+        &self,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Threads>,
+        out: Option<&Bound<'py, PyFreeFloating>>,
+    ) -> PyResult<Bound<'py, PyFreeFloating>> {
+        free_floating(q.py(), self, self.frame(frame)?, &[q, v], external, out, threads)
+    }
+
+    /// Return the derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and ``ẋ`` at given joint
+    /// accelerations.
+    ///
+    /// Tangent vectors and wrenches are treated as in :meth:`inverse_dynamics_derivatives`. For ``q̈ = 0``
+    /// the first two are the derivatives of ``c* - Q*`` and ``d``. The derivatives with respect to ``q̈`` are
+    /// ``M*`` and ``Jg``; that of ``ẋ`` with respect to ``v`` is :meth:`frame_jacobian`.
+    ///
+    /// Parameters
+    /// ----------
+    /// q : (nq,) or (B, nq) array
+    ///     Configuration.
+    /// v : (nv,) or (B, nv) array
+    ///     Velocity.
+    /// joint_acceleration : (n,) or (B, n) array
+    ///     ``q̈``, rad/s² or m/s².
+    /// frame : str
+    ///     Name of the frame.
+    /// external : dict of str to (6,) or (B, 6) array, optional
+    ///     Wrench by frame: force, N, and moment, N m, in the frame's axes about its origin.
+    /// threads, out
+    ///     As described for :class:`Model`.
+    ///
+    /// Returns
+    /// -------
+    /// FreeFloatingDerivatives
+    #[pyo3(signature = (q, v, joint_acceleration, frame, *, external=None, threads=None, out=None))]
+    fn free_floating_derivatives<'py>(
+        &self,
+        q: Any<'_, 'py>,
+        v: Any<'_, 'py>,
+        joint_acceleration: Any<'_, 'py>,
+        frame: Any<'_, 'py>,
+        external: External<'_, 'py>,
+        threads: Option<Threads>,
+        out: Option<&Bound<'py, PyFreeFloatingDerivatives>>,
+    ) -> PyResult<Bound<'py, PyFreeFloatingDerivatives>> {
+        let state = [q, v, joint_acceleration];
+        free_floating_derivatives(q.py(), self, self.frame(frame)?, &state, external, out, threads)
+    }
+}

@@ -1,0 +1,110 @@
+//! Properties of `Model`.
+
+use super::description::{self, PyBody, PyFrame, PyJoint, PyVisual};
+use super::{Array, PyModel};
+use crate::arrays::array_of;
+use onorbit_core::model::neutral;
+use pyo3::prelude::*;
+
+#[pymethods]
+impl PyModel {
+    /// Name of the robot.
+    #[getter]
+    fn name(&self) -> &str {
+        self.model.name()
+    }
+
+    /// Length of a configuration, ``7 + n``.
+    #[getter]
+    fn nq(&self) -> usize {
+        self.model.nq()
+    }
+
+    /// Length of a velocity, ``6 + n``.
+    #[getter]
+    fn nv(&self) -> usize {
+        self.model.nv()
+    }
+
+    /// Total mass, kg.
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.model.mass()
+    }
+
+    /// Names of the moving joints, in the order of ``v``.
+    #[getter]
+    fn joint_names(&self) -> Vec<&str> {
+        self.model.joint_names().collect()
+    }
+
+    /// Names of the bodies, base first; a body is named after its first link.
+    #[getter]
+    fn body_names(&self) -> Vec<&str> {
+        self.model.body_names().collect()
+    }
+
+    /// Names of the frames: every link, and additional frames.
+    #[getter]
+    fn frame_names(&self) -> Vec<&str> {
+        self.model.frame_names().collect()
+    }
+
+    /// Moving joints, in the order of ``v``.
+    #[getter]
+    fn joints(&self) -> Vec<PyJoint> {
+        description::joints(&self.model)
+    }
+
+    /// Bodies with masses, centres of mass and inertias, base first.
+    #[getter]
+    fn bodies(&self) -> Vec<PyBody> {
+        description::bodies(&self.model)
+    }
+
+    /// Frames: every link, and additional frames.
+    #[getter]
+    fn frames(&self) -> Vec<PyFrame> {
+        description::frames(&self.model)
+    }
+
+    /// Warnings about the robot file, one line each.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.model.warnings().iter().map(ToString::to_string).collect()
+    }
+
+    /// Shapes of the visual geometry.
+    #[getter]
+    fn visuals(&self) -> Vec<PyVisual> {
+        description::shapes(&self.model, self.model.visuals())
+    }
+
+    /// Collision shapes, with meshes only if their file exists. They are drawn in place of visual meshes that
+    /// cannot be drawn; there are no contacts.
+    #[getter]
+    fn collisions(&self) -> Vec<PyVisual> {
+        description::shapes(&self.model, self.model.collisions())
+    }
+
+    /// Return the configuration at the origin of W, without rotation, with all joints at zero.
+    ///
+    /// Returns
+    /// -------
+    /// (nq,) array
+    ///     Configuration, m and rad.
+    fn neutral<'py>(&self, py: Python<'py>) -> Array<'py> {
+        array_of(py, &[self.model.nq()], &neutral(&self.model))
+    }
+
+    fn __repr__(&self) -> String {
+        let m = &self.model;
+        format!(
+            "<Model '{}': {} bodies, {} joints, {:.6} kg>",
+            m.name(),
+            m.nodes().len(),
+            m.joint_count(),
+            m.mass()
+        )
+    }
+}
