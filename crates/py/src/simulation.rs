@@ -1,4 +1,4 @@
-//! Simulations of one robot.
+//! Simulations of one robot or of a world.
 
 use crate::arrays::record_every;
 use crate::checkpoint::{CheckpointCallback, PyCheckpoint};
@@ -13,7 +13,7 @@ use crate::orbit::PyOrbit;
 use crate::reference::Around;
 use crate::shared_run::SharedRun;
 use crate::stepper::PyStepper;
-use crate::world::{PyWorld, Robotics, Systems, initial_state};
+use crate::world::{PyWorld, RobotSettings, Systems, initial_state};
 use onorbit_core::environment::GravityMode;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::simulation::{Integrator, Simulation, SimulationError};
@@ -124,14 +124,14 @@ impl PySimulation {
         earth: Option<&Bound<'_, PyEarth>>,
         gravity_mode: &str,
         environment: Option<&Bound<'_, PyAny>>,
-        controller: Option<Any<'_, '_>>,
-        reference: Option<Any<'_, '_>>,
-        tool: Option<Any<'_, '_>>,
+        controller: Option<Py<PyAny>>,
+        reference: Option<Py<PyAny>>,
+        tool: Option<Py<PyAny>>,
         time_step: f64,
         control_period: Option<f64>,
         integrator: &str,
         #[pyo3(from_py_with = record_every)] record_every: usize,
-        reference_start_tolerance: Option<Any<'_, '_>>,
+        reference_start_tolerance: Option<Py<PyAny>>,
         tolerance: f64,
         enforce_limits: bool,
         restitution: f64,
@@ -139,39 +139,26 @@ impl PySimulation {
         rereference_beyond: f64,
         engine: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
+        let given = [
+            ("q", q.is_some()),
+            ("v", v.is_some()),
+            ("orbit", orbit.is_some()),
+            ("earth", earth.is_some()),
+            ("gravity_mode", gravity_mode != "true"),
+            ("environment", environment.is_some()),
+            ("controller", controller.is_some()),
+            ("reference", reference.is_some()),
+            ("tool", tool.is_some()),
+            ("control_period", control_period.is_some()),
+            ("reference_start_tolerance", reference_start_tolerance.is_some()),
+            ("enforce_limits", enforce_limits),
+            ("restitution", restitution != 0.0),
+            ("rereference_beyond", rereference_beyond != 1e5),
+        ];
         let mut simulation = if let Ok(world) = model.cast::<PyWorld>() {
-            let given = [
-                ("q", q.is_some()),
-                ("v", v.is_some()),
-                ("orbit", orbit.is_some()),
-                ("earth", earth.is_some()),
-                ("gravity_mode", gravity_mode != "true"),
-                ("environment", environment.is_some()),
-                ("controller", controller.is_some()),
-                ("reference", reference.is_some()),
-                ("tool", tool.is_some()),
-                ("control_period", control_period.is_some()),
-                ("reference_start_tolerance", reference_start_tolerance.is_some()),
-                ("enforce_limits", enforce_limits),
-                ("restitution", restitution != 0.0),
-                ("rereference_beyond", rereference_beyond != 1e5),
-            ];
-            if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
-                return Err(PyTypeError::new_err(format!(
-                    "{name} belongs to the world or to its systems; give it to World or to System, not to Simulation"
-                )));
-            }
-            world.get().simulation(py)?
+            of_world(world, &given)?
         } else {
-            let Ok(model) = model.cast::<PyModel>() else {
-                let message = "the first argument of Simulation must be a Model or a World";
-                return Err(PyTypeError::new_err(message));
-            };
-            let (Some(q), Some(v)) = (q, v) else {
-                return Err(PyTypeError::new_err("a Simulation of a robot needs its initial q and v"));
-            };
-            let (q, v) = initial_state(py, &model.get().model, q, v)?;
-            let settings = Robotics {
+            let settings = RobotSettings {
                 controller,
                 reference,
                 tool,
@@ -180,15 +167,8 @@ impl PySimulation {
                 restitution,
                 reference_start_tolerance,
             };
-            let core = &model.get().model;
-            let mut simulation = Simulation::new(Arc::clone(core), q, v);
-            simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
-            simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
-            simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
-            set_environment(py, &mut simulation, &effects(environment)?, &[None])?;
-            let orbit = simulation.orbit.clone();
-            let around = Around { orbit: orbit.as_ref(), ..Around::default() };
-            settings.apply(model.get(), &around, &mut simulation.systems[0])?;
+            let mut simulation =
+                of_robot(model, (q, v), (orbit, earth, gravity_mode, environment), &settings)?;
             simulation.rereference_beyond = rereference_beyond;
             simulation
         };
@@ -227,7 +207,8 @@ impl PySimulation {
     ///
     /// Returns
     /// -------
-    /// Trace
+    /// Trace or WorldTrace
+    ///     WorldTrace for a world of several systems.
     ///
     /// Raises
     /// ------
@@ -309,6 +290,48 @@ impl PySimulation {
         let number = self.run.start(py, duration, from, wall_s)?;
         Ok(PyStepper::new(self.run.clone(), number, Arc::clone(&self.systems)))
     }
+}
+
+/// Returns the simulation of a world with default settings of the integration. `given` says which of the arguments that
+/// belong to a robot have been given.
+fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> PyResult<Simulation> {
+    if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        return Err(PyTypeError::new_err(format!(
+            "{name} belongs to the world or to its systems; give it to World or to System, not to Simulation"
+        )));
+    }
+    world.get().simulation(world.py())
+}
+
+/// Orbit, Earth, gravity mode and effects of a simulation as given in Python.
+type Surroundings<'a, 'py> =
+    (Option<&'a Bound<'py, PyOrbit>>, Option<&'a Bound<'py, PyEarth>>, &'a str, Option<Any<'a, 'py>>);
+
+/// Returns the simulation of a robot with default settings of the integration.
+fn of_robot(
+    model: Any<'_, '_>,
+    (q, v): (Option<Any<'_, '_>>, Option<Any<'_, '_>>),
+    (orbit, earth, gravity_mode, environment): Surroundings<'_, '_>,
+    settings: &RobotSettings,
+) -> PyResult<Simulation> {
+    let py = model.py();
+    let Ok(model) = model.cast::<PyModel>() else {
+        return Err(PyTypeError::new_err("the first argument of Simulation must be a Model or a World"));
+    };
+    let (Some(q), Some(v)) = (q, v) else {
+        return Err(PyTypeError::new_err("a Simulation of a robot needs its initial q and v"));
+    };
+    let model = model.get();
+    let (q, v) = initial_state(py, &model.model, q, v)?;
+    let mut simulation = Simulation::new(Arc::clone(&model.model), q, v);
+    simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+    simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
+    simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
+    set_environment(py, &mut simulation, &effects(environment)?, &[None])?;
+    let orbit = simulation.orbit.clone();
+    let around = Around { orbit: orbit.as_ref(), ..Around::default() };
+    settings.apply(py, model, &around, &mut simulation.systems[0])?;
+    Ok(simulation)
 }
 
 /// Sets the effects and the gravity field; orbit and Earth must have been set before. `surfaces` are those that were

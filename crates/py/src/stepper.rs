@@ -50,14 +50,14 @@ impl PyStepper {
     /// joint positions, rad or m.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.state(py, self.only(py, "q")?).map(|(q, _)| constant(py, &q))
+        self.state(py, self.only("q")?).map(|(q, _)| constant(py, &q))
     }
 
     /// Velocity at the current time, a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
     /// rates, rad/s or m/s.
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
-        self.state(py, self.only(py, "v")?).map(|(_, v)| constant(py, &v))
+        self.state(py, self.only("v")?).map(|(_, v)| constant(py, &v))
     }
 
     /// Advance the run by a time interval.
@@ -128,8 +128,8 @@ impl PyStepper {
     ///     If a torque is not finite, or a name is not that of a joint.
     /// ControlError
     ///     If an active controller drives one of the joints.
-    fn command(&self, py: Python<'_>, tau: &Bound<'_, PyAny>) -> PyResult<()> {
-        let system = self.only(py, "command")?;
+    fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
+        let system = self.only("command")?;
         self.command_system(system, tau)
     }
 
@@ -150,7 +150,12 @@ impl PyStepper {
         self.try_with(py, |stepper| stepper.trigger(name))
     }
 
-    /// Return the view of one system of the world.
+    /// Return the view of the system with this name.
+    ///
+    /// Raises
+    /// ------
+    /// WorldError
+    ///     If there is no such system.
     fn __getitem__(this: &Bound<'_, Self>, name: &str) -> PyResult<PySystemStepper> {
         let system = this.get().systems.find(this.py(), name)?;
         Ok(PySystemStepper { stepper: this.clone().unbind(), system })
@@ -160,7 +165,7 @@ impl PyStepper {
     ///
     /// Returns
     /// -------
-    /// Trace
+    /// Trace or WorldTrace
     ///     A copy, which does not change when the run continues.
     fn trace(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let recording = self.try_with(py, |stepper| stepper.recording())?;
@@ -173,7 +178,7 @@ impl PyStepper {
     ///
     /// Returns
     /// -------
-    /// Trace
+    /// Trace or WorldTrace
     fn finish(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let is_complete =
             self.with(py, |stepper| stepper.duration().is_none_or(|end| stepper.time() == end))?;
@@ -240,8 +245,8 @@ impl PyStepper {
     }
 
     /// Returns the number of the only system, whose attribute `what` was asked for.
-    fn only(&self, py: Python<'_>, what: &str) -> PyResult<usize> {
-        self.systems.only(py, "stepper", what).map(|()| 0)
+    fn only(&self, what: &str) -> PyResult<usize> {
+        self.systems.only("stepper", what).map(|()| 0)
     }
 
     /// Sets the torques of a system.

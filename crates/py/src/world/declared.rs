@@ -5,14 +5,14 @@ use super::system::PySystem;
 use crate::arrays::list_of;
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
-use crate::errors::{SimulationErrorExt, fields, raise};
+use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
 use crate::orbit::PyOrbit;
 use crate::pickling::{ConstructorCall, Reduced};
 use crate::reference::Around;
 use crate::simulation::{gravity_mode_named, set_environment};
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::Simulation;
-use onorbit_core::world::idle_knowledge;
+use onorbit_core::world::{WorldError, idle_knowledge};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -125,11 +125,9 @@ impl PyWorld {
         for (number, system) in self.systems.iter().enumerate() {
             systems[number].knows = known_systems(py, system.get(), &self.names())?;
         }
-        let events: Vec<_> = self.events.iter().map(|event| event.bind(py).clone()).collect();
-        let events = events_of(&events, &systems)?;
+        let events = events_of(py, &self.events, &names, &models)?;
         if systems.is_empty() {
-            let error = onorbit_core::world::WorldError::NoSystems;
-            return Err(crate::errors::IntoPython::into_python(error, py));
+            return Err(WorldError::NoSystems.into_python(py));
         }
         let mut simulation = Simulation::of(systems);
         simulation.events = events;

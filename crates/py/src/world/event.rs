@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, fields, raise};
 use crate::model::attach::isometry;
 use crate::pickling::{ConstructorCall, Reduced, deep_copy};
 use onorbit_core::model::Model;
-use onorbit_core::world::{Action, Envelope, FrameIndex, Seat, System, When};
+use onorbit_core::world::{Action, Envelope, Event, FrameIndex, Seat, When};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -305,32 +305,25 @@ pub(super) fn names_of(py: Python<'_>, events: &[Py<PyAny>]) -> PyResult<Vec<Str
     events.iter().map(|event| event.bind(py).getattr("name")?.extract()).collect()
 }
 
-/// Reads the events of a world.
+/// Reads the events of a world; `names` are their names, `systems` the names and models of the systems.
 pub(super) fn events_of(
-    events: &[Bound<'_, PyAny>],
-    systems: &[System],
-) -> PyResult<Vec<onorbit_core::world::Event>> {
-    let names =
-        events.iter().map(|event| event.getattr("name")?.extract()).collect::<PyResult<Vec<String>>>()?;
-    let systems: Vec<_> =
-        systems.iter().map(|system| (system.name.clone(), Arc::clone(&system.model))).collect();
-    let read = |event: &Bound<'_, PyAny>| {
-        let py = event.py();
+    py: Python<'_>,
+    events: &[Py<PyAny>],
+    names: &[String],
+    systems: &[(String, Arc<Model>)],
+) -> PyResult<Vec<Event>> {
+    let read = |event: &Py<PyAny>| {
+        let event = event.bind(py);
         if let Ok(event) = event.cast::<PyCapture>() {
             let PyCapture { name, frame_a, frame_b, condition, seat, .. } = event.get();
-            let (by, of) = (frame_at(py, name, frame_a, &systems)?, frame_at(py, name, frame_b, &systems)?);
-            let when = condition.when(py, name, &names)?;
-            return Ok(onorbit_core::world::Event {
-                name: name.clone(),
-                when,
-                action: Action::Capture { by, of, seat: *seat },
-            });
+            let (by, of) = (frame_at(py, name, frame_a, systems)?, frame_at(py, name, frame_b, systems)?);
+            let (when, action) = (condition.when(py, name, names)?, Action::Capture { by, of, seat: *seat });
+            return Ok(Event { name: name.clone(), when, action });
         }
-        let event = event.cast::<PyRelease>()?;
-        let PyRelease { name, capture, condition, impulse } = event.get();
-        let (when, capture) = (condition.when(py, name, &names)?, event_named(py, name, capture, &names)?);
+        let PyRelease { name, capture, condition, impulse } = event.cast::<PyRelease>()?.get();
+        let (when, capture) = (condition.when(py, name, names)?, event_named(py, name, capture, names)?);
         let action = Action::Release { capture, impulse: *impulse };
-        Ok(onorbit_core::world::Event { name: name.clone(), when, action })
+        Ok(Event { name: name.clone(), when, action })
     };
     events.iter().map(read).collect()
 }

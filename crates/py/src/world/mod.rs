@@ -3,13 +3,13 @@
 mod declared;
 mod event;
 mod event_record;
-mod robotics;
+mod robot_settings;
 mod system;
 mod systems;
 mod trace;
 
 pub(crate) use declared::PyWorld;
-pub(crate) use robotics::{Robotics, initial_state};
+pub(crate) use robot_settings::{RobotSettings, initial_state};
 pub(crate) use systems::{PySystemStepper, Systems};
 
 use pyo3::prelude::*;

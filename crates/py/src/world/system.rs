@@ -1,6 +1,6 @@
 //! One spacecraft of a world.
 
-use super::robotics::{Robotics, initial_state};
+use super::robot_settings::{RobotSettings, initial_state};
 use crate::arrays::names_in;
 use crate::environment::SurfaceAssignment;
 use crate::model::PyModel;
@@ -54,13 +54,7 @@ pub(crate) struct PySystem {
     pub(super) model: Py<PyModel>,
     q: Vec<f64>,
     v: Vec<f64>,
-    controller: Option<Py<PyAny>>,
-    reference: Option<Py<PyAny>>,
-    tool: Option<Py<PyAny>>,
-    control_period: Option<f64>,
-    enforce_limits: bool,
-    restitution: f64,
-    reference_start_tolerance: Option<Py<PyAny>>,
+    settings: RobotSettings,
     pub(super) surfaces: Option<SurfaceAssignment>,
     /// Surfaces as given in Python.
     given_surfaces: Option<Py<PyAny>>,
@@ -95,11 +89,7 @@ impl PySystem {
         let given_surfaces = deep_copy(surfaces)?.map(Bound::unbind);
         let surfaces = surfaces.map(|surfaces| SurfaceAssignment::new(Some(surfaces))).transpose()?;
         let (q, v) = initial_state(py, &model.get().model, q, v)?;
-        Ok(Self {
-            name,
-            model,
-            q,
-            v,
+        let settings = RobotSettings {
             controller,
             reference,
             tool,
@@ -107,21 +97,13 @@ impl PySystem {
             enforce_limits,
             restitution,
             reference_start_tolerance,
-            surfaces,
-            given_surfaces,
-            knows,
-        })
+        };
+        Ok(Self { name, model, q, v, settings, surfaces, given_surfaces, knows })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let keywords = PyDict::new(py);
-        keywords.set_item("controller", &self.controller)?;
-        keywords.set_item("reference", &self.reference)?;
-        keywords.set_item("tool", &self.tool)?;
-        keywords.set_item("control_period", self.control_period)?;
-        keywords.set_item("enforce_limits", self.enforce_limits)?;
-        keywords.set_item("restitution", self.restitution)?;
-        keywords.set_item("reference_start_tolerance", &self.reference_start_tolerance)?;
+        self.settings.write_to(&keywords)?;
         keywords.set_item("surfaces", &self.given_surfaces)?;
         keywords.set_item("knows", &self.knows)?;
         let arguments = (&self.name, &self.model, &self.q, &self.v);
@@ -136,21 +118,9 @@ impl PySystem {
 impl PySystem {
     /// Returns the system of the core, whose references and controls refer to what is `around`.
     pub(super) fn system(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<System> {
-        let bind = |value: &Option<Py<PyAny>>| value.as_ref().map(|value| value.bind(py).clone());
-        let (controller, reference, tool) = (bind(&self.controller), bind(&self.reference), bind(&self.tool));
-        let tolerance = bind(&self.reference_start_tolerance);
-        let settings = Robotics {
-            controller: controller.as_ref(),
-            reference: reference.as_ref(),
-            tool: tool.as_ref(),
-            control_period: self.control_period,
-            enforce_limits: self.enforce_limits,
-            restitution: self.restitution,
-            reference_start_tolerance: tolerance.as_ref(),
-        };
         let model = self.model.get();
         let mut system = System::new(&self.name, Arc::clone(&model.model), self.q.clone(), self.v.clone());
-        settings.apply(model, around, &mut system)?;
+        self.settings.apply(py, model, around, &mut system)?;
         Ok(system)
     }
 }

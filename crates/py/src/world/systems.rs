@@ -11,6 +11,23 @@ use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
+/// Returns the number of the system with this name.
+pub(super) fn find(py: Python<'_>, names: &[String], name: &str) -> PyResult<usize> {
+    names.iter().position(|known| known == name).ok_or_else(|| {
+        let message = format!("there is no system '{name}'; the systems are: {}", names.join(", "));
+        raise(py, "WorldError", &message, &fields!(py, "name": name))
+    })
+}
+
+/// Returns the error for an attribute that each of several systems has.
+pub(super) fn attribute_of_systems(names: &[String], owner: &str, attribute: &str) -> PyErr {
+    let examples: Vec<String> = names.iter().map(|name| format!("{owner}[\"{name}\"].{attribute}")).collect();
+    PyAttributeError::new_err(format!(
+        "the world has several systems, each with its own {attribute}: {}",
+        examples.join(", ")
+    ))
+}
+
 /// Names and models of the systems of a run.
 pub(crate) struct Systems {
     pub(crate) names: Vec<String>,
@@ -29,23 +46,15 @@ impl Systems {
 
     /// Returns the number of the system with this name.
     pub(crate) fn find(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
-        self.names.iter().position(|known| known == name).ok_or_else(|| {
-            let message = format!("there is no system '{name}'; the systems are: {}", self.names.join(", "));
-            raise(py, "WorldError", &message, &fields!(py, "name": name))
-        })
+        find(py, &self.names, name)
     }
 
     /// Returns an error unless there is a single system; `attribute` of `owner` belongs to a system.
-    pub(crate) fn only(&self, _: Python<'_>, owner: &str, attribute: &str) -> PyResult<()> {
+    pub(crate) fn only(&self, owner: &str, attribute: &str) -> PyResult<()> {
         if self.names.len() == 1 {
             return Ok(());
         }
-        let examples: Vec<String> =
-            self.names.iter().map(|name| format!("{owner}[\"{name}\"].{attribute}")).collect();
-        Err(PyAttributeError::new_err(format!(
-            "the world has several systems, each with its own {attribute}: {}",
-            examples.join(", ")
-        )))
+        Err(attribute_of_systems(&self.names, owner, attribute))
     }
 
     /// Wraps a recording: a trace for a single system, otherwise the trace of a world.
@@ -100,6 +109,15 @@ impl PySystemStepper {
     /// tau : (n,) array or dict of float
     ///     Torques of all joints, or torques by joint name, N m (N for a prismatic joint). Joints that are not
     ///     named keep their torques.
+    ///
+    /// Raises
+    /// ------
+    /// ShapeError
+    ///     If the array does not have one entry per joint.
+    /// InputError
+    ///     If a torque is not finite, or a name is not that of a joint.
+    /// ControlError
+    ///     If an active controller drives one of the joints.
     fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
         self.stepper.get().command_system(self.system, tau)
     }

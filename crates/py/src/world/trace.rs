@@ -1,8 +1,8 @@
 //! Result of a run of a world.
 
 use super::event_record::PyEventRecord;
+use super::systems::{attribute_of_systems, find};
 use crate::arrays::array_of;
-use crate::errors::{fields, raise};
 use crate::trace::PyTrace;
 use numpy::PyArrayDyn;
 use onorbit_core::number_text::{count, short};
@@ -62,25 +62,16 @@ impl PyWorldTrace {
 impl PyWorldTrace {
     /// Return the trace of a system.
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyTrace>> {
-        match self.names.iter().position(|known| known == name) {
-            Some(system) => Ok(self.traces[system].clone_ref(py)),
-            None => {
-                let message =
-                    format!("there is no system '{name}'; the systems are: {}", self.names.join(", "));
-                Err(raise(py, "WorldError", &message, &fields!(py, "name": name)))
-            }
-        }
+        Ok(self.traces[find(py, &self.names, name)?].clone_ref(py))
     }
 
     fn __getattr__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyAny>> {
         let owns = self.traces.first().is_some_and(|trace| trace.bind(py).hasattr(name).unwrap_or(false));
-        Err(PyAttributeError::new_err(if owns {
-            let examples: Vec<String> =
-                self.names.iter().map(|system| format!("trace[\"{system}\"].{name}")).collect();
-            format!("the world has several systems, each with its own {name}: {}", examples.join(", "))
+        Err(if owns {
+            attribute_of_systems(&self.names, "trace", name)
         } else {
-            format!("the trace of a world has no attribute '{name}'")
-        }))
+            PyAttributeError::new_err(format!("the trace of a world has no attribute '{name}'"))
+        })
     }
 
     /// Names of the systems.

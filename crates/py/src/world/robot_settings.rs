@@ -1,0 +1,78 @@
+//! Settings of one robot: controls, reference, tool and stops, and its initial state.
+
+use crate::arrays::{Input, fixed, wrong_shape};
+use crate::control::{Robot, controls_of};
+use crate::model::PyModel;
+use crate::reference::{self, Around};
+use onorbit_core::model::Model;
+use onorbit_core::world::System;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Settings of one robot as given in Python.
+pub(crate) struct RobotSettings {
+    pub(crate) controller: Option<Py<PyAny>>,
+    pub(crate) reference: Option<Py<PyAny>>,
+    pub(crate) tool: Option<Py<PyAny>>,
+    pub(crate) control_period: Option<f64>,
+    pub(crate) enforce_limits: bool,
+    pub(crate) restitution: f64,
+    pub(crate) reference_start_tolerance: Option<Py<PyAny>>,
+}
+
+impl RobotSettings {
+    /// Sets controls, reference, tool and stops of a system.
+    pub(crate) fn apply(
+        &self,
+        py: Python<'_>,
+        model: &PyModel,
+        around: &Around<'_>,
+        system: &mut System,
+    ) -> PyResult<()> {
+        if let Some(tolerance) = &self.reference_start_tolerance {
+            system.reference_start_tolerance = fixed(tolerance.bind(py), "reference_start_tolerance", &[2])?;
+        }
+        system.tool = self.tool.as_ref().map(|tool| model.frame(tool.bind(py))).transpose()?;
+        let reference = self.reference.as_ref().map(|reference| reference.bind(py));
+        if let Some(controller) = &self.controller {
+            let robot = Robot { model: &model.model, tool: system.tool, around: *around };
+            system.controls = controls_of(controller.bind(py), reference, &robot)?;
+            let tracked = system.controls.iter().find_map(|control| control.law.task());
+            system.tool = system.tool.or(tracked.map(|(frame, _)| frame));
+        } else if let Some(reference) = reference {
+            system.reference = Some(reference::extract(reference, around)?);
+        }
+        system.control_period = self.control_period;
+        system.stops = self.enforce_limits.then_some(self.restitution);
+        Ok(())
+    }
+
+    /// Writes the settings as keyword arguments of the system.
+    pub(super) fn write_to(&self, keywords: &Bound<'_, PyDict>) -> PyResult<()> {
+        keywords.set_item("controller", &self.controller)?;
+        keywords.set_item("reference", &self.reference)?;
+        keywords.set_item("tool", &self.tool)?;
+        keywords.set_item("control_period", self.control_period)?;
+        keywords.set_item("enforce_limits", self.enforce_limits)?;
+        keywords.set_item("restitution", self.restitution)?;
+        keywords.set_item("reference_start_tolerance", &self.reference_start_tolerance)
+    }
+}
+
+/// Reads an initial configuration and velocity.
+pub(crate) fn initial_state(
+    py: Python<'_>,
+    model: &Model,
+    q: Any<'_, '_>,
+    v: Any<'_, '_>,
+) -> PyResult<(Vec<f64>, Vec<f64>)> {
+    let (q, v) = (Input::new(q, "q")?, Input::new(v, "v")?);
+    for (input, name, n) in [(&q, "q", model.nq()), (&v, "v", model.nv())] {
+        if input.shape().len() != 1 {
+            return Err(wrong_shape(py, name, &format!("({n},)"), input.shape()));
+        }
+    }
+    Ok((q.data().to_vec(), v.data().to_vec()))
+}
