@@ -36,6 +36,7 @@ class                       built-in               fields: cause
 ``ScenarioError``           ``ValueError``         ``file, path, line``: an invalid scenario
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
 ``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or displays nothing
+``Ros2Error``               ``RuntimeError``       ``reason``: no ROS 2 domain, messages or packages; bags
 ==========================  =====================  ==========================================================
 
 :class:`RunInterrupted` is a ``KeyboardInterrupt`` (Ctrl-C), so that neither ``except Exception`` nor
@@ -71,6 +72,7 @@ __all__ = [
     "PathError",
     "QuantityError",
     "ReadError",
+    "Ros2Error",
     "RunInterrupted",
     "ScenarioError",
     "Sgp4Error",
@@ -328,6 +330,12 @@ class QuantityError(OnOrbitError, ValueError):
 
 class ViewerError(OnOrbitError, RuntimeError):
     """The viewer, a separate program, does not start or displays nothing."""
+
+    reason: Any = None
+
+
+class Ros2Error(OnOrbitError, RuntimeError):
+    """A ROS 2 domain cannot be joined, messages cannot be encoded, or a bag cannot be read."""
 
     reason: Any = None
 

@@ -20,6 +20,7 @@ use onorbit_core::simulation::{Integrator, Simulation, SimulationError};
 use onorbit_core::world::System;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
@@ -104,6 +105,12 @@ pub(crate) struct PySimulation {
     run: SharedRun,
     systems: Arc<Systems>,
     orbit: Option<Arc<dyn Orbit>>,
+    /// Integration step, s.
+    #[pyo3(get)]
+    time_step: f64,
+    /// Number of steps per recorded row.
+    #[pyo3(get)]
+    record_every: usize,
 }
 
 #[pymethods]
@@ -184,7 +191,17 @@ impl PySimulation {
         }
         let orbit = simulation.orbit.clone();
         let systems = Arc::new(Systems::of(&simulation));
-        Ok(Self { run: SharedRun::new(simulation), systems, orbit })
+        Ok(Self { run: SharedRun::new(simulation), systems, orbit, time_step, record_every })
+    }
+
+    /// Robots by the name of the system; a single robot is named after its model.
+    #[getter]
+    fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for (name, model) in self.systems.names.iter().zip(&self.systems.models) {
+            all.set_item(name, PyModel::of(Arc::clone(model)))?;
+        }
+        Ok(all)
     }
 
     /// Simulate from the initial state and return the trace.

@@ -77,6 +77,12 @@ impl PyModel {
         Ok(Self { model: Arc::new(model), evaluator, constructor_call })
     }
 
+    /// Returns a further Python object of a model, whose warnings have been issued.
+    pub(crate) fn of(model: Arc<Model>) -> Self {
+        let evaluator = Mutex::new(Evaluator::new(&model));
+        Self { model, evaluator, constructor_call: None }
+    }
+
     /// Returns the index of the frame with this name.
     pub(crate) fn frame(&self, name: &Bound<'_, PyAny>) -> PyResult<usize> {
         let py = name.py();

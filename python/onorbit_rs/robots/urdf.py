@@ -1,0 +1,122 @@
+"""Writes a robot as URDF."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from xml.etree import ElementTree as xml
+
+import numpy as np
+
+from onorbit_rs.common.rotations import quaternion_from_matrix, roll_pitch_yaw
+from onorbit_rs.exceptions import ModelError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from onorbit_rs._core import Body, Frame, Joint, Model, Visual
+
+
+def urdf_text(model: Model) -> str:
+    """Return a robot as URDF, with shapes, limits and losses; named frames become links without mass.
+
+    Lengths and angles are written with all digits. Paths of meshes are absolute.
+
+    Raises
+    ------
+    ModelError
+        If the axis of a joint does not pass through the origin of its child link, which URDF cannot express
+        (a joint that ``Model.rerooted`` or ``attach`` reversed).
+    """
+    robot = xml.Element("robot", name=model.name)
+    shapes = [("visual", shape) for shape in model.visuals] + [("collision", shape) for shape in model.collisions]
+    for body in model.bodies:
+        link = _link(robot, body.name, shapes)
+        _add_inertial(link, body)
+    for joint in model.joints:
+        _add_joint(robot, joint)
+    links = {body.name for body in model.bodies}
+    for frame in model.frames:
+        if frame.name not in links:
+            _link(robot, frame.name, shapes)
+            _add_fixed(robot, frame)
+    xml.indent(robot)
+    return xml.tostring(robot, encoding="unicode") + "\n"
+
+
+def _text(numbers: ArrayLike) -> str:
+    return " ".join(repr(float(number)) for number in np.ravel(numbers))
+
+
+def _add_origin(to: xml.Element, pose: ArrayLike) -> None:
+    matrix = np.asarray(pose)
+    angles = roll_pitch_yaw(quaternion_from_matrix(matrix[:3, :3]))
+    xml.SubElement(to, "origin", xyz=_text(matrix[:3, 3]), rpy=_text(angles))
+
+
+def _link(robot: xml.Element, name: str, shapes: list[tuple[str, Visual]]) -> xml.Element:
+    link = xml.SubElement(robot, "link", name=name)
+    for tag, shape in shapes:
+        if shape.link == name:
+            _add_shape(link, tag, shape)
+    return link
+
+
+def _add_inertial(link: xml.Element, body: Body) -> None:
+    inertial = xml.SubElement(link, "inertial")
+    xml.SubElement(inertial, "origin", xyz=_text(body.com), rpy="0 0 0")
+    xml.SubElement(inertial, "mass", value=repr(body.mass))
+    matrix = np.array(body.inertia)
+    entries = {f"i{'xyz'[i]}{'xyz'[j]}": repr(float(matrix[i, j])) for i in range(3) for j in range(i, 3)}
+    xml.SubElement(inertial, "inertia", entries)
+
+
+def _add_shape(link: xml.Element, tag: str, shape: Visual) -> None:
+    part = xml.SubElement(link, tag)
+    _add_origin(part, shape.pose)
+    geometry = xml.SubElement(part, "geometry")
+    if shape.kind == "mesh":
+        xml.SubElement(geometry, "mesh", filename=f"file://{shape.filename}", scale=_text(shape.scale))
+    elif shape.kind == "box":
+        xml.SubElement(geometry, "box", size=_text(shape.size))
+    elif shape.kind == "sphere":
+        xml.SubElement(geometry, "sphere", radius=repr(shape.size[0]))
+    else:
+        xml.SubElement(geometry, shape.kind, radius=repr(shape.size[0]), length=repr(shape.size[1]))
+    if tag == "visual" and shape.rgba is not None:
+        material = xml.SubElement(part, "material", name=_material(shape))
+        xml.SubElement(material, "color", rgba=_text(shape.rgba))
+
+
+def _material(shape: Visual) -> str:
+    """Return a name that depends on the colour only, since URDF names materials once."""
+    assert shape.rgba is not None
+    return "rgba_" + "_".join(f"{round(255 * part):02x}" for part in shape.rgba)
+
+
+def _add_joint(robot: xml.Element, joint: Joint) -> None:
+    if any(joint.anchor):
+        raise ModelError(
+            f"the axis of joint {joint.name!r} does not pass through the origin of link {joint.child!r}, "
+            "which URDF requires; export the robot before Model.rerooted or attach",
+            name=joint.name,
+        )
+    bounded = joint.lower is not None or joint.upper is not None
+    kind = "continuous" if joint.kind == "revolute" and not bounded else joint.kind
+    element = xml.SubElement(robot, "joint", name=joint.name, type=kind)
+    xml.SubElement(element, "parent", link=joint.parent)
+    xml.SubElement(element, "child", link=joint.child)
+    _add_origin(element, joint.pose)
+    xml.SubElement(element, "axis", xyz=_text(joint.axis))
+    limits = {"lower": joint.lower, "upper": joint.upper, "velocity": joint.velocity, "effort": joint.effort}
+    given = {name: repr(float(value)) for name, value in limits.items() if value is not None}
+    if kind != "continuous" or given:
+        unlimited = {name: "1e+300" for name in ("velocity", "effort") if name not in given}
+        xml.SubElement(element, "limit", given | unlimited)
+    xml.SubElement(element, "dynamics", damping=repr(joint.damping), friction=repr(joint.friction))
+
+
+def _add_fixed(robot: xml.Element, frame: Frame) -> None:
+    element = xml.SubElement(robot, "joint", name=f"{frame.name}_fixed", type="fixed")
+    xml.SubElement(element, "parent", link=frame.body)
+    xml.SubElement(element, "child", link=frame.name)
+    _add_origin(element, frame.pose)

@@ -1,0 +1,22 @@
+"""The optional packages of the extra ``ros2``."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+from onorbit_rs.exceptions import Ros2Error
+
+HINT = "pip install 'onorbit-rs[ros2]'"
+
+
+def require(*packages: str) -> None:
+    """Raise an error that names the extra if one of the packages is not installed.
+
+    Raises
+    ------
+    Ros2Error
+        With the command that installs them.
+    """
+    missing = [name for name in packages if find_spec(name) is None]
+    if missing:
+        raise Ros2Error(f"ROS 2 messages require {' and '.join(missing)}; install them with: {HINT}")

@@ -1,0 +1,203 @@
+"""Commands that arrive on topics, checked and converted to entries of a command log."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.ros2.messages import decode
+from onorbit_rs.ros2.names import ros_names
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+    from onorbit_rs.ros2.participant import Participant, Reader
+
+FLOATS = "std_msgs/msg/Float64MultiArray"
+TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
+JOINT_STATE = "sensor_msgs/msg/JointState"
+WRENCH = "geometry_msgs/msg/WrenchStamped"
+
+Entry = dict[str, Any]
+"""A command as in a command file, without its time."""
+
+
+class RefusedError(ValueError):
+    """A message that cannot be obeyed; the text says why."""
+
+
+@dataclass
+class Route:
+    """A topic, and the conversion of its messages to entries."""
+
+    reader: Reader
+    convert: Callable[[Any], list[Entry]]
+    senders: set[int] = field(default_factory=set)
+
+
+@dataclass(frozen=True)
+class Arrived:
+    """A message that arrived: its topic, and its entries or the reason of its refusal."""
+
+    topic: str
+    entries: list[Entry]
+    refusal: str | None = None
+    is_second_sender: bool = False
+
+
+class Inbox:
+    """Subscriptions to the commands of all systems and of the run."""
+
+    def __init__(self, participant: Participant) -> None:
+        self._participant = participant
+        self._routes: list[Route] = []
+
+    def subscribe(self, topic: str, kind: str, convert: Callable[[Any], list[Entry]]) -> None:
+        """Subscribe a topic."""
+        self._routes.append(Route(self._participant.reader(topic, kind), convert))
+
+    def topics(self) -> Iterator[tuple[str, str]]:
+        """Return names and types of the topics."""
+        for route in self._routes:
+            yield route.reader.topic, route.reader.kind
+
+    def take(self) -> Iterator[Arrived]:
+        """Return the messages that have arrived since the last call, in the order of the topics."""
+        for route in self._routes:
+            for data, sender in route.reader.take():
+                is_second = bool(route.senders) and sender not in route.senders
+                route.senders.add(sender)
+                yield _arrived(route, data, is_second)
+
+
+def _arrived(route: Route, data: bytes, is_second: bool) -> Arrived:
+    topic = route.reader.topic
+    try:
+        content = decode(data, route.reader.kind)
+    except Exception as error:  # the decoder raises errors of many types for malformed bytes
+        return Arrived(topic, [], f"the message is malformed ({type(error).__name__})", is_second)
+    try:
+        return Arrived(topic, route.convert(content), None, is_second)
+    except RefusedError as refusal:
+        return Arrived(topic, [], str(refusal), is_second)
+
+
+def add_run_topics(inbox: Inbox) -> None:
+    """Subscribe the topics that control the run."""
+    inbox.subscribe("/pause", "std_msgs/msg/Bool", lambda content: [{"pause": bool(content.data)}])
+    inbox.subscribe("/reset", "std_msgs/msg/Empty", lambda content: [{"reset": True}])
+    inbox.subscribe("/step", "std_msgs/msg/Float64", lambda content: [{"step": float(content.data)}])
+    inbox.subscribe("/trigger", "std_msgs/msg/String", lambda content: [{"trigger": content.data}])
+
+
+def add_system_topics(
+    inbox: Inbox, system: str, prefix: str, model: Model, controls: Mapping[str, list[str]]
+) -> None:
+    """Subscribe the topics of a system: those of its external controls, and wrenches on its links."""
+    for control, name in ros_names(controls, "control").items():
+        to = {"system": system, "control": control}
+        joints = controls[control]
+        inbox.subscribe(f"/{prefix}{name}/commands", FLOATS, _values(to, joints))
+        inbox.subscribe(f"/{prefix}{name}/joint_trajectory", TRAJECTORY, _trajectory(to, joints))
+    if controls:
+        inbox.subscribe(f"/{prefix}joint_commands", JOINT_STATE, _joint_commands(system, controls))
+    inbox.subscribe(f"/{prefix}wrench_command", WRENCH, _wrench(system, prefix, model))
+
+
+def _values(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
+    def convert(content: Any) -> list[Entry]:
+        values = _finite("data", content.data, joints)
+        return [to | {"values": values}]
+
+    return convert
+
+
+def _finite(what: str, values: Any, joints: list[str]) -> list[float]:
+    """Return the numbers of a field, one per joint."""
+    numbers = np.asarray(values, dtype=np.float64)
+    if len(numbers) != len(joints):
+        raise RefusedError(f"{what} has {len(numbers)} numbers; expected {len(joints)}: {', '.join(joints)}")
+    if not np.isfinite(numbers).all():
+        bad = joints[int(np.flatnonzero(~np.isfinite(numbers))[0])]
+        raise RefusedError(f"{what} of joint {bad} is not finite")
+    found: list[float] = numbers.tolist()
+    return found
+
+
+def _order(names: list[str], joints: list[str]) -> list[int]:
+    """Return the places of the joints of a control in a message, which must name all of them once."""
+    if sorted(names) != sorted(joints):
+        raise RefusedError(
+            f"the message names the joints {', '.join(names) or 'none'}; expected {', '.join(joints)}"
+        )
+    return [names.index(joint) for joint in joints]
+
+
+def _trajectory(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
+    def convert(content: Any) -> list[Entry]:
+        order = _order(list(content.joint_names), joints)
+        if not content.points:
+            raise RefusedError("the trajectory has no points")
+        found: dict[str, Any] = {"times": [_seconds(point.time_from_start) for point in content.points]}
+        for name in ("positions", "velocities", "accelerations"):
+            rows = [getattr(point, name) for point in content.points]
+            if name == "positions" or any(len(row) for row in rows):
+                numbers = [_finite(name, row, joints) for row in rows]
+                found[name] = [[row[i] for i in order] for row in numbers]
+        stamp = _seconds(content.header.stamp)
+        return [to | {"trajectory": found | ({"start": stamp} if stamp > 0.0 else {})}]
+
+    return convert
+
+
+def _seconds(time: Any) -> float:
+    return float(time.sec) + 1e-9 * float(time.nanosec)
+
+
+def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[[Any], list[Entry]]:
+    """Return the conversion of joint states, which may command the joints of several controls."""
+
+    def convert(content: Any) -> list[Entry]:
+        names, entries = list(content.name), []
+        known = {joint for joints in controls.values() for joint in joints}
+        if unknown := [name for name in names if name not in known]:
+            raise RefusedError(f"no external control drives {', '.join(unknown)}")
+        for control, joints in controls.items():
+            if not set(names) & set(joints):
+                continue
+            order = _order([name for name in names if name in joints], joints)
+            places = [names.index(joint) for joint in joints]
+            assert len(order) == len(places)
+            entry: Entry = {"system": system, "control": control}
+            for field_name in ("position", "velocity", "effort"):
+                values = getattr(content, field_name)
+                if len(values):
+                    numbers = _finite(field_name, values, names)
+                    entry[field_name] = [numbers[i] for i in places]
+            if len(entry) == 2:
+                raise RefusedError("the message has neither position nor velocity nor effort")
+            entries.append(entry)
+        if not entries:
+            raise RefusedError("the message names no joints")
+        return entries
+
+    return convert
+
+
+def _wrench(system: str, prefix: str, model: Model) -> Callable[[Any], list[Entry]]:
+    """Return the conversion of wrenches in the axes of a link, named by the header; by default on the base."""
+    bodies = list(model.body_names)
+
+    def convert(content: Any) -> list[Entry]:
+        frame = content.header.frame_id.removeprefix(prefix) or bodies[0]
+        body = bodies[0] if frame == "base" else frame
+        if body not in bodies:
+            raise RefusedError(f"frame_id {content.header.frame_id!r} is no link; the links are {', '.join(bodies)}")
+        wrench = content.wrench
+        force, torque = ([v.x, v.y, v.z] for v in (wrench.force, wrench.torque))
+        _finite("wrench", force + torque, list("xyzxyz"))
+        return [{"system": system, "body": body, "force": force, "torque": torque, "frame": "body"}]
+
+    return convert

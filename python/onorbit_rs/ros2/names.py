@@ -1,0 +1,44 @@
+"""Names of ROS topics and frames for the names of systems, controls and links."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Iterable
+
+_INVALID = re.compile(r"[^A-Za-z0-9_]")
+
+
+def ros_name(name: str) -> str:
+    """Return a name with characters that a ROS topic may contain; the others become single underscores."""
+    cleaned = re.sub(r"_{2,}", "_", _INVALID.sub("_", name)).rstrip("_") or "x"
+    return f"n{cleaned}" if cleaned[0].isdigit() else cleaned
+
+
+def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
+    """Return a distinct ROS name for each name; warn where it differs.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names of things of one kind.
+    kind : str
+        What they are, for the warning, such as ``system``.
+    """
+    found: dict[str, str] = {}
+    for name in names:
+        base = ros_name(name)
+        number, candidate = 1, base
+        while candidate in found.values():
+            number += 1
+            candidate = f"{base}_{number}"
+        found[name] = candidate
+    changed = [f"{name!r} → {other!r}" for name, other in found.items() if name != other]
+    if changed:
+        warnings.warn(
+            f"ROS names contain letters, digits and single underscores; the topics of a {kind} use: "
+            f"{', '.join(changed)}",
+            UserWarning,
+            stacklevel=3,
+        )
+    return found

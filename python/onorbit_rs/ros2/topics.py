@@ -1,0 +1,234 @@
+"""Topics of a run and their messages, computed from rows: the same for the live node and for bags."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.common.coordinates import ANGULAR, JOINTS_Q, JOINTS_V, LINEAR, POSITION, QUATERNION
+from onorbit_rs.common.rotations import is_local_frame_defined
+from onorbit_rs.robots.urdf import urdf_text
+from onorbit_rs.ros2.messages import Marks, Template, encode, message, point, quaternion, stamp, vector
+from onorbit_rs.ros2.names import ros_names
+from onorbit_rs.ros2.rows import Rows
+from onorbit_rs.ros2.transforms import (
+    BASE,
+    ECI,
+    WORLD,
+    Link,
+    OrbitFrames,
+    SystemFrames,
+    fixed_frames,
+    orbit_attitude,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model
+
+    Floats = NDArray[np.float64]
+
+TF = "tf2_msgs/msg/TFMessage"
+
+
+@dataclass(frozen=True)
+class Latched:
+    """A topic with one message, which late subscribers receive too."""
+
+    name: str
+    kind: str
+    data: bytes
+
+
+@dataclass(frozen=True)
+class Series:
+    """A topic with one message per row of a system."""
+
+    name: str
+    system: str
+    template: Template
+    values: Callable[[Rows], dict[str, Floats]]
+
+    @property
+    def kind(self) -> str:
+        """Type of the messages."""
+        return self.template.kind
+
+    def messages(self, rows: Rows) -> NDArray[np.uint8]:
+        """Return the messages (T, size), in CDR, of the rows."""
+        return self.template.fill(rows.time, self.values(rows))
+
+
+@dataclass(frozen=True)
+class Topics:
+    """All topics of a run."""
+
+    series: tuple[Series, ...]
+    latched: tuple[Latched, ...]
+    prefixes: Mapping[str, str]
+    """Prefix of the topics and frames of each system, such as ``chaser/``; empty for one robot."""
+
+    def messages(self, rows: Mapping[str, Rows]) -> Iterator[tuple[Series, NDArray[np.uint8]]]:
+        """Return the messages of each topic for the rows of each system."""
+        for topic in self.series:
+            if len(rows[topic.system]):
+                yield topic, topic.messages(rows[topic.system])
+
+
+def topics(models: Mapping[str, Model], first: Mapping[str, Rows]) -> Topics:
+    """Return the topics of a run.
+
+    Parameters
+    ----------
+    models : mapping of str to Model
+        Robots by the name of the system; the topics of a single robot have no prefix.
+    first : mapping of str to Rows
+        Some rows of each system, which tell the columns that the run records.
+    """
+    names = ros_names(models, "system")
+    prefixes = {name: f"{ros}/" if len(models) > 1 else "" for name, ros in names.items()}
+    reference = next(iter(models))
+    series = [clock(reference)]
+    if _has_local_frame(first[reference]):
+        series += orbit_topics(reference)
+    for system, model in models.items():
+        series += system_topics(system, prefixes[system], model)
+    latched = [static_topic(prefixes, models)]
+    latched += [description(prefixes[system], model) for system, model in models.items()]
+    return Topics(tuple(series), tuple(latched), prefixes)
+
+
+def _has_local_frame(rows: Rows) -> bool:
+    """Return True if the rows have a reference orbit that defines ``lvlh``."""
+    if "reference_position_eci" not in rows:
+        return False
+    return is_local_frame_defined(rows["reference_position_eci"], rows["reference_velocity_eci"])
+
+
+def clock(system: str) -> Series:
+    """Return the topic of the simulated time."""
+    template = Template(lambda marks: message("rosgraph_msgs/msg/Clock", clock=marks.time))
+    return Series("/clock", system, template, lambda rows: {})
+
+
+def orbit_topics(system: str) -> list[Series]:
+    """Return the topics of the reference orbit: its frames, and pose and twist of ``lvlh`` in ``eci``."""
+
+    def pose(marks: Marks) -> Any:
+        p, q = point(marks.array("p", 3)), quaternion(marks.array("q", 4))
+        content = message("geometry_msgs/msg/Pose", position=p, orientation=q)
+        return message("geometry_msgs/msg/PoseStamped", header=marks.header(ECI), pose=content)
+
+    def twist(marks: Marks) -> Any:
+        v, w = vector(marks.array("v", 3)), vector(marks.array("w", 3))
+        content = message("geometry_msgs/msg/Twist", linear=v, angular=w)
+        return message("geometry_msgs/msg/TwistStamped", header=marks.header(ECI), twist=content)
+
+    return [
+        _transforms(system, OrbitFrames()),
+        Series("/orbit/pose", system, Template(pose), _orbit_pose),
+        Series("/orbit/twist", system, Template(twist), _orbit_twist),
+    ]
+
+
+def _orbit_pose(rows: Rows) -> dict[str, Floats]:
+    return {"p": rows["reference_position_eci"], "q": orbit_attitude(rows)}
+
+
+def _orbit_twist(rows: Rows) -> dict[str, Floats]:
+    """Return the velocity of the origin and the rate of L: `ω = r × v / r²`, without the slow turn of its plane."""
+    r, v = rows["reference_position_eci"], rows["reference_velocity_eci"]
+    return {"v": v, "w": np.cross(r, v) / np.sum(r * r, axis=1, keepdims=True)}
+
+
+def system_topics(system: str, prefix: str, model: Model) -> list[Series]:
+    """Return the topics of a system: frames, odometry and, if it has joints, their states."""
+    joints = model.joint_names
+
+    def states(marks: Marks) -> Any:
+        fields = {name: marks.array(name, len(joints)) for name in ("position", "velocity", "effort")}
+        return message("sensor_msgs/msg/JointState", header=marks.header(""), name=list(joints), **fields)
+
+    def odometry(marks: Marks) -> Any:
+        p, q = point(marks.array("p", 3)), quaternion(marks.array("q", 4))
+        v, w = vector(marks.array("v", 3)), vector(marks.array("w", 3))
+        pose = message("geometry_msgs/msg/Pose", position=p, orientation=q)
+        twist = message("geometry_msgs/msg/Twist", linear=v, angular=w)
+        exact = np.zeros(36)
+        return message(
+            "nav_msgs/msg/Odometry", header=marks.header(WORLD), child_frame_id=prefix + BASE,
+            pose=message("geometry_msgs/msg/PoseWithCovariance", pose=pose, covariance=exact),
+            twist=message("geometry_msgs/msg/TwistWithCovariance", twist=twist, covariance=exact),
+        )  # fmt: skip
+
+    found = [
+        _transforms(system, SystemFrames(prefix, model)),
+        Series(f"/{prefix}odom", system, Template(odometry), _odometry),
+    ]
+    if joints:
+        found.append(Series(f"/{prefix}joint_states", system, Template(states), _joint_states))
+    return found
+
+
+def _joint_states(rows: Rows) -> dict[str, Floats]:
+    return {"position": rows["q"][:, JOINTS_Q], "velocity": rows["v"][:, JOINTS_V], "effort": rows["tau"]}
+
+
+def _odometry(rows: Rows) -> dict[str, Floats]:
+    """Return pose in W and twist in base axes, as the messages define them."""
+    q, v = rows["q"], rows["v"]
+    return {"p": q[:, POSITION], "q": q[:, QUATERNION], "v": v[:, LINEAR], "w": v[:, ANGULAR]}
+
+
+def _transforms(system: str, frames: OrbitFrames | SystemFrames) -> Series:
+    """Return the topic of moving frames."""
+
+    def values(rows: Rows) -> dict[str, Floats]:
+        return {"poses": frames.poses(rows).reshape(len(rows), -1)}
+
+    template = Template(lambda marks: tf_message(frames.links, marks.array("poses", 7 * len(frames.links)), marks))
+    return Series("/tf", system, template, values)
+
+
+def tf_message(links: Sequence[Link], poses: Floats, marks: Marks) -> Any:
+    """Return a message of frames with poses (7 k,) in their parents."""
+    transforms = [
+        message(
+            "geometry_msgs/msg/TransformStamped", header=marks.header(parent), child_frame_id=child,
+            transform=message(
+                "geometry_msgs/msg/Transform", translation=vector(pose[:3]), rotation=quaternion(pose[3:])
+            ),
+        )
+        for (parent, child), pose in zip(links, poses.reshape(-1, 7), strict=True)
+    ]  # fmt: skip
+    return message(TF, transforms=transforms)
+
+
+def static_topic(prefixes: Mapping[str, str], models: Mapping[str, Model]) -> Latched:
+    """Return the frames that are fixed to links."""
+    found = [fixed_frames(prefixes[name], model) for name, model in models.items()]
+    links = [link for part, _ in found for link in part]
+    poses = np.concatenate([part for _, part in found])
+    template = Template(lambda marks: tf_message(links, marks.array("poses", poses.size), marks))
+    return Latched("/tf_static", TF, template.fill(np.zeros(1), {"poses": poses.reshape(1, -1)})[0].tobytes())
+
+
+def description(prefix: str, model: Model) -> Latched:
+    """Return the robot as URDF."""
+    kind = "std_msgs/msg/String"
+    return Latched(f"/{prefix}robot_description", kind, encode(message(kind, data=urdf_text(model))))
+
+
+def event_message(time: float, name: str, level: int, text: str, values: Mapping[str, str]) -> bytes:
+    """Return the message of an event or of the answer to a command, for ``/events``."""
+    pairs = [message("diagnostic_msgs/msg/KeyValue", key=key, value=value) for key, value in values.items()]
+    status = message(
+        "diagnostic_msgs/msg/DiagnosticStatus",
+        level=level, name=name, message=text, hardware_id="onorbit", values=pairs,
+    )  # fmt: skip
+    header = message("std_msgs/msg/Header", stamp=stamp(time), frame_id=WORLD)
+    return encode(message("diagnostic_msgs/msg/DiagnosticArray", header=header, status=[status]))

@@ -1,0 +1,112 @@
+"""Transforms between the frames of a run: Earth, reference orbit, systems and their links.
+
+Poses are arrays (T, frames, 7): position, m, and quaternion xyzw of each frame in its parent frame.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from onorbit_rs.common.coordinates import BASE_Q, JOINTS_Q
+from onorbit_rs.common.rotations import local_orbital_axes, product, quaternion_from_matrix
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import Model
+    from onorbit_rs.ros2.rows import Rows
+
+    Floats = NDArray[np.float64]
+
+ECI, WORLD, LVLH, BASE = "eci", "world", "lvlh", "base"
+
+
+class Link(NamedTuple):
+    """A frame and its parent frame."""
+
+    parent: str
+    child: str
+
+
+class OrbitFrames:
+    """Frames of the reference orbit.
+
+    ``world`` has the axes of ``eci`` and its origin on the reference orbit; ``lvlh`` has x radial and z along
+    the angular momentum, with the same origin.
+    """
+
+    links = (Link(ECI, WORLD), Link(WORLD, LVLH))
+
+    def poses(self, rows: Rows) -> Floats:
+        """Return the poses (T, 2, 7)."""
+        found = np.zeros((len(rows), 2, 7))
+        found[:, 0, :3], found[:, 0, 6] = rows["reference_position_eci"], 1.0
+        found[:, 1, 3:] = orbit_attitude(rows)
+        return found
+
+
+def orbit_attitude(rows: Rows) -> Floats:
+    """Return the attitude of ``lvlh`` in ``eci``, (T, 4)."""
+    axes = local_orbital_axes(rows["reference_position_eci"], rows["reference_velocity_eci"])
+    return quaternion_from_matrix(axes)
+
+
+class SystemFrames:
+    """The base of a system in ``world`` and its moving links in their parent links."""
+
+    def __init__(self, prefix: str, model: Model) -> None:
+        """Take the prefix of the frames of the system, such as ``chaser/``."""
+        joints = model.joints
+        moving = (Link(prefix + joint.parent, prefix + joint.child) for joint in joints)
+        self.links = (Link(WORLD, prefix + BASE), *moving)
+        pose = np.array([joint.pose for joint in joints]).reshape(-1, 4, 4)
+        axis = np.array([joint.axis for joint in joints]).reshape(-1, 3)
+        self._turns = np.array([joint.kind == "revolute" for joint in joints], dtype=bool)
+        self._rotation, self._position = pose[:, :3, :3], pose[:, :3, 3]
+        self._anchor = np.array([joint.anchor for joint in joints]).reshape(-1, 3)
+        self._attitude = quaternion_from_matrix(self._rotation)
+        self._slide = np.where(self._turns[:, None], 0.0, np.einsum("jik,jk->ji", self._rotation, axis))
+        # q = q₀ (u sin θ/2, cos θ/2) is linear in sin θ/2 and cos θ/2
+        self._sine = product(self._attitude, np.pad(np.where(self._turns[:, None], axis, 0.0), ((0, 0), (0, 1))))
+        self._axis = axis
+
+    def poses(self, rows: Rows) -> Floats:
+        """Return the poses (T, 1 + n, 7).
+
+        The pose of a child link at position q is `T₀ trans(c) exp(q) trans(−c)`, with the axis through the
+        anchor `c`.
+        """
+        q = rows["q"][:, JOINTS_Q]
+        found = np.empty((len(q), 1 + q.shape[1], 7))
+        found[:, 0] = rows["q"][:, BASE_Q]
+        half = np.where(self._turns, 0.5 * q, 0.0)[..., None]
+        found[:, 1:, 3:] = np.cos(half) * self._attitude + np.sin(half) * self._sine
+        found[:, 1:, :3] = self._position + q[..., None] * self._slide
+        if self._anchor.any():
+            found[:, 1:, :3] += self._shift(q)
+        return found
+
+    def _shift(self, q: Floats) -> Floats:
+        """Return the displacement of the origin of each child link, which turns about its anchor."""
+        u, c = self._axis, np.where(self._turns[:, None], self._anchor, 0.0)
+        across = np.cross(u, c)
+        # c − exp(θ u) c = −sin θ u × c − (1 − cos θ) u × (u × c)
+        moved = -np.sin(q)[..., None] * across - (1.0 - np.cos(q))[..., None] * np.cross(u, across)
+        shift: Floats = np.einsum("jik,tjk->tji", self._rotation, moved)
+        return shift
+
+
+def fixed_frames(prefix: str, model: Model) -> tuple[list[Link], Floats]:
+    """Return the first link in the base frame, and every frame that is fixed to a link, with poses (k, 7)."""
+    names = {BASE, *(body.name for body in model.bodies)}
+    root = model.bodies[0].name
+    links = [] if root == BASE else [Link(prefix + BASE, prefix + root)]
+    poses = [np.eye(4)] * len(links)
+    for frame in model.frames:
+        if frame.name not in names:
+            links.append(Link(prefix + frame.body, prefix + frame.name))
+            poses.append(np.array(frame.pose))
+    pose = np.array(poses).reshape(-1, 4, 4)
+    return links, np.concatenate([pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3])], axis=1)
