@@ -17,6 +17,7 @@ from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
 from onorbit_rs.cli.report import report
+from onorbit_rs.cli.ros2 import ros2
 from onorbit_rs.cli.run import resume, run
 from onorbit_rs.cli.show import show
 from onorbit_rs.cli.signals import ending_signals
@@ -40,6 +41,7 @@ app = typer.Typer(
 COMMANDS: dict[str, Callable[..., None]] = {
     "run": run,
     "resume": resume,
+    "ros2": ros2,
     "list": list_,
     "check": check,
     "show": show,

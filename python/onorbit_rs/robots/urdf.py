@@ -28,7 +28,9 @@ def urdf_text(model: Model) -> str:
         (a joint that ``Model.rerooted`` or ``attach`` reversed).
     """
     robot = xml.Element("robot", name=model.name)
-    shapes = [("visual", shape) for shape in model.visuals] + [("collision", shape) for shape in model.collisions]
+    shapes = [("visual", shape) for shape in model.visuals] + [
+        ("collision", shape) for shape in model.collisions
+    ]
     for body in model.bodies:
         link = _link(robot, body.name, shapes)
         _add_inertial(link, body)

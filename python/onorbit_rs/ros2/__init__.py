@@ -4,4 +4,8 @@ from __future__ import annotations
 
 from onorbit_rs.ros2.extra import require
 
-require("rosbags")
+require("rosbags", "cyclonedds")
+
+from onorbit_rs.ros2.node import Node  # noqa: E402  # needs the packages above
+
+__all__ = ["Node"]

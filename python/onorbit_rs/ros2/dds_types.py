@@ -8,10 +8,13 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from cyclonedds.idl import make_idl_struct, types
+from cyclonedds.idl import make_idl_struct
+from cyclonedds.idl import types as _types
 from rosbags.interfaces import Nodetype
 
 from onorbit_rs.ros2.messages import STORE
+
+types: Any = _types  # its generic classes have no types
 
 _NUMBERS = "int8 uint8 int16 uint16 int32 uint32 int64 uint64 float32 float64"
 _BASE: dict[str, Any] = {

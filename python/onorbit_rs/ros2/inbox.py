@@ -51,6 +51,7 @@ class Inbox:
     """Subscriptions to the commands of all systems and of the run."""
 
     def __init__(self, participant: Participant) -> None:
+        """Subscribe nothing yet."""
         self._participant = participant
         self._routes: list[Route] = []
 
@@ -187,14 +188,16 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
 
 
 def _wrench(system: str, prefix: str, model: Model) -> Callable[[Any], list[Entry]]:
-    """Return the conversion of wrenches in the axes of a link, named by the header; by default on the base."""
+    """Return the conversion of wrenches in the axes of a link, which the header names; else the base."""
     bodies = list(model.body_names)
 
     def convert(content: Any) -> list[Entry]:
         frame = content.header.frame_id.removeprefix(prefix) or bodies[0]
         body = bodies[0] if frame == "base" else frame
         if body not in bodies:
-            raise RefusedError(f"frame_id {content.header.frame_id!r} is no link; the links are {', '.join(bodies)}")
+            raise RefusedError(
+                f"frame_id {content.header.frame_id!r} is no link; the links are {', '.join(bodies)}"
+            )
         wrench = content.wrench
         force, torque = ([v.x, v.y, v.z] for v in (wrench.force, wrench.torque))
         _finite("wrench", force + torque, list("xyzxyz"))

@@ -53,6 +53,7 @@ class Marks:
     """Placeholders for the numbers of a message: random values, which its bytes contain exactly once."""
 
     def __init__(self) -> None:
+        """Start without placeholders, apart from the time."""
         self.numbers: dict[str, Floats] = {}
         self._random = np.random.default_rng(20250101)
         self.time = message("builtin_interfaces/msg/Time", sec=0x5A17_C0DE, nanosec=0x3B9A_0B1D)
@@ -116,8 +117,8 @@ class Template:
         sec, nanosec = np.divmod(nanoseconds(time), _NS)
         for at in self._times:
             halves[:, at], halves[:, at + 1] = sec, nanosec
-        for name, at in self._fields.items():
-            words[:, at] = values[name]
+        for name, places in self._fields.items():
+            words[:, places] = values[name]
         rows = np.empty((len(time), _HEADER + self._size), np.uint8)
         rows[:, :_HEADER] = np.frombuffer(self._header, np.uint8)
         rows[:, _HEADER:] = words.view(np.uint8)[:, : self._size]

@@ -10,9 +10,11 @@ from onorbit_rs.exceptions import InputError, OnOrbitError
 from onorbit_rs.ros2.inbox import Arrived, Entry, Inbox, add_run_topics, add_system_topics
 from onorbit_rs.ros2.pace import PACES, RealTime
 from onorbit_rs.ros2.participant import Participant, Writer
-from onorbit_rs.ros2.rows import Rows, rows_of_columns
+from onorbit_rs.ros2.rows import Rows, rows_of_columns, rows_of_trace
 from onorbit_rs.ros2.topics import Topics, event_message, topics
-from onorbit_rs.simulation.commands import apply
+from onorbit_rs.scenario import WorldScenario, load
+from onorbit_rs.scenario.build import build
+from onorbit_rs.scenario.build_world import build_world
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Simulation, Stepper, Trace, WorldTrace
@@ -86,11 +88,14 @@ class Node:
         self._tick = _tick(simulation)
         self._participant = Participant(domain, network=network)
         self._is_paused = is_paused
+        self.duration: float | None = None
         self.commands: list[Entry] = []
         self._clock = RealTime(self._tick)
-        self._stepper, self._rows = self._started()
         self.topics: Topics = topics(self._models, self._first_rows())
-        self._writers = {topic: self._participant.writer(topic.name, topic.kind) for topic in self.topics.series}
+        self._stepper, self._rows = self._started()
+        self._writers = {
+            topic: self._participant.writer(topic.name, topic.kind) for topic in self.topics.series
+        }
         for latched in self.topics.latched:
             writer = self._participant.writer(latched.name, latched.kind, is_latched=True)
             writer.write(latched.data)
@@ -101,6 +106,33 @@ class Node:
     def jitter(self) -> dict[str, float]:
         """How late the node was in pace ``real_time``, s; empty otherwise."""
         return self._clock.report()
+
+    @classmethod
+    def of_scenario(cls, scenario: Any, **options: Any) -> Node:
+        """Return the node of a scenario, with the options of :class:`Node`.
+
+        Parameters
+        ----------
+        scenario : str, path, mapping or Scenario
+            As for :func:`onorbit_rs.run`; its duration is the attribute ``duration``.
+        """
+        checked = load(scenario)
+        built = build_world(checked) if isinstance(checked, WorldScenario) else build(checked)
+        node = cls(built.simulation, **options)
+        node.duration = checked.simulation.duration
+        return node
+
+    @property
+    def published(self) -> list[tuple[str, str]]:
+        """Names and types of the topics that the node publishes."""
+        moving = [(topic.name, topic.kind) for topic in self.topics.series]
+        latched = [(topic.name, topic.kind) for topic in self.topics.latched]
+        return [*dict.fromkeys(moving), *latched, ("/events", _EVENTS)]
+
+    @property
+    def subscribed(self) -> list[tuple[str, str]]:
+        """Names and types of the topics that the node listens to."""
+        return list(self._inbox.topics())
 
     def _started(self) -> tuple[Stepper, dict[str, int]]:
         return self._simulation.start(), dict.fromkeys(self._models, 0)
@@ -115,7 +147,7 @@ class Node:
         inbox = Inbox(self._participant)
         add_run_topics(inbox)
         for system, model in self._models.items():
-            external = self._of(system).external
+            external = getattr(self._of(system), "external", {})
             add_system_topics(inbox, system, self.topics.prefixes[system], model, external)
         return inbox
 
@@ -131,11 +163,9 @@ class Node:
             Errors of the run.
         """
         end = float("inf") if duration is None else duration
-        count = 0
         try:
             while self._stepper.time < end:
-                if self._obey():
-                    count = 0  # after a reset
+                self._obey()
                 if self._is_paused or self._pace == "stepped":
                     self._clock.restart(self._stepper.time)
                     time.sleep(_IDLE_S)
@@ -146,7 +176,9 @@ class Node:
         except KeyboardInterrupt:
             self._say(OK, "run", "stopped")
         self._publish()
-        return self._stepper.finish()
+        trace = self._stepper.finish()
+        self._publish_rows(rows_of_trace(trace, self._models, self._rows))  # the row at the end
+        return trace
 
     def _next(self) -> float:
         """Return the next time at which the node looks at its topics, on the grid of ticks."""
@@ -163,25 +195,26 @@ class Node:
         rows = rows_of_columns(self._stepper.columns(since), self._models)
         for system, part in rows.items():
             self._rows[system] += len(part)
+        self._publish_rows(rows)
+
+    def _publish_rows(self, rows: Mapping[str, Rows]) -> None:
         found = list(self.topics.messages(rows))
         for k in range(max((len(data) for _, data in found), default=0)):
             for topic, data in found:
                 if k < len(data):
                     self._writers[topic].write(data[k].tobytes())
 
-    def _obey(self) -> bool:
-        """Obey the messages that have arrived; return True if the run was reset."""
-        was_reset = False
+    def _obey(self) -> None:
+        """Obey the messages that have arrived."""
         for arrived in self._inbox.take():
             if arrived.is_second_sender:
                 self._say(WARN, arrived.topic, "has several senders; the last message holds")
             if arrived.refusal is not None:
                 self._say(ERROR, arrived.topic, f"refused: {arrived.refusal}")
             for entry in arrived.entries:
-                was_reset |= self._obey_entry(arrived, entry)
-        return was_reset
+                self._obey_entry(arrived, entry)
 
-    def _obey_entry(self, arrived: Arrived, entry: Entry) -> bool:
+    def _obey_entry(self, arrived: Arrived, entry: Entry) -> None:
         if "pause" in entry:
             self._is_paused = entry["pause"]
             self._say(OK, arrived.topic, "paused" if self._is_paused else "running")
@@ -190,12 +223,10 @@ class Node:
             self.commands.clear()
             self._clock.restart(0.0)
             self._say(OK, arrived.topic, "reset to t = 0 s")
-            return True
         elif "step" in entry:
             self._step(arrived.topic, entry["step"])
         else:
             self._command(arrived.topic, entry)
-        return False
 
     def _step(self, topic: str, length: float) -> None:
         """Advance by a length of simulated time, s."""
@@ -206,6 +237,8 @@ class Node:
         self._say(OK, topic, f"advanced to t = {self._stepper.time:.9g} s")
 
     def _command(self, topic: str, entry: Entry) -> None:
+        from onorbit_rs.simulation.commands import apply
+
         timed = {"time": self._stepper.time, **entry}
         try:
             apply(self._stepper, timed)

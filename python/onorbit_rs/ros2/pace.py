@@ -44,7 +44,7 @@ class RealTime:
             self.restart(t)
 
     def report(self) -> dict[str, float]:
-        """Return the jitter: how late the node was, s, and the fraction of ticks that it missed by a tick or more."""
+        """Return how late the node was, s, and the fraction of ticks missed by a tick or more."""
         if not self._late:
             return {}
         late = np.array(self._late)

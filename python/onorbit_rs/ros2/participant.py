@@ -6,6 +6,7 @@ import os
 import socket
 from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cyclonedds._clayer import ddspy_take, ddspy_write
@@ -69,8 +70,8 @@ class Participant:
             self._entity = DomainParticipant(domain)
         except DDSException as error:
             raise Ros2Error(
-                f"cannot join DDS domain {domain} on the {network} network ({error}); is the interface up, and "
-                f"are there fewer than {_PEERS} participants? Another domain: --domain N"
+                f"cannot join DDS domain {domain} on the {network} network ({error}): check that the interface "
+                f"is up and that there are fewer than {_PEERS} participants, or use another domain"
             ) from error
         if network == "loopback":
             _restrict_to_loopback(before)
@@ -104,6 +105,7 @@ class Writer:
     """Publisher of one topic."""
 
     def __init__(self, entity: Any) -> None:
+        """Wrap a writer of CycloneDDS."""
         self._entity = entity
 
     def write(self, data: bytes) -> None:
@@ -125,6 +127,7 @@ class Reader:
     """Subscription to one topic."""
 
     def __init__(self, entity: Any, topic: str, kind: str) -> None:
+        """Wrap a reader of CycloneDDS."""
         self._entity = entity
         self.topic, self.kind = topic, kind
 
@@ -161,13 +164,11 @@ def _check(domain: int, network: str) -> None:
 
 def _datagram_sockets() -> Iterator[int]:
     """Return the file descriptors of this process that are UDP sockets."""
-    folder = "/proc/self/fd"
-    if not os.path.isdir(folder):
-        return
-    for name in os.listdir(folder):
+    folder = Path("/proc/self/fd")
+    for entry in folder.iterdir() if folder.is_dir() else ():
         with suppress(OSError):
-            if os.readlink(f"{folder}/{name}").startswith("socket:") and _is_datagram(int(name)):
-                yield int(name)
+            if str(entry.readlink()).startswith("socket:") and _is_datagram(int(entry.name)):
+                yield int(entry.name)
 
 
 def _is_datagram(descriptor: int) -> bool:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from onorbit_rs._core import WorldTrace
+from onorbit_rs.common.rotations import local_orbital_axes, quaternion_from_matrix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -33,29 +35,35 @@ class Rows:
         return self.columns["time"].reshape(-1)
 
     def __getitem__(self, name: str) -> Floats:
+        """Return a column."""
         return self.columns[name]
 
     def __contains__(self, name: str) -> bool:
+        """Return True if the run recorded a column."""
         return name in self.columns
 
     def __len__(self) -> int:
+        """Return the number of rows."""
         return len(self.columns["time"])
 
-    def at(self, rows: slice) -> Rows:
-        """Return some of the rows."""
-        return Rows({name: values[rows] for name, values in self.columns.items()})
+    @cached_property
+    def orbit_attitude(self) -> Floats:
+        """Attitude of the local orbital frame in inertial axes, (T, 4)."""
+        r, v = self["reference_position_eci"], self["reference_velocity_eci"]
+        return quaternion_from_matrix(local_orbital_axes(r, v))
 
 
-def rows_of_trace(trace: Trace | WorldTrace, models: Mapping[str, Model]) -> dict[str, Rows]:
-    """Return the rows of each system of a trace, which may be that of one robot."""
-    if isinstance(trace, WorldTrace):
-        return {name: _of(trace[name]) for name in models}
-    return {name: _of(trace) for name in models}
-
-
-def _of(trace: Trace) -> Rows:
-    held = [name for name in COLUMNS if name in trace.columns()]
-    return Rows({name: np.asarray(getattr(trace, name)) for name in held})
+def rows_of_trace(
+    trace: Trace | WorldTrace, models: Mapping[str, Model], since: Mapping[str, int] | None = None
+) -> dict[str, Rows]:
+    """Return the rows of each system of a trace, which may be that of one robot, from row ``since`` on."""
+    found = {}
+    for system in models:
+        own = trace[system] if isinstance(trace, WorldTrace) else trace
+        first = 0 if since is None else since[system]
+        held = [name for name in COLUMNS if name in own.columns()]
+        found[system] = Rows({name: np.asarray(getattr(own, name))[first:] for name in held})
+    return found
 
 
 def rows_of_columns(columns: Mapping[str, Floats], models: Mapping[str, Model]) -> dict[str, Rows]:

@@ -22,7 +22,6 @@ from onorbit_rs.ros2.transforms import (
     OrbitFrames,
     SystemFrames,
     fixed_frames,
-    orbit_attitude,
 )
 
 if TYPE_CHECKING:
@@ -136,11 +135,11 @@ def orbit_topics(system: str) -> list[Series]:
 
 
 def _orbit_pose(rows: Rows) -> dict[str, Floats]:
-    return {"p": rows["reference_position_eci"], "q": orbit_attitude(rows)}
+    return {"p": rows["reference_position_eci"], "q": rows.orbit_attitude}
 
 
 def _orbit_twist(rows: Rows) -> dict[str, Floats]:
-    """Return the velocity of the origin and the rate of L: `ω = r × v / r²`, without the slow turn of its plane."""
+    """Return the velocity of the origin, and the rate of L in its plane: `ω = r × v / r²`."""
     r, v = rows["reference_position_eci"], rows["reference_velocity_eci"]
     return {"v": v, "w": np.cross(r, v) / np.sum(r * r, axis=1, keepdims=True)}
 
@@ -190,7 +189,9 @@ def _transforms(system: str, frames: OrbitFrames | SystemFrames) -> Series:
     def values(rows: Rows) -> dict[str, Floats]:
         return {"poses": frames.poses(rows).reshape(len(rows), -1)}
 
-    template = Template(lambda marks: tf_message(frames.links, marks.array("poses", 7 * len(frames.links)), marks))
+    template = Template(
+        lambda marks: tf_message(frames.links, marks.array("poses", 7 * len(frames.links)), marks)
+    )
     return Series("/tf", system, template, values)
 
 

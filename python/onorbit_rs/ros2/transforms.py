@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from onorbit_rs.common.coordinates import BASE_Q, JOINTS_Q
-from onorbit_rs.common.rotations import local_orbital_axes, product, quaternion_from_matrix
+from onorbit_rs.common.rotations import product, quaternion_from_matrix
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -43,14 +43,8 @@ class OrbitFrames:
         """Return the poses (T, 2, 7)."""
         found = np.zeros((len(rows), 2, 7))
         found[:, 0, :3], found[:, 0, 6] = rows["reference_position_eci"], 1.0
-        found[:, 1, 3:] = orbit_attitude(rows)
+        found[:, 1, 3:] = rows.orbit_attitude
         return found
-
-
-def orbit_attitude(rows: Rows) -> Floats:
-    """Return the attitude of ``lvlh`` in ``eci``, (T, 4)."""
-    axes = local_orbital_axes(rows["reference_position_eci"], rows["reference_velocity_eci"])
-    return quaternion_from_matrix(axes)
 
 
 class SystemFrames:
@@ -69,7 +63,9 @@ class SystemFrames:
         self._attitude = quaternion_from_matrix(self._rotation)
         self._slide = np.where(self._turns[:, None], 0.0, np.einsum("jik,jk->ji", self._rotation, axis))
         # q = q₀ (u sin θ/2, cos θ/2) is linear in sin θ/2 and cos θ/2
-        self._sine = product(self._attitude, np.pad(np.where(self._turns[:, None], axis, 0.0), ((0, 0), (0, 1))))
+        self._sine = product(
+            self._attitude, np.pad(np.where(self._turns[:, None], axis, 0.0), ((0, 0), (0, 1)))
+        )
         self._axis = axis
 
     def poses(self, rows: Rows) -> Floats:

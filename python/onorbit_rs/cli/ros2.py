@@ -1,0 +1,86 @@
+"""``onorbit ros2``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
+
+if TYPE_CHECKING:
+    from onorbit_rs.ros2.node import Node
+
+PaceOption = Annotated[str, typer.Option(metavar="PACE", help="real_time, fast or stepped (by /step).")]
+DomainOption = Annotated[int, typer.Option(metavar="N", help="DDS domain, as ROS_DOMAIN_ID.")]
+ForOption = Annotated[
+    float | None, typer.Option("--for", metavar="SECONDS", help="Simulated time, s; default: the scenario's.")
+]
+NetworkOption = Annotated[str, typer.Option(metavar="NETWORK", help="loopback, or all networks.")]
+PausedOption = Annotated[bool, typer.Option("--paused", help="Wait for /pause false before the first step.")]
+
+
+def ros2(
+    scenario: ScenarioArgument,
+    pace: PaceOption = "real_time",
+    domain: DomainOption = 0,
+    for_: ForOption = None,
+    network: NetworkOption = "loopback",
+    paused: PausedOption = False,
+    quiet: QuietOption = False,
+    as_json: JsonOption = False,
+) -> None:
+    """Run a scenario as a live ROS 2 node.
+
+    Needs no ROS 2: pip install 'onorbit-rs[ros2]'. Ctrl-C ends the run. Exit code 1 if the certificate fails.
+    """
+    from onorbit_rs.cli.console import print_json
+    from onorbit_rs.cli.exit_codes import fail
+    from onorbit_rs.cli.text_output import print_error, print_text
+    from onorbit_rs.ros2 import Node
+
+    def tell(text: str) -> None:
+        if not quiet:
+            print_error(text)
+
+    node = Node.of_scenario(
+        scenario, pace=pace, domain=domain, network=network, is_paused=paused, on_message=tell
+    )
+    if not quiet:
+        print_error(_greeting(node, domain))
+    trace = node.spin(node.duration if for_ is None else for_)
+    node.close()
+    report: dict[str, Any] = {
+        "certificate_passed": all(passed for _, _, _, passed in trace.certificate()),
+        "commands": len(node.commands), "jitter": node.jitter,
+    }  # fmt: skip
+    if as_json:
+        print_json(report)
+    elif not quiet:
+        print_text(_closing(report))
+    if not report["certificate_passed"]:
+        fail("the certificate failed", 1)
+
+
+def _greeting(node: Node, domain: int) -> str:
+    """Return the topics of a node."""
+    rows = [f"  {name:<32} {kind}" for name, kind in node.published]
+    taken = [f"  {name:<32} {kind}" for name, kind in node.subscribed]
+    return "\n".join([f"ROS 2 domain {domain}, publishing:", *rows, "listening:", *taken])
+
+
+def _closing(report: dict[str, Any]) -> str:
+    """Return the report of a run that has ended."""
+    lines = [
+        f"certificate: {'passed' if report['certificate_passed'] else 'failed'}",
+        f"commands: {report['commands']}",
+    ]
+    if jitter := report["jitter"]:
+        lines.append(
+            f"real time: late by {1e3 * jitter['late_median_s']:.2f} ms (median), "
+            f"{1e3 * jitter['late_99_s']:.2f} ms (99 %), {1e3 * jitter['late_max_s']:.2f} ms (largest); "
+            f"{100 * jitter['missed']:.2f} % of {jitter['ticks']} ticks missed"
+        )
+        if jitter["slipped_s"] > 0.0:
+            lines.append(f"the run was {jitter['slipped_s']:.2f} s slower than real time")
+    return "\n".join(lines)
