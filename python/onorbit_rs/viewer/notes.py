@@ -48,6 +48,13 @@ def _event(event: dict[str, Any]) -> str:
     return "| " + " | ".join(map(escaped, cells)) + " |"
 
 
+def about_rows(recorded: int, rows: int) -> str:
+    """Return a note on the rows of the trace that are not recorded; empty if all are."""
+    if recorded == rows:
+        return ""
+    return f"\n\nThe recording contains {recorded} of the {rows} rows of the trace.\n"
+
+
 def about_meshes(model: Model) -> str:
     """Return a note on the meshes that are not drawn; empty if all are."""
     missing = missing_meshes(model)

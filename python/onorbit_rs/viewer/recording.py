@@ -7,6 +7,8 @@ precise at the scale of the robot. The orbit has its own view, in km; its exact 
 from __future__ import annotations
 
 import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,7 +28,7 @@ from onorbit_rs.viewer.frames import (
     send_local_frame,
     send_moving_frames,
 )
-from onorbit_rs.viewer.notes import about_meshes
+from onorbit_rs.viewer.notes import about_meshes, about_rows
 from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.scene import (
     MOST_TRAIL_PIECES,
@@ -73,33 +75,33 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     OSError
         If the file cannot be written.
     """
-    try:
-        _encode(path, trace, setting, notes)
-    finally:
-        release_streams()
+    chosen = recorded_rows(len(trace.time))
+    rows = TraceRows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)
+    notes += about_rows(len(chosen), len(trace.time)) + about_meshes(setting.model)
+    with recorded_in(path, setting.name) as recording:
+        plots = list(series_of(rows, setting))
+        viewpoint = send_static(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
+        for series in plots:
+            send_series(recording, rows, series)
+        send_rows(recording, rows, setting, viewpoint)
+        log_paths(recording, rows, setting, viewpoint)
+        if is_apart(bodies := flight_bodies(rows, setting), viewpoint.size):
+            log_whole_flight(recording, bodies)
+            send_flight(recording, bodies, MOST_TRAIL_PIECES)
+        Arrows(recording, setting, viewpoint).send(rows)
     return path
 
 
-def _encode(path: Path, trace: Trace, setting: Setting, notes: str) -> None:
-    """Log the run to a new stream and write its bytes."""
-    chosen = recorded_rows(len(trace.time))
-    rows = TraceRows.of_trace(trace, slice(None) if len(chosen) == len(trace.time) else chosen)
-    if len(chosen) < len(trace.time):
-        notes += f"\n\nThe recording contains {len(chosen)} of the {len(trace.time)} rows of the trace.\n"
-    notes += about_meshes(setting.model)
-    recording = new_recording(setting.name)
-    encoded = Encoded(recording)
-    plots = list(series_of(rows, setting))
-    viewpoint = send_static(recording, rows, setting, plots, float(rows["time"][-1]), notes=notes)
-    for series in plots:
-        send_series(recording, rows, series)
-    send_rows(recording, rows, setting, viewpoint)
-    log_paths(recording, rows, setting, viewpoint)
-    if is_apart(bodies := flight_bodies(rows, setting), viewpoint.size):
-        log_whole_flight(recording, bodies)
-        send_flight(recording, bodies, MOST_TRAIL_PIECES)
-    Arrows(recording, setting, viewpoint).send(rows)
-    encoded.write_to(path)
+@contextmanager
+def recorded_in(path: Path, name: str) -> Iterator[rr.RecordingStream]:
+    """Yield a new recording, whose content is written to a file at the end; its stream is released."""
+    try:
+        recording = new_recording(name)
+        encoded = Encoded(recording)
+        yield recording
+        encoded.write_to(path)
+    finally:
+        release_streams()
 
 
 def log_paths(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:

@@ -11,22 +11,21 @@ import numpy as np
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_compass
 from onorbit_rs.viewer.colors import of_systems
-from onorbit_rs.viewer.encoded import Encoded
 from onorbit_rs.viewer.flight import Body, flight_bodies, is_apart, log_flight, log_whole_flight, send_flight
 from onorbit_rs.viewer.frames import COMPASS, FOLLOW, WORLD, put_in, send_follow, send_local_frame
-from onorbit_rs.viewer.notes import about_meshes
+from onorbit_rs.viewer.notes import about_meshes, about_rows
 from onorbit_rs.viewer.planet import log_planet, send_planet, send_spacecraft
 from onorbit_rs.viewer.recording import (
     MOST_STEPS,
     log_craft,
     log_notes,
     log_paths,
-    new_recording,
+    recorded_in,
     send_craft,
 )
 from onorbit_rs.viewer.scene import MOST_TRAIL_PIECES
 from onorbit_rs.viewer.series import SUM, Series, log_style, send_series, series_of
-from onorbit_rs.viewer.streams import release_streams, send_blueprint
+from onorbit_rs.viewer.streams import send_blueprint
 from onorbit_rs.viewer.viewpoint import Viewpoint
 from onorbit_rs.viewer.world_blueprint import world_layout
 from onorbit_rs.viewer.world_events import log_grasps, log_states, send_events, send_marks
@@ -91,30 +90,27 @@ def write_world_recording(path: Path, trace: WorldTrace, setting: WorldSetting, 
     OSError
         If the file cannot be written.
     """
-    try:
-        _encode(path, trace, setting, notes)
-    finally:
-        release_streams()
-    return path
-
-
-def _encode(path: Path, trace: WorldTrace, setting: WorldSetting, notes: str) -> None:
-    """Log the run to a new stream and write its bytes."""
     most = MOST_STEPS // len(setting.systems)
     world = WorldRows.of_trace(trace, setting, most)
     rows = max(len(trace[name].time) for name in setting.names)
-    if rows > most:
-        notes += f"\n\nThe recording contains {most} of the {rows} rows of the trace.\n"
+    notes += about_rows(min(rows, most), rows)
     notes += "".join(about_meshes(system.model) for system in setting.systems.values())
-    recording = new_recording(setting.name)
-    encoded = Encoded(recording)
-    plots = plots_of(world)
+    with recorded_in(path, setting.name) as recording:
+        _send_run(recording, world, trace.events, notes)
+    return path
+
+
+def _send_run(
+    recording: rr.RecordingStream, world: WorldRows, events: Sequence[EventRecord], notes: str
+) -> None:
+    """Send the rows and the events of a complete run."""
+    setting, plots = world.setting, plots_of(world)
     duration = float(world.all_times["time"][-1])
-    stage = log_world(recording, world, plots, duration, notes=notes, has_events=bool(trace.events))
+    stage = log_world(recording, world, plots, duration, notes=notes, has_events=bool(events))
     for times, series in plots:
         send_series(recording, times, series)
         if series.path.startswith(SHARED):
-            send_marks(recording, _events_of(series, setting, trace.events), times, series)
+            send_marks(recording, _events_of(series, setting, events), times, series)
     send_world(recording, world, stage)
     for name, system in setting.systems.items():
         log_paths(recording, world[name], system, stage.alone[name])
@@ -122,8 +118,7 @@ def _encode(path: Path, trace: WorldTrace, setting: WorldSetting, notes: str) ->
     if is_apart(bodies := bodies_of(world), stage.size):
         log_whole_flight(recording, bodies)
         send_flight(recording, bodies, MOST_TRAIL_PIECES)
-    send_events(recording, trace.events, world, stage.common, duration)
-    encoded.write_to(path)
+    send_events(recording, events, world, stage.common, duration)
 
 
 def plots_of(world: WorldRows, *, is_live: bool = False) -> Plots:
