@@ -15,6 +15,7 @@ from onorbit_rs.exceptions import CompareError, OnOrbitError
 from onorbit_rs.tools.comparison.alignment import aligned_rows
 from onorbit_rs.tools.comparison.quantities import differences_in_quantities
 from onorbit_rs.tools.comparison.text import as_text
+from onorbit_rs.tools.comparison.verdict import Verdict, entry
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -46,22 +47,14 @@ class Difference:
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Verdict):
     """Differences of run ``b`` from run ``a``."""
 
-    a: str
-    b: str
-    tolerance: float
     time: Floats
     """Instants at which the runs are compared, (T,), s."""
     differences: tuple[Difference, ...]
     notes: tuple[str, ...]
     """Differing robots and settings, how times were matched, and quantities that were not compared."""
-
-    @property
-    def agrees(self) -> bool:
-        """True if no quantity exceeds the tolerance at any time."""
-        return self.parts_at is None
 
     @property
     def parts_at(self) -> float | None:
@@ -70,13 +63,7 @@ class Comparison:
 
     def __getitem__(self, name: str) -> Difference:
         """Return the difference in the named quantity, such as ``base attitude``."""
-        for difference in self.differences:
-            if difference.name == name:
-                return difference
-        known = ", ".join(difference.name for difference in self.differences)
-        raise CompareError(
-            f"{name!r} is not a compared quantity; available: {known}", name=name, expected=known
-        )
+        return entry({one.name: one for one in self.differences}, name, "compared quantity")
 
     def __str__(self) -> str:
         """Return the text that ``onorbit compare`` prints."""
@@ -88,12 +75,7 @@ class Comparison:
         measured = [
             {name: json_value(getattr(difference, name)) for name in names} for difference in self.differences
         ]
-        return {
-            "a": self.a,
-            "b": self.b,
-            "tolerance": self.tolerance,
-            "agrees": self.agrees,
-            "parts_at": self.parts_at,
+        return super().as_dict() | {
             "rows": len(self.time),
             "start": float(self.time[0]),
             "end": float(self.time[-1]),

@@ -13,6 +13,7 @@ from onorbit_rs.common.printable import json_value
 from onorbit_rs.exceptions import CompareError
 from onorbit_rs.tools.comparison.robots import Comparison, compared_robots
 from onorbit_rs.tools.comparison.text import as_world_text
+from onorbit_rs.tools.comparison.verdict import Verdict, entry
 
 if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord
@@ -44,23 +45,15 @@ class EventDifference:
 
 
 @dataclass(frozen=True)
-class WorldComparison:
+class WorldComparison(Verdict):
     """Differences of run ``b`` of a world from run ``a``."""
 
-    a: str
-    b: str
-    tolerance: float
     systems: Mapping[str, Comparison]
     """Comparison of each system."""
     events: tuple[EventDifference, ...]
     """Differences of the events, five quantities each."""
     notes: tuple[str, ...]
     """Differing settings, and events that were not compared."""
-
-    @property
-    def agrees(self) -> bool:
-        """True if no quantity of a system or of an event exceeds the tolerance."""
-        return self.parts_at is None
 
     @property
     def parts_at(self) -> float | None:
@@ -70,12 +63,7 @@ class WorldComparison:
 
     def __getitem__(self, name: str) -> Comparison:
         """Return the comparison of a system."""
-        if name not in self.systems:
-            known = ", ".join(self.systems)
-            raise CompareError(
-                f"{name!r} is not a system of the runs; available: {known}", name=name, expected=known
-            )
-        return self.systems[name]
+        return entry(self.systems, name, "system of the runs")
 
     def __str__(self) -> str:
         """Return the text that ``onorbit compare`` prints."""
@@ -84,12 +72,7 @@ class WorldComparison:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data without the rows, as printed by ``onorbit compare --json``."""
         names = ("event", "quantity", "unit", "a", "b", "difference", "allowed", "time", "agrees")
-        return {
-            "a": self.a,
-            "b": self.b,
-            "tolerance": self.tolerance,
-            "agrees": self.agrees,
-            "parts_at": self.parts_at,
+        return super().as_dict() | {
             "systems": {name: compared.as_dict() for name, compared in self.systems.items()},
             "events": [{name: json_value(getattr(event, name)) for name in names} for event in self.events],
             "notes": list(self.notes),
