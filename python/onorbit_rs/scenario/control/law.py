@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -20,9 +21,10 @@ SampledGain = tuple[str, Literal[1, 2], NDArray[np.float64]]
 """Key of a gain, its order (1: rate, 2: position), and the acceleration per error."""
 
 
-class Law(Part):
+class Law(Part, ABC):
     """Control law."""
 
+    @abstractmethod
     def build_law(self, model: Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
         """Return the control law of the engine.
 
@@ -36,7 +38,6 @@ class Law(Part):
         runs_code : bool
             Whether to execute the user's code; otherwise it is inspected and replaced by a placeholder.
         """
-        raise NotImplementedError
 
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
         """Yield the gains for which errors grow if they are too high for the control period.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -71,7 +72,7 @@ class Goal(Part):
         return pose
 
 
-class TaskReference(Part):
+class TaskReference(Part, ABC):
     """Reference of a tool."""
 
     frame: Frame = "world"
@@ -79,9 +80,9 @@ class TaskReference(Part):
     start: Pose | None = None
     """Pose at which it starts, in the frame. Default: the pose of the tool at the start of the run."""
 
+    @abstractmethod
     def build(self, at: Start) -> _core.Reference:
         """Return the reference of the engine, for a robot in the state ``at``."""
-        raise NotImplementedError
 
     def engine_frame(self) -> Any:
         """Return the argument ``frame`` of the references of the engine."""
