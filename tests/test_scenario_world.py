@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import copy
 import json
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from world_runs import PAIR, built, data
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import (
@@ -20,55 +19,19 @@ from onorbit_rs.exceptions import (
     WorldError,
 )
 from onorbit_rs.output.read import SavedRun
-from onorbit_rs.scenario import WorldScenario, load
-from onorbit_rs.scenario.build_world import build_world
+from onorbit_rs.scenario import load
 from onorbit_rs.simulation.run import resume
-
-TEXT = """\
-orbit: {kind: kepler, semi_major_axis: 6778 km}
-environment: [gravity_gradient]
-systems:
-  chaser:
-    robot: servicer
-    tool: tool
-    initial: {joints: [0, 1.4260, 0, 1.3391, 0, -1.1943, 0]}
-    controller: {kind: joint_computed_torque, kp: 1, kd: 2}
-    control_period: 20 ms
-  target:
-    robot: target_satellite
-    initial:
-      frame: chaser/tool
-      position: [30 cm, 0, 75 cm]
-      attitude: {roll_pitch_yaw: [0, -90 deg, 0]}
-      angular_velocity: [0, 0, 1 deg/s]
-events:
-  - name: grasp
-    when: {latch: {within: [5 cm, 2 deg], slower_than: [15 cm/s, 5 deg/s], held_for: 100 ms}}
-    do: {capture: [chaser/tool, target/handle]}
-  - name: let_go
-    when: {after: grasp, delay: 0.2 s}
-    do: {release: grasp, impulse: [0, 0, 2 N s, 0, 0, 0]}
-simulation: {duration: 0.5 s, time_step: 10 ms}
-"""
 
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / "pair.yaml"
-    path.write_text(TEXT)
+    path.write_text(PAIR)
     return path
-
-
-def data() -> dict[str, Any]:
-    from onorbit_rs.scenario.yaml_lines import parse_yaml
-
-    values: dict[str, Any] = parse_yaml(TEXT, None)[0]
-    return values
 
 
 def test_a_run_is_certified_and_its_events_are_audited(file: Path) -> None:
     run = oo.run(file, quiet=True)
-    assert isinstance(run.trace, oo.WorldTrace)
     assert run.summary["certificate_passed"], run.summary["certificate_failures"]
     assert run.summary["warnings"] == ""
     grasp, let_go = run.summary["events"]
@@ -86,8 +49,8 @@ def test_a_run_is_certified_and_its_events_are_audited(file: Path) -> None:
 
 
 def test_the_run_equals_that_of_the_same_world_in_python(file: Path) -> None:
-    built = build_world(_world(load(file)))
-    chaser, target = built.systems["chaser"], built.systems["target"]
+    declared = built(file)
+    chaser, target = declared.systems["chaser"], declared.systems["target"]
     law = oo.JointComputedTorque(kp=1.0, kd=2.0)
     systems = [
         oo.System("chaser", chaser.model, chaser.q, chaser.v, controller=law, tool="tool",
@@ -97,7 +60,8 @@ def test_the_run_equals_that_of_the_same_world_in_python(file: Path) -> None:
     grasp = oo.Capture("grasp", "chaser/tool", "target/handle", within=[0.05, np.radians(2.0)],
                        slower_than=[0.15, np.radians(5.0)], held_for=0.1)  # fmt: skip
     let_go = oo.Release("let_go", "grasp", after="grasp", delay=0.2, impulse=[0, 0, 2, 0, 0, 0])
-    world = oo.World(systems, orbit=built.orbit, environment=[oo.GravityGradient()], events=[grasp, let_go])
+    effects, events = [oo.GravityGradient()], [grasp, let_go]
+    world = oo.World(systems, orbit=declared.orbit, environment=effects, events=events)
     expected = oo.Simulation(world, time_step=0.01).run(0.5)
     found = oo.run(file, quiet=True).trace
     assert isinstance(found, oo.WorldTrace)
@@ -105,18 +69,13 @@ def test_the_run_equals_that_of_the_same_world_in_python(file: Path) -> None:
         np.testing.assert_array_equal(found[name].q, expected[name].q)
 
 
-def _world(scenario: object) -> WorldScenario:
-    assert isinstance(scenario, WorldScenario)
-    return scenario
-
-
 def test_an_initial_state_relative_to_a_frame_moves_with_it() -> None:
     values = data()
     values["systems"]["chaser"]["initial"] |= {"angular_velocity": [0.01, 0.02, 0.03], "position": [1, 2, 3]}
     values["systems"]["chaser"]["initial"]["joint_rates"] = [0.1] * 7
     values["systems"]["target"]["initial"].pop("angular_velocity")
-    built = build_world(_world(load(values)))
-    chaser, target = built.systems["chaser"], built.systems["target"]
+    world = built(values)
+    chaser, target = world.systems["chaser"], world.systems["target"]
     tool, handle = chaser.model.frame_pose(chaser.q, "tool"), target.model.frame_pose(target.q, "handle")
     np.testing.assert_allclose(handle, tool, atol=1e-12)
     np.testing.assert_allclose(
@@ -301,32 +260,32 @@ NOT_IN_THE_SCHEMA = {"tool": FrameError, "joint": ShapeError, "frame of a system
 def test_invalid_input_names_file_line_and_key(case: str, file: Path) -> None:
     old, new, message = INVALID[case]
     kind = NOT_IN_THE_SCHEMA.get(case, ScenarioError)
-    assert old in TEXT
-    file.write_text(TEXT.replace(old, new, 1))
+    assert old in PAIR
+    file.write_text(PAIR.replace(old, new, 1))
     with pytest.raises(kind, match=r"pair\.yaml" + message):
-        build_world(_world(load(file)))
+        built(file)
 
 
 def test_a_capture_that_closes_a_loop_is_located(file: Path) -> None:
     again = "  - {name: again, when: {at: 0.4}, do: {capture: [chaser/tool, target/handle]}}\n"
     first = (
-        TEXT[: TEXT.index("  - name: grasp")] + again.replace("again", "grasp").replace("0.4", "0.1") + again
+        PAIR[: PAIR.index("  - name: grasp")] + again.replace("again", "grasp").replace("0.4", "0.1") + again
     )
     file.write_text(first + "simulation: {duration: 0.5 s, time_step: 10 ms}\n")
     with pytest.raises(WorldError, match=r"pair.yaml:\d+: events.*loop"):
-        build_world(_world(load(file)))
+        built(file)
 
 
 def test_a_system_far_from_the_reference_gives_a_warning_with_its_precision() -> None:
     values = data()
     values["systems"]["chaser"]["initial"]["position"] = ["3000 km", 0, 0]
     with pytest.warns(UserWarning, match=r"systems: system '\w+' starts 300000\d m .*e-10 m"):
-        built = build_world(_world(load(values)))
-    assert len(built.warnings) == 2
+        world = built(values)
+    assert len(world.warnings) == 2
 
 
 def test_events_that_wait_for_each_other_are_refused() -> None:
-    values = copy.deepcopy(data())
+    values = data()
     values["events"][0]["when"] = {"after": "let_go"}
     with pytest.raises(ScenarioError, match="wait for each other: grasp, let_go, grasp"):
         load(values)
@@ -334,7 +293,7 @@ def test_events_that_wait_for_each_other_are_refused() -> None:
 
 def test_a_control_starts_after_an_event(file: Path):
     """The arm is free until the capture and damped from then on."""
-    text = TEXT.replace(
+    text = PAIR.replace(
         "    controller: {kind: joint_computed_torque, kp: 1, kd: 2}\n",
         "    controllers: [{name: damp, kind: joint_computed_torque, kp: 0, kd: 2, after: grasp}]\n",
     )
@@ -351,7 +310,7 @@ def test_a_control_starts_after_an_event(file: Path):
 
 def test_a_capture_is_seated_and_known(file: Path):
     seated = (
-        TEXT.replace(
+        PAIR.replace(
             "do: {capture: [chaser/tool, target/handle]}",
             "do: {capture: [chaser/tool, target/handle], seat: 150 ms, pose: {position: [2 cm, 0, 0]}}",
         )
@@ -369,7 +328,7 @@ def test_a_capture_is_seated_and_known(file: Path):
 
 
 def test_a_control_that_an_event_starts_replaces_others(file: Path):
-    text = TEXT.replace(
+    text = PAIR.replace(
         "    controller: {kind: joint_computed_torque, kp: 1, kd: 2}\n",
         "    controllers:\n"
         "      - {name: hold, kind: joint_computed_torque, kp: 1, kd: 2}\n"

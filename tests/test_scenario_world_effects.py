@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
+from world_runs import built, data
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import ScenarioError
-from onorbit_rs.scenario import WorldScenario, load
-from onorbit_rs.scenario.build_world import build_world
-from onorbit_rs.scenario.yaml_lines import parse_yaml
+from onorbit_rs.scenario import load
 
 TEXT = """\
 orbit: {semi_major_axis: 6678 km, inclination: 51 deg}
@@ -33,16 +31,9 @@ simulation: {duration: 0.4 s, time_step: 50 ms, record_wrenches: true}
 """
 
 
-def data(text: str = TEXT) -> dict[str, Any]:
-    values: dict[str, Any] = parse_yaml(text, None)[0]
-    return values
-
-
 def test_effects_and_surfaces_equal_those_of_the_same_world_in_python() -> None:
-    scenario = load(data())
-    assert isinstance(scenario, WorldScenario)
-    built = build_world(scenario)
-    chaser, target = built.systems["chaser"], built.systems["target"]
+    declared = built(data(TEXT))
+    chaser, target = declared.systems["chaser"], declared.systems["target"]
     systems = [
         oo.System("chaser", chaser.model, chaser.q, chaser.v, surfaces={"bus": oo.Cannonball(3.0)}),
         oo.System("target", target.model, target.q, target.v, surfaces=oo.Faces(drag_coefficient=2.0)),
@@ -52,9 +43,9 @@ def test_effects_and_surfaces_equal_those_of_the_same_world_in_python() -> None:
         oo.Drag(oo.ExponentialAtmosphere()), oo.RadiationPressure(surfaces=light),
         oo.BodyWrench("target/bus", force=[0, 2, 0], start=0.1, end=0.25),
     ]  # fmt: skip
-    world = oo.World(systems, orbit=built.orbit, earth=built.earth, environment=effects)
+    world = oo.World(systems, orbit=declared.orbit, earth=declared.earth, environment=effects)
     expected = oo.Simulation(world, time_step=0.05, record_wrenches=True).run(0.4)
-    found = oo.run(data(), quiet=True).trace
+    found = oo.run(data(TEXT), quiet=True).trace
     assert isinstance(found, oo.WorldTrace)
     for name in ("chaser", "target"):
         np.testing.assert_array_equal(found[name].q, expected[name].q)
@@ -76,16 +67,14 @@ def test_the_written_scenario_gives_the_same_run(tmp_path: Path) -> None:
 
 def test_an_error_of_a_system_alone_names_the_effect_in_the_world() -> None:
     # the wrench of the chaser is its second effect, but the third one of the world
-    values = data()
+    values = data(TEXT)
     values["environment"] = [
         {"kind": "body_wrench", "body": "target/bus", "force": [1, 0, 0]},
         "gravity_gradient",
         {"kind": "body_wrench", "body": "chaser/arm", "force": [1, 0, 0]},
     ]
-    scenario = load(values)
-    assert isinstance(scenario, WorldScenario)
     with pytest.raises(oo.exceptions.FrameError, match=r"environment\[2\]: no body is named 'arm'"):
-        build_world(scenario)
+        built(values)
 
 
 def test_surfaces_of_a_single_robot() -> None:
@@ -107,7 +96,7 @@ def test_surfaces_of_a_single_robot() -> None:
 
 
 def test_one_surface_for_all_systems_must_be_their_faces() -> None:
-    values = data()
+    values = data(TEXT)
     values["environment"][0] = {"kind": "drag", "surfaces": {"kind": "cannonball", "area": 2}}
     with pytest.raises(
         ScenarioError, match=r"environment\[0\].surfaces: cannonball is the surface of one body"

@@ -157,7 +157,7 @@ def test_the_flight_of_a_formation_is_in_l_of_the_reference(tmp_path: Path) -> N
 
 
 def test_a_world_without_an_orbit_is_recorded(tmp_path: Path) -> None:
-    values = data()
+    values = data(environment=[])
     values.pop("orbit")
     world = built(values)
     trace = ran(world)

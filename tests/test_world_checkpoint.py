@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from world_runs import data
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import CheckpointError, InputError, RunInterrupted, WorldError
@@ -19,45 +20,14 @@ from onorbit_rs.output.sealed import sealed, unsealed
 
 pytestmark = pytest.mark.usefixtures("no_pictures")
 
-SCENARIO: dict[str, Any] = {
-    "orbit": {"kind": "kepler", "semi_major_axis": "6778 km"},
-    "environment": ["gravity_gradient"],
-    "systems": {
-        "chaser": {
-            "robot": "servicer",
-            "tool": "tool",
-            "initial": {"joints": [0, 1.4260, 0, 1.3391, 0, -1.1943, 0]},
-            "controller": {"kind": "joint_computed_torque", "kp": 1, "kd": 2},
-            "control_period": "20 ms",
-        },
-        "witness": {
-            "robot": "humanoid_torso",
-            "initial": {"position": [0, 100, 0], "joint_rates": [0.1] * 7},
-        },
-        "target": {
-            "robot": "target_satellite",
-            "initial": {
-                "frame": "chaser/tool",
-                "position": ["30 cm", 0, "75 cm"],
-                "attitude": {"roll_pitch_yaw": [0, "-90 deg", 0]},
-                "angular_velocity": [0, 0, "1 deg/s"],
-            },
-        },
-    },
-    "events": [
-        {
-            "name": "grasp",
-            "when": {"latch": {"within": ["5 cm", "2 deg"], "held_for": "1 s"}},
-            "do": {"capture": ["chaser/tool", "target/handle"]},
-        },
-        {
-            "name": "let_go",
-            "when": {"after": "grasp", "delay": "2 s"},
-            "do": {"release": "grasp", "impulse": [0, 0, "2 N s", 0, 0, 0]},
-        },
-    ],
-    "simulation": {"duration": "4 s", "time_step": "100 us", "record_every": 100},
+SCENARIO = data(simulation={"duration": "4 s", "time_step": "100 us", "record_every": 100})
+SCENARIO["systems"] = {
+    "chaser": SCENARIO["systems"]["chaser"],
+    "witness": {"robot": "humanoid_torso", "initial": {"position": [0, 100, 0], "joint_rates": [0.1] * 7}},
+    "target": SCENARIO["systems"]["target"],
 }
+SCENARIO["events"][0]["when"] = {"latch": {"within": ["5 cm", "2 deg"], "held_for": "1 s"}}
+SCENARIO["events"][1]["when"]["delay"] = "2 s"
 """The latch is held for 1 s, and the craft are connected until 3 s; ``witness`` is another group."""
 
 PROGRAM = """

@@ -220,8 +220,8 @@ def test_the_release_of_a_craft_that_carries_others_takes_them_along() -> None:
     assert np.ptp(poses[0], axis=0).max() < 1e-13
     record = trace.events[-1]
     assert np.linalg.norm(record.impulse[:3]) == pytest.approx(1.0, abs=1e-12)
-    # the work of the spring, computed at its frames, is the change of the kinetic energy; an audit that compared the
-    # change with itself would give zero
+    # the work of the spring, computed at its frames, is the change of the kinetic energy; an audit that
+    # compared the change with itself would give zero
     error = next(value for name, value, *_ in trace.certificate() if name == "free/energy_error_rel")
     assert 0.0 < error < 1e-14
     assert record.energy_lost < 0.0

@@ -65,7 +65,7 @@ def test_computed_torque_tracks_with_the_load_only_if_it_knows_it(target: str):
 
 
 def test_torques_on_the_whole_tree_pass_the_check_of_the_attitude():
-    # the base of the tree reacts to the torques of every tick otherwise than the base of the servicer alone would
+    # the base of the tree reacts to the torques of every tick unlike the base of the servicer alone
     servicer, target = oo.robots.load("servicer"), oo.robots.load("target_satellite")
     q = servicer.neutral()
     q[JOINTS_Q] = GRASPED

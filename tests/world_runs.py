@@ -1,8 +1,9 @@
-"""Worlds for the tests of pictures: with a capture and a release, and with rows at different times."""
+"""Scenarios of a world with a capture and a release, and with rows at different times."""
 
 from __future__ import annotations
 
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import onorbit_rs as oo
@@ -11,8 +12,8 @@ from onorbit_rs.scenario.build_world import BuiltWorld, build_world
 from onorbit_rs.scenario.yaml_lines import parse_yaml
 
 PAIR = """\
-name: two craft
 orbit: {kind: kepler, semi_major_axis: 6778 km}
+environment: [gravity_gradient]
 systems:
   chaser:
     robot: servicer
@@ -35,17 +36,18 @@ events:
     when: {after: grasp, delay: 0.2 s}
     do: {release: grasp, impulse: [0, 0, 2 N s, 0, 0, 0]}
 simulation: {duration: 0.5 s, time_step: 10 ms}
+name: two craft
 """
 
 
-def data(**changed: Any) -> dict[str, Any]:
-    """Returns the scenario of the pair, with other top-level entries."""
-    values: dict[str, Any] = parse_yaml(PAIR, None)[0]
+def data(text: str = PAIR, **changed: Any) -> dict[str, Any]:
+    """Returns a scenario, by default that of the pair, with other top-level entries."""
+    values: dict[str, Any] = parse_yaml(text, None)[0]
     return values | changed
 
 
-def built(values: dict[str, Any] | str) -> BuiltWorld:
-    scenario = load(values)
+def built(source: dict[str, Any] | str | Path) -> BuiltWorld:
+    scenario = load(source)
     assert isinstance(scenario, WorldScenario)
     return build_world(scenario)
 
