@@ -192,10 +192,11 @@ class Node:
     def _publish(self) -> None:
         """Publish the rows since the last call."""
         since = self._rows if len(self._models) > 1 else next(iter(self._rows.values()))
-        rows = rows_of_columns(self._stepper.columns(since), self._models)
-        for system, part in rows.items():
-            self._rows[system] += len(part)
-        self._publish_rows(rows)
+        columns = self._stepper.columns(since)
+        for system in self._models:
+            own = columns["time"] if "time" in columns else columns[f"{system}/time"]
+            self._rows[system] += len(own)
+        self._publish_rows(rows_of_columns(columns, self._models))
 
     def _publish_rows(self, rows: Mapping[str, Rows]) -> None:
         found = list(self.topics.messages(rows))

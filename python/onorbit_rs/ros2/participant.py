@@ -70,8 +70,8 @@ class Participant:
             self._entity = DomainParticipant(domain)
         except DDSException as error:
             raise Ros2Error(
-                f"cannot join DDS domain {domain} on the {network} network ({error}): check that the interface "
-                f"is up and that there are fewer than {_PEERS} participants, or use another domain"
+                f"cannot join DDS domain {domain} on the {network} network ({error}): check that the "
+                f"interface is up and that there are fewer than {_PEERS} participants, or use another domain"
             ) from error
         if network == "loopback":
             _restrict_to_loopback(before)

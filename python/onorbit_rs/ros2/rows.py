@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from onorbit_rs._core import WorldTrace
 from onorbit_rs.common.rotations import local_orbital_axes, quaternion_from_matrix
+from onorbit_rs.output.columns import path_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -25,14 +26,32 @@ COLUMNS = ("time", "q", "v", "tau", "reference_position_eci", "reference_velocit
 
 @dataclass(frozen=True)
 class Rows:
-    """Consecutive rows of one system: ``columns`` maps names to values (T, width)."""
+    """Consecutive rows of one system, at different times."""
 
     columns: Mapping[str, Floats]
+    """Values (T, width) by the name of the column."""
+    wrenches: Mapping[str, Floats] = field(default_factory=dict)
+    """Wrenches (T, 6 bodies) of each recorded effect on the bodies at their centres of mass, W axes."""
+
+    @classmethod
+    def at_distinct_times(cls, columns: Mapping[str, Floats], wrenches: Mapping[str, Floats]) -> Rows:
+        """Return rows of which the last counts where several have the same time, as at a capture."""
+        time = columns["time"].reshape(-1)
+        chosen = np.append(time[1:] != time[:-1], np.ones(min(1, len(time)), dtype=bool))
+        if chosen.all():
+            return cls(columns, wrenches)
+        return cls(*({name: held[chosen] for name, held in part.items()} for part in (columns, wrenches)))
 
     @property
     def time(self) -> Floats:
         """Times (T,), s."""
         return self.columns["time"].reshape(-1)
+
+    @cached_property
+    def orbit_attitude(self) -> Floats:
+        """Attitude of the local orbital frame in inertial axes, (T, 4)."""
+        r, v = self["reference_position_eci"], self["reference_velocity_eci"]
+        return quaternion_from_matrix(local_orbital_axes(r, v))
 
     def __getitem__(self, name: str) -> Floats:
         """Return a column."""
@@ -46,12 +65,6 @@ class Rows:
         """Return the number of rows."""
         return len(self.columns["time"])
 
-    @cached_property
-    def orbit_attitude(self) -> Floats:
-        """Attitude of the local orbital frame in inertial axes, (T, 4)."""
-        r, v = self["reference_position_eci"], self["reference_velocity_eci"]
-        return quaternion_from_matrix(local_orbital_axes(r, v))
-
 
 def rows_of_trace(
     trace: Trace | WorldTrace, models: Mapping[str, Model], since: Mapping[str, int] | None = None
@@ -60,9 +73,13 @@ def rows_of_trace(
     found = {}
     for system in models:
         own = trace[system] if isinstance(trace, WorldTrace) else trace
-        first = 0 if since is None else since[system]
-        held = [name for name in COLUMNS if name in own.columns()]
-        found[system] = Rows({name: np.asarray(getattr(own, name))[first:] for name in held})
+        rows = slice(0 if since is None else since[system], None)
+        columns = {name: np.asarray(getattr(own, name))[rows] for name in COLUMNS if name in own.columns()}
+        wrenches = {
+            name: np.asarray(held)[rows].reshape(len(columns["time"]), -1)
+            for name, held in own.wrenches.items()
+        }
+        found[system] = Rows.at_distinct_times(columns, wrenches)
     return found
 
 
@@ -71,5 +88,10 @@ def rows_of_columns(columns: Mapping[str, Floats], models: Mapping[str, Model]) 
     found = {}
     for system in models:
         prefix = f"{system}/" if f"{system}/time" in columns else ""
-        found[system] = Rows({name: columns[prefix + name] for name in COLUMNS if prefix + name in columns})
+        own = {name: columns[prefix + name] for name in COLUMNS if prefix + name in columns}
+        start = prefix + path_of("wrenches", "")
+        wrenches = {
+            path.removeprefix(start): held for path, held in columns.items() if path.startswith(start)
+        }
+        found[system] = Rows.at_distinct_times(own, wrenches)
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from onorbit_rs.robots.urdf import urdf_text
 from onorbit_rs.ros2.messages import Marks, Template, encode, message, point, quaternion, stamp, vector
 from onorbit_rs.ros2.names import ros_names
 from onorbit_rs.ros2.rows import Rows
+from onorbit_rs.ros2.series import Series
 from onorbit_rs.ros2.transforms import (
     BASE,
     ECI,
@@ -23,6 +24,7 @@ from onorbit_rs.ros2.transforms import (
     SystemFrames,
     fixed_frames,
 )
+from onorbit_rs.ros2.wrenches import wrench_topics
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,25 +43,6 @@ class Latched:
     name: str
     kind: str
     data: bytes
-
-
-@dataclass(frozen=True)
-class Series:
-    """A topic with one message per row of a system."""
-
-    name: str
-    system: str
-    template: Template
-    values: Callable[[Rows], dict[str, Floats]]
-
-    @property
-    def kind(self) -> str:
-        """Type of the messages."""
-        return self.template.kind
-
-    def messages(self, rows: Rows) -> NDArray[np.uint8]:
-        """Return the messages (T, size), in CDR, of the rows."""
-        return self.template.fill(rows.time, self.values(rows))
 
 
 @dataclass(frozen=True)
@@ -96,6 +79,7 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows]) -> Topics:
         series += orbit_topics(reference)
     for system, model in models.items():
         series += system_topics(system, prefixes[system], model)
+        series += wrench_topics(system, prefixes[system], model, first[system])
     latched = [static_topic(prefixes, models)]
     latched += [description(prefixes[system], model) for system, model in models.items()]
     return Topics(tuple(series), tuple(latched), prefixes)
