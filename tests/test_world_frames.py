@@ -10,7 +10,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
-from onorbit_rs.exceptions import ControlError, FrameError, ScenarioError
+from onorbit_rs.exceptions import ControlError, FrameError, ScenarioError, SimulationError
 from onorbit_rs.scenario import load
 
 GRASPED = [0, 1.4260, 0, 1.3391, 0, -1.1943, 0]
@@ -159,3 +159,68 @@ def test_a_control_may_start_after_one_that_follows_a_frame(tmp_path: Path):
     file.write_text(TEXT.replace(single, several))
     trace = oo.run(load(file)).trace["chaser"]
     assert np.abs(trace.v[-1][JOINTS_V]).max() < 1e-3
+
+
+def grasped(
+    *, end: float | None = None, replaced: bool = False, seat: float | None = None, **settings: Any
+) -> Any:
+    """A servicer whose tool grasps a handle at 1 s, while its control still moves the tool."""
+    servicer, target = oo.robots.load("servicer"), oo.robots.load("target_satellite")
+    q, q_target = servicer.neutral(), target.neutral()
+    q[JOINTS_Q] = GRASPED
+    tool, handle = servicer.frame_pose(q, "tool"), target.frame_pose(q_target, "handle")
+    q_target[:3] = tool[:3, 3] - handle[:3, 3] - OFFSET
+    start = np.linalg.inv(target.frame_pose(q_target, "handle")) @ tool
+    goal = start.copy()
+    goal[0, 3] += 0.3
+    law = oo.ComputedTorque(servicer, "tool", kp=25.0, kd=10.0)
+    path = oo.Line(start, goal, duration=5.0, frame="target/handle")
+    controls = [oo.Control(law, reference=path, name="follow", end=end)]
+    if replaced:
+        hold = oo.JointHold(q[JOINTS_Q])
+        rest = oo.JointComputedTorque(kp=25.0, kd=10.0)
+        controls.append(oo.Control(rest, reference=hold, starts_at_present=True, after="grasp"))
+    systems = [
+        oo.System("servicer", servicer, q, np.zeros(servicer.nv), controller=controls),
+        oo.System("target", target, q_target, [0, 0, 0, 0.02, 0.03, 0]),
+    ]
+    grasp = oo.Capture("grasp", "servicer/tool", "target/handle", at=1.0, seat=seat)
+    return oo.Simulation(oo.World(systems, events=[grasp]), time_step=0.01, **settings)
+
+
+def test_a_control_that_follows_what_its_tool_has_grasped_is_warned_of():
+    stepper = grasped().start(duration=4.0)
+    stepper.advance_to(1.0)  # an exception, if there were a warning before the grasp
+    with pytest.warns(UserWarning, match="'follow' follows 'target/handle'.*'grasp'.*after='grasp'"):
+        stepper.advance_to(1.5)
+    stepper.advance_to(1.6)  # once
+    with pytest.warns(UserWarning, match="'follow' follows"):
+        grasped(replaced=False).start(resume=stepper.checkpoint()).advance_to(1.7)
+
+
+def test_during_a_seating_the_frames_are_not_rigid_yet():
+    stepper = grasped(seat=0.5).start(duration=4.0)
+    stepper.advance_to(1.4)
+    with pytest.warns(UserWarning, match="'follow' follows"):
+        stepper.advance_to(1.6)
+
+
+@pytest.mark.parametrize("settings", [{"end": 1.0}, {"replaced": True}])
+def test_a_control_that_ends_at_the_grasp_is_not_warned_of(settings: dict[str, Any]):
+    trace = grasped(**settings).run(2.0)  # a warning would be an exception
+    assert np.abs(trace["servicer"].v[-1][JOINTS_V]).max() < 0.2
+
+
+@pytest.mark.timeout(60)
+def test_joints_that_a_control_accelerates_without_bound_end_an_adaptive_run():
+    """The tolerance would make the steps ever shorter: the run would take hours."""
+    simulation = grasped(integrator="dormand_prince")
+    with (
+        pytest.warns(UserWarning, match="'follow' follows"),
+        pytest.raises(
+            SimulationError, match=r"requires steps of .* although the controllers act every 0\.01 s"
+        ) as error,
+    ):
+        simulation.run(100.0)
+    assert error.value.time > 1.0 and error.value.step < 1e-7
+    assert error.value.trace["servicer"].time[-1] > 1.0

@@ -1,9 +1,11 @@
 //! A simulation and the run that borrows it, shared by `Simulation` and its steppers.
 
 use crate::errors::{SimulationErrorExt, plain};
-use onorbit_core::simulation::{Checkpoint, Simulation, Stepper, Trace};
+use onorbit_core::simulation::{AttachedControl, Checkpoint, Simulation, Stepper, Trace};
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use self_cell::{MutBorrow, self_cell};
+use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 self_cell!(
@@ -29,6 +31,8 @@ pub(crate) struct Runs {
     number: u64,
     /// Wall-clock time of the current run so far, s.
     pub(crate) wall_s: f64,
+    /// Controls of which the current run has warned.
+    warned: Vec<AttachedControl>,
 }
 
 #[derive(Clone)]
@@ -37,7 +41,7 @@ pub(crate) struct SharedRun(Arc<Mutex<Runs>>);
 impl SharedRun {
     pub(crate) fn new(simulation: Simulation) -> Self {
         let slot = Slot::Idle(Box::new(simulation));
-        Self(Arc::new(Mutex::new(Runs { slot, number: 0, wall_s: 0.0 })))
+        Self(Arc::new(Mutex::new(Runs { slot, number: 0, wall_s: 0.0, warned: Vec::new() })))
     }
 
     /// Returns exclusive access to the runs. Raises an error if another thread, or a callback of the run
@@ -83,6 +87,7 @@ impl SharedRun {
                 runs.slot = Slot::Running(Box::new(running));
                 runs.number += 1;
                 runs.wall_s = wall_s;
+                runs.warned.clear();
                 Ok(runs.number)
             }
             Err((simulation, error)) => {
@@ -107,6 +112,22 @@ impl Runs {
         if self.number == number {
             self.release();
         }
+    }
+
+    /// Warns of controls of run `number` that follow a frame to which a capture has rigidly connected their own.
+    pub(crate) fn warn(&mut self, py: Python<'_>, number: u64) -> PyResult<()> {
+        let all = self.with(number, |stepper| stepper.attached_controls()).unwrap_or_default();
+        for new in all.into_iter().filter(|attached| !self.warned.contains(attached)).collect::<Vec<_>>() {
+            let AttachedControl { control, frame, followed, capture } = &new;
+            let message = format!(
+                "the control '{control}' follows '{followed}', to which the capture '{capture}' has rigidly connected \
+                 '{frame}': its torques cannot reduce its error and may diverge; end it at the capture, for example by a \
+                 control of the same joints with after='{capture}'"
+            );
+            self.warned.push(new);
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
+        }
+        Ok(())
     }
 
     /// Calls `work` with run `number`; `None` if another run has been started since, or if it was ended.

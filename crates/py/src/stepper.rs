@@ -307,7 +307,9 @@ impl PyStepper {
                 }
             });
             runs.wall_s = wall_before + start.elapsed().as_secs_f64();
-            if advanced.ok_or_else(|| ended(py))?? {
+            let is_done = advanced.ok_or_else(|| ended(py))?;
+            runs.warn(py, self.number)?;
+            if is_done? {
                 return Ok(());
             }
         }

@@ -159,7 +159,7 @@ impl<'a, S: Real> Lanes<'a, S> {
         let state = State::at(&mut equations.trees, [(q, vec![S::of(0.0); model.nv()])]);
         let Rollout { integrator, time_step, .. } = *settings;
         let duration = time_step * settings.steps as f64;
-        let how = StepSettings { integrator, tolerance: 0.0, time_step, duration };
+        let how = StepSettings { integrator, tolerance: 0.0, time_step, control_period: 0.0, duration };
         let stepper = StepMethod::new(&state, &how);
         let is_controlled = matches!(settings.control, RolloutControl::ComputedTorque(..));
         let work = is_controlled.then(|| ComputedTorqueWork::new(model));

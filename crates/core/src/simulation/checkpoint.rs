@@ -3,7 +3,7 @@
 use super::checkpoint_error::CheckpointError;
 use super::connections::SavedMembers;
 use super::estimates::Estimates;
-use super::events::EventState;
+use super::events::{Attached, EventState};
 use super::every_step::SavedChecks;
 use super::group_balance::GroupBalance;
 use super::integrator::StepControl;
@@ -88,6 +88,7 @@ pub(super) struct WorldProgress {
     pub(super) members: SavedMembers,
     pub(super) events: Vec<EventState>,
     pub(super) records: Vec<EventRecord>,
+    pub(super) attached: Vec<Attached>,
     pub(super) ledger: Ledger,
     pub(super) balance: GroupBalance,
 }

@@ -57,6 +57,12 @@ pub enum SimulationError {
         time = short(*time), step = short(*step)
     )]
     StepTooSmall { time: f64, step: f64 },
+    #[error(
+        "at t = {time} s the motion is so fast that the tolerance requires steps of {step} s, although the controllers act \
+         every {period} s; reduce gains or the control period, or end controls that cannot reach their references",
+        time = short(*time), step = short(*step), period = short(*period)
+    )]
+    StepsTooShort { time: f64, step: f64, period: f64 },
     #[error(transparent)]
     Earth(#[from] EarthError),
     #[error("record_every is 0; it must be at least 1 step")]

@@ -3,7 +3,7 @@
 use super::error::SimulationError;
 use super::recording::EventRecord;
 use super::schedule::Schedule;
-use crate::world::{Event, When, WorldError};
+use crate::world::{Event, FrameIndex, When, WorldError};
 use serde::{Deserialize, Serialize};
 
 /// Progress of one event.
@@ -17,6 +17,15 @@ pub(super) struct EventState {
     pub(super) is_held: bool,
 }
 
+/// Control whose frame a capture has rigidly connected to the frame that it follows; all numbers are those of the group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Attached {
+    pub(super) control: usize,
+    pub(super) frame: FrameIndex,
+    pub(super) followed: FrameIndex,
+    pub(super) capture: usize,
+}
+
 /// Events of a group of systems, with their progress.
 #[derive(Debug, Default)]
 pub(super) struct Events {
@@ -25,13 +34,15 @@ pub(super) struct Events {
     pub(super) numbers: Vec<usize>,
     pub(super) states: Vec<EventState>,
     pub(super) records: Vec<EventRecord>,
+    /// Controls that follow a frame to which their own frame has been connected.
+    pub(super) attached: Vec<Attached>,
 }
 
 impl Events {
     /// Returns the events at the start of a run.
     pub(super) fn new(list: Vec<Event>, numbers: Vec<usize>) -> Self {
         let states = list.iter().map(|event| EventState { due: event.when.time(), ..EventState::default() });
-        Self { states: states.collect(), list, numbers, records: Vec::new() }
+        Self { states: states.collect(), list, numbers, records: Vec::new(), attached: Vec::new() }
     }
 
     /// Returns the first event, in the order of declaration, that is due at `t`, s.

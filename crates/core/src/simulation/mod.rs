@@ -2,6 +2,7 @@
 
 mod acceleration_jumps;
 mod accuracy;
+mod attached;
 mod body_states;
 mod certificate;
 mod check;
@@ -62,6 +63,7 @@ mod tree_state;
 mod world_rows;
 
 pub use crate::world::{Layout, SystemPlace};
+pub use attached::AttachedControl;
 pub use certificate::{Certificate, Check, PairChecks, certify};
 pub use checkpoint::Checkpoint;
 pub use checkpoint_error::CheckpointError;

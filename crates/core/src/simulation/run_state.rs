@@ -99,6 +99,7 @@ impl<S: Scalar> RunState<'_, S> {
                 members: self.save_members(),
                 events: self.events.states.clone(),
                 records: self.events.records.clone(),
+                attached: self.events.attached.clone(),
                 ledger: self.ledger,
                 balance: self.balance.clone(),
             },
@@ -130,6 +131,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.balance = world.balance;
         if !self.events.list.is_empty() {
             (self.events.states, self.events.records) = (world.events, world.records);
+            self.events.attached = world.attached;
             self.ledger = world.ledger;
             self.events_changed();
             self.find_latches();

@@ -85,7 +85,11 @@ impl Shared {
         let rereference_beyond = self.local_reference_distance(&systems);
         let Self { integrator, tolerance, time_step, .. } = *self;
         let horizon = duration.unwrap_or(LONGEST_INTERVAL * time_step);
-        let step_settings = StepSettings { integrator, tolerance, time_step, duration: horizon };
+        let controlled = systems.iter().filter(|system| !system.controls.is_empty());
+        let periods = controlled.map(|system| system.control_period.unwrap_or(time_step));
+        let control_period = periods.reduce(f64::min).unwrap_or(0.0);
+        let step_settings =
+            StepSettings { integrator, tolerance, time_step, control_period, duration: horizon };
 
         let layout = Layout::new(systems.iter().map(|system| (&*system.name, &*system.model)));
         let named = systems.iter().map(|system| (&*system.name, &*system.model));

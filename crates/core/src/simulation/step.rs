@@ -85,6 +85,9 @@ impl<S: Scalar> RunState<'_, S> {
             self.equations.apply_loads(t, (t, interval.end), &self.state)?;
             self.update_controllers(t, true)?;
         }
+        if is_due {
+            self.find_attached();
+        }
         self.controllers_updated |= is_due;
         if !uses_loads || end != interval.end {
             self.equations.apply_loads(t, (t, end), &self.state)?;

@@ -1,5 +1,6 @@
 //! Stepper: a run that the caller advances.
 
+use super::attached::AttachedControl;
 use super::checkpoint::{Checkpoint, GroupCheckpoint};
 use super::equations::EquationsOfMotion;
 use super::error::{RunFailure, SimulationError};
@@ -58,6 +59,8 @@ pub(super) trait Steps: Send {
     fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError>;
     /// Returns the names of the events.
     fn events(&self) -> Vec<String>;
+    /// Returns the controls whose frames are rigidly connected to those that they follow.
+    fn attached_controls(&self) -> Vec<AttachedControl>;
     /// Returns the number of the event with this name if it can be triggered; `None` if there is none.
     fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError>;
     fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;
@@ -202,6 +205,12 @@ impl<'a> Stepper<'a> {
         Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
     }
 
+    /// Returns the controls found so far whose frames a capture has rigidly connected to the frames that they follow: nothing
+    /// can reduce their errors.
+    pub fn attached_controls(&self) -> Vec<AttachedControl> {
+        self.groups.iter().flat_map(|group| group.run.attached_controls()).collect()
+    }
+
     /// Returns a checkpoint, from which the run can be resumed together with the rows of [`Stepper::rows`].
     ///
     /// # Errors
@@ -344,6 +353,10 @@ impl<S: Scalar> Steps for RunState<'_, S> {
             part.drive(&mut trees[part.tree]);
         }
         Ok(())
+    }
+
+    fn attached_controls(&self) -> Vec<AttachedControl> {
+        RunState::attached_controls(self)
     }
 
     fn events(&self) -> Vec<String> {

@@ -48,7 +48,7 @@ impl SimulationErrorExt for SimulationError {
                 &message,
                 &fields!(py, "name": joint, "got": value, "expected": (lower, upper)),
             ),
-            Self::StepTooSmall { time, step } => raise(
+            Self::StepTooSmall { time, step } | Self::StepsTooShort { time, step, .. } => raise(
                 py,
                 "SimulationError",
                 &message,

@@ -176,7 +176,7 @@ fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
                  add {through} to knows"
             )
         };
-        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 2)?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
     }
     Ok(())
 }
@@ -193,7 +193,7 @@ fn warn_of_distance(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
             short(far.distance),
             short(far.resolution)
         );
-        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 2)?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
     }
     Ok(())
 }

@@ -144,6 +144,12 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.controls
     }
 
+    /// Returns the laws of the controls that are running, with the indices of the controls.
+    pub fn running(&self) -> impl Iterator<Item = (usize, &Law)> {
+        let all = self.controls.iter().zip(&self.states).enumerate();
+        all.filter(|(_, (_, state))| state.is_running()).map(|(index, (control, _))| (index, &control.law))
+    }
+
     /// Returns the control that drives joint `j` at `t`, which is active or due to start.
     pub fn driver_of(&self, j: usize, t: f64) -> Option<&Control> {
         let now = t + self.same_instant;

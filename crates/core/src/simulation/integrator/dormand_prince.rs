@@ -1,5 +1,6 @@
 //! Dormand and Prince's embedded pair 5(4) on SO(3) × ℝⁿ, with step-size control.
 
+use super::settings::StepSettings;
 use super::stages::{Stages, combine};
 use super::tableau::{A, C, dense};
 use super::tolerance::{LARGEST_ROTATION, StepControl, Tolerance};
@@ -15,6 +16,13 @@ use crate::spatial::{Real, Vec3, dexp_inv_exact};
 /// Smallest and largest factor by which the step size may change from one step to the next.
 const CHANGE: (f64, f64) = (0.2, 5.0);
 
+/// Fraction of the control period below which a step is short, and the number of consecutive short steps after which the
+/// run is given up: unstable controllers accelerate joints without bound, and each control period would take hours.
+const SHORT: (f64, usize) = (1e-5, 1000);
+
+/// Error of a step, relative to the tolerance, above which the tolerance determines its length.
+const LIMITING: f64 = 1e-2;
+
 /// Stages of a step and the control of its size.
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince<S> {
@@ -23,14 +31,17 @@ pub(super) struct DormandPrince<S> {
     pub(super) control: StepControl,
     /// Start and end of the last step, s.
     span: (f64, f64),
+    /// Time between two updates of the controllers, s; zero without controllers.
+    control_period: f64,
 }
 
 impl<S: Real> DormandPrince<S> {
-    /// Returns the method for runs of `duration`, s, with the error tolerance `epsilon`.
-    pub(super) fn new(rate: &Rate<S>, epsilon: f64, duration: f64) -> Self {
-        let tolerance = Tolerance::new(epsilon, duration);
+    /// Returns the method for the settings of a run.
+    pub(super) fn new(rate: &Rate<S>, settings: &StepSettings) -> Self {
+        let StepSettings { tolerance, duration, control_period, .. } = *settings;
+        let tolerance = Tolerance::new(tolerance, duration);
         let control = StepControl::new(rate.trees.len());
-        Self { k: vec![rate.clone(); 7], tolerance, control, span: (0.0, 0.0) }
+        Self { k: vec![rate.clone(); 7], tolerance, control, span: (0.0, 0.0), control_period }
     }
 
     /// Takes a step: `y' = y ⊕ h Σ b_i k_i`, with the attitude as the rotation vector `θ` since the start of the
@@ -95,7 +106,7 @@ impl<S: Real> DormandPrince<S> {
             h = end - start;
             let taken = self.step(stages, equations, state, (start, end));
             Stages::leave_step_frame(equations, state);
-            let Self { k, tolerance, control, .. } = self;
+            let Self { k, tolerance, control, control_period, .. } = self;
             let error = match taken {
                 Ok(()) => tolerance.error(stages, k, control, equations, h),
                 Err(_) => f64::NAN,
@@ -107,6 +118,12 @@ impl<S: Real> DormandPrince<S> {
                 control.step = h * factor.clamp(CHANGE.0, most);
                 control.error = error;
                 control.add_rotation_errors(&stages.sum, h);
+                let is_short = error > LIMITING && h < SHORT.0 * *control_period;
+                control.short_steps = if is_short { control.short_steps + 1 } else { 0 };
+                if control.short_steps > SHORT.1 {
+                    let period = *control_period;
+                    return Err(SimulationError::StepsTooShort { time: start, step: h, period });
+                }
                 return Ok(end);
             }
             was_rejected = true;
@@ -170,10 +187,11 @@ fn longest_step<S: Real>(stages: &Stages<S>) -> f64 {
 mod tests {
     #![allow(clippy::unwrap_used)] // a test that cannot set up should stop
 
-    use super::{DormandPrince, Stages};
+    use super::{DormandPrince, Stages, StepSettings};
     use crate::model::{Model, difference, neutral};
     use crate::simulation::equations::EquationsOfMotion;
     use crate::simulation::external_loads::NoLoads;
+    use crate::simulation::integrator::Integrator;
     use crate::simulation::only::only;
     use crate::simulation::state::State;
     use crate::simulation::tree::Tree;
@@ -190,7 +208,14 @@ mod tests {
         let v = vec![0.1, 0.0, -0.2, 0.7, 0.9, -0.4];
         let mut state = State::at(&mut equations.trees, [(neutral(&model), v)]);
         let mut stages = Stages::new(&state);
-        let mut method = DormandPrince::new(&stages.rate, tolerance, 8.0);
+        let settings = StepSettings {
+            integrator: Integrator::DormandPrince,
+            tolerance,
+            time_step: 8.0,
+            control_period: 0.0,
+            duration: 8.0,
+        };
+        let mut method = DormandPrince::new(&stages.rate, &settings);
         method.tolerance.attitude_weight = weight;
         let mut t = 0.0;
         while t < 8.0 {

@@ -27,8 +27,7 @@ impl<S: Real> Integration<S> {
         let stages = Stages::new(state);
         let bases = state.trees.iter().map(|_| BaseStages::new()).collect();
         let is_adaptive = settings.integrator == Integrator::DormandPrince;
-        let dormand_prince = is_adaptive
-            .then(|| Box::new(DormandPrince::new(&stages.rate, settings.tolerance, settings.duration)));
+        let dormand_prince = is_adaptive.then(|| Box::new(DormandPrince::new(&stages.rate, settings)));
         Self { integrator: settings.integrator, stages, bases, dormand_prince }
     }
 

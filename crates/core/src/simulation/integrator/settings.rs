@@ -21,6 +21,8 @@ pub(crate) struct StepSettings {
     pub(crate) tolerance: f64,
     /// Length of a regular step, s.
     pub(crate) time_step: f64,
+    /// Time between two updates of the controllers, s; zero without controllers.
+    pub(crate) control_period: f64,
     /// Planned duration of the run, s.
     pub(crate) duration: f64,
 }

@@ -25,6 +25,8 @@ pub(crate) struct StepControl {
     pub(crate) step: f64,
     /// Error of the last accepted step, relative to the tolerance.
     pub(crate) error: f64,
+    /// Consecutive steps that the tolerance made much shorter than the control period.
+    pub(crate) short_steps: usize,
     /// Scales and errors of each tree.
     pub(crate) trees: Vec<TreeControl>,
 }
@@ -43,7 +45,7 @@ pub(crate) struct TreeControl {
 impl StepControl {
     /// Returns the control of `trees` trees before the first step.
     pub(super) fn new(trees: usize) -> Self {
-        Self { step: 0.0, error: 0.0, trees: vec![TreeControl::default(); trees] }
+        Self { step: 0.0, error: 0.0, short_steps: 0, trees: vec![TreeControl::default(); trees] }
     }
 
     /// Computes the sizes of the trees at the first call. Expects kinematics in `equations`.
