@@ -1,4 +1,4 @@
-"""Pickling of robots, effects, atmospheres and surfaces, as required by multiprocessing."""
+"""Pickling of robots, effects, atmospheres, surfaces, references and laws, as required by multiprocessing."""
 
 from __future__ import annotations
 
@@ -117,3 +117,117 @@ def test_surfaces_are_pickled_as_given() -> None:
     robot = oo.Model.rigid_body(10.0, np.eye(3))
     orbit = oo.Kepler(semi_major_axis=7e6)
     oo.Simulation(robot, robot.neutral(), np.zeros(6), orbit=orbit, earth=EARTH, environment=[back(drag)])
+
+
+POSES = np.stack([np.eye(4)] * 3)
+POSES[1:, 0, 3] = 0.1, 0.3
+TABLE = [[0.0, 0.1], [0.2, 0.0], [0.1, 0.3]]
+TARGET = oo.Target(np.eye(4), velocity=[0.1, 0, 0], spin=[0, 0.1, 0])
+REFERENCES: dict[str, Callable[[], oo.Reference | oo.JointReference]] = {
+    "Hold": lambda: oo.Hold(POSES[1], frame="lvlh"),
+    "Line": lambda: oo.Line(POSES[0], POSES[1], speed=0.1, angular_speed=1.0, frame=TARGET),
+    "LineParabola": lambda: oo.LineParabola(
+        POSES[0], displacement=[0.1, 0, 0], duration=2.0, height=[0, 0, 0.1]
+    ),
+    "Circle": lambda: oo.Circle(
+        POSES[1], center=[0, 0, 0], axis=[0, 0, 1], angle=1.0, duration=3.0, turns=False
+    ),
+    "Screw": lambda: oo.Screw(
+        POSES[1], center=[0, 0, 0], axis=[0, 0, 1], angle=1.0, advance=0.2, ramp=0.2, speed=0.1, frame="base"
+    ),
+    "Waypoints": lambda: oo.Waypoints(POSES, speed=0.2, acceleration=0.1, stops=False),
+    "Sampled": lambda: oo.Sampled([0.0, 1.0, 2.0], POSES, velocities=np.zeros((3, 6))),
+    "JointHold": lambda: oo.JointHold([0.1, 0.2]),
+    "JointWaypoints": lambda: oo.JointWaypoints(TABLE, speed=[0.1, 0.2], stops=False),
+    "one_by_one": lambda: oo.JointWaypoints.one_by_one([0.0, 0.1], [(1, 0.5), (0, 0.2)], speed=0.1),
+    "JointSampled": lambda: oo.JointSampled([0.0, 1.0, 2.0], TABLE, rates=np.ones((3, 2))),
+}
+
+
+def samples(reference: Any) -> list[bytes]:
+    return [
+        part.tobytes() for part in reference.sample(np.linspace(-0.1, 1.2 * reference.duration + 0.1, 50))
+    ]
+
+
+@pytest.mark.parametrize("name", REFERENCES)
+def test_a_pickled_reference_has_the_same_samples(name: str) -> None:
+    reference = REFERENCES[name]()
+    there = back(reference)
+    assert type(there) is type(reference) and there.duration == reference.duration
+    assert samples(there) == samples(reference)
+
+
+def test_every_reference_is_among_them() -> None:
+    bases = (oo.Reference, oo.JointReference)
+    classes = {
+        c.__name__
+        for c in vars(oo).values()
+        if isinstance(c, type) and issubclass(c, bases) and c not in bases
+    }
+    assert classes == set(REFERENCES) - {"one_by_one"}
+
+
+def test_a_reference_is_pickled_as_it_was_given() -> None:
+    end = POSES[1].copy()
+    reference = oo.Line(POSES[0], end, duration=1.0)
+    end[0, 3] = 7.0
+    assert samples(back(reference)) == samples(reference)
+
+
+class RateDamper:
+    """A controller of the user, which is pickled by its attributes."""
+
+    def __init__(self, gain: float) -> None:
+        self.gain = gain
+
+    def update(self, t: float, state: Any) -> Any:
+        return -self.gain * np.asarray(state.v)[6 : 6 + len(state.joints)]
+
+
+def laws(robot: oo.Model, q: Any) -> dict[str, tuple[Any, Any]]:
+    """Every law with a reference."""
+    start = robot.frame_pose(q, "tool")
+    end = start.copy()
+    end[:3, 3] += [0.02, -0.03, 0.01]
+    line = oo.Line(start, end, duration=0.3)
+    joints = oo.JointWaypoints([q[7:], q[7:] + 0.1], times=[0.0, 0.4])
+    stiffness, gains = np.diag([30.0, 30, 30, 5, 5, 5]), np.linspace(4.0, 9.0, robot.nv - 6)
+    return {
+        "computed torque": (
+            oo.ComputedTorque(robot, "tool", kp=[9.0] * 6, kd=6.0, damping=0.1, null_space_damping=0.5), line
+        ),
+        "compliance": (oo.Compliance(robot, "tool", stiffness=stiffness, damping=[20.0] * 3 + [1.0] * 3), line),
+        "joints": (oo.JointComputedTorque(kp=gains, kd=5.0, compensate_friction=False), joints),
+        "pid": (oo.JointPid(p=gains, i=0.3, d=4.0, i_limit=0.01, effort_limit=2.0), joints),
+        "user": (RateDamper(3.0), None),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("law", ["computed torque", "compliance", "joints", "pid", "user"])
+def test_a_pickled_law_runs_to_the_same_bits(law: str) -> None:
+    robot = oo.robots.load("servicer")
+    q = robot.neutral()
+    q[7:] = [0, 1.4260, 0, 1.3391, 0, -1.1943, 0]
+    controller, reference = laws(robot, q)[law]
+    goal = None if law == "user" else oo.Goal(tolerance=1e-9, path_tolerance=1.0, time=0.2)
+    control = oo.Control(
+        controller, reference=reference, joints=list(robot.joint_names), tool="tool", name="arm",
+        start=0.05, end=0.45, goal=goal, starts_at_present=law != "user",
+    )  # fmt: skip
+    system = oo.System("a", robot, q, np.full(robot.nv, 0.01), controller=[control], control_period=0.01)
+    here = oo.World([system])
+    there, again = back(here), back(back(here))
+    traces = [oo.Simulation(world, time_step=5e-3).run(0.5) for world in (here, there, again)]
+    for trace in traces[1:]:
+        for column in ("q", "v", "tau"):
+            assert getattr(trace, column).tobytes() == getattr(traces[0], column).tobytes(), column
+        assert trace.results == traces[0].results
+    assert np.abs(traces[0].tau).max() > 1e-3
+
+
+def test_a_controller_that_cannot_be_pickled_names_itself() -> None:
+    controller = RateDamper(1.0)
+    controller.update = lambda t, state: np.zeros(7)  # type: ignore[method-assign]
+    with pytest.raises((AttributeError, pickle.PicklingError, TypeError), match="lambda"):
+        pickle.dumps(oo.Control(controller))

@@ -96,12 +96,26 @@ def test_a_world_is_pickled_with_its_systems_and_events() -> None:
     assert copy.copy(systems[0]).name == "a"
 
 
-def test_a_system_with_a_controller_that_cannot_be_pickled_is_refused() -> None:
-    torso = oo.robots.load("humanoid_torso")
-    law = oo.JointPid(p=1.0)
-    system = oo.System("a", torso, torso.neutral(), np.zeros(torso.nv), controller=law)
-    with pytest.raises(TypeError, match="JointPid"):
-        pickle.dumps(system)
+def final_state(world: oo.World) -> bytes:
+    return bytes(oo.Simulation(world, time_step=0.01).run(1.0)["servicer"].q[-1].tobytes())
+
+
+def test_a_campaign_over_worlds_with_controls_has_the_same_bits_in_another_process() -> None:
+    start = oo.robots.load("servicer").neutral()
+    path = oo.JointWaypoints([start[7:], start[7:] + 0.2], times=[0.0, 0.8])
+    control = oo.Control(oo.JointComputedTorque(kp=25.0, kd=10.0), reference=path, after="grasp")
+    first = oo.System(
+        "servicer", oo.robots.load("servicer"), start, np.zeros(13), controller=[control], knows=["b"]
+    )
+    body = oo.Model.rigid_body(20.0, np.eye(3))
+    grasp = oo.Capture("grasp", "servicer/tool", "b/base", at=0.1)
+    worlds = [
+        oo.World([first, oo.System("b", body, [x, 0, 0, 0, 0, 0, 1], np.zeros(6))], events=[grasp])
+        for x in (2.0, 3.0)
+    ]
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+        there = list(pool.map(final_state, worlds))
+    assert there == [final_state(world) for world in worlds] and there[0] != there[1]
 
 
 def test_runs_of_worlds_are_returned_from_processes(tmp_path: Path) -> None:

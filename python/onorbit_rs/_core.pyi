@@ -794,6 +794,7 @@ class ComputedTorque:
         compensate_environment: bool = True,
         compensate_friction: bool = True,
     ) -> ComputedTorque: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class JointComputedTorque:
@@ -805,6 +806,7 @@ class JointComputedTorque:
         compensate_environment: bool = True,
         compensate_friction: bool = True,
     ) -> JointComputedTorque: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class JointPid:
@@ -818,6 +820,7 @@ class JointPid:
         i_limit: ArrayLike | None = None,
         effort_limit: ArrayLike | None = None,
     ) -> JointPid: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class Compliance:
@@ -830,12 +833,14 @@ class Compliance:
         damping: ArrayLike,
         null_space_damping: float = 0.0,
     ) -> Compliance: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class Goal:
     def __new__(
         cls, *, tolerance: ArrayLike, path_tolerance: ArrayLike | None = None, time: float | None = None
     ) -> Goal: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 _Law = ComputedTorque | JointComputedTorque | JointPid | Compliance | _Controller
 
@@ -855,6 +860,7 @@ class Control:
         goal: Goal | None = None,
         starts_at_present: bool = False,
     ) -> Control: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
 class State:
@@ -873,6 +879,7 @@ class State:
 
 @disjoint_base
 class Reference:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def duration(self) -> float: ...
     def sample(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...
@@ -883,6 +890,7 @@ class Target:
     def __new__(
         cls, pose: ArrayLike, *, velocity: ArrayLike | None = None, spin: ArrayLike | None = None
     ) -> Target: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 _Frame = Literal["world", "lvlh", "base"] | str | Target
 
@@ -984,6 +992,7 @@ class Sampled(Reference):
 
 @disjoint_base
 class JointReference:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def duration(self) -> float: ...
     def sample(self, t: ArrayLike) -> tuple[_Array, _Array, _Array]: ...

@@ -1,7 +1,7 @@
 //! Pickling of objects by the call that constructed them.
 
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyList, PyTuple};
 use std::path::{Path, PathBuf};
 
 /// Function and arguments that rebuild an object: the value of `__reduce__`.
@@ -14,6 +14,18 @@ impl ConstructorCall {
     /// Records a call with keywords only.
     pub(crate) fn with_keywords(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         Self::new(constructor, (), keywords)
+    }
+
+    /// Records a call with keywords only, of which arrays and lists are copied.
+    pub(crate) fn with_copies(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let copies = keywords.copy()?;
+        for (name, value) in keywords.iter() {
+            let is_list = value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>();
+            if is_list || value.hasattr("__array__")? {
+                copies.set_item(name, deep_copy(Some(&value))?)?;
+            }
+        }
+        Self::new(constructor, (), &copies)
     }
 
     /// Records a call with arguments and keywords.
@@ -60,6 +72,16 @@ impl ConstructorCall {
         Ok((rebuild, arguments))
     }
 }
+
+/// Records the call of a constructor, given by its name, with variables that have the names of its arguments.
+macro_rules! call_of {
+    ($py:expr, $constructor:literal, $($name:ident),+ $(,)?) => {{
+        let keywords = pyo3::types::PyDict::new($py);
+        $(keywords.set_item(stringify!($name), $name)?;)+
+        $crate::pickling::ConstructorCall::with_copies($constructor, &keywords)
+    }};
+}
+pub(crate) use call_of;
 
 /// Returns the absolute path, which is valid in any working directory.
 pub(crate) fn absolute(path: &Path) -> PathBuf {

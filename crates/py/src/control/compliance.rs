@@ -4,6 +4,7 @@ use super::gains::gains;
 use super::native_law::{Group, NativeLaw, same_robot};
 use crate::errors::IntoPython;
 use crate::model::PyModel;
+use crate::pickling::{ConstructorCall, Reduced, call_of};
 use onorbit_core::control::{Compliance, Law};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
@@ -38,6 +39,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 pub(crate) struct PyCompliance {
     law: Compliance,
     model: Arc<Model>,
+    constructor_call: ConstructorCall,
 }
 
 #[pymethods]
@@ -46,17 +48,24 @@ impl PyCompliance {
     #[pyo3(signature = (model, tool, *, stiffness, damping, null_space_damping=0.0))]
     fn new(
         py: Python<'_>,
-        model: &PyModel,
+        model: &Bound<'_, PyModel>,
         tool: Any<'_, '_>,
         stiffness: Any<'_, '_>,
         damping: Any<'_, '_>,
         null_space_damping: f64,
     ) -> PyResult<Self> {
+        let constructor_call =
+            call_of!(py, "Compliance", model, tool, stiffness, damping, null_space_damping)?;
+        let model = model.get();
         let frame = model.frame(tool)?;
         let (stiffness, damping) = (gains(stiffness, "stiffness")?, gains(damping, "damping")?);
         let law = Compliance { frame, stiffness, damping, null_space_damping };
         law.check().map_err(|error| error.into_python(py))?;
-        Ok(Self { law, model: Arc::clone(&model.model) })
+        Ok(Self { law, model: Arc::clone(&model.model), constructor_call })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
     }
 }
 

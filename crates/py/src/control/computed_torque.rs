@@ -4,6 +4,7 @@ use super::gains::gains;
 use super::native_law::{Group, NativeLaw, same_robot};
 use crate::errors::IntoPython;
 use crate::model::PyModel;
+use crate::pickling::{ConstructorCall, Reduced, call_of};
 use onorbit_core::control::{ComputedTorque, Law};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
@@ -44,6 +45,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,
     model: Arc<Model>,
+    constructor_call: ConstructorCall,
 }
 
 impl PyComputedTorque {
@@ -62,7 +64,7 @@ impl PyComputedTorque {
     ))]
     fn new(
         py: Python<'_>,
-        model: &PyModel,
+        model: &Bound<'_, PyModel>,
         tool: Any<'_, '_>,
         kp: Option<Any<'_, '_>>,
         kd: Option<Any<'_, '_>>,
@@ -71,6 +73,19 @@ impl PyComputedTorque {
         compensate_environment: bool,
         compensate_friction: bool,
     ) -> PyResult<Self> {
+        let constructor_call = call_of!(
+            py,
+            "ComputedTorque",
+            model,
+            tool,
+            kp,
+            kd,
+            damping,
+            null_space_damping,
+            compensate_environment,
+            compensate_friction
+        )?;
+        let model = model.get();
         let mut law = ComputedTorque::new(model.frame(tool)?, 100.0, 20.0);
         if let Some(kp) = kp {
             law.kp = gains(kp, "kp")?;
@@ -83,7 +98,11 @@ impl PyComputedTorque {
         law.compensate_environment = compensate_environment;
         law.compensate_friction = compensate_friction;
         law.check(&model.model).map_err(|error| error.into_python(py))?;
-        Ok(Self { law, model: Arc::clone(&model.model) })
+        Ok(Self { law, model: Arc::clone(&model.model), constructor_call })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
     }
 }
 

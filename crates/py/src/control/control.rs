@@ -6,9 +6,11 @@ use super::native_law::{Group, Robot};
 use super::user::PythonController;
 use crate::arrays::{names_in, text};
 use crate::errors::{IntoPython, plain};
+use crate::pickling::{ConstructorCall, Reduced, call_of};
 use crate::reference;
 use onorbit_core::control::{Begin, Control, ControlError, Goal, Law};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
@@ -28,16 +30,27 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 #[pyclass(name = "Goal", frozen, module = "onorbit_rs")]
 pub(crate) struct PyGoal {
     goal: Goal,
+    constructor_call: ConstructorCall,
 }
 
 #[pymethods]
 impl PyGoal {
     #[new]
     #[pyo3(signature = (*, tolerance, path_tolerance=None, time=None))]
-    fn new(tolerance: Any<'_, '_>, path_tolerance: Option<Any<'_, '_>>, time: Option<f64>) -> PyResult<Self> {
+    fn new(
+        py: Python<'_>,
+        tolerance: Any<'_, '_>,
+        path_tolerance: Option<Any<'_, '_>>,
+        time: Option<f64>,
+    ) -> PyResult<Self> {
+        let constructor_call = call_of!(py, "Goal", tolerance, path_tolerance, time)?;
         let (tolerance, _) = per_joint(Some(tolerance), "tolerance", 0.0)?;
         let path = path_tolerance.map(|path| per_joint(Some(path), "path_tolerance", 0.0)).transpose()?;
-        Ok(Self { goal: Goal { path: path.map(|path| path.0), tolerance, time } })
+        Ok(Self { goal: Goal { path: path.map(|path| path.0), tolerance, time }, constructor_call })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
     }
 }
 
@@ -108,6 +121,20 @@ impl PyControl {
             .transpose()?;
         let end = end.unwrap_or(f64::INFINITY);
         Ok(Self { controller, reference, joints, tool, name, start, end, after, goal, starts_at_present })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("reference", &self.reference)?;
+        keywords.set_item("joints", &self.joints)?;
+        keywords.set_item("tool", &self.tool)?;
+        keywords.set_item("name", &self.name)?;
+        keywords.set_item("start", self.start)?;
+        keywords.set_item("end", self.end)?;
+        keywords.set_item("after", &self.after)?;
+        keywords.set_item("goal", &self.goal)?;
+        keywords.set_item("starts_at_present", self.starts_at_present)?;
+        ConstructorCall::new("Control", (&self.controller,), &keywords)?.reduce(py)
     }
 }
 

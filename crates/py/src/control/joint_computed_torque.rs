@@ -3,6 +3,7 @@
 use super::gains::{one_count, per_joint};
 use super::native_law::{Group, NativeLaw};
 use crate::errors::IntoPython;
+use crate::pickling::{ConstructorCall, Reduced, call_of};
 use onorbit_core::control::{JointComputedTorque, Law};
 use pyo3::prelude::*;
 
@@ -31,6 +32,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 #[pyclass(name = "JointComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointComputedTorque {
     law: JointComputedTorque,
+    constructor_call: ConstructorCall,
 }
 
 #[pymethods]
@@ -44,11 +46,17 @@ impl PyJointComputedTorque {
         compensate_environment: bool,
         compensate_friction: bool,
     ) -> PyResult<Self> {
+        let constructor_call =
+            call_of!(py, "JointComputedTorque", kp, kd, compensate_environment, compensate_friction)?;
         let (kp, kd) = (per_joint(kp, "kp", 100.0)?, per_joint(kd, "kd", 20.0)?);
         let count = one_count(py, &[&kp, &kd])?;
         let law = JointComputedTorque { kp: kp.0, kd: kd.0, compensate_environment, compensate_friction };
         law.check(count).map_err(|error| error.into_python(py))?;
-        Ok(Self { law })
+        Ok(Self { law, constructor_call })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::gains::{one_count, per_joint};
 use super::native_law::{Group, NativeLaw};
 use crate::errors::{IntoPython, fields, raise};
+use crate::pickling::{ConstructorCall, Reduced, call_of};
 use onorbit_core::control::{Interface, JointPid, Law, PerJoint};
 use pyo3::prelude::*;
 
@@ -36,6 +37,7 @@ pub(crate) struct PyJointPid {
     law: JointPid,
     /// True if the effort limits are those of the robot.
     uses_robot_limits: bool,
+    constructor_call: ConstructorCall,
 }
 
 #[pymethods]
@@ -51,6 +53,7 @@ impl PyJointPid {
         i_limit: Option<Any<'_, '_>>,
         effort_limit: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
+        let constructor_call = call_of!(py, "JointPid", interface, p, i, d, i_limit, effort_limit)?;
         let lacks_gains = [&p, &i, &d].iter().all(|gain| gain.is_none());
         if lacks_gains && matches!(interface, "position" | "velocity") {
             let message = format!(
@@ -80,7 +83,11 @@ impl PyJointPid {
         let (p, i, d, i_limit, effort_limit) = (p.0, i.0, d.0, i_limit.0, effort_limit.0);
         let law = JointPid { interface, p, i, d, i_limit, effort_limit };
         law.check(count).map_err(|error| error.into_python(py))?;
-        Ok(Self { law, uses_robot_limits })
+        Ok(Self { law, uses_robot_limits, constructor_call })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{Any, pose};
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
+use crate::pickling::{ConstructorCall, Reduced, call_of};
 use onorbit_core::model::Model;
 use onorbit_core::orbit::Orbit;
 use onorbit_core::reference::{MovingFrame, ReferenceFrame, Target};
@@ -24,6 +25,7 @@ use std::sync::Arc;
 #[pyclass(name = "Target", frozen, module = "onorbit_rs")]
 pub(crate) struct PyTarget {
     target: Target,
+    constructor_call: ConstructorCall,
 }
 
 #[pymethods]
@@ -36,13 +38,18 @@ impl PyTarget {
         velocity: Option<Any<'_, '_>>,
         spin: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
+        let constructor_call = call_of!(py, "Target", pose, velocity, spin)?;
         let start = self::pose(pose)?;
         let vector = |value: Option<Any<'_, '_>>, name| {
             value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))
         };
         let (velocity, spin) = (vector(velocity, "velocity")?, vector(spin, "spin")?);
         let target = Target::at(start, velocity.into(), spin.into());
-        Ok(Self { target: target.map_err(|error| error.into_python(py))? })
+        Ok(Self { target: target.map_err(|error| error.into_python(py))?, constructor_call })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
     }
 }
 

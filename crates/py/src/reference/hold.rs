@@ -1,6 +1,7 @@
 //! Constant pose.
 
 use super::{Any, PyReference, pose};
+use crate::pickling::call_of;
 use pyo3::prelude::*;
 
 /// Constant pose.
@@ -23,6 +24,8 @@ impl PyHold {
         pose: Any<'_, '_>,
         frame: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(PyReference::new(py, Ok(self::pose(pose)?), frame)?).add_subclass(Self))
+        let call = call_of!(py, "Hold", pose, frame)?;
+        Ok(PyClassInitializer::from(PyReference::new(py, Ok(self::pose(pose)?), frame, call)?)
+            .add_subclass(Self))
     }
 }

@@ -3,6 +3,7 @@
 use super::{Any, PyJointReference, row, timing};
 use crate::arrays::{Input, wrong_shape};
 use crate::errors::IntoPython;
+use crate::pickling::{ConstructorCall, call_of};
 use onorbit_core::reference::{JointHold, JointPath, JointSpline, ReferenceError};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -14,9 +15,13 @@ pub(super) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 impl PyJointReference {
-    /// Returns the base object of a reference of any kind.
-    fn new<P: JointPath + 'static>(py: Python<'_>, path: Result<P, ReferenceError>) -> PyResult<Self> {
-        Ok(Self { path: Arc::new(path.map_err(|error| error.into_python(py))?) })
+    /// Returns the base object of a reference of any kind, which `constructor_call` constructs.
+    fn new<P: JointPath + 'static>(
+        py: Python<'_>,
+        path: Result<P, ReferenceError>,
+        constructor_call: ConstructorCall,
+    ) -> PyResult<Self> {
+        Ok(Self { path: Arc::new(path.map_err(|error| error.into_python(py))?), constructor_call })
     }
 }
 
@@ -42,7 +47,8 @@ pub(super) struct PyJointHold;
 impl PyJointHold {
     #[new]
     fn new(py: Python<'_>, q: Any<'_, '_>) -> PyResult<PyClassInitializer<Self>> {
-        Ok(PyClassInitializer::from(PyJointReference::new(py, JointHold::new(row(q, "q")?))?)
+        let call = call_of!(py, "JointHold", q)?;
+        Ok(PyClassInitializer::from(PyJointReference::new(py, JointHold::new(row(q, "q")?), call)?)
             .add_subclass(Self))
     }
 }
@@ -78,11 +84,13 @@ impl PyJointWaypoints {
         acceleration: Option<Any<'_, '_>>,
         stops: bool,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(py, "JointWaypoints", points, times, speed, acceleration, stops)?;
         let (count, points) = table(points, "points")?;
         let timing = timing::of_joints(py, count, times, speed, acceleration)?;
         Ok(PyClassInitializer::from(PyJointReference::new(
             py,
             JointSpline::waypoints(count, points.data(), &timing, stops),
+            call,
         )?)
         .add_subclass(Self))
     }
@@ -111,9 +119,13 @@ impl PyJointWaypoints {
         speed: Option<Any<'_, 'py>>,
         acceleration: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, Self>> {
+        let call = {
+            let moves = moves.clone();
+            call_of!(py, "JointWaypoints.one_by_one", start, moves, times, speed, acceleration)?
+        };
         let start = row(start, "start")?;
         let timing = timing::of_joints(py, start.len(), times, speed, acceleration)?;
-        let base = PyJointReference::new(py, JointSpline::one_by_one(&start, &moves, &timing))?;
+        let base = PyJointReference::new(py, JointSpline::one_by_one(&start, &moves, &timing), call)?;
         Bound::new(py, PyClassInitializer::from(base).add_subclass(Self))
     }
 }
@@ -144,12 +156,14 @@ impl PyJointSampled {
         positions: Any<'_, '_>,
         rates: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(py, "JointSampled", times, positions, rates)?;
         let (times, (count, positions)) = (row(times, "times")?, table(positions, "positions")?);
         let rates = rates.map(|rates| table(rates, "rates")).transpose()?;
         let rates = rates.as_ref().map(|(_, rates)| rates.data());
         Ok(PyClassInitializer::from(PyJointReference::new(
             py,
             JointSpline::sampled(count, &times, positions.data(), rates),
+            call,
         )?)
         .add_subclass(Self))
     }

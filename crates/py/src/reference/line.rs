@@ -1,6 +1,7 @@
 //! Straight line from rest to rest.
 
 use super::{Any, PyReference, pose, timing};
+use crate::pickling::call_of;
 use onorbit_core::reference::{Line, TimeLaw, Timing};
 use pyo3::prelude::*;
 
@@ -39,12 +40,24 @@ impl PyLine {
         angular_acceleration: Option<f64>,
         frame: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(
+            py,
+            "Line",
+            start_pose,
+            end_pose,
+            duration,
+            speed,
+            acceleration,
+            angular_speed,
+            angular_acceleration,
+            frame
+        )?;
         let (start, end) = (pose(start_pose)?, pose(end_pose)?);
         let limits = [speed, acceleration, angular_speed, angular_acceleration];
         let line = match timing::of_task(py, duration, limits)? {
             Timing::Given(duration) => TimeLaw::quintic(duration).map(|law| Line::new(start, &end, law)),
             Timing::Limits(limits) => Line::within(start, &end, &limits),
         };
-        Ok(PyClassInitializer::from(PyReference::new(py, line, frame)?).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyReference::new(py, line, frame, call)?).add_subclass(Self))
     }
 }

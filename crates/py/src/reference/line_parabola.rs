@@ -1,6 +1,7 @@
 //! Line with a superimposed parabola.
 
 use super::{Any, PyReference, pose, vector};
+use crate::pickling::call_of;
 use nalgebra::Vector3;
 use onorbit_core::reference::LineParabola;
 use pyo3::prelude::*;
@@ -36,10 +37,11 @@ impl PyLineParabola {
         height: Option<Any<'_, '_>>,
         frame: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(py, "LineParabola", start_pose, displacement, duration, height, frame)?;
         let start = pose(start_pose)?;
         let displacement = vector(displacement, "displacement")?;
         let height = height.map_or(Ok(Vector3::zeros()), |value| vector(value, "height"))?;
         let path = LineParabola::from_pose(start, displacement, height, duration);
-        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame, call)?).add_subclass(Self))
     }
 }

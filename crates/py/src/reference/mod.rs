@@ -14,6 +14,7 @@ pub(crate) use frame::Around;
 use crate::arrays::{Input, fixed, fresh, times, type_name, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};
 use crate::orbit::PyOrbit;
+use crate::pickling::{ConstructorCall, Reduced};
 use nalgebra::Vector3;
 use numpy::PyArrayDyn;
 use onorbit_core::reference::{
@@ -48,6 +49,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 pub(crate) struct PyReference {
     path: Arc<dyn TaskPath>,
     frame: frame::Frame,
+    constructor_call: ConstructorCall,
 }
 
 #[pymethods]
@@ -117,17 +119,22 @@ impl PyReference {
         }
         table(py, &reference, false, t)
     }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
+    }
 }
 
 impl PyReference {
-    /// Returns the base object of a reference of any kind.
+    /// Returns the base object of a reference of any kind, which `constructor_call` constructs.
     fn new<P: TaskPath + 'static>(
         py: Python<'_>,
         path: Result<P, ReferenceError>,
         frame: Option<Any<'_, '_>>,
+        constructor_call: ConstructorCall,
     ) -> PyResult<Self> {
         let path = path.map_err(|error| error.into_python(py))?;
-        Ok(Self { path: Arc::new(path), frame: frame::Frame::of(frame)? })
+        Ok(Self { path: Arc::new(path), frame: frame::Frame::of(frame)?, constructor_call })
     }
 
     /// Returns the reference of the core, in frames of the orbit and the systems `around`.
@@ -140,6 +147,7 @@ impl PyReference {
 #[pyclass(name = "JointReference", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointReference {
     path: Arc<dyn JointPath>,
+    constructor_call: ConstructorCall,
 }
 
 #[pymethods]
@@ -168,6 +176,10 @@ impl PyJointReference {
         joint_table(&*self.path, &times, [fresh(&q), fresh(&v), fresh(&a)])
             .map_err(|error| error.into_python(py))?;
         Ok((q, v, a))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Any, PyReference, poses, row, timing};
 use crate::arrays::{Input, wrong_shape};
+use crate::pickling::call_of;
 use onorbit_core::reference::PoseSpline;
 use pyo3::prelude::*;
 
@@ -42,11 +43,23 @@ impl PyWaypoints {
         stops: bool,
         frame: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(
+            py,
+            "Waypoints",
+            poses,
+            times,
+            speed,
+            acceleration,
+            angular_speed,
+            angular_acceleration,
+            stops,
+            frame
+        )?;
         let times = times.map(|times| row(times, "times")).transpose()?;
         let limits = [speed, acceleration, angular_speed, angular_acceleration];
         let timing = timing::of_task(py, times, limits)?;
         let path = PoseSpline::waypoints(&self::poses(poses)?, &timing, stops);
-        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame, call)?).add_subclass(Self))
     }
 }
 
@@ -76,6 +89,7 @@ impl PySampled {
         velocities: Option<Any<'_, '_>>,
         frame: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(py, "Sampled", times, poses, velocities, frame)?;
         let velocities = velocities.map(|value| Input::new(value, "velocities")).transpose()?;
         if let Some(input) = &velocities
             && !matches!(input.shape(), [_, 6])
@@ -84,6 +98,6 @@ impl PySampled {
         }
         let velocities = velocities.as_ref().map(Input::data);
         let path = PoseSpline::sampled(&row(times, "times")?, &self::poses(poses)?, velocities);
-        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame, call)?).add_subclass(Self))
     }
 }

@@ -1,6 +1,7 @@
 //! Rotation about a line, with or without translation along it.
 
 use super::{Any, PyReference, pose, timing, vector};
+use crate::pickling::call_of;
 use onorbit_core::reference::{ReferenceError, Screw};
 use pyo3::prelude::*;
 
@@ -50,9 +51,25 @@ impl PyCircle {
         angular_acceleration: Option<f64>,
         frame: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(
+            py,
+            "Circle",
+            start_pose,
+            center,
+            axis,
+            angle,
+            turns,
+            ramp,
+            duration,
+            speed,
+            acceleration,
+            angular_speed,
+            angular_acceleration,
+            frame
+        )?;
         let limits = [speed, acceleration, angular_speed, angular_acceleration];
         let path = screw(py, start_pose, [center, axis], [angle, 0.0], turns, (ramp, duration, limits))?;
-        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame, call)?).add_subclass(Self))
     }
 }
 
@@ -96,9 +113,26 @@ impl PyScrew {
         angular_acceleration: Option<f64>,
         frame: Option<Any<'_, '_>>,
     ) -> PyResult<PyClassInitializer<Self>> {
+        let call = call_of!(
+            py,
+            "Screw",
+            start_pose,
+            center,
+            axis,
+            angle,
+            advance,
+            turns,
+            ramp,
+            duration,
+            speed,
+            acceleration,
+            angular_speed,
+            angular_acceleration,
+            frame
+        )?;
         let limits = [speed, acceleration, angular_speed, angular_acceleration];
         let path = screw(py, start_pose, [center, axis], [angle, advance], turns, (ramp, duration, limits))?;
-        Ok(PyClassInitializer::from(PyReference::new(py, path, frame)?).add_subclass(Self))
+        Ok(PyClassInitializer::from(PyReference::new(py, path, frame, call)?).add_subclass(Self))
     }
 }
 
