@@ -195,6 +195,19 @@ def test_a_latch_within_its_envelope_at_the_start_closes_after_its_time() -> Non
         assert record.time == held
 
 
+@pytest.mark.parametrize(("speed", "closes"), [(0.03, True), (0.0, False)])
+def test_a_latch_measures_the_velocity_in_the_frame_that_captures(speed: float, closes: bool) -> None:
+    """Two frames 0.3 m apart turn at 0.1 rad/s: they turn together if the second one moves at 3 cm/s."""
+    systems = [
+        capture.rigid("a", 40.0, [3, 4, 5], [0, 0, 0], [0, 0, 0, 0, 0, 0.1]),
+        capture.rigid("b", 20.0, [1, 2, 2], [0.3, 0, 0], [0, speed, 0, 0, 0, 0.1]),
+    ]
+    event = oo.Capture("grasp", "a/base", "b/base", within=[0.5, 0.1], slower_than=[1e-3, 1e-3])
+    records = run(systems, [event], 0.05, time_step=0.01).events
+    assert [record.time for record in records] == ([0.0] if closes else [])
+    assert all(record.energy_lost < 1e-15 for record in records)
+
+
 def test_events_at_and_after_the_end_of_a_run() -> None:
     systems = two_boxes(1.0, [-0.1, 0, 0, 0, 0, 0])
     for time, count in ((0.5, 1), (0.5000001, 0)):

@@ -25,16 +25,17 @@ impl Latch {
     /// Returns the margin of the condition that is closest to its bound, relative to the bound: positive inside the
     /// envelope. Expects the kinematics of `states`, relative to W, in `trees`.
     ///
-    /// `min(1 − d/d_max, 1 − θ/θ_max, 1 − v/v_max, 1 − ω/ω_max)`
+    /// `min(1 − d/d_max, 1 − θ/θ_max, 1 − v/v_max, 1 − ω/ω_max)`, with the velocity of the captured frame's origin as
+    /// observed in the capturing frame, `v = |v_b − v_a − ω_a × (p_b − p_a)|`, and `ω = |ω_b − ω_a|`.
     pub(super) fn inside<S: Real>(&self, trees: &[Tree<'_, S>], states: &[TreeState<S>]) -> f64 {
         let [by, of] = self.frames.map(|(tree, frame)| {
             let (tree, q) = (&trees[tree], &states[tree].q);
             (frame_pose(&tree.model, &tree.data, q, frame), frame_velocity(&tree.model, &tree.data, q, frame))
         });
-        let offset = (of.0.pos_w - by.0.pos_w).norm().lane(0);
+        let offset = of.0.pos_w - by.0.pos_w;
         let turn = log_rotation(&(by.0.rot_wf.transpose() * of.0.rot_wf)).norm().lane(0);
-        let rates = of.1 - by.1;
-        let values = [offset, turn, rates.linear.norm().lane(0), rates.angular.norm().lane(0)];
+        let rates = of.1 - by.1.referred_to(offset);
+        let values = [offset.norm().lane(0), turn, rates.linear.norm().lane(0), rates.angular.norm().lane(0)];
         let bounds = [self.envelope.within, self.envelope.slower_than].concat();
         values.iter().zip(bounds).map(|(value, bound)| 1.0 - value / bound).fold(f64::INFINITY, f64::min)
     }

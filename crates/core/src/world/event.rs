@@ -55,7 +55,8 @@ impl When {
 pub struct Envelope {
     /// Largest distance and angle between the frames, m and rad.
     pub within: [f64; 2],
-    /// Largest relative speed of their origins and largest relative angular speed, m/s and rad/s.
+    /// Largest speed of the captured frame's origin as observed in the capturing frame, m/s, and largest relative angular
+    /// speed, rad/s.
     pub slower_than: [f64; 2],
     /// Time for which all conditions must hold, s.
     pub held_for: f64,

@@ -129,7 +129,8 @@ fn frame_at(
 /// within : (float, float), optional
 ///     A latch: largest distance, m, and angle, rad, between the frames.
 /// slower_than : (float, float), optional
-///     Largest relative speed, m/s, and angular speed, rad/s, at which the latch closes; default: any.
+///     Largest speed of the captured frame's origin as observed in the capturing frame, m/s, and largest relative
+///     angular speed, rad/s, at which the latch closes; default: any.
 /// held_for : float
 ///     Time for which the conditions of the latch must hold, s.
 /// seat : float, optional
