@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import onorbit, refusal
-from test_scenario_world import data
+from world_runs import data
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import CompareError

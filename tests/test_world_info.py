@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from commands import onorbit, refusal
-from test_scenario_world import TEXT
+from world_runs import PAIR
 
 import onorbit_rs as oo
 from onorbit_rs.scenario import WorldScenario, load
@@ -101,7 +101,7 @@ def test_a_capture_of_what_is_connected_is_pointed_out() -> None:
 
 
 def test_the_command_shows_systems_events_and_trees(tmp_path: Path) -> None:
-    (tmp_path / "pair.yaml").write_text(TEXT)
+    (tmp_path / "pair.yaml").write_text(PAIR)
     done = onorbit("info", "pair.yaml", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     rows = [line.split() for line in done.stdout.splitlines()]

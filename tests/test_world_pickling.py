@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_scenario_world import data
 from test_world import GRASP, LET_GO, world
+from world_runs import data
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import InputError, ShapeError, WorldError

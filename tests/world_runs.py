@@ -36,7 +36,6 @@ events:
     when: {after: grasp, delay: 0.2 s}
     do: {release: grasp, impulse: [0, 0, 2 N s, 0, 0, 0]}
 simulation: {duration: 0.5 s, time_step: 10 ms}
-name: two craft
 """
 
 
