@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import world_runs
 from commands import SPIN, onorbit, refusal
 from results import listed
 
@@ -42,6 +43,22 @@ def test_every_check_is_printed_beside_its_gate_and_unit(capsys: pytest.CaptureF
         (line,) = [line for line in lines if line.startswith(f"  {name} ")]
         unit = "rad" if key.endswith("_rad") else "relative"
         assert line.split()[-4:] == [f"{value:.2g}", f"{gate:.2g}", unit, "holds"] and passed
+
+
+def test_the_checks_of_events_have_the_names_of_the_events(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = printed(capsys, oo.run(world_runs.data(), quiet=True).summary)
+    names = {line.split("  ")[1] for line in lines if "/" in line}
+    assert {"chaser+target/energy balance error", "let_go/linear momentum error"} <= names
+
+
+def test_systems_that_no_event_connects_have_no_certificate_of_their_group(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    lines = printed(capsys, oo.run(world_runs.data(events=[]), quiet=True).summary)
+    assert [line.strip() for line in lines[-2:]] == [
+        "certificate passed: every value is within its gate",
+        "nothing was written; save the results with --out DIR",
+    ]
 
 
 def test_a_failed_check_is_distinguished_from_passed_ones(capsys: pytest.CaptureFixture[str]) -> None:

@@ -197,7 +197,7 @@ def laws(robot: oo.Model, q: Any) -> dict[str, tuple[Any, Any]]:
         "computed torque": (
             oo.ComputedTorque(robot, "tool", kp=[9.0] * 6, kd=6.0, damping=0.1, null_space_damping=0.5), line
         ),
-        "compliance": (oo.Compliance(robot, "tool", stiffness=stiffness, damping=[20.0] * 3 + [1.0] * 3), line),
+        "compliance": (oo.Compliance(robot, "tool", stiffness=stiffness, damping=[20.0] * 3 + [1] * 3), line),
         "joints": (oo.JointComputedTorque(kp=gains, kd=5.0, compensate_friction=False), joints),
         "pid": (oo.JointPid(p=gains, i=0.3, d=4.0, i_limit=0.01, effort_limit=2.0), joints),
         "user": (RateDamper(3.0), None),

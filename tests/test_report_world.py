@@ -41,6 +41,7 @@ def test_every_event_is_listed_with_its_audit(page: Page, folder: Path) -> None:
                 assert page.data[f"events/{event['name']}/{key}"] == str(value)
         assert event["kind"] in page.text
     assert "2 N s" in page.text  # the impulse of the spring, with its unit
+    assert "let_go: linear momentum error" in page.text  # the name of the event as it was given
 
 
 def test_the_numbers_and_checks_of_every_system_are_listed(page: Page, folder: Path) -> None:
@@ -86,4 +87,7 @@ def test_a_failed_audit_of_an_event_is_red(folder: Path, tmp_path: Path) -> None
 def test_a_world_without_events_has_a_report(tmp_path: Path) -> None:
     out = tmp_path / "out"
     oo.run(data(events=[]), out=out, quiet=True)
-    assert "No event happened." in Page(write_report(out, pdf=False).read_text()).text
+    text = Page(write_report(out, pdf=False).read_text()).text
+    assert "No event happened." in text
+    # every system is a group, whose certificate is its own
+    assert "Groups of systems" not in text and "no certificate" not in text

@@ -113,8 +113,9 @@ def print_checked(built: Built | BuiltWorld) -> None:
         parts = [robot, *around, laws, timing]
     else:
         systems = (f"{name}: {', '.join(_robot_words(alone))}" for name, alone in built.systems.items())
-        events = count(len(built.scenario.events), "event", "events")
-        parts = ["; ".join(systems), *around, events, timing]
+        number = len(built.scenario.events)
+        events = [count(number, "event", "events")] if number else []
+        parts = ["; ".join(systems), *around, *events, timing]
     print_line(f"ok: {scenario.name}: {', '.join(parts)}")
 
 

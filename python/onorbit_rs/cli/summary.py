@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from onorbit_rs.cli.console import new_console, new_table, print_table, text
 from onorbit_rs.common.display_units import digits
 from onorbit_rs.common.printable import shell_word
-from onorbit_rs.output.checks import Check, checks, is_incomplete
+from onorbit_rs.output.checks import Check, checks, is_incomplete, world_checks
 from onorbit_rs.output.summary_labels import EXCEEDED, goal_of, tracking
 
 if TYPE_CHECKING:
@@ -100,10 +100,9 @@ def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, A
         table.add_row(text(name), text(value))
     print_table(console, table)
     console.print(_verdict(summary), soft_wrap=True)
-    rows = [Check(row["name"], row["name"].removesuffix("_rel").replace("_", " "), row["value"], row["gate"],
-                  row["unit"], row["passed"]) for row in summary["certificate"]]  # fmt: skip
-    if rows:
-        print_table(console, _certificate(rows))
+    lines = world_checks(summary)
+    if lines:
+        print_table(console, _certificate(lines))
 
 
 def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:

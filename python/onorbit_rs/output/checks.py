@@ -43,13 +43,27 @@ def checks(summary: dict[str, Any]) -> list[Check]:
     failed, absent = (_names(summary, f"certificate_{what}") for what in ("failures", "not_evaluated"))
     found = []
     for key, unit in CHECKS.items():
-        name = key.removesuffix("_rel").removesuffix("_rad").replace("_", " ")
+        name = _in_words(key)
         if key in summary:
             gate = summary.get(GATE + key)
             found.append(Check(key, name, summary[key], gate, unit, key not in failed))
         elif key in absent:
             found.append(Check(key, name, None, None, unit, None))
     return found
+
+
+def world_checks(summary: dict[str, Any]) -> list[Check]:
+    """Return the checks of groups and events in the summary of a world; their names begin with ``OWNER/``."""
+    found = []
+    for row in summary["certificate"]:
+        owner, _, key = row["name"].rpartition("/")
+        values = (row["value"], row["gate"], row["unit"], row["passed"])
+        found.append(Check(row["name"], f"{owner}/{_in_words(key)}", *values))
+    return found
+
+
+def _in_words(key: str) -> str:
+    return key.removesuffix("_rel").removesuffix("_rad").replace("_", " ")
 
 
 def is_incomplete(summary: dict[str, Any]) -> bool:

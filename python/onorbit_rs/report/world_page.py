@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from typing import Any
 
-from onorbit_rs.output.checks import Check, checks
+from onorbit_rs.output.checks import checks, world_checks
 from onorbit_rs.report.numbers import Row, groups, row
 from onorbit_rs.report.page import (
     Content,
@@ -89,12 +89,8 @@ def _cells(event: dict[str, Any]) -> Iterator[str]:
 
 def _certificates(summary: dict[str, Any]) -> str:
     """Return the checks of groups and events, and those of each system."""
-    found = []
-    for check in summary["certificate"]:
-        name = check["name"].removesuffix("_rel").removesuffix("_rad").replace("_", " ").replace("/", ": ")
-        values = (check["value"], check["gate"], check["unit"], check["passed"])
-        found.append(Check(check["name"], name, *values))
-    parts = ["<h3>Groups of systems and events</h3>", checks_table(found)]
+    found = [check._replace(name=check.name.replace("/", ": ")) for check in world_checks(summary)]
+    parts = ["<h3>Groups of systems and events</h3>", checks_table(found)] if found else []
     for name, system in summary["systems"].items():
         own = [check._replace(key=f"{name}/{check.key}") for check in checks(system)]
         parts += [f"<h3>{escape(name)}</h3>", checks_table(own)]
