@@ -10,13 +10,14 @@ use super::subspace::{add_joint_motion, articulated_force, joint_effort};
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 
-/// Computes the acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)`.
+/// Computes the generalized acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)` under joint efforts `τ` and external
+/// wrenches `F`.
 ///
-/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes.
+/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes, N and N m.
 ///
-/// The bias accelerations for `q̈ = 0` are computed first, as in inverse dynamics; the recursion then solves for the
-/// difference from these and multiplies each articulated inertia only once. If a light body supports heavy ones, the
-/// mass matrix is used instead (`dense.rs`).
+/// The bias accelerations for `q̈ = 0` are computed first, as in inverse dynamics. The recursion then solves
+/// for the deviation from these accelerations, so that each articulated inertia is multiplied only once. If a
+/// light body supports heavy ones, the equations are solved with the dense mass matrix instead (`dense.rs`).
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Tables 7.1 and 9.4.
 pub fn forward_dynamics<S: Real>(
@@ -33,7 +34,8 @@ pub fn forward_dynamics<S: Real>(
     forward_dynamics_recursion(model, data, v, tau, a);
 }
 
-/// Computes [`forward_dynamics`] after [`kinematics`], with the external wrenches in `data`.
+/// Computes [`forward_dynamics`] with the external wrenches stored in `data`. Requires up-to-date
+/// [`kinematics`] in `data`.
 pub fn forward_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -50,9 +52,9 @@ pub fn forward_dynamics_recursion<S: Real>(
     );
 }
 
-/// Computes [`forward_dynamics_recursion`] with some joints locked (`locked`, `(n,)`): their acceleration is exactly
-/// zero, or that of `given`, `(n,)`, unless `given` is empty. `holding_torque` of their bodies receives the constraint
-/// torque, N m (N).
+/// Computes [`forward_dynamics_recursion`] with the joints locked for which `locked`, `(n,)`, is true. A
+/// locked joint has exactly the acceleration in `given`, `(n,)`, or zero if `given` is empty.
+/// `holding_torque` of its body receives the constraint torque, N m, or force, N.
 pub(crate) fn locked_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -67,7 +69,7 @@ pub(crate) fn locked_dynamics_recursion<S: Real>(
         || kernel(model, data, v, tau, given, a, |k| locked[k - 1]),
     );
     if model.is_heavy_on_light() {
-        // in addition to the recursion: the stick margin of a locked joint needs its `U`
+        // the recursion above runs as well, because the stick margin of a locked joint needs `U`
         dense::solve(model, data, v, tau, given, a, |k| locked[k - 1]);
     }
 }
@@ -86,7 +88,8 @@ fn kernel<S: Real>(
     let bodies = &mut data.bodies[..nodes.len()];
     let (v, tau, a) = (&v[..nodes.len() + 5], &tau[..nodes.len() + 5], &mut a[..nodes.len() + 5]);
 
-    // bias accelerations for q̈ = 0, or the given q̈; the recursion below solves for the difference from these
+    // bias accelerations for q̈ = 0 or for the given q̈; the recursion below solves for the deviation from
+    // them
     if given.is_empty() {
         body_accelerations(nodes, bodies, v, None);
     } else {
@@ -103,9 +106,10 @@ fn kernel<S: Real>(
             // U = IA S
             let u_force = articulated_force(node, body.axis(), &articulated);
             if is_locked(k) {
-                body.force = force; // only locked joints need it, and storing lanes is expensive
+                body.force = force; // needed for locked joints only; storing SIMD lanes is expensive
             }
-            // 1/D, D = Sᵀ U + rotor; 1/D = 0 makes a locked joint rigid: its parent then supports the whole of IA
+            // 1/D with D = Sᵀ U + rotor inertia; 1/D = 0 makes a locked joint rigid, so that its parent
+            // supports all of IA
             body.d_inverse = match is_locked(k) {
                 true => S::of(0.0),
                 false => S::of(1.0) / (joint_effort(node, body.axis(), u_force) + S::of(node.rotor_inertia)),
@@ -113,7 +117,7 @@ fn kernel<S: Real>(
             // u = τ − Sᵀ pA
             body.joint_bias = tau[k + 5] - joint_effort(node, body.axis(), force);
             // Ia = IA − U Uᵀ/D,  pa = pA + U u/D, about the parent's origin
-            // IA is shifted before the subtraction, so that the shift overlaps with the division by D
+            // IA is shifted before the subtraction so that the shift can overlap with the division by D
             body.u_force = u_force.from_point(body.offset);
             let minus_u_force_over_d = body.u_force * -body.d_inverse;
             (
@@ -156,7 +160,8 @@ fn kernel<S: Real>(
     );
 }
 
-/// Returns `IA` and `pA` of a body: `I` and `I a + v ×* I v − F` of the body itself plus the sums over its children.
+/// Returns `IA` and `pA` of a body: `I` and `I a + v ×* I v − F` of the body itself plus the sums over its
+/// children.
 #[inline(always)]
 fn add_body<S: Real>(
     body: &BodyData<S>,

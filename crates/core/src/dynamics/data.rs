@@ -5,10 +5,10 @@ use crate::spatial::{
     ArticulatedInertia, Force, Mat3, Motion, Real, RigidInertia, SpatialInertia, Sym3, Vec3,
 };
 
-/// Quantities of one body in base axes B, about the origin of the body, which lies on its joint axis.
+/// Quantities of one body in base axes B, about the origin of the body, which is a point on its joint axis.
 ///
-/// Moments about the origin of the base would have an error `(L/l)²` times larger for a body of size `l` at a distance
-/// `L`.
+/// If moments were taken about the origin of the base instead, rounding errors would be `(L/l)²` times larger
+/// for a body of size `l` at a distance `L` from the base.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyData<S> {
     /// Rotation from body axes to B. Set by [`positions`](super::positions).
@@ -17,40 +17,42 @@ pub struct BodyData<S> {
     pub pos_b: Vec3<S>,
     /// Position of the body origin relative to the parent origin, m. Set by [`positions`](super::positions).
     pub offset: Vec3<S>,
-    /// Mass, centre of mass and inertia about the centre of mass. Set by [`positions`](super::positions); the mass and
-    /// the values of the base by [`Data::new`].
+    /// Mass, centre of mass and inertia about the centre of mass. [`Data::new`] sets the masses and all
+    /// values of the base; [`positions`](super::positions) sets the rest.
     pub inertia: RigidInertia<S>,
     /// Twist of the body. Set by [`kinematics`](super::kinematics).
     pub velocity: Motion<S>,
-    /// External wrench on the body. Set by [`apply_external`](super::apply_external) or by the simulation; every
-    /// algorithm that computes forces or accelerations reads it.
+    /// External wrench on the body. Set by [`apply_external`](super::apply_external) or by the simulation;
+    /// every algorithm that computes forces or accelerations reads it.
     pub external: Force<S>,
-    /// Sum of the external wrenches on subtrees, kept at forks by [`free_floating`](super::free_floating). A fork is a
-    /// body with a child that is not the next body; the sum is over the subtrees of these children.
+    /// Sum of the external wrenches on the subtrees of those children that do not follow this body directly
+    /// in the numbering. Used by [`free_floating`](super::free_floating) at forks, which are bodies with such
+    /// children.
     pub subtree_external: Force<S>,
-    /// Spatial acceleration: the velocity-product part or the complete acceleration, depending on the algorithm that
-    /// ran last.
+    /// Spatial acceleration: either its velocity-product part or the complete acceleration, depending on the
+    /// algorithm that ran last.
     pub acceleration: Motion<S>,
-    /// Acceleration minus the bias acceleration for `q̈ = 0`. Set by ABA for the base and at forks.
+    /// Difference between the acceleration and the bias acceleration for `q̈ = 0`. Set by ABA for the base
+    /// and at forks.
     pub delta_acceleration: Motion<S>,
-    /// Force through the joint (RNEA), `I S` (CRBA, `free_floating`), or articulated bias force `pA` of a body with a locked joint
-    /// (ABA).
+    /// Force through the joint (RNEA), `I S` (CRBA and `free_floating`), or the articulated bias force `pA`
+    /// of a body with a locked joint (ABA).
     pub force: Force<S>,
-    /// Rigid inertia of subtrees, kept at forks by CRBA and `free_floating` like `subtree_external`; at the base, that of
-    /// the whole robot, set by `free_floating`.
+    /// Sum of the rigid inertias of subtrees, stored by CRBA and `free_floating` at forks as in
+    /// `subtree_external`. For the base, `free_floating` stores the inertia of the whole robot.
     pub composite: SpatialInertia<S>,
-    /// Articulated-body inertia `IA` of the base, set by ABA; at forks, contributions of children, kept like
-    /// `subtree_external`.
+    /// Articulated-body inertia `IA`. Set by ABA for the base; at forks, the sum of the children's
+    /// contributions, stored as in `subtree_external`.
     pub articulated: ArticulatedInertia<S>,
     /// `U = IA S`, about the origin of the parent. Set by ABA.
     pub u_force: Force<S>,
     /// `1/D = 1 / (Sᵀ U + rotor)`, zero for a locked joint. Set by ABA.
     pub d_inverse: S,
-    /// `u = τ − Sᵀ pA`, joint effort minus the component of the articulated bias force along the joint, N m (N). Set by
-    /// ABA.
+    /// `u = τ − Sᵀ pA`, the joint effort minus the component of the articulated bias force along the joint, N
+    /// m or N. Set by ABA.
     pub joint_bias: S,
-    /// Constraint torque `λ` that keeps a locked joint from accelerating, N m (N). Set by ABA for locked
-    /// joints.
+    /// Constraint torque (force) `λ` that keeps a locked joint from accelerating, N m (N). Set by ABA for
+    /// locked joints.
     pub holding_torque: S,
 }
 
@@ -73,7 +75,8 @@ impl<S: Real> BodyData<S> {
         SpatialInertia::at_com(self.inertia.mass, self.com_b(), self.inertia.about_com)
     }
 
-    /// Rotates the centre of mass and the inertia of the body to base axes. For the base itself they are constant.
+    /// Rotates the centre of mass and the inertia of the body to base axes; for the base itself both are
+    /// constant.
     #[inline(always)]
     pub(super) fn rotate_inertia(&mut self, node: &Node) {
         self.inertia.com = self.rot_bk * Vec3::of(&node.com);
@@ -88,10 +91,10 @@ pub struct Data<S> {
     pub bodies: Vec<BodyData<S>>,
     /// Sine and cosine of each joint position. Set by [`positions`](super::positions).
     pub joint_sin_cos: Vec<(S, S)>,
-    /// Factors of `M = L D Lᵀ`, `(nv, nv)`: `L` below the diagonal and `D⁻¹` on it. Allocated only for robots whose
-    /// forward dynamics use the mass matrix (`dense.rs`).
+    /// Factors of `M = L D Lᵀ`, `(nv, nv)`: `L` below the diagonal, `D⁻¹` on the diagonal. Allocated only for
+    /// robots whose forward dynamics use the mass matrix (`dense.rs`).
     pub(super) factors: Vec<S>,
-    /// Generalized forces, `(nv,)`. Allocated like `factors`.
+    /// Generalized forces, `(nv,)`. Allocated for the same robots as `factors`.
     pub(super) forces: Vec<S>,
 }
 
@@ -126,7 +129,7 @@ impl<S: Real> Data<S> {
         Self { bodies, joint_sin_cos: vec![(o, o); n - 1], factors: vec![o; nv * nv], forces: vec![o; nv] }
     }
 
-    /// Copies positions, velocities, inertias and wrenches from the workspace of the same model, without
+    /// Copies positions, velocities, inertias and wrenches from another workspace of the same model, without
     /// allocating.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         self.bodies.copy_from_slice(&from.bodies);

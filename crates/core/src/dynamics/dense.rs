@@ -1,8 +1,8 @@
-//! Forward dynamics by the mass matrix, for robots in which a light body supports heavy ones.
+//! Forward dynamics with the dense mass matrix, for robots in which a light body supports heavy ones.
 //!
-//! The articulated inertia of such a body is a small difference of large numbers, so ABA loses digits to cancellation.
-//! The entries of `M` are accurate relative to their own size, and the residual of `M = L D Lᵀ` is small relative to
-//! the terms of each row.
+//! The articulated inertia of such a body is a small difference of large numbers, so ABA loses digits to
+//! cancellation. The entries of `M`, by contrast, have small relative errors, and the residual of the
+//! factorization `M = L D Lᵀ` is small relative to the terms of each row.
 
 use super::crba;
 use super::data::Data;
@@ -10,8 +10,9 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Real;
 
-/// Solves `M a = τ − c + Σ Jᵀ F`; locked joints have the accelerations `given`, `(n,)`, or zero if it is empty. Stores the accelerations of all bodies and the holding torques of locked joints in
-/// `data`, as the recursion does.
+/// Solves `M a = τ − c + Σ Jᵀ F` for `a`. Locked joints have the accelerations `given`, `(n,)`, or zero if
+/// `given` is empty. Stores the accelerations of all bodies and the holding torques of locked joints in
+/// `data`, as the ABA recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
 pub(super) fn solve<S: Real>(
@@ -70,7 +71,7 @@ fn remove_joint<S: Real>(m: &mut [S], nv: usize, i: usize) {
     m[i * nv + i] = S::of(1.0);
 }
 
-/// Factorizes `M = L D Lᵀ` in place, with `L` below the diagonal and `D⁻¹` on it.
+/// Factorizes `M = L D Lᵀ` in place, with `L` below the diagonal and `D⁻¹` on the diagonal.
 #[inline(always)]
 fn factorize<S: Real>(m: &mut [S], nv: usize) {
     for i in 0..nv {
@@ -90,7 +91,7 @@ fn factorize<S: Real>(m: &mut [S], nv: usize) {
             m[i * nv + j] = scaled * m[j * nv + j];
             pivot -= scaled * m[i * nv + j];
         }
-        let pivot = S::select(pivot.less(least), least, pivot); // the pivot is smaller only because of rounding
+        let pivot = S::select(pivot.less(least), least, pivot); // a smaller pivot is a rounding error
         m[i * nv + i] = S::of(1.0) / pivot;
     }
 }

@@ -17,8 +17,9 @@ use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, 
 ///
 /// The equations are exact for any momentum and any external wrench.
 ///
-/// Symbols: `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[c_b; c_m]`, frame Jacobian `[Jb Jm]` and generalized external
-/// forces `Q = [Qb; Qm]`; matrices are row major; the rows of frame Jacobians are in W axes, linear first.
+/// Symbols: `M = [[Mbb, Mbm], [Mbmᵀ, Mmm]]`, bias `[c_b; c_m]`, frame Jacobian `[Jb Jm]` and generalized
+/// external forces `Q = [Qb; Qm]`; matrices are row major; the rows of frame Jacobians are in W axes, linear
+/// first.
 ///
 /// Source: Umetani and Yoshida, IEEE Trans. Robotics and Automation 5(3), 1989.
 #[derive(Clone, Debug)]
@@ -37,8 +38,8 @@ pub struct FreeFloating<S> {
     pub pose: FramePose<S>,
     /// Twist at the origin of the frame in W axes, m/s and rad/s.
     pub velocity: Motion<S>,
-    /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal with the
-    /// blocks `m 1` and `I_c`.
+    /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal
+    /// with the blocks `m 1` and `I_c`.
     com_b: Vec3<S>,
     /// `Mbb⁻¹ (c_b − Qb)`, about `r_c`.
     base_bias: Motion<S>,
@@ -68,7 +69,8 @@ impl<S: Real> FreeFloating<S> {
     }
 }
 
-/// Computes [`FreeFloating`] of a frame (index) at `q`, `(nq,)`, and `v`, `(nv,)`.
+/// Computes the reduced model [`FreeFloating`] with one frame (index) as the task, at `q`, `(nq,)`, and `v`,
+/// `(nv,)`.
 pub fn free_floating<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -83,7 +85,8 @@ pub fn free_floating<S: Real>(
     free_floating_recursion(model, data, q, v, frame, out);
 }
 
-/// Computes [`free_floating`] after [`kinematics`], with the external wrenches in `data`.
+/// Computes [`free_floating`] with the external wrenches stored in `data`. Requires up-to-date [`kinematics`]
+/// in `data`.
 pub fn free_floating_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -98,7 +101,7 @@ pub fn free_floating_recursion<S: Real>(
     );
 }
 
-/// Replaces pose, twist, `Jg` and `d` by those of another frame. Requires the results of
+/// Replaces the pose, twist, `Jg` and `d` in `out` by those of another frame. Requires the results of
 /// [`free_floating_recursion`] in `out`.
 pub fn free_floating_frame<S: Real>(
     model: &Model,
@@ -117,10 +120,11 @@ pub fn free_floating_frame<S: Real>(
     );
 }
 
-/// Replaces pose, twist, Jacobian and drift by those of a frame relative to B, in base axes.
+/// Replaces the pose, twist, Jacobian and drift in `out` by those of a frame relative to the base B, in base
+/// axes.
 ///
-/// `ẋ = J q̇`, `ẍ = J q̈ + d`, `d = J̇ q̇`, with twists relative to the base. The motion of the base cancels,
-/// so `J` is the Jacobian of the arm alone.
+/// `ẋ = J q̇`, `ẍ = J q̈ + d`, `d = J̇ q̇`, with twists relative to the base. Because the motion of the base
+/// cancels, `J` is the Jacobian of the arm alone.
 pub fn base_relative_frame<S: Real>(
     model: &Model,
     data: &Data<S>,
@@ -207,10 +211,11 @@ fn kernel<S: Real>(
     reduce_task(model, data, q, frame, out);
 }
 
-/// Computes `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base response `−Mbb⁻¹ Mbm` from the forces `f_S = I^c S` of all
-/// joints.
+/// Computes `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `Mbm` and the base response `−Mbb⁻¹ Mbm` from the forces `f_S = I^c
+/// S` of all joints.
 ///
-/// Entry `(j, k)` of `Mmm` is `S_jᵀ f_S`, where `f_S` of joint `k` is shifted to the origin of its ancestor `j`.
+/// Entry `(j, k)` of `Mmm` is `S_jᵀ f_S`, where `f_S` of joint `k` is shifted to the origin of its ancestor
+/// `j`.
 #[inline(always)]
 fn reduced_inertia<S: Real>(
     nodes: &[Node],
@@ -260,7 +265,8 @@ accumulated!(SubtreeWrench<S>, Self(Force::zero()), |body| Self(body.subtree_ext
     .subtree_external =
     this.0);
 
-/// Returns inertia, bias force and external wrench of a subtree: those of its root plus the sums over the children.
+/// Returns inertia, bias force and external wrench of a subtree: those of its root plus the sums over the
+/// children.
 #[inline(always)]
 fn add_body<S: Real>(
     body: &BodyData<S>,

@@ -6,7 +6,7 @@ use super::subspace::{subspace, velocity_product};
 use crate::model::Model;
 use crate::spatial::{Mat3, Motion, Real, Vec3};
 
-/// Computes the Jacobian `J` of a frame (index): the twist at the frame origin in W axes is `J v`.
+/// Computes the Jacobian `J` of a frame (index): `J v` is the twist at the frame origin in W axes.
 ///
 /// `out`: row major `(6, nv)`, linear rows first. Requires up-to-date poses ([`positions`](super::positions))
 /// in `data`.
@@ -56,9 +56,9 @@ pub(super) fn unit_axes<S: Real>() -> [Vec3<S>; 3] {
     [Vec3::new(l, o, o), Vec3::new(o, l, o), Vec3::new(o, o, l)]
 }
 
-/// Returns the drift `J̇ v` of a frame (index): the classical acceleration of its origin, m/s², and its angular
-/// acceleration, rad/s², in W axes at constant `v`. Requires up-to-date kinematics ([`kinematics`](super::kinematics))
-/// in `data`.
+/// Returns the drift `J̇ v` of a frame (index): the classical acceleration of its origin, m/s², and its
+/// angular acceleration, rad/s², in W axes at constant `v`. Requires up-to-date kinematics
+/// ([`kinematics`](super::kinematics)) in `data`.
 pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], frame: usize) -> Motion<S> {
     S::enter(
         #[inline(always)]
@@ -78,7 +78,8 @@ pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], fra
 }
 
 /// Returns the acceleration of a frame origin, m/s², and the angular acceleration of the frame, rad/s², in W
-/// axes. Requires the accelerations of the bodies in `data`, which the dynamics recursions store.
+/// axes. Requires the accelerations of the bodies in `data`, which the recursions of forward and inverse
+/// dynamics store.
 pub fn frame_acceleration<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize) -> Motion<S> {
     let spatial = data.bodies[model.frames()[frame].body].acceleration;
     classical_acceleration(model, data, q, frame, spatial)
@@ -103,8 +104,8 @@ pub(super) fn classical_acceleration<S: Real>(
     Motion::new(rot_wb * acceleration.linear, rot_wb * acceleration.angular)
 }
 
-/// Returns the classical acceleration `a + α × p + ω × (v + ω × p)` of the point at `p` of a body, and `α`, where
-/// `spatial = (a, α)` and `velocity = (v, ω)`.
+/// Returns the classical acceleration `a + α × p + ω × (v + ω × p)` of the point of a body at `p`, and the
+/// angular acceleration `α`, where `spatial = (a, α)` and `velocity = (v, ω)`.
 #[inline(always)]
 pub(super) fn point_acceleration<S: Real>(spatial: Motion<S>, velocity: Motion<S>, p: Vec3<S>) -> Motion<S> {
     // a + α × p + ω × (v + ω × p)

@@ -15,8 +15,8 @@ pub struct FramePose<S> {
     pub pos_w: Vec3<S>,
 }
 
-/// Computes poses, joint axes and inertias of all bodies from the joint positions in `q` (`(nq,)`, m and
-/// rad).
+/// Computes poses, joint axes and inertias of all bodies in base axes from the joint positions in `q`,
+/// `(nq,)`, rad and m.
 pub fn positions<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
     S::enter(
         #[inline(always)]
@@ -24,7 +24,7 @@ pub fn positions<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
     );
 }
 
-/// Computes [`positions`] and the twists of all bodies. `q`: `(nq,)`, `v`: `(nv,)`.
+/// Computes [`positions`] and the twists of all bodies from `q`, `(nq,)`, and `v`, `(nv,)`.
 pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
     S::enter(
         #[inline(always)]
@@ -70,7 +70,7 @@ pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &
     );
 }
 
-/// Returns the joint positions in `q` and computes their sines and cosines.
+/// Returns the joint positions in `q`, and stores their sines and cosines.
 #[inline(always)]
 fn joint_positions<'q, S: Real>(model: &Model, q: &'q [S], joint_sin_cos: &mut [(S, S)]) -> &'q [S] {
     let q = &q[7..model.nq()];
@@ -78,7 +78,7 @@ fn joint_positions<'q, S: Real>(model: &Model, q: &'q [S], joint_sin_cos: &mut [
     q
 }
 
-/// Computes the pose of a body from that of its parent, and rotates its inertia to base axes.
+/// Computes the pose of a body from the pose of its parent, and rotates the body's inertia to base axes.
 #[inline(always)]
 fn place_body<S: Real>(
     node: &Node,

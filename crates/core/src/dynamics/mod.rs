@@ -1,9 +1,10 @@
 //! Equations of motion: free functions of a [`Model`](crate::model::Model), its [`Data`] and a state.
 //!
-//! All recursions run in the axes of the base link B, so the pose of the base enters only results expressed
+//! All recursions run in the axes of the base link B, so the pose of the base affects only results expressed
 //! in W. Motions, forces and inertias of a body refer to the origin of the body, which lies on its joint
 //! axis; between parent and child they are shifted by the vector from one origin to the other.
-//! A function named `*_recursion` requires that [`kinematics`] has run; functions without this suffix run it.
+//! A function named `*_recursion` requires up-to-date [`kinematics`] in the workspace; the function without
+//! this suffix computes the kinematics itself.
 
 mod aba;
 mod crba;

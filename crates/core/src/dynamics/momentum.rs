@@ -76,7 +76,7 @@ pub fn kinetic_energy<S: Real>(model: &Model, data: &Data<S>, v: &[S]) -> S {
     )
 }
 
-/// Returns [`momentum`], [`kinetic_energy`] and [`center_of_mass`], computed in one pass.
+/// Returns [`momentum`], [`kinetic_energy`] and [`center_of_mass`], all computed in one pass over the bodies.
 #[inline(always)]
 pub(crate) fn momentum_energy_com<S: Real>(
     model: &Model,
@@ -109,10 +109,11 @@ fn inertia_momentum_energy<S: Real>(
     (inertia, momentum, twice_energy * S::of(0.5))
 }
 
-/// Projects the base twist onto a momentum: returns `v_b = Mbb⁻¹ (h − Mbm q̇)` in base axes, linear first.
+/// Returns the base twist `v_b = Mbb⁻¹ (h − Mbm q̇)`, in base axes, linear first, with which the robot has a
+/// given momentum.
 ///
-/// `h` is the momentum `target` in B about the base origin. `target` is in W axes, its angular part about the centre of
-/// mass. Requires [`kinematics`](super::kinematics) at `q`, `v`.
+/// `h` is the momentum `target` converted to B axes about the base origin. `target` is in W axes, with the
+/// angular part about the centre of mass. Requires up-to-date [`kinematics`](super::kinematics) in `data`.
 pub fn projected_base_twist<S: Real>(data: &Data<S>, q: &[S], v: &[S], target: Momentum<S>) -> Motion<S> {
     S::enter(
         #[inline(always)]

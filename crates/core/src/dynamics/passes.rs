@@ -1,15 +1,15 @@
 //! Passes over the tree: from the root to the leaves and from the leaves to the root.
 //!
-//! In most robots the parent of a body is the body before it in the numbering. Values between such neighbours
-//! are passed in registers; they go through the memory of the parent only where a tree forks. On a chain,
+//! In most robots the parent of a body is the body with the preceding number. Values between such bodies are
+//! passed in registers; they are stored in the memory of the parent only where a tree forks. On a chain,
 //! memory traffic would cost more than the arithmetic.
 
 use super::data::BodyData;
 use crate::model::Node;
 use crate::spatial::{ArticulatedInertia, Force, Real, SpatialInertia};
 
-/// Calls `visit` for every body except the base, parents first, with the value returned for its parent.
-/// `parent_value` reads that value from the data of the parent.
+/// Calls `visit` for every body except the base, parents first, with the value that the call for its parent
+/// returned. `parent_value` reads this value from the data of the parent if the parent is the base or a fork.
 #[inline(always)]
 pub(super) fn root_to_leaf<S: Real, T: Copy>(
     nodes: &[Node],
@@ -27,8 +27,8 @@ pub(super) fn root_to_leaf<S: Real, T: Copy>(
     }
 }
 
-/// Calls `visit` for every body except the base, children first, with the sum of the values returned for its
-/// children. Returns the sum for the base.
+/// Calls `visit` for every body except the base, children first, with the sum of the values that the calls
+/// for its children returned. Returns the sum for the base.
 #[inline(always)]
 pub(super) fn leaf_to_root<S: Real, T: Accumulated<S>>(
     nodes: &[Node],

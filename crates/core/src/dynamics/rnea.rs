@@ -8,9 +8,10 @@ use super::subspace::{add_joint_motion, joint_effort, velocity_product};
 use crate::model::{Model, Node};
 use crate::spatial::{Force, Motion, Real};
 
-/// Computes the generalized forces `τ = M a + c − Σ Jᵀ F` for the acceleration `a`.
+/// Computes the generalized forces `τ = M a + c − Σ Jᵀ F` for the acceleration `a` and external wrenches `F`.
 ///
-/// `q`: `(nq,)`; `v`, `a`, `tau` (out): `(nv,)`; `tau[..6]` is the wrench on the base in base axes.
+/// `q`: `(nq,)`; `v`, `a`, `tau` (out): `(nv,)`; `tau[..6]` is the wrench on the base in base axes, N and N
+/// m.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 5.1.
 pub fn inverse_dynamics<S: Real>(
@@ -27,10 +28,10 @@ pub fn inverse_dynamics<S: Real>(
     inverse_dynamics_recursion(model, data, v, Some(a), tau);
 }
 
-/// Computes the bias forces `c − Σ Jᵀ F`: Coriolis and centrifugal forces `c(q, v)` minus the generalized forces of the
-/// external wrenches.
+/// Computes the bias forces `c − Σ Jᵀ F`: Coriolis and centrifugal forces `c(q, v)` minus the generalized
+/// forces of the external wrenches.
 ///
-/// The result equals inverse dynamics at `a = 0`. `c` (out): `(nv,)`.
+/// The result, `c` (out, `(nv,)`), equals inverse dynamics at `a = 0`.
 pub fn bias_forces<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -44,7 +45,8 @@ pub fn bias_forces<S: Real>(
     inverse_dynamics_recursion(model, data, v, None, c);
 }
 
-/// Computes [`inverse_dynamics`] after [`kinematics`], with the external wrenches in `data`. `None` means `a = 0`.
+/// Computes [`inverse_dynamics`] with the external wrenches stored in `data`; `a = None` means zero. Requires
+/// up-to-date [`kinematics`] in `data`.
 pub fn inverse_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -55,7 +57,7 @@ pub fn inverse_dynamics_recursion<S: Real>(
     S::enter(
         #[inline(always)]
         || match a {
-            Some(a) => kernel(model, data, v, Some(a), tau), // compiled separately for each case
+            Some(a) => kernel(model, data, v, Some(a), tau), // compiled separately for `Some` and `None`
             None => kernel(model, data, v, None, tau),
         },
     );

@@ -1,13 +1,13 @@
 //! Products with the motion subspace `S` of a joint, at the body origin in base axes.
 //!
-//! The origin lies on the joint axis `z`, so `S = (0, z)` for a revolute joint and `(z, 0)` for a prismatic one.
-//! Products with `S` therefore need only half of the other factor.
+//! The origin lies on the joint axis `z`, so `S = (0, z)` for a revolute joint and `(z, 0)` for a prismatic
+//! one. Products with `S` therefore need only half of the other factor.
 
 use super::data::BodyData;
 use crate::model::{Axis, Node};
 use crate::spatial::{ArticulatedInertia, Force, Motion, Real, SpatialInertia, Vec3};
 
-/// Returns `S = (0, z)` or `(z, 0)`.
+/// Returns the motion subspace `S`, which is `(0, z)` for a revolute joint and `(z, 0)` for a prismatic one.
 #[inline(always)]
 pub(super) fn subspace<S: Real>(node: &Node, z: Vec3<S>) -> Motion<S> {
     match node.axis {
@@ -16,7 +16,7 @@ pub(super) fn subspace<S: Real>(node: &Node, z: Vec3<S>) -> Motion<S> {
     }
 }
 
-/// Returns `m + S s`.
+/// Returns `m + S s`, the motion `m` plus a joint motion with the rate or acceleration `s`.
 #[inline(always)]
 pub(super) fn add_joint_motion<S: Real>(node: &Node, z: Vec3<S>, s: S, m: Motion<S>) -> Motion<S> {
     match node.axis {
@@ -25,7 +25,7 @@ pub(super) fn add_joint_motion<S: Real>(node: &Node, z: Vec3<S>, s: S, m: Motion
     }
 }
 
-/// Returns `Sᵀ f`.
+/// Returns `Sᵀ f`, the component of the force `f` along the joint.
 #[inline(always)]
 pub(super) fn joint_effort<S: Real>(node: &Node, z: Vec3<S>, f: Force<S>) -> S {
     match node.axis {
@@ -44,7 +44,7 @@ pub(super) fn velocity_product<S: Real>(node: &Node, body: &BodyData<S>, rate: S
     }
 }
 
-/// Returns `IA S`.
+/// Returns `U = IA S`, the force of an articulated body per unit joint acceleration.
 #[inline(always)]
 pub(super) fn articulated_force<S: Real>(node: &Node, z: Vec3<S>, i: &ArticulatedInertia<S>) -> Force<S> {
     match node.axis {
@@ -53,7 +53,7 @@ pub(super) fn articulated_force<S: Real>(node: &Node, z: Vec3<S>, i: &Articulate
     }
 }
 
-/// Returns `I S`.
+/// Returns `I S`, the force of a rigid (composite) inertia per unit joint acceleration.
 #[inline(always)]
 pub(super) fn composite_force<S: Real>(node: &Node, z: Vec3<S>, i: &SpatialInertia<S>) -> Force<S> {
     match node.axis {

@@ -5,9 +5,9 @@ use super::kinematics::{frame_pose, frame_velocity, kinematics};
 use crate::model::{BASE_NQ, BASE_NV, Model, ModelError};
 use crate::spatial::{Quat, Vec3};
 
-/// Returns the configuration `(nq,)` and the velocity `(nv,)` with which the links of the model `to` have the same
-/// poses and twists as those of `from` at `q` and `v`. `to` is the same robot with another root ([`Model::rerooted`]),
-/// or a part of it.
+/// Returns the configuration `(nq,)` and the velocity `(nv,)` with which the links of the model `to` have the
+/// same poses and twists as the links of the model `from` at `q` and `v`. `to` is either the robot of `from`
+/// with another root ([`Model::rerooted`]) or a part of that robot.
 ///
 /// # Errors
 /// [`ModelError::UnknownName`] for a joint or a base of `to` that `from` does not have.

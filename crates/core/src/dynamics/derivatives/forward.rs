@@ -11,10 +11,9 @@ use crate::model::Model;
 use crate::spatial::{Real, Vec3};
 
 /// Computes the derivatives of [`forward_dynamics`] with respect to `q`, `v` and `tau`.
-///
-/// Each is row major `(nv, nv)`, with the derivatives of `a_i` in row `i`: `∂a/∂τ = M⁻¹` and `∂a/∂x = −M⁻¹ ∂τ/∂x`,
-/// where `∂τ/∂x` is the derivative of inverse dynamics at `a`. The tangent of `q` and the quantities held constant are
-/// defined in [`derivatives`](super).
+/// Each matrix is row major `(nv, nv)`, with the derivatives of `a_i` in row `i`: `∂a/∂τ = M⁻¹` and `∂a/∂x =
+/// −M⁻¹ ∂τ/∂x` for `x = q, v`, where `∂τ/∂x` is the derivative of inverse dynamics at the acceleration `a`.
+/// The tangent space of `q` and the quantities held constant are defined in [`derivatives`](super).
 pub fn forward_dynamics_derivatives<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -86,8 +85,8 @@ fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out
 /// Number of rows of a product that are computed together, so that their sums stay in registers.
 const TILE: usize = 4;
 
-/// Computes `A b` for a symmetric `A`, `(nv, nv)` with `nv ≥ 6`, and for columns `b` that are given by their nonzero
-/// rows.
+/// Computes `A b` for a symmetric matrix `A`, `(nv, nv)` with `nv ≥ 6`, and `N` columns `b`, given by their
+/// nonzero rows. Passes each row of the result to a callback.
 #[inline(always)]
 fn product<S: Real, const N: usize>(
     a: &[S],
@@ -96,7 +95,7 @@ fn product<S: Real, const N: usize>(
     mut write: impl FnMut(usize, [S; N]),
 ) {
     for start in (0..nv).step_by(TILE) {
-        let start = start.min(nv - TILE); // the last tile may overlap the previous one
+        let start = start.min(nv - TILE); // the last tile may overlap the preceding tile
         let mut sums = [[S::of(0.0); N]; TILE];
         for row in b {
             let a = &a[row.index * nv + start..][..TILE];

@@ -12,8 +12,9 @@ use crate::spatial::{Motion, Real};
 /// Computes the derivatives of [`inverse_dynamics`](crate::dynamics::inverse_dynamics) with respect to
 /// `q`, `v` and `a`.
 ///
-/// Each is row major `(nv, nv)`, with the derivatives of `τ_i` in row `i`; the last is the mass matrix. The tangent of
-/// `q` and the quantities held constant are defined in [`derivatives`](super).
+/// Each matrix is row major `(nv, nv)`, with the derivatives of `τ_i` in row `i`; the derivative with respect
+/// to `a` is the mass matrix. The tangent space of `q` and the quantities held constant are defined in
+/// [`derivatives`](super).
 pub fn inverse_dynamics_derivatives<S: Real>(
     model: &Model,
     data: &mut Data<S>,

@@ -6,9 +6,10 @@ use crate::dynamics::subspace::{add_joint_motion, joint_effort};
 use crate::model::Node;
 use crate::spatial::{Force, Motion, Real};
 
-/// Computes `M⁻¹`, row major `(nv, nv)`: column `j` is the acceleration that a unit of `τ_j` causes at rest.
+/// Computes `M⁻¹`, row major `(nv, nv)`: column `j` is the acceleration that a unit generalized force `τ_j`
+/// causes at rest.
 ///
-/// Bodies numbered higher than the body of column `j` are skipped, because `M⁻¹` is symmetric.
+/// Because `M⁻¹` is symmetric, column `j` is computed only for bodies numbered up to the body of `j`.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 7.1.
 #[inline(always)]

@@ -11,13 +11,14 @@ use crate::model::{Frame, Model};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
 /// Computes the derivatives, with respect to `q` and `v`, of the joint torques `τ = M* q̈ + c* − Q*`, of the
-/// acceleration `ẍ = Jg q̈ + d` of a frame and of its twist `ẋ`, at given joint accelerations.
+/// acceleration `ẍ = Jg q̈ + d` of a frame and of the frame's twist `ẋ`, at given joint accelerations.
 ///
-/// `acceleration`: `q̈`, `(n,)`; `frame`: an index. Out, row major: `∂τ/∂q` and `∂τ/∂v`, `(n, nv)`; `∂ẍ/∂q`, `∂ẍ/∂v`
-/// and `∂ẋ/∂q`, `(6, nv)`, with rows in W axes, linear first. The other derivatives are not computed here:
-/// `∂τ/∂q̈ = M*`, `∂ẍ/∂q̈ = Jg`, `∂ẋ/∂v = J`. For `q̈ = 0` the results are the derivatives of `c* − Q*` and `d`.
+/// `acceleration`: `q̈`, `(n,)`; `frame`: an index. Out, row major: `∂τ/∂q` and `∂τ/∂v`, `(n, nv)`; `∂ẍ/∂q`,
+/// `∂ẍ/∂v` and `∂ẋ/∂q`, `(6, nv)`, with rows in W axes, linear first. The remaining derivatives are already
+/// known: `∂τ/∂q̈ = M*`, `∂ẍ/∂q̈ = Jg`, `∂ẋ/∂v = J`. For `q̈ = 0` the results are the derivatives of `c* −
+/// Q*` and `d`.
 ///
-/// The tangent of `q` and the quantities held constant are defined in [`derivatives`](super).
+/// The tangent space of `q` and the quantities held constant are defined in [`derivatives`](super).
 pub fn free_floating_derivatives<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -111,8 +112,8 @@ fn kernel<S: Real>(
     }
 }
 
-/// Adds the acceleration `a_b = −Mbb⁻¹ f_b` of the free base to all bodies, where `f_b` is the base force from inverse
-/// dynamics with `a_b = 0`. Returns `Mbb⁻¹`.
+/// Adds the acceleration `a_b = −Mbb⁻¹ f_b` of the free base to all bodies, where `f_b` is the base force
+/// from inverse dynamics with `a_b = 0`. Returns `Mbb⁻¹`.
 #[inline(always)]
 fn add_base_acceleration<S: Real>(data: &mut Data<S>, force: &[S]) -> InverseInertia<S> {
     let mut inertia = SpatialInertia::zero();
@@ -123,7 +124,7 @@ fn add_base_acceleration<S: Real>(data: &mut Data<S>, force: &[S]) -> InverseIne
     inverse
 }
 
-/// Returns `−Mbb⁻¹` times the rows of the base in column `c`.
+/// Returns `−Mbb⁻¹ f` for column `c` of a block, where `f` holds the six rows of the base.
 #[inline(always)]
 fn base_response<S: Real, const N: usize>(
     inverse: &InverseInertia<S>,
@@ -134,7 +135,7 @@ fn base_response<S: Real, const N: usize>(
     -inverse.apply(Force::new(Vec3::new(f(0), f(1), f(2)), Vec3::new(f(3), f(4), f(5))))
 }
 
-/// Returns `(s × m_lin, s × m_ang)`.
+/// Returns `s × m` for the linear and for the angular half of `m`.
 #[inline(always)]
 fn cross_both<S: Real>(s: Vec3<S>, m: Motion<S>) -> Motion<S> {
     Motion::new(s.cross(m.linear), s.cross(m.angular))
@@ -161,7 +162,7 @@ impl<S: Real> FramePoint<S> {
         }
     }
 
-    /// Returns `(2 ω × ẋ, ω × ω_x)`, the Coriolis acceleration for an additional angular velocity `ω`.
+    /// Returns `(2 ω × ẋ_lin, ω × ẋ_ang)`, the Coriolis acceleration for an additional angular velocity `ω`.
     #[inline(always)]
     fn coriolis(&self, omega: Vec3<S>) -> Motion<S> {
         Motion::new(omega.cross(self.velocity.linear) * S::of(2.0), omega.cross(self.velocity.angular))

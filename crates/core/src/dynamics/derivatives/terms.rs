@@ -7,13 +7,13 @@ use crate::dynamics::subspace::{composite_force, joint_effort, subspace};
 use crate::model::{Model, Node};
 use crate::spatial::{Coriolis, Force, Motion, Real, SpatialInertia, Vec3};
 
-/// Workspace of the derivatives for one state (or one set of lanes), allocated once per model.
+/// Workspace of the derivatives for one state (or one group of SIMD lanes), allocated once per model.
 #[derive(Clone, Debug)]
 pub struct Derivatives<S> {
     pub(super) bodies: Vec<BodyTerms<S>>,
     /// Nonzero rows of `∂τ/∂q_j` and `∂τ/∂q̇_j`, for one joint at a time.
     joint: Vec<Row<S, 2>>,
-    /// Rows for the three components of the angular velocity of the base.
+    /// Nonzero rows of `2B e_m` for the three components of the angular velocity of the base.
     base: Vec<Row<S, 3>>,
     /// Columns of `Mbm`: `I_C S` about the base origin.
     pub(super) coupling: Vec<Force<S>>,
@@ -23,7 +23,7 @@ pub struct Derivatives<S> {
     pub(super) force: Vec<S>,
 }
 
-/// Row of a block of `N` columns.
+/// One row of a block with `N` columns.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row<S, const N: usize> {
     pub(super) index: usize,
@@ -132,7 +132,7 @@ impl<S: Real> Derivatives<S> {
             self.joint[count] = Row { index: i + 5, values };
             count += 1;
         }
-        // loops by index: LLVM moves arrays through memory when iterators destructure them
+        // loops run over indices, because LLVM moves arrays through memory when iterators destructure them
         let (base_q, base_v) = (components(force_q), components(force_v));
         for i in 0..6 {
             self.joint[i] = Row { index: i, values: [base_q[i], base_v[i]] };
