@@ -85,16 +85,19 @@ pub struct EventRecord {
 pub const AUDIT: f64 = 1e-11;
 
 impl EventRecord {
-    /// Returns the checks of the audit.
+    /// Returns the checks of the audit; those of the relative velocities apply to captures only.
     pub fn checks(&self) -> Vec<Check> {
-        let lines = [
+        let momentum = [
             ("linear_momentum_error_rel", self.momentum_error[0]),
             ("angular_momentum_error_rel", self.momentum_error[1]),
+        ];
+        let twist = [
             ("relative_velocity_left_rel", self.twist_left[0]),
             ("relative_rotation_left_rel", self.twist_left[1]),
-            ("energy_error_rel", self.energy_error),
         ];
-        lines.into_iter().map(|(name, value)| Check { name, value, gate: AUDIT }).collect()
+        let twist = twist.into_iter().filter(|_| self.kind == EventKind::Capture);
+        let lines = momentum.into_iter().chain(twist).chain([("energy_error_rel", self.energy_error)]);
+        lines.map(|(name, value)| Check { name, value, gate: AUDIT }).collect()
     }
 
     /// Returns true if momentum and energy balance, and the connected frames do not move relative to each other.
