@@ -152,7 +152,7 @@ class Eye:
     def shown(self) -> int:
         return self.seen
 
-    def take(self, columns: Any) -> None:
+    def take(self, columns: Any, events: Any) -> None:
         self.seen += len(columns["time"])
 
     def finish(self, trace: object) -> None:
@@ -191,7 +191,7 @@ def test_ctrl_c_while_the_viewer_is_updated_keeps_the_rows_and_a_checkpoint(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     class Impatient(Eye):
-        def take(self, columns: Any) -> None:
+        def take(self, columns: Any, events: Any) -> None:
             raise KeyboardInterrupt
 
     kept: list[oo.Checkpoint] = []

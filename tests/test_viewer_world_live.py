@@ -1,4 +1,4 @@
-"""Live view of several systems: all rows in adjacent parts, events at the end, and no effect on the run."""
+"""Live view of several systems: rows in adjacent parts, events when they happen, no effect on the run."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def shown_in_parts(path: Path, world: BuiltWorld, every_s: float) -> Any:
     stepper = world.simulation.start(duration=duration)
     for t in np.arange(every_s, duration, every_s):
         stepper.advance_to(t)
-        view.take(stepper.columns(view.shown))
+        view.take(stepper.columns(view.shown), stepper.events)
     stepper.advance_to(duration)
     trace = stepper.finish()
     view.finish(trace)
@@ -57,6 +57,23 @@ def test_every_row_is_shown_in_adjacent_parts(make: Any, tmp_path: Path) -> None
     for before, after in itertools.pairwise(strips):
         assert before[1] == after[0]  # no gap between two updates
     assert [state[0] for state in column(path, "/connections/grasp", "StateChange:state")][-1] == "free"
+
+
+def test_events_are_shown_when_they_happen(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[tuple[str, float, float]] = []
+    send = world_live.send_events
+
+    def spied(recording: Any, events: Any, world: Any, *scene: Any, first: int) -> None:
+        end = min(float(rows["time"][-1]) for rows in world.systems.values())
+        shown.extend((event.name, event.time, end) for event in events[first:])
+        send(recording, events, world, *scene, first=first)
+
+    monkeypatch.setattr(world_live, "send_events", spied)
+    trace = shown_in_parts(tmp_path / "live.rrd", pair()[0], 0.0625)
+    assert [name for name, *_ in shown] == [event.name for event in trace.events]  # each once
+    assert all(0.0 <= end - time < 0.0626 for _, time, end in shown), shown
+    assert shown[0][2] < 0.5  # not only at the end of the run
+    assert rows_by_entity(tmp_path / "live.rrd")[0]["/events"] == len(trace.events)
 
 
 def test_a_run_that_ends_before_the_first_update_is_shown(tmp_path: Path) -> None:

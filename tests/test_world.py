@@ -95,6 +95,16 @@ def test_pieces_and_resuming_have_the_same_bits(integrator: str) -> None:
         assert bits(resumed.finish()) == whole
 
 
+def test_a_stepper_has_the_events_so_far() -> None:
+    stepper = oo.Simulation(world(GRASP, LET_GO), time_step=1e-2).start(duration=1.0)
+    names = []
+    for t in (0.3, 0.305, 0.31, 1.0):
+        stepper.advance_to(t)
+        names.append([event.name for event in stepper.events])
+    assert names == [[], [], ["grasp"], ["grasp", "let_go"]]
+    assert stepper.events == stepper.trace().events
+
+
 def test_a_triggered_event_has_the_bits_of_a_planned_one() -> None:
     planned = oo.Simulation(world(GRASP)).run(0.5)
     stepper = oo.Simulation(world(oo.Capture("grasp", "chaser/tool", "target/base", on_command=True))).start(

@@ -296,3 +296,10 @@ pub(crate) fn array_of<'py>(py: Python<'py>, shape: &[usize], data: &[f64]) -> B
     fresh(&array).copy_from_slice(data);
     array
 }
+
+/// Returns a read-only array.
+pub(crate) fn constant<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
+    let array = array_of(py, &[values.len()], values);
+    let _ = array.readwrite().make_nonwriteable();
+    array
+}

@@ -1,14 +1,14 @@
 //! Runs that are advanced step by step.
 
-use crate::arrays::array_of;
+use crate::arrays::constant;
 use crate::checkpoint::{PyCheckpoint, Since, checkpoint_of, columns_since, row_counts};
 use crate::errors::{SimulationErrorExt, plain};
 use crate::interrupt::{PACE, period};
 use crate::run_failure::{interrupted, run_failure};
 use crate::shared_run::{Runs, SharedRun};
 use crate::torques::torques;
-use crate::world::{PySystemStepper, Systems};
-use numpy::{PyArrayDyn, PyArrayMethods};
+use crate::world::{PyEventRecord, PySystemStepper, Systems};
+use numpy::PyArrayDyn;
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::{Recording, RunFailure, SimulationError, Stepper};
 use pyo3::prelude::*;
@@ -148,6 +148,12 @@ impl PyStepper {
     ///     If there is no such event, it has happened, or it does not happen on command; the run is unchanged.
     fn trigger(&self, py: Python<'_>, name: &str) -> PyResult<()> {
         self.try_with(py, |stepper| stepper.trigger(name))
+    }
+
+    /// Events of the world in the steps that are complete, in order of time; those of the current step follow at its end.
+    #[getter]
+    fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEventRecord>> {
+        self.with(py, |stepper| self.systems.events(stepper))
     }
 
     /// Return the view of the system with this name.
@@ -389,11 +395,4 @@ impl PyStepper {
 fn ended(py: Python<'_>) -> PyErr {
     let message = "the run has ended; start a new one (a simulation has one run at a time)";
     plain(py, "SimulationError", message)
-}
-
-/// Returns a read-only array.
-pub(crate) fn constant<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
-    let array = array_of(py, &[values.len()], values);
-    let _ = array.readwrite().make_nonwriteable();
-    array
 }

@@ -76,7 +76,7 @@ def _advance(
                 progress(stepper.time, duration)
             if time.monotonic() - last >= UPDATE_EVERY_S:
                 last = time.monotonic()
-                live.take(stepper.columns(live.shown))
+                live.take(stepper.columns(live.shown), stepper.events)
             saver.save_if_due(stepper)
     except KeyboardInterrupt as signal:
         stop = _interrupted(stepper, signal)

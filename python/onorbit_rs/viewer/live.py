@@ -23,11 +23,11 @@ from onorbit_rs.viewer.streams import release_streams
 from onorbit_rs.viewer.trace_rows import TraceRows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Trace, WorldTrace
+    from onorbit_rs._core import EventRecord, Trace, WorldTrace
     from onorbit_rs.viewer.setting import Setting
     from onorbit_rs.viewer.viewpoint import Viewpoint
 
@@ -58,8 +58,8 @@ class View(ABC):
         """Number of rows that the view has received."""
 
     @abstractmethod
-    def _show_columns(self, columns: Mapping[str, Floats]) -> None:
-        """Show the rows from number :attr:`shown` on, the columns of a stepper."""
+    def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:
+        """Show the rows from number :attr:`shown` on, the columns of a stepper, and the events until then."""
 
     @abstractmethod
     def _show_rest(self, trace: Any) -> None:
@@ -69,10 +69,10 @@ class View(ABC):
     def _release(self) -> None:
         """Delete everything that refers to the recording."""
 
-    def take(self, columns: Mapping[str, Floats]) -> None:
-        """Show the rows from number :attr:`shown` on, the columns of a stepper."""
+    def take(self, columns: Mapping[str, Floats], events: Sequence[EventRecord] = ()) -> None:
+        """Show the rows from number :attr:`shown` on, the columns of a stepper, and the events so far."""
         with self._loses_view():
-            self._show_columns(columns)
+            self._show_columns(columns, events)
 
     def finish(self, trace: Trace | WorldTrace | None) -> None:
         """Show the remaining rows and disconnect."""
@@ -142,7 +142,7 @@ class LiveView(View):
         """Number of rows that the view has received."""
         return self._count
 
-    def _show_columns(self, columns: Mapping[str, Floats]) -> None:
+    def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:
         self._show(TraceRows.of_checkpoint(columns))
 
     def _show_rest(self, trace: Trace) -> None:

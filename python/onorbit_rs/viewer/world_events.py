@@ -84,24 +84,26 @@ def send_events(
     world: WorldRows,
     scene: Viewpoint,
     duration_s: float,
+    first: int = 0,
 ) -> None:
-    """Send the log, the states of the connections, and marks in the 3-D view."""
-    if not events:
+    """Send the log, the states of the connections, and marks in the 3-D view, from event ``first`` on."""
+    new = events[first:]
+    if not new:
         return
     by_event = {name: connection for connection in world.setting.connections
                 for name in (connection.name, *connection.releases)}  # fmt: skip
-    colors = [COLORS.get(event.kind, _OTHER) for event in events]
+    colors = [COLORS.get(event.kind, _OTHER) for event in new]
     log = rr.TextLog.columns(
-        text=[described(event, by_event.get(event.name)) for event in events],
-        level=[event.kind for event in events],
+        text=[described(event, by_event.get(event.name)) for event in new],
+        level=[event.kind for event in new],
         color=colors,
     )
     recording.send_columns(
-        LOG, [rr.TimeColumn(TIMELINE, duration=[event.time for event in events])], log, strict=True
+        LOG, [rr.TimeColumn(TIMELINE, duration=[event.time for event in new])], log, strict=True
     )
     largest = max(float(np.linalg.norm(event.impulse[:3])) for event in events)
     shown_s = SHOWN_FOR * duration_s
-    for number, (event, color) in enumerate(zip(events, colors, strict=True)):
+    for number, (event, color) in enumerate(zip(new, colors, strict=True), first):
         line = sum(event.time - other.time < shown_s for other in events[:number])
         connection = by_event.get(event.name)
         if connection is not None:

@@ -14,20 +14,20 @@ from onorbit_rs.viewer.world_recording import Stage, bodies_of, log_world, plots
 from onorbit_rs.viewer.world_rows import WorldRows
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     import rerun as rr
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import WorldTrace
+    from onorbit_rs._core import EventRecord, WorldTrace
     from onorbit_rs.viewer.world_setting import WorldSetting
 
     Floats = NDArray[np.float64]
 
 
 class WorldLiveView(View):
-    """View of the run of several systems; events are shown at its end."""
+    """View of the run of several systems and of its events."""
 
     def __init__(self, recording: rr.RecordingStream, setting: WorldSetting, duration_s: float) -> None:
         """Prepare for a run that has not started."""
@@ -38,35 +38,33 @@ class WorldLiveView(View):
         self._before: dict[str, TraceRows] = {}
         self._counts = dict.fromkeys(setting.names, 0)
         self._has_flight = False
+        self._events = 0
 
     @property
     def shown(self) -> int:
         """Number of rows that the view has received of every system."""
         return min(self._counts.values())
 
-    def _show_columns(self, columns: Mapping[str, Floats]) -> None:
+    def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:
         first = self.shown
         new = {}
         for path, values in columns.items():
             seen = self._counts[path.partition("/")[0]] - first
             new[path] = values[seen:]
-        self._show(WorldRows.of_columns(new, self._setting))
+        self._show(WorldRows.of_columns(new, self._setting), events)
 
     def _show_rest(self, trace: WorldTrace) -> None:
         rest = {}
         for name, count in self._counts.items():  # at least the last row
             first = min(count, len(trace[name].time) - 1)
             rest[name] = TraceRows.of_trace(trace[name], slice(first, None))
-        self._show(WorldRows(self._setting, rest))
-        if self._stage is not None and not self._is_lost:
-            world = WorldRows.of_trace(trace, self._setting)
-            send_events(self._recording, trace.events, world, self._stage.common, self._duration_s)
+        self._show(WorldRows(self._setting, rest), trace.events)
 
     def _release(self) -> None:
         self._arrows = {}
 
-    def _show(self, world: WorldRows) -> None:
-        """Show new rows; systems without any wait for the next update, as the others do."""
+    def _show(self, world: WorldRows, events: Sequence[EventRecord]) -> None:
+        """Show new rows and events; systems without rows wait for the next update, as the others do."""
         if any(len(rows) == 0 for rows in world.systems.values()):
             return
         for name, rows in world.systems.items():
@@ -75,6 +73,12 @@ class WorldLiveView(View):
             return
         self._send(WorldRows(self._setting, {name: rows.decimated(MOST_ROWS)
                                              for name, rows in world.systems.items()}))  # fmt: skip
+        end = min(float(rows["time"][-1]) for rows in world.systems.values())
+        known = [event for event in events if event.time <= end]
+        if self._stage is not None and len(known) > self._events:
+            scene, first = self._stage.common, self._events
+            send_events(self._recording, known, world, scene, self._duration_s, first=first)
+            self._events = len(known)
 
     def _send(self, world: WorldRows) -> None:
         recording, systems = self._recording, self._setting.systems

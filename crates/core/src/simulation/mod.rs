@@ -57,6 +57,7 @@ mod state_range;
 mod step;
 mod step_doubling;
 mod stepper;
+mod stepper_events;
 mod trace;
 mod tree;
 mod tree_state;

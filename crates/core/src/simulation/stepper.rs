@@ -5,11 +5,10 @@ use super::checkpoint::{Checkpoint, GroupCheckpoint};
 use super::equations::EquationsOfMotion;
 use super::error::{RunFailure, SimulationError};
 use super::members::Place;
-use super::recording::{GroupRecording, Recording};
+use super::recording::{EventRecord, GroupRecording, Recording};
 use super::run_state::RunState;
 use super::trace::Trace;
 use crate::spatial::Scalar;
-use crate::world::WorldError;
 use std::ops::ControlFlow;
 
 /// Callback that receives the time reached, s, at intervals during an advance. Returning `Break` stops the advance at
@@ -21,7 +20,7 @@ pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 /// The steps are those of [`Simulation::run`](super::Simulation::run), regardless of the times to which the run is
 /// advanced.
 pub struct Stepper<'a> {
-    groups: Vec<Group<'a>>,
+    pub(super) groups: Vec<Group<'a>>,
     /// Group of each system, and number of the system in the group.
     places: Vec<(usize, usize)>,
     /// Length of a regular step, s.
@@ -59,6 +58,8 @@ pub(super) trait Steps: Send {
     fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError>;
     /// Returns the names of the events.
     fn events(&self) -> Vec<String>;
+    /// Returns the events that have happened.
+    fn records(&self) -> &[EventRecord];
     /// Returns the controls whose frames are rigidly connected to those that they follow.
     fn attached_controls(&self) -> Vec<AttachedControl>;
     /// Returns the number of the event with this name if it can be triggered; `None` if there is none.
@@ -186,31 +187,6 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Triggers an event that happens on command, at the current time. The current step ends there.
-    ///
-    /// # Errors
-    /// [`SimulationError::World`] for an event that does not exist, has happened, or does not happen on command; the run
-    /// is unchanged. The errors of a step end the run.
-    pub fn trigger(&mut self, name: &str) -> Result<(), SimulationError> {
-        self.check()?;
-        for group in 0..self.groups.len() {
-            let run = &mut self.groups[group].run;
-            if let Some(event) = run.check_trigger(name)? {
-                let result = run.trigger(event);
-                return self.ended_by(result);
-            }
-        }
-        let known: Vec<String> = self.groups.iter().flat_map(|group| group.run.events()).collect();
-        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-        Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
-    }
-
-    /// Returns the controls found so far whose frames a capture has rigidly connected to the frames that they follow: nothing
-    /// can reduce their errors.
-    pub fn attached_controls(&self) -> Vec<AttachedControl> {
-        self.groups.iter().flat_map(|group| group.run.attached_controls()).collect()
-    }
-
     /// Returns a checkpoint, from which the run can be resumed together with the rows of [`Stepper::rows`].
     ///
     /// # Errors
@@ -268,12 +244,12 @@ impl<'a> Stepper<'a> {
         self.status == Status::Failed
     }
 
-    fn check(&self) -> Result<(), SimulationError> {
+    pub(super) fn check(&self) -> Result<(), SimulationError> {
         if self.status == Status::Running { Ok(()) } else { Err(SimulationError::Ended) }
     }
 
     /// Marks the run as failed if `result` is an error.
-    fn ended_by<T>(&mut self, result: Result<T, SimulationError>) -> Result<T, SimulationError> {
+    pub(super) fn ended_by<T>(&mut self, result: Result<T, SimulationError>) -> Result<T, SimulationError> {
         if result.is_err() {
             self.status = Status::Failed;
         }
@@ -353,6 +329,10 @@ impl<S: Scalar> Steps for RunState<'_, S> {
             part.drive(&mut trees[part.tree]);
         }
         Ok(())
+    }
+
+    fn records(&self) -> &[EventRecord] {
+        &self.events.records
     }
 
     fn attached_controls(&self) -> Vec<AttachedControl> {

@@ -54,7 +54,7 @@ pub(crate) struct PyEventRecord {
 
 impl PyEventRecord {
     /// Returns the record of an event of systems with these names.
-    pub(super) fn of(record: &EventRecord, names: &[String]) -> Self {
+    pub(crate) fn of(record: &EventRecord, names: &[String]) -> Self {
         let EventRecord { name, kind, time, systems, impulse, point, energy_lost, momentum_error, .. } =
             record;
         let [by, of] = systems.map(|system| names[system].clone());

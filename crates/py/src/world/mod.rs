@@ -9,6 +9,7 @@ mod systems;
 mod trace;
 
 pub(crate) use declared::PyWorld;
+pub(crate) use event_record::PyEventRecord;
 pub(crate) use robot_settings::{RobotSettings, initial_state};
 pub(crate) use systems::{PySystemStepper, Systems};
 

@@ -1,12 +1,14 @@
 //! Names and models of the systems of a run, and views of one of them.
 
+use super::event_record::PyEventRecord;
 use super::trace::PyWorldTrace;
+use crate::arrays::constant;
 use crate::errors::{fields, raise};
-use crate::stepper::{PyStepper, constant};
+use crate::stepper::PyStepper;
 use crate::trace::PyTrace;
 use numpy::PyArrayDyn;
 use onorbit_core::model::Model;
-use onorbit_core::simulation::{Recording, Simulation};
+use onorbit_core::simulation::{Recording, Simulation, Stepper};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -47,6 +49,11 @@ impl Systems {
     /// Returns the number of the system with this name.
     pub(crate) fn find(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
         find(py, &self.names, name)
+    }
+
+    /// Returns the events of a run so far.
+    pub(crate) fn events(&self, stepper: &Stepper<'_>) -> Vec<PyEventRecord> {
+        stepper.events().into_iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
     }
 
     /// Returns an error unless there is a single system; `attribute` of `owner` belongs to a system.

@@ -1,0 +1,41 @@
+//! Events of a run that the caller advances.
+
+use super::attached::AttachedControl;
+use super::error::SimulationError;
+use super::recording::EventRecord;
+use super::stepper::Stepper;
+use crate::world::WorldError;
+
+impl Stepper<'_> {
+    /// Triggers an event that happens on command, at the current time. The current step ends there.
+    ///
+    /// # Errors
+    /// [`SimulationError::World`] for an event that does not exist, has happened, or does not happen on command; the run
+    /// is unchanged. The errors of a step end the run.
+    pub fn trigger(&mut self, name: &str) -> Result<(), SimulationError> {
+        self.check()?;
+        for group in 0..self.groups.len() {
+            let run = &mut self.groups[group].run;
+            if let Some(event) = run.check_trigger(name)? {
+                let result = run.trigger(event);
+                return self.ended_by(result);
+            }
+        }
+        let known: Vec<String> = self.groups.iter().flat_map(|group| group.run.events()).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
+    }
+
+    /// Returns the events in the steps that are complete, in order of time.
+    pub fn events(&self) -> Vec<&EventRecord> {
+        let mut all: Vec<_> = self.groups.iter().flat_map(|group| group.run.records()).collect();
+        all.sort_by(|a, b| a.time.total_cmp(&b.time));
+        all
+    }
+
+    /// Returns the controls found so far whose frames a capture has rigidly connected to the frames that they follow: nothing
+    /// can reduce their errors.
+    pub fn attached_controls(&self) -> Vec<AttachedControl> {
+        self.groups.iter().flat_map(|group| group.run.attached_controls()).collect()
+    }
+}
