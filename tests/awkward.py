@@ -186,7 +186,7 @@ EXPECTED = {
     "rpy_many_turns": LOADS,
     "safety_controller": LOADS,
     "safety_controller_bare": LOADS,
-    "screw_joint": malformed("replace it by a prismatic and a revolute joint"),
+    "screw_joint": malformed("use a prismatic and a revolute joint on one axis"),
     "sdf": malformed("looks like SDFormat"),
     "second_root_element": warns("<robot>"),
     "self_parent": malformed("link 'arm' is the child of two joints"),

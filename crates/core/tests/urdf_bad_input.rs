@@ -234,7 +234,7 @@ fn xacro_is_refused_with_a_suggested_fix() {
     ];
     for xml in files {
         let text = error(&xml).to_string();
-        assert!(text.contains("expand it first: xacro"), "{xml}: {text}");
+        assert!(text.contains("must be expanded to URDF: xacro"), "{xml}: {text}");
         assert!(matches!(problem(&xml), UrdfProblem::Xacro { .. }), "{xml}");
     }
     let macros = format!(

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
 /// Returns the rotation from axes whose z is `axis` to link axes.
 ///
-/// Exact for the coordinate axes: joints about x, y or z add no rounding error.
+/// The result is exact if `axis` is a coordinate axis, so that joints about x, y or z add no rounding error.
 pub(super) fn rotation_to_axis(axis: &Vector3<f64>) -> Matrix3<f64> {
     let axis = axis.normalize();
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
@@ -15,7 +15,8 @@ pub(super) fn rotation_to_axis(axis: &Vector3<f64>) -> Matrix3<f64> {
     } else if axis == x {
         Matrix3::from_columns(&[y, z, x])
     } else if axis.z < -0.9 {
-        // start from the axes turned about x, so that the shortest arc below is far from a half turn
+        // half a turn about x first, which keeps the angle of the shortest rotation below away from half a
+        // turn
         let flip = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
         flip * rotation_to_axis(&(flip * axis))
     } else {

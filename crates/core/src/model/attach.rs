@@ -12,29 +12,32 @@ use nalgebra::{Isometry3, Rotation3};
 pub struct Mount {
     /// Mounting frame of the attached robot; `None` selects its root link.
     pub frame: Option<String>,
-    /// Joints between the frame that the robot is attached to and the robot, each with a massless link of the same name
-    /// behind it; none by default.
+    /// Joints between the frame that the robot is attached to and the robot, each followed by a massless link
+    /// of the same name; empty by default.
     pub joints: Vec<Joint>,
-    /// Pose of the mounting frame in the frame that it is attached to, or behind the last of `joints`.
+    /// Pose of the mounting frame in the frame that the robot is attached to, or, if there are `joints`, in
+    /// the link after the last of them.
     pub pose: Isometry3<f64>,
     /// Prefix for the names of the attached robot's links, joints and frames.
     pub prefix: String,
 }
 
 impl Model {
-    /// Returns this robot with `other` fixed to the frame `frame`. The base remains that of this robot.
+    /// Returns this robot with `other` attached to the frame `frame`. The base remains the base of this
+    /// robot.
     ///
-    /// If joints move the mounting frame of `other`, its tree is traversed from the link of that frame
-    /// ([`Model::rerooted`]).
+    /// If the mounting frame of `other` is not on its root link, the tree of `other` is traversed from the
+    /// link of that frame ([`Model::rerooted`]).
     ///
-    /// Joints are numbered depth first: those of `other` come after all joints of this robot if `frame` is fixed to the
-    /// base, otherwise directly after the joints below the body of `frame`.
+    /// Joints are numbered depth first: the joints of `other` follow all joints of this robot if `frame` is
+    /// fixed to the base; otherwise they follow directly after the joints below the body of `frame`.
     ///
     /// # Errors
     /// [`ModelError`] for an unknown frame, a name that both robots have, or too many joints.
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
         let carrier = &self.frames[self.frame(frame)?];
-        // the robot is attached to the link that names the body: its joints follow those already below that link
+        // `other` is attached to the link that names the body, so that its joints follow those already below
+        // that link
         let mut on_link = isometry(self.pose_in_link(carrier));
         let mut link = self.body_frame(carrier.body).name.clone();
         let (robot, in_root) = match &mount.frame {
@@ -59,7 +62,7 @@ impl Model {
         builder.build()
     }
 
-    /// Returns this robot with `prefix` prepended to the names of all links, joints and frames.
+    /// Returns this robot with the names of all links, joints and frames preceded by `prefix`.
     ///
     /// # Errors
     /// [`ModelError`] if the description is not valid.
@@ -69,7 +72,8 @@ impl Model {
         builder.build()
     }
 
-    /// Returns a description whose root link is fixed to the frame `name`, with the pose of the frame in that link.
+    /// Returns a description whose root link is fixed to the frame `name`, with the pose of the frame in that
+    /// link.
     fn rooted_below(&self, name: &str) -> Result<(Description, Isometry3<f64>), ModelError> {
         let frame = &self.frames[self.frame(name)?];
         let root = &self.body_frame(frame.body).name;

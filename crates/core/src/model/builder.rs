@@ -9,14 +9,14 @@ use super::well_posed::check_well_posed;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
 
-/// Largest number of moving joints: the mass matrix then requires 32 MB, the derivatives of the dynamics three times as
-/// much.
+/// Largest number of moving joints. With this number, the mass matrix takes 32 MB and the derivatives of the
+/// dynamics three times as much.
 const MOST_JOINTS: usize = 2000;
 
-/// Builder of a model from links and joints; [`build`](ModelBuilder::build) returns the model.
+/// Builder of a model from links and joints.
 ///
 /// The first link is the floating base. Each further link is connected by a joint to a link that was added
-/// before, which excludes closed loops.
+/// before, so that closed loops cannot occur. [`build`](ModelBuilder::build) returns the model.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
     description: Description,
@@ -29,7 +29,7 @@ pub struct ModelBuilder {
 }
 
 impl ModelBuilder {
-    /// Returns a builder for a robot with this base.
+    /// Creates a builder for a robot whose floating base is the link `base`.
     ///
     /// # Errors
     /// [`ModelError`] for an empty name or an invalid inertia of the base.
@@ -106,7 +106,7 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// Adds a frame fixed to the link `link`, at `pose` in its frame.
+    /// Adds a frame fixed to the link `link`; `pose` is the pose of the frame in link axes.
     ///
     /// # Errors
     /// [`ModelError`] for an unknown link, or a name that a link or frame already has.
@@ -132,17 +132,19 @@ impl ModelBuilder {
         self
     }
 
-    /// Copies the notes of a robot. Warnings about inertias are not copied: adding its links produces them again.
+    /// Copies the notes of a robot. Warnings about inertias are not copied, because adding the robot's links
+    /// produces them again.
     pub(super) fn keep_notes(&mut self, model: &Model) -> &mut Self {
         let notes = model.warnings().iter().filter(|warning| matches!(warning, ModelWarning::Note(_)));
         self.warnings.extend(notes.cloned());
         self
     }
 
-    /// Returns the model after checks, with links on fixed joints merged into bodies and joint axes aligned.
+    /// Compiles the model: checks it, merges links on fixed joints into bodies, and aligns the z axis of each
+    /// body with its joint.
     ///
     /// # Errors
-    /// [`ModelError`] for a robot without mass, or with a direction of motion without inertia.
+    /// [`ModelError`] for a robot without mass, or with a direction of motion that no inertia resists.
     pub fn build(self) -> Result<Model, ModelError> {
         let model = self.build_part()?;
         check_parts(&model)?;
@@ -156,8 +158,8 @@ impl ModelBuilder {
         compile(self.description, self.warnings)
     }
 
-    /// Checks the inertial of a link. With `is_part` the link is merged into another body, and the sum is
-    /// checked instead.
+    /// Adds a link after checking its inertial. A link that is merged into another body (`is_part`) may have
+    /// an indefinite inertia, because the inertia of the whole body is checked later.
     fn add_link(&mut self, link: Link, is_part: bool) -> Result<(), ModelError> {
         self.check_new_frame_name(&link.name)?;
         if let Some(inertial) = &link.inertial {
@@ -210,7 +212,7 @@ impl ModelBuilder {
 }
 
 impl Model {
-    /// Returns a spacecraft without joints; its only body is `base`, with the centre of mass at the origin.
+    /// Returns a spacecraft without joints, whose only body is `base` with the centre of mass at its origin.
     ///
     /// # Errors
     /// [`ModelError`] for a mass that is not positive, or an inertia that is not symmetric positive definite.

@@ -1,5 +1,4 @@
-//! Compilation of a description into a tree of bodies, with fixed joints merged, axes aligned and bodies
-//! numbered.
+//! Compilation of a description into a tree of numbered bodies, with fixed joints merged and axes aligned.
 
 use super::align::rotation_to_axis;
 use super::description::{Description, Inertial, Joint, JointKind};
@@ -11,7 +10,7 @@ use crate::spatial::{Mat3, Sym3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::sync::Arc;
 
-/// Body of a link, and the pose of the link in the axes of the body.
+/// Body to which a link belongs, and the pose of the link in the axes of that body.
 #[derive(Clone)]
 struct Placed {
     body: usize,
@@ -20,7 +19,7 @@ struct Placed {
 }
 
 impl Placed {
-    /// Returns the place of a frame with this pose in the axes of the link.
+    /// Returns the body and pose of a frame that has the given pose in link axes.
     fn moved(&self, pose: &Isometry3<f64>) -> Self {
         if *pose == Isometry3::identity() {
             return self.clone(); // without rounding errors
@@ -59,7 +58,7 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
         }
         let frame = model.frames.len();
         if place.body == model.body_frames.len() {
-            model.body_frames.push(frame); // the first link of a new body names it
+            model.body_frames.push(frame); // a new body has the name of its first link
         }
         model.frames.push(named_frame(&link.name, &place, &Isometry3::identity()));
         model.visuals.extend(link.visuals.iter().map(|visual| (frame, visual.clone())));
@@ -75,8 +74,8 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     Ok(model)
 }
 
-/// Checks the links with an indefinite inertia and those with an inertia but no mass. They are accepted only if the sum
-/// of inertias over their whole body is valid.
+/// Checks the links whose inertia is indefinite and those with an inertia but no mass. Such a link is
+/// accepted only if the inertia of the whole body that contains it is valid.
 pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     for warning in &model.warnings {
         let (ModelWarning::IndefinitePart { link, .. } | ModelWarning::InertiaWithoutMass { link }) = warning
@@ -104,8 +103,8 @@ fn children(description: &Description) -> Vec<Vec<usize>> {
     children
 }
 
-/// Returns the links from the root on, parents before children, branches in the order in which they were
-/// added.
+/// Returns the links in depth-first order, starting from the root: parents before children, branches in the
+/// order in which they were added.
 fn depth_first(children: &[Vec<usize>]) -> Vec<usize> {
     let (mut order, mut stack) = (Vec::new(), vec![0]);
     while let Some(link) = stack.pop() {
@@ -115,7 +114,7 @@ fn depth_first(children: &[Vec<usize>]) -> Vec<usize> {
     order
 }
 
-/// Places a link below `parent`: in the same body if the joint is fixed, otherwise as a new body.
+/// Places a link below `parent`: in the same body if the joint is fixed, otherwise in a new body.
 fn place_link(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
     let origin = &joint.origin;
     let rot = parent.rot * origin.rotation.to_rotation_matrix().matrix();
@@ -172,13 +171,13 @@ fn empty_node() -> Node {
     }
 }
 
-/// Adds the mass of a link to its body. Inertias are added about the common centre of mass.
+/// Adds the mass of a link to its body, and its inertia about the new common centre of mass.
 fn merge(node: &mut Node, inertial: &Inertial, place: &Placed) {
     let com: Vec3<f64> = (place.rot * inertial.com + place.pos).into();
     let about_com = Sym3::from(place.rot * usable_inertia(inertial) * place.rot.transpose());
     let mass = node.mass + inertial.mass;
     if inertial.mass == 0.0 {
-        node.about_com += about_com; // without mass, the reference point of the inertia does not matter
+        node.about_com += about_com; // without mass, the inertia is the same about every point
         return;
     }
     let common = (node.com * node.mass + com * inertial.mass) * (1.0 / mass);

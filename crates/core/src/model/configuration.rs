@@ -10,10 +10,11 @@ pub fn neutral(model: &Model) -> Vec<f64> {
     q
 }
 
-/// Computes `q ⊕ δ`: the base moves with the constant body twist `δ[..6]` for unit time; joint positions add.
+/// Computes `q ⊕ δ`: the base moves with the constant body twist `δ[..6]` for unit time, and the joint
+/// positions change by `δ[6..]`.
 ///
-/// `p' = p + R V(θ) ρ`, `R' = R exp(θ)`, with `V = 1 + (1−cos φ)/φ² θ× + (φ−sin φ)/φ³ θ×²`.
-/// `q`, `out`: `(nq,)`; `delta`: `(nv,)`, m and rad, linear first.
+/// `p' = p + R V(θ) ρ`, `R' = R exp(θ)`, with `ρ = δ[..3]`, `θ = δ[3..6]`, `φ = |θ|` and `V = 1 + (1−cos
+/// φ)/φ² θ× + (φ−sin φ)/φ³ θ×²`. `q`, `out`: `(nq,)`; `delta`: `(nv,)`, m and rad, linear first.
 #[inline(always)]
 pub fn integrate<S: Real>(q: &[S], delta: &[S], out: &mut [S]) {
     let attitude = Quat::from_xyzw(&q[3..]);
@@ -28,7 +29,8 @@ pub fn integrate<S: Real>(q: &[S], delta: &[S], out: &mut [S]) {
     }
 }
 
-/// Computes `q₂ ⊖ q₁`: the `δ` with `q₁ ⊕ δ = q₂` and the smaller rotation of the base.
+/// Computes `q₂ ⊖ q₁`, the `δ` for which `q₁ ⊕ δ = q₂`; of the two rotations of the base, the smaller is
+/// returned.
 ///
 /// `q1`, `q2`: `(nq,)`; `out`: `(nv,)`, m and rad, linear first.
 #[inline(always)]
@@ -46,7 +48,7 @@ pub fn difference<S: Real>(q1: &[S], q2: &[S], out: &mut [S]) {
     }
 }
 
-/// Returns `((1 − cos φ)/φ², (φ − sin φ)/φ³)`, by series below 0.1 rad.
+/// Returns `((1 − cos φ)/φ², (φ − sin φ)/φ³)` with `φ = |θ|`; below 0.1 rad they are computed by series.
 #[inline(always)]
 fn left_coefficients<S: Real>(theta: Vec3<S>) -> (S, S) {
     let squared = theta.dot(theta);
@@ -71,7 +73,7 @@ fn left_coefficients<S: Real>(theta: Vec3<S>) -> (S, S) {
     )
 }
 
-/// Returns `c` in `V⁻¹ = 1 − θ×/2 + c θ×²`: `c = 1/φ² − cot(φ/2)/(2φ)`, by series below 0.1 rad.
+/// Returns `c = 1/φ² − cot(φ/2)/(2φ)` in `V⁻¹ = 1 − θ×/2 + c θ×²`, by a series below `φ = |θ| = 0.1` rad.
 #[inline(always)]
 fn inverse_coefficient<S: Real>(theta: Vec3<S>) -> S {
     let squared = theta.dot(theta);

@@ -8,11 +8,11 @@ use std::ops::Range;
 /// Number of coordinates of the base in `q`: its position and its quaternion.
 pub const BASE_NQ: usize = 7;
 
-/// Number of velocities of the base in `v`: linear, then angular.
+/// Number of velocity components of the base in `v`: linear, then angular.
 pub const BASE_NV: usize = 6;
 
-/// Index of the base quaternion (x, y, z, w) in `q`.
+/// Indices of the base quaternion (x, y, z, w) in `q`.
 pub const QUATERNION: Range<usize> = 3..7;
 
-/// Index of the angular velocity of the base in `v`.
+/// Indices of the angular velocity of the base in `v`.
 pub const ANGULAR: Range<usize> = 3..6;

@@ -1,4 +1,4 @@
-//! Description of a robot: links, joints, shapes.
+//! Description of a robot by links, joints, frames and shapes.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
@@ -9,14 +9,15 @@ pub struct Description {
     pub(super) name: String,
     /// All links; the root is first, parents precede children.
     pub(super) links: Vec<Link>,
-    /// `joints[i]` connects link `i + 1` to its parent: index of the parent link, joint.
+    /// For each link `i + 1`, `joints[i]` holds the index of its parent link and the joint that connects the
+    /// two.
     pub(super) joints: Vec<(usize, Joint)>,
-    /// Additional frames: name, index of the link, pose in the link's frame.
+    /// Additional frames, each with its name, the index of its link and its pose in link axes.
     pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
 }
 
 impl Description {
-    /// Returns the description with `prefix` prepended to the names of all links, joints and frames.
+    /// Returns the description with the names of all links, joints and frames preceded by `prefix`.
     #[must_use]
     pub fn prefixed(mut self, prefix: &str) -> Self {
         let links = self.links.iter_mut().map(|link| &mut link.name);
@@ -27,14 +28,15 @@ impl Description {
     }
 }
 
-/// Mass, centre of mass and inertia of a link.
+/// Mass, centre of mass and rotational inertia of a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Inertial {
     /// Mass, kg.
     pub mass: f64,
     /// Centre of mass in link axes, m.
     pub com: Vector3<f64>,
-    /// Inertia about the centre of mass in link axes, kg m² (matrix elements).
+    /// Inertia matrix about the centre of mass in link axes, kg m², with the signs of its matrix elements
+    /// (products of inertia negative).
     pub inertia: Matrix3<f64>,
 }
 
@@ -47,12 +49,13 @@ pub struct Link {
     pub inertial: Option<Inertial>,
     /// Visual shapes.
     pub visuals: Vec<Visual>,
-    /// Collision shapes; meshes only if their file exists. They are drawn in place of missing visual shapes.
+    /// Collision shapes, with only those meshes whose file exists. They are drawn if the link has no visual
+    /// shapes.
     pub collisions: Vec<Visual>,
 }
 
 impl Link {
-    /// Returns a link without shapes.
+    /// Creates a link without shapes.
     pub fn new(name: &str, inertial: Option<Inertial>) -> Self {
         Self { name: name.to_owned(), inertial, visuals: Vec::new(), collisions: Vec::new() }
     }
@@ -61,11 +64,11 @@ impl Link {
 /// Shape fixed to a link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visual {
-    /// Pose in the link's frame.
+    /// Pose in link axes.
     pub pose: Isometry3<f64>,
     /// Geometry of the shape.
     pub geometry: Geometry,
-    /// Colour: red, green, blue and opacity, 0 to 1.
+    /// Colour: red, green, blue and opacity, each from 0 to 1.
     pub rgba: Option<[f64; 4]>,
 }
 
@@ -76,21 +79,21 @@ pub enum Geometry {
     Box([f64; 3]),
     /// Cylinder along z.
     Cylinder {
-        /// Radius.
+        /// Radius, m.
         radius: f64,
-        /// Full length.
+        /// Full length, m.
         length: f64,
     },
     /// Capsule along z; its length is the distance between the centres of the caps.
     Capsule {
-        /// Radius.
+        /// Radius, m.
         radius: f64,
-        /// Length of the straight part.
+        /// Length of the straight part, m.
         length: f64,
     },
     /// Sphere.
     Sphere {
-        /// Radius.
+        /// Radius, m.
         radius: f64,
     },
     /// Mesh file.
@@ -109,25 +112,26 @@ pub struct Joint {
     pub name: String,
     /// Kind of motion.
     pub kind: JointKind,
-    /// Pose of the joint's frame in the frame of the parent link, at position zero.
+    /// Pose of the joint's frame in the axes of the parent link, at joint position zero.
     pub origin: Isometry3<f64>,
-    /// Pose of the child's frame in the joint's frame, which moves with the child: the identity, unless the joint is
-    /// traversed from its declared child to its declared parent ([`Model::rerooted`](super::Model::rerooted)).
+    /// Pose of the child link in the joint's frame, which moves with the child. It is the identity, unless
+    /// the joint is traversed from its declared child to its declared parent
+    /// ([`Model::rerooted`](super::Model::rerooted)).
     pub child_pose: Isometry3<f64>,
     /// Limits of position, velocity and effort.
     pub limits: Limits,
     /// Viscous friction, N m s/rad (N s/m).
     pub damping: f64,
-    /// Coulomb friction while the joint moves (kinetic), N m (N).
+    /// Kinetic Coulomb friction, which acts while the joint moves, N m (N).
     pub friction: f64,
-    /// Largest torque (force) that friction holds at rest, N m (N); `None` if it equals `friction`.
+    /// Largest torque (force) that static friction can hold, N m (N); `None` means the value of `friction`.
     pub static_friction: Option<f64>,
-    /// Rotor inertia seen at the joint (times gear ratio squared), kg m² (kg).
+    /// Rotor inertia reflected to the joint (multiplied by the gear ratio squared), kg m² (kg).
     pub rotor_inertia: f64,
 }
 
 impl Joint {
-    /// Returns a joint without friction, rotor or limits.
+    /// Creates a joint without friction, rotor or limits.
     pub fn new(name: &str, kind: JointKind, origin: Isometry3<f64>) -> Self {
         Self {
             name: name.to_owned(),
@@ -143,7 +147,7 @@ impl Joint {
     }
 }
 
-/// Kind of motion of a joint. Axes are in the joint's frame, of any length but zero.
+/// Kind of motion of a joint. Axes are vectors in the joint's frame with any nonzero length.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JointKind {
     /// No motion.

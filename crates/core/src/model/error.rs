@@ -4,14 +4,14 @@ use crate::number_text::{list, short, unlike};
 use std::fmt;
 use thiserror::Error;
 
-/// Errors of robots that cannot be simulated.
+/// Reason why a robot cannot be simulated.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ModelError {
     #[error("link '{link}' has a mass of {mass} kg; it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
     #[error(
-        "the inertia of link '{link}' is not positive definite; its principal moments are {moments} kg m2, but \
+        "the inertia of link '{link}' is not positive definite; its principal moments are {moments} kg m2 and \
          none may be negative",
         moments = list(moments)
     )]
@@ -21,7 +21,7 @@ pub enum ModelError {
         difference = short(*difference)
     )]
     AsymmetricInertia { link: String, difference: f64 },
-    #[error("{what} of '{name}' is infinite or NaN; give finite numbers")]
+    #[error("{what} of '{name}' is infinite or NaN; specify finite numbers")]
     NotFinite { what: &'static str, name: String },
     #[error("{what} of '{name}' is {value}; expected {expected} (check the units)", value = short(*value))]
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
@@ -36,7 +36,7 @@ pub enum ModelError {
     NoMass,
     #[error(
         "nothing resists the motion of joint '{joint}': link '{link}' and its descendants have no inertia \
-         about its axis; give one of them an inertial, or make the joint fixed"
+         about the joint axis; add an inertial to one of these links, or make the joint fixed"
     )]
     MasslessSubtree { joint: String, link: String },
     #[error("nothing resists the motion of the base '{link}'; {}", base_advice(.joints))]
@@ -53,9 +53,9 @@ pub enum ModelError {
     EmptyName { what: &'static str },
     #[error("there is no {what} '{name}'{}", nearest(.candidates, .name))]
     UnknownName { what: &'static str, name: String, candidates: Vec<String> },
-    #[error("joint '{joint}' has an axis of length zero; give it a direction")]
+    #[error("joint '{joint}' has an axis of length zero; specify a nonzero vector")]
     ZeroAxis { joint: String },
-    #[error("joint '{joint}': {what} is {value}; it must not be negative", value = short(*value))]
+    #[error("joint '{joint}': {what} is {value}, but must not be negative", value = short(*value))]
     Negative { joint: String, what: &'static str, value: f64 },
     #[error(
         "joint '{joint}': its static friction {at_rest} is below its kinetic friction {moving}; give at \
@@ -64,13 +64,13 @@ pub enum ModelError {
     )]
     StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
     #[error(
-        "joint '{joint}': lower limit {lower} is above upper limit {upper}; exchange them",
+        "joint '{joint}': lower limit {lower} is above upper limit {upper}; exchange the two limits",
         lower = unlike(*lower, &[*upper]), upper = short(*upper)
     )]
     LimitsReversed { joint: String, lower: f64, upper: f64 },
 }
 
-/// Problems of a model that do not prevent a simulation.
+/// Problem of a model that does not prevent a simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelWarning {
     /// The principal moments of a link violate the triangle inequality.
@@ -80,26 +80,27 @@ pub enum ModelWarning {
         /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// The inertia of a link is not positive definite, but that of the whole body to which the link belongs is.
+    /// The inertia of a link is not positive definite, but the inertia of the whole body to which the link
+    /// belongs is.
     IndefinitePart {
         /// Name of the link.
         link: String,
         /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// Principal moments of a link are negative by less than the rounding tolerance and are set to zero.
+    /// Some principal moments of a link are negative by less than the rounding tolerance and are set to zero.
     RoundedInertia {
         /// Name of the link.
         link: String,
-        /// Given principal moments of the link, kg m², ascending.
+        /// Principal moments of the link before the correction, kg m², ascending.
         moments: [f64; 3],
     },
-    /// A link has no mass but a rotational inertia, which is added to the inertia of its body.
+    /// A link has a rotational inertia but no mass. The inertia is added to that of the link's body.
     InertiaWithoutMass {
         /// Name of the link.
         link: String,
     },
-    /// Another problem found while reading a file.
+    /// Text of another problem, found while reading a file.
     Note(String),
 }
 
@@ -136,7 +137,7 @@ impl fmt::Display for ModelWarning {
 }
 
 impl ModelError {
-    /// Returns the closest existing name for an unknown name.
+    /// Returns the existing name closest to an unknown name, if the error is about one.
     pub fn suggestion(&self) -> Option<&str> {
         match self {
             Self::UnknownName { name, candidates, .. } => closest(candidates, name),
@@ -144,7 +145,7 @@ impl ModelError {
         }
     }
 
-    /// Converts the error for a duplicate name to the error for attached robots, which suggests a prefix.
+    /// Converts the error for a duplicate name to the error for two attached robots, which suggests a prefix.
     pub(super) fn suggest_prefix(self, prefix: &str) -> Self {
         match self {
             Self::DuplicateName { what, name } if prefix.is_empty() => Self::NameOfBoth { what, name },
@@ -154,8 +155,8 @@ impl ModelError {
     }
 }
 
-/// Returns advice for a base whose motion nothing resists; `joints` are the joints between the base and the first link
-/// with inertia.
+/// Returns advice for a base whose motion no inertia resists; `joints` are the joints between the base and
+/// the first link with inertia.
 fn base_advice(joints: &[String]) -> String {
     let names: Vec<String> = joints.iter().map(|joint| format!("'{joint}'")).collect();
     match joints.len() {
@@ -174,7 +175,8 @@ fn base_advice(joints: &[String]) -> String {
     }
 }
 
-/// Returns `; did you mean 'x'?` for the closest candidate, or the list of candidates if there are few.
+/// Returns `; did you mean 'x'?` with the candidate `x` closest to `name`, or a list of the candidates if
+/// there are only a few.
 pub(super) fn nearest(candidates: &[String], name: &str) -> String {
     match closest(candidates, name) {
         Some(meant) => format!("; did you mean '{meant}'?"),
@@ -185,9 +187,9 @@ pub(super) fn nearest(candidates: &[String], name: &str) -> String {
     }
 }
 
-/// Returns the candidate with the smallest edit distance, or else one that contains the name.
+/// Returns the candidate with the smallest edit distance to `name`, or else a candidate that contains `name`.
 pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
-    const LONGEST: usize = 100; // the cost is the product of the lengths
+    const LONGEST: usize = 100; // the computing time grows with the product of the lengths
     let is_name = |c: &&String| c.len() <= LONGEST && name.len() <= LONGEST;
     let best = candidates.iter().filter(is_name).min_by_key(|c| distance(c, name));
     let near = best.filter(|c| distance(c, name) <= 2 + name.len() / 3);
@@ -195,7 +197,7 @@ pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a st
     near.or_else(part).map(String::as_str)
 }
 
-/// Returns the Levenshtein distance, ignoring case.
+/// Returns the Levenshtein distance of two names, ignoring case.
 fn distance(a: &str, b: &str) -> usize {
     let (a, b): (Vec<char>, Vec<char>) =
         (a.to_lowercase().chars().collect(), b.to_lowercase().chars().collect());

@@ -5,18 +5,18 @@ use super::error::ModelError;
 use crate::spatial::Sym3;
 use nalgebra::Matrix3;
 
-/// Tolerance of the triangle inequality and of the symmetry of a matrix, relative to the largest entry. It allows for
-/// the rounding of numbers printed with six digits.
+/// Relative tolerance of the triangle inequality and of the symmetry of a matrix, as a fraction of the
+/// largest entry. It covers the rounding of numbers printed with six digits.
 const PRINTED_DIGITS: f64 = 1e-6;
 
-/// Squared radius of gyration, m², below which a moment of inertia is treated as rounding error; the radius is 10 nm.
-/// CAD programs print moments of small parts as 0 or as ±1e-20.
+/// Squared radius of gyration, m², below which a moment of inertia is treated as rounding error; the radius
+/// is 10 nm. CAD programs print moments of small parts as 0 or as ±1e-20.
 const LEAST_GYRATION: f64 = 1e-16;
 
 /// Largest accepted coordinate in the description of a robot, m; about seven astronomical units.
 pub(super) const LONGEST: f64 = 1e12;
 
-/// Classification of an inertia by its principal moments in kg m², ascending.
+/// Classification of an inertia by its principal moments (kg m², ascending).
 pub(super) enum Sense {
     /// Inertia of a real body.
     Physical,
@@ -26,7 +26,7 @@ pub(super) enum Sense {
     Rounded([f64; 3]),
     /// Indefinite inertia, for which some rotation has negative kinetic energy.
     Indefinite([f64; 3]),
-    /// An inertia without a mass, which is valid as part of a body that has mass.
+    /// Inertia without a mass, which is valid as part of a body that has mass.
     Massless,
 }
 
@@ -52,7 +52,8 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, M
     Ok(if *mass == 0.0 { Sense::Massless } else { sense(inertia, *mass) })
 }
 
-/// Returns the inertia used in the dynamics: principal moments that are negative by rounding are set to zero.
+/// Returns the inertia used in the dynamics, in which principal moments that are negative because of rounding
+/// are set to zero.
 pub(super) fn usable_inertia(inertial: &Inertial) -> Matrix3<f64> {
     match sense(&inertial.inertia, inertial.mass) {
         Sense::Rounded(_) => without_negative_moments(&inertial.inertia),
@@ -67,8 +68,8 @@ fn without_negative_moments(inertia: &Matrix3<f64>) -> Matrix3<f64> {
     (result + result.transpose()) * 0.5
 }
 
-/// Checks that mass, centre of mass and inertia are in a range in which their products over a whole robot neither
-/// overflow nor underflow.
+/// Checks that mass, centre of mass and inertia are small enough that their products over a whole robot do
+/// not overflow, and that the mass is large enough that they do not underflow.
 fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
     let Inertial { mass, com, inertia } = inertial;
     let is_mass = *mass <= 0.0 || (1e-20..=1e20).contains(mass);
@@ -84,7 +85,7 @@ fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Returns true if the inertia of a body made of several links is positive definite, regardless of its parts.
+/// Returns true if the inertia of a whole body, which may consist of several links, is positive definite.
 pub(super) fn is_definite(about_com: &Sym3<f64>, mass: f64) -> bool {
     !matches!(sense(&about_com.to_nalgebra(), mass), Sense::Indefinite(_))
 }

@@ -1,4 +1,4 @@
-//! Replacement of the mass, centre of mass or inertia of a link.
+//! Replacement of the mass, centre of mass or inertia of a link by new values.
 
 use super::builder::ModelBuilder;
 use super::description::{Inertial, Link};
@@ -21,8 +21,8 @@ pub struct LinkChange {
 }
 
 impl LinkChange {
-    /// Applies the change to `link` if their names match. A link without an inertial is treated as a point mass at the
-    /// origin of the link.
+    /// Replaces the inertial values of `link` if the change is for a link of that name. A link without an
+    /// inertial is treated as a point mass at the origin of the link.
     ///
     /// # Errors
     /// [`ModelError::ChangeWithoutMass`] if the link has no inertial and no mass is given.
@@ -43,7 +43,7 @@ impl LinkChange {
         Ok(())
     }
 
-    /// Checks that the changed link is one of `names`.
+    /// Checks that the link to be changed is one of `names`.
     pub(super) fn check_is_one_of<'a>(
         &self,
         names: impl Iterator<Item = &'a str> + Clone,
@@ -56,8 +56,8 @@ impl Model {
     /// Returns this robot with the mass, centre of mass or inertia of one link replaced.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown link, values that are not physical, or a link without mass for which none is
-    /// given.
+    /// [`ModelError`] for an unknown link, values that are not physical, or a massless link if the change
+    /// specifies no mass.
     pub fn with_link(&self, change: &LinkChange) -> Result<Self, ModelError> {
         let mut description = self.description().clone();
         change.check_is_one_of(description.links.iter().map(|link| link.name.as_str()))?;

@@ -1,24 +1,25 @@
-//! Ratio of the inertia of a body to that of a body that supports it.
+//! Ratio of the inertia of a body to the inertia of a body that supports it.
 
 use super::tree::Node;
 use crate::spatial::Vec3;
 
-/// Largest ratio for which articulated-body inertias keep enough digits. Arms on a satellite and humanoids
-/// reach 1e4.
+/// Largest ratio at which articulated-body inertias still have enough digits. Arms on satellites and humanoid
+/// robots reach ratios of 1e4.
 const LARGEST: f64 = 1e5;
 
-/// Returns true if the ratio of inertias shows that a light body supports a heavy one.
+/// Returns true if a light body supports a heavy one, that is, if the ratio of their inertias exceeds the
+/// limit.
 pub(super) fn is_heavy_on_light(nodes: &[Node]) -> bool {
     load_ratio(nodes) > LARGEST
 }
 
-/// Returns the largest ratio of the inertia of a body, about the origin of its parent, to the inertia of one of its
-/// ancestors other than the base. The ratio is that of the traces of the inertias, with all joints at zero.
+/// Returns the largest ratio of the inertia of a body, about the origin of its parent, to the inertia of one
+/// of its ancestors other than the base. The inertias are compared by their traces, with all joints at zero.
 ///
-/// Single bodies are compared, not subtrees: long arms of similar links lose no digits. Bodies without
-/// inertia are ignored.
+/// Single bodies are compared instead of subtrees, because long arms of similar links lose no digits. Bodies
+/// without inertia are ignored.
 fn load_ratio(nodes: &[Node]) -> f64 {
-    let mut heaviest = vec![0.0_f64; nodes.len()]; // largest inertia that each body supports
+    let mut heaviest = vec![0.0_f64; nodes.len()]; // for each body, the largest inertia that it supports
     let mut largest = 0.0_f64;
     for (k, node) in nodes.iter().enumerate().rev() {
         let carrier = trace_about(node, node.com);
@@ -31,7 +32,8 @@ fn load_ratio(nodes: &[Node]) -> f64 {
     largest
 }
 
-/// Returns `tr I = tr I_c + 2 m c²` about a point at the distance `c` from the centre of mass.
+/// Returns the trace of the inertia about a point at the distance `c` from the centre of mass: `tr I = tr I_c
+/// + 2 m c²`.
 fn trace_about(node: &Node, c: Vec3<f64>) -> f64 {
     let inertia = &node.about_com;
     inertia.xx + inertia.yy + inertia.zz + 2.0 * node.mass * c.dot(c)

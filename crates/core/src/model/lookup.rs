@@ -4,37 +4,38 @@ use super::error::ModelError;
 use super::tree::Model;
 
 impl Model {
-    /// Returns the index of a frame.
+    /// Returns the index of the frame `name`.
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`] with the nearest name.
+    /// [`ModelError::UnknownName`], which suggests the closest name.
     pub fn frame(&self, name: &str) -> Result<usize, ModelError> {
         find("frame", name, self.frame_names())
     }
 
-    /// Returns the index of a joint in the order of `v` (0 is the first after the base).
+    /// Returns the index of the joint `name` in the order of the joints in `v`; the first joint after the
+    /// base has index 0.
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`] with the nearest name.
+    /// [`ModelError::UnknownName`], which suggests the closest name.
     pub fn joint(&self, name: &str) -> Result<usize, ModelError> {
         find("joint", name, self.joint_names())
     }
 
-    /// Returns the index of a body.
+    /// Returns the index of the body `name`.
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`] with the nearest name.
+    /// [`ModelError::UnknownName`], which suggests the closest name.
     pub fn body(&self, name: &str) -> Result<usize, ModelError> {
         find("body", name, self.body_names())
     }
 
-    /// Returns true if `other` has the same frames and joints, by name and order, so that objects created for one robot
-    /// are valid for the other.
+    /// Returns true if `other` has the same frames and joints, by name and order, so that objects created for
+    /// one robot are valid for the other.
     pub fn is_like(&self, other: &Self) -> bool {
         self.frame_names().eq(other.frame_names()) && self.joint_names().eq(other.joint_names())
     }
 
-    /// Returns the names of the frames: those of all links and those that were added.
+    /// Returns the names of the frames: all links, followed by the frames that were added to links.
     pub fn frame_names(&self) -> impl Iterator<Item = &str> + Clone {
         self.frames.iter().map(|frame| frame.name.as_str())
     }
@@ -50,10 +51,10 @@ impl Model {
     }
 }
 
-/// Returns the index of a name.
+/// Returns the index of `name` in `names`.
 ///
 /// # Errors
-/// [`ModelError::UnknownName`].
+/// [`ModelError::UnknownName`] if `name` is not among `names`.
 pub(super) fn find<'a>(
     what: &'static str,
     name: &str,

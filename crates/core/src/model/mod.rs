@@ -1,4 +1,4 @@
-//! Robot models: immutable trees of bodies on one free base.
+//! Robot models: immutable trees of bodies with a free-floating base.
 
 mod align;
 mod attach;

@@ -1,4 +1,5 @@
-//! Another root for a robot: the joints between the old root and the new one are traversed backwards.
+//! Change of the root link of a robot: the joints between the old root and the new one are traversed
+//! backwards.
 
 use super::builder::ModelBuilder;
 use super::description::{Description, Joint, JointKind};
@@ -9,11 +10,11 @@ use super::tree::Model;
 impl Model {
     /// Returns this robot with the link `link` as its floating base.
     ///
-    /// Links, frames and joints keep their names, and joints the signs of their positions, rates and torques. Bodies
-    /// and joints are numbered depth first from the new base.
+    /// Names and the signs of joint positions, rates and torques do not change. Bodies and joints are
+    /// numbered depth first from the new base.
     ///
     /// # Errors
-    /// [`ModelError::UnknownName`].
+    /// [`ModelError::UnknownName`] if the robot has no such link.
     pub fn rerooted(&self, link: &str) -> Result<Self, ModelError> {
         let mut builder = ModelBuilder::from_description(self.description().rerooted(link)?)?;
         builder.keep_notes(self);
@@ -54,8 +55,8 @@ impl Description {
         })
     }
 
-    /// Returns the links that joints connect to `link`, in the order of their declaration, each with its joint as
-    /// traversed from `link`.
+    /// Returns the links that are connected to `link` by a joint, in the order of declaration. Each is paired
+    /// with its joint as traversed from `link`.
     fn neighbours(&self, link: usize) -> impl Iterator<Item = (usize, Joint)> {
         self.joints.iter().enumerate().filter_map(move |(j, (parent, joint))| match (*parent, j + 1) {
             (parent, child) if parent == link => Some((child, joint.clone())),
@@ -66,10 +67,11 @@ impl Description {
 }
 
 impl Joint {
-    /// Returns the joint as traversed from its child to its parent.
+    /// Returns the joint as traversed from its child link to its parent link.
     ///
-    /// `X_pc(q) = X₀ R(a, q) X₁`, so `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹`: the axis is negated, so that the joint keeps the
-    /// sign of its position. Everything that depends on `q` and `q̇` alone (friction, limits, rotor inertia) stays.
+    /// `X_pc(q) = X₀ R(a, q) X₁`, so `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹`: the axis is negated, so that the joint
+    /// position keeps its sign. Properties that depend only on `q` and `q̇` (friction, limits, rotor inertia)
+    /// do not change.
     fn reversed(&self) -> Self {
         let kind = match self.kind {
             JointKind::Fixed => JointKind::Fixed,

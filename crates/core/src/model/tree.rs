@@ -5,9 +5,10 @@ use super::error::ModelWarning;
 use crate::spatial::{Mat3, Sym3, Vec3};
 use std::sync::Arc;
 
-/// Kind of a joint: motion about or along the *z axis of the body*.
+/// Kind of a joint, which moves its body about or along the *z axis of the body*.
 ///
-/// The axes of a body are chosen so that z is the joint's axis; the axes of its link are kept as a [`Frame`].
+/// The axes of a body are chosen such that z is the joint axis; the axes of the body's link are kept as a
+/// [`Frame`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// Rotation about z.
@@ -17,18 +18,18 @@ pub enum Axis {
 }
 
 /// Node of the tree: a body and the joint that connects it to its parent. Node 0 is the base, which has no
-/// parent.
+/// parent and no joint.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// Index of the parent body; always smaller than the index of the body.
+    /// Index of the parent body, which is smaller than the index of the body.
     pub parent: usize,
     /// True if the body has children other than the body with the next index.
     pub is_fork: bool,
     /// Index after the last body of the subtree; bodies are numbered depth first.
     pub end: usize,
-    /// Kind of the joint (unused for the base).
+    /// Kind of the joint; has no meaning for the base.
     pub axis: Axis,
-    /// Rotation from the axes of this body, at joint position zero, to those of the parent.
+    /// Rotation from the axes of this body, at joint position zero, to the axes of the parent.
     pub rot_pk: Mat3<f64>,
     /// Origin of this body at joint position zero, in the parent's axes, m.
     pub pos_pk: Vec3<f64>,
@@ -38,14 +39,14 @@ pub struct Node {
     pub com: Vec3<f64>,
     /// Inertia about the centre of mass in the body's axes, kg m².
     pub about_com: Sym3<f64>,
-    /// Rotor inertia seen at the joint, kg m² (kg for a prismatic joint).
+    /// Rotor inertia reflected to the joint, kg m² (kg for a prismatic joint).
     pub rotor_inertia: f64,
 }
 
 /// Named frame fixed to a body.
 #[derive(Clone, Debug)]
 pub struct Frame {
-    /// Name: that of a link, or of a frame that was added.
+    /// Name of a link, or of a frame that was added to a link.
     pub name: String,
     /// Index of the body.
     pub body: usize,
@@ -55,27 +56,27 @@ pub struct Frame {
     pub pos_kf: Vec3<f64>,
 }
 
-/// Parameters of a joint other than its geometry. They are used by the simulation but not by the dynamics
-/// kernels.
+/// Parameters of a joint other than its geometry. The simulation uses them; the dynamics algorithms do not.
 #[derive(Clone, Debug)]
 pub struct JointProperties {
     /// Name.
     pub name: String,
     /// Viscous friction, N m s/rad (N s/m).
     pub damping: f64,
-    /// Coulomb friction while the joint moves (kinetic), N m (N).
+    /// Kinetic Coulomb friction, which acts while the joint moves, N m (N).
     pub friction: f64,
-    /// Largest torque (force) that friction holds at rest, N m (N); at least `friction`.
+    /// Largest torque (force) that static friction can hold, N m (N); at least `friction`.
     pub static_friction: f64,
     /// Position, velocity and effort limits, which are enforced only on request.
     pub limits: Limits,
     /// Unit axis in the child link's axes.
     pub axis: Vec3<f64>,
-    /// Point on the axis in the child link's axes, m: its origin, unless the joint is traversed backwards.
+    /// Point on the axis in the child link's axes, m. It is the origin of the link, unless the joint is
+    /// traversed backwards.
     pub anchor: Vec3<f64>,
 }
 
-/// Model of a robot with a free base: joint `j` moves body `j + 1`, parents come before children.
+/// Model of a robot with a free-floating base. Joint `j` moves body `j + 1`; parents precede their children.
 ///
 /// `q = [p(3), quat_xyzw(4), joints]`, `v = [v_body(3), w_body(3), joint rates]`.
 #[derive(Clone, Debug)]
@@ -84,7 +85,7 @@ pub struct Model {
     pub(super) nodes: Vec<Node>,
     pub(super) joints: Vec<JointProperties>,
     pub(super) frames: Vec<Frame>,
-    /// Index of the frame of each body's link.
+    /// For each body, the index of the frame of its link.
     pub(super) body_frames: Vec<usize>,
     pub(super) visuals: Vec<(usize, Visual)>,
     pub(super) collisions: Vec<(usize, Visual)>,
@@ -122,7 +123,7 @@ impl Model {
         self.nodes.len() + 5
     }
 
-    /// Returns the bodies, base first, with their joints.
+    /// Returns the bodies, base first, each with the joint that connects it to its parent.
     #[inline(always)]
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
@@ -143,18 +144,18 @@ impl Model {
         &self.frames
     }
 
-    /// Returns the frame of a body's link.
+    /// Returns the frame of the link of a body.
     pub fn body_frame(&self, body: usize) -> &Frame {
         &self.frames[self.body_frames[body]]
     }
 
-    /// Returns the visual shapes with the index of the frame that each is fixed to.
+    /// Returns the visual shapes, each with the index of the frame to which it is fixed.
     pub fn visuals(&self) -> &[(usize, Visual)] {
         &self.visuals
     }
 
-    /// Returns the collision shapes with the index of the frame that each is fixed to; meshes only if their
-    /// file exists. They are drawn in place of missing visual shapes.
+    /// Returns the collision shapes, each with the index of the frame to which it is fixed. Meshes are
+    /// included only if their file exists. Collision shapes are drawn for links without visual shapes.
     pub fn collisions(&self) -> &[(usize, Visual)] {
         &self.collisions
     }
@@ -164,20 +165,20 @@ impl Model {
         &self.warnings
     }
 
-    /// Adds a warning.
+    /// Adds a warning to those returned by [`warnings`](Model::warnings).
     pub fn warn(&mut self, warning: ModelWarning) {
         self.warnings.push(warning);
     }
 
-    /// Returns the pose of a frame of body `k` in the axes of the link of `k`.
+    /// Returns the pose of a frame, fixed to some body, in the axes of that body's link.
     pub fn pose_in_link(&self, frame: &Frame) -> (Mat3<f64>, Vec3<f64>) {
         let link = self.body_frame(frame.body);
         let to_link = link.rot_kf.transpose();
         (to_link * frame.rot_kf, to_link * (frame.pos_kf - link.pos_kf))
     }
 
-    /// Returns true if a body supports one of more than 10⁵ times its own inertia. The recursion of
-    /// articulated inertias then loses digits, and forward dynamics uses the mass matrix.
+    /// Returns true if a body has less than 10⁻⁵ of the inertia of a body that it supports. Articulated-body
+    /// inertias then lose digits, and forward dynamics uses the mass matrix instead.
     #[inline(always)]
     pub fn is_heavy_on_light(&self) -> bool {
         self.is_heavy_on_light

@@ -1,19 +1,19 @@
-//! Check that inertia resists every motion of a robot.
+//! Check that every motion of a robot has inertia.
 
 use super::error::ModelError;
 use super::tree::{Axis, Model, Node};
 use nalgebra::{Matrix3, Matrix6, Rotation3, Vector3};
 
-/// A pivot of the mass matrix below this fraction of its diagonal entry is rounding error.
+/// Fraction of its diagonal entry below which a pivot of the mass matrix is treated as rounding error.
 const PIVOT_SHARE: f64 = 1e-12;
-/// A pivot below this fraction of the largest inertia that moves with the joint is rounding error. For a point mass on
-/// the joint axis, the diagonal entry itself is rounding error.
+/// Fraction of the largest inertia that moves with the joint below which a pivot is treated as rounding
+/// error. For a point mass on the joint axis, the diagonal entry itself is a rounding error.
 const ROUNDING_SHARE: f64 = 1e-14;
 
 /// Returns an error if the mass matrix is singular in every configuration.
 ///
-/// Eliminating the joints from the leaves to the root gives as pivots the articulated inertias along each joint. A
-/// pivot that vanishes in three fixed, arbitrary configurations is assumed to vanish in all.
+/// When joints are eliminated from the leaves to the root, the pivots are the articulated inertias along the
+/// joints. A pivot that vanishes in three fixed, arbitrary configurations is assumed to vanish in all.
 pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     if model.mass() <= 0.0 {
         return Err(ModelError::NoMass);
@@ -37,16 +37,16 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     }
 }
 
-/// Returns the joints between a base without inertia and the first body with inertia, if they form one chain, such as
-/// the dummy joints of a mobile robot on a fixed world.
+/// Returns the joints between a base without inertia and the first body with inertia, if they form a single
+/// chain, such as the dummy joints of a mobile robot on a fixed world.
 fn massless_chain(model: &Model) -> Vec<String> {
     let is_empty = |node: &&Node| node.mass == 0.0 && node.about_com.to_nalgebra().amax() == 0.0;
     let count = model.nodes.iter().take_while(is_empty).take_while(|node| !node.is_fork).count();
     model.joints.iter().take(count).map(|joint| joint.name.clone()).collect()
 }
 
-/// Marks the motions whose pivot exceeds rounding error. Uses dense 6 × 6 inertias in body axes and none of
-/// the kernels.
+/// Marks in `is_resisted` the motions whose pivot is larger than rounding error. To be independent of the
+/// dynamics algorithms, uses dense 6 × 6 inertias in body axes.
 fn eliminate(model: &Model, angle: impl Fn(usize) -> f64, is_resisted: &mut [bool]) {
     let mut composite: Vec<_> = model.nodes.iter().map(inertia_about_origin).collect();
     let mut articulated = composite.clone();
@@ -81,7 +81,8 @@ fn is_more_than_rounding(pivot: f64, diagonal: f64, scale: f64) -> bool {
     pivot > PIVOT_SHARE * diagonal && pivot > ROUNDING_SHARE * scale
 }
 
-/// Returns the largest entry of the linear block (kg) if `k < 3`, otherwise of the angular block (kg m²).
+/// Returns the largest entry of the linear block (kg) for `k < 3`, and of the angular block (kg m²)
+/// otherwise.
 fn scale(inertia: &Matrix6<f64>, k: usize) -> f64 {
     let start = if k < 3 { 0 } else { 3 };
     inertia.fixed_view::<3, 3>(start, start).amax()
@@ -94,8 +95,8 @@ fn inertia_about_origin(node: &Node) -> Matrix6<f64> {
     blocks(Matrix3::identity() * node.mass, c * -node.mass, c * node.mass, about_origin)
 }
 
-/// Returns the matrix that transforms a motion from the axes and origin of the parent to those of the body: `[[Rᵀ, −Rᵀ
-/// p×], [0, Rᵀ]]`.
+/// Returns the matrix that transforms a motion from the axes and origin of the parent to those of the body:
+/// `[[Rᵀ, −Rᵀ p×], [0, Rᵀ]]`.
 fn motion_transform(node: &Node, angle: f64) -> Matrix6<f64> {
     let (mut rot, mut pos) = (node.rot_pk.to_nalgebra(), node.pos_pk.to_nalgebra());
     match node.axis {

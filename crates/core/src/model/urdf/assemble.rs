@@ -9,7 +9,7 @@ use crate::model::{Link, ModelBuilder, ModelError};
 use std::cell::LazyCell;
 use std::collections::{HashMap, HashSet};
 
-/// A link's element with its name.
+/// XML element of a link, with the name of the link.
 pub(super) type NamedLink<'a> = (&'a str, Element<'a>);
 
 /// Builds the robot from the root outward, with branches in the order of the file.
@@ -26,7 +26,8 @@ pub(super) fn assemble(
         read_link(element, name, context)
     };
     let mut base = read(root, context)?;
-    // a massless root above a floating joint represents the world: the robot begins at the joint's child
+    // a massless root above a floating joint represents the world: the robot then starts at the child of the
+    // joint
     let is_massless = base.inertial.as_ref().is_none_or(|inertial| inertial.mass == 0.0);
     if let [only] = tree.joints_below[root][..]
         && is_massless
@@ -47,8 +48,8 @@ pub(super) fn assemble(
         let joint = &joints[h];
         let mut chain = read_joints(joint, is_taken, &mut context.warnings)?;
         let child = read(tree.child[h], context)?;
-        // the joints that replace one of several degrees of freedom are connected by massless links, each named
-        // after the joint above it
+        // the joints that replace a joint with several degrees of freedom are connected by massless links,
+        // each with the name of the joint above it
         let last = chain.pop().expect("read_joints returns at least one joint");
         let mut parent = joint.parent.to_owned();
         for upper in chain {
@@ -116,7 +117,8 @@ impl Tree {
         Ok(tree)
     }
 
-    /// Returns the root: the only link that is no joint's child. All others must descend from it.
+    /// Returns the root, which is the only link that is not the child of a joint. All other links must
+    /// descend from the root.
     fn root(&self, links: &[NamedLink<'_>], joints: &[JointElement<'_>]) -> Result<usize, UrdfError> {
         let roots: Vec<usize> = (0..links.len()).filter(|&link| self.joint_above[link].is_none()).collect();
         if roots.len() > 1 {
@@ -135,7 +137,8 @@ impl Tree {
         }
     }
 
-    /// Returns the error for a link that does not descend from the root: its ancestors form a closed loop.
+    /// Returns the error for a link that does not descend from the root because its ancestors form a closed
+    /// loop.
     fn closed_loop(
         &self,
         unreached: usize,
@@ -145,12 +148,12 @@ impl Tree {
         let joint_above =
             |link: usize| self.joint_above[link].expect("every link but the root has a joint above it");
         let above = |link: usize| self.parent[joint_above(link)];
-        // after as many steps upward as there are links, the link is inside the loop
+        // after as many steps towards the root as there are links, the current link is inside the loop
         let entry = (0..links.len()).fold(unreached, |link, _| above(link));
         let mut cycle: Vec<usize> =
             std::iter::successors(Some(entry), |&link| Some(above(link)).filter(|&next| next != entry))
                 .collect();
-        // from parent to child, beginning with the link that comes first in the file
+        // list the loop from parent to child, beginning with the link that comes first in the file
         cycle.reverse();
         let first = (0..cycle.len()).min_by_key(|&k| cycle[k]).expect("a loop has links");
         cycle.rotate_left(first);

@@ -1,17 +1,17 @@
-//! Elements of the file, whose errors name the link or joint that they belong to.
+//! XML elements with the name of the link or joint that they describe, which error messages state.
 
 use super::error::{UrdfError, UrdfProblem};
 use roxmltree::Node;
 
-/// Largest number of values in one attribute, as in a colour or a quaternion.
+/// Largest number of values in one attribute, as for a colour or a quaternion.
 pub(super) const MOST_NUMBERS: usize = 4;
 
-/// Element of the file with the link or joint (`link 'hand'`) that it describes.
+/// XML element with its owner, the link or joint that it describes, such as `link 'hand'`.
 #[derive(Clone, Copy)]
 pub(super) struct Element<'a> {
     pub(super) node: Node<'a, 'a>,
     pub(super) owner: &'a str,
-    /// Child elements and attributes that do not apply to this owner and are not read.
+    /// Child elements and attributes that do not apply to this owner and are therefore ignored.
     pub(super) unread: &'static [&'static str],
 }
 
@@ -28,20 +28,20 @@ impl<'a> Element<'a> {
         self.node.tag_name().name()
     }
 
-    /// Returns the child elements with this name and the prefix of this element; elements with another prefix
-    /// are extensions.
+    /// Returns the child elements with this name and the namespace prefix of this element. Elements with
+    /// another prefix are extensions.
     pub(super) fn children(self, name: &'static str) -> impl Iterator<Item = Self> {
         let is_ours =
             move |node: &Node<'a, 'a>| node.tag_name().name() == name && prefix(*node) == prefix(self.node);
         self.node.children().filter(Node::is_element).filter(is_ours).map(move |node| Self { node, ..self })
     }
 
-    /// Returns the first child element with this name, as read by urdfdom.
+    /// Returns the first child element with this name; urdfdom ignores further ones, too.
     pub(super) fn child(self, name: &'static str) -> Option<Self> {
         self.children(name).next()
     }
 
-    /// Returns the colour element of a material if it has a value.
+    /// Returns the `<color>` element of a material if it has an `rgba` attribute.
     pub(super) fn color(self) -> Option<Self> {
         self.child("color").filter(|color| color.text("rgba").is_some())
     }
@@ -64,7 +64,8 @@ impl<'a> Element<'a> {
         text.map(|text| self.numbers(attribute, text, 1).map(|[x, ..]| x)).transpose()
     }
 
-    /// Parses exactly `count` finite numbers, separated by spaces; the rest of the array is zero.
+    /// Parses `text` as exactly `count` finite numbers separated by spaces; the rest of the returned array is
+    /// zero.
     pub(super) fn numbers(
         &self,
         attribute: &'static str,
@@ -108,12 +109,12 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Returns true if a text contains an expression of xacro.
+/// Returns true if a text contains an xacro expression.
 pub(super) fn has_expression(text: &str) -> bool {
     text.contains("${") || text.contains("$(")
 }
 
-/// Returns the prefix of an element as written in the file, regardless of its namespace.
+/// Returns the namespace prefix of an element as written in the file, whatever namespace it stands for.
 pub(super) fn prefix<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
     node.tag_name().namespace()?; // an element without a namespace has no prefix
     let tag = node.document().input_text().get(node.range().start + 1..)?;

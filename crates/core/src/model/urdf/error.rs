@@ -7,12 +7,12 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use thiserror::Error;
 
-/// Error of a URDF that cannot be loaded.
+/// Reason why a URDF cannot be loaded, with its location.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UrdfError {
     /// Path of the file; `None` if the URDF was given as text.
     pub file: Option<PathBuf>,
-    /// Line of the problem, from 1; `None` if it is not known.
+    /// Line of the problem, counted from 1; `None` if the line is unknown.
     pub line: Option<u32>,
     /// Description of the problem.
     pub problem: Box<UrdfProblem>,
@@ -43,7 +43,7 @@ impl UrdfError {
         Self { file: None, line, problem: Box::new(problem) }
     }
 
-    /// Returns the error for a problem of `node`.
+    /// Creates the error for a problem at the XML element `node`.
     pub(super) fn at(node: Node<'_, '_>, problem: UrdfProblem) -> Self {
         let line = node.document().text_pos_at(node.range().start).row;
         Self::new(Some(line), problem)
@@ -62,7 +62,7 @@ pub enum UrdfProblem {
     NotFound,
     #[error("the path is a directory; expected a URDF file")]
     IsFolder,
-    #[error("cannot be read ({reason})")]
+    #[error("the file cannot be read ({reason})")]
     Unreadable { reason: String },
     #[error("the URDF is empty; expected a <robot> element")]
     Empty,
@@ -74,30 +74,30 @@ pub enum UrdfProblem {
     TooManyAttributes { limit: usize },
     #[error("the file is not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
-    #[error("not XML ({reason})")]
+    #[error("the text is not XML ({reason})")]
     NotXml { reason: String },
     #[error(
-        "entity '&{name};' is not supported; replace it by the text that the document type (<!DOCTYPE>) defines for it"
+        "entity '&{name};' is not supported; replace the entity by its definition in the document type (<!DOCTYPE>)"
     )]
     Entity { name: String },
     #[error("the outermost element is <{found}>; expected <robot>{}", other_format(.found))]
     NotRobot { found: String },
     #[error(
-        "{found} is xacro, not URDF; expand it first: xacro FILE.xacro > FILE.urdf (Model.from_urdf in \
-         Python expands files named .xacro, and others with xacro=True; the command line has --xacro)"
+        "{found} is xacro and must be expanded to URDF: xacro FILE.xacro > FILE.urdf (Model.from_urdf in \
+         Python expands files named *.xacro, and any file with xacro=True; the command line has --xacro)"
     )]
     Xacro { found: String },
     #[error(
-        "<{element}> is not URDF and is ignored, which leaves the robot incomplete; remove the prefix of the element"
+        "<{element}> has a prefix that URDF does not define and is ignored, so the robot is incomplete; remove the prefix"
     )]
     ForeignElement { element: String },
-    #[error("the robot has no links; add at least one")]
+    #[error("the robot has no links; add at least one link")]
     NoLinks,
     #[error("the file defines xacro macros but no robot; expand the file that calls them")]
     OnlyMacros,
-    #[error("{owner} has no <{element}>; add it")]
+    #[error("{owner} has no <{element}> element; add one")]
     MissingElement { owner: String, element: &'static str },
-    #[error("<{element}> of {owner} has no attribute '{attribute}'; add it")]
+    #[error("<{element}> of {owner} has no attribute '{attribute}'; add the attribute")]
     MissingAttribute { owner: String, element: String, attribute: &'static str },
     #[error(
         "{owner}: {attribute}=\"{text}\" of <{element}> is not {}",
@@ -106,13 +106,13 @@ pub enum UrdfProblem {
     BadNumber { owner: String, element: String, attribute: &'static str, text: String, expected: usize },
     #[error("{owner}: {attribute} of <{element}> is {value}; it must be positive", value = short(*value))]
     NotPositive { owner: String, element: String, attribute: &'static str, value: f64 },
-    #[error("{owner}: <origin> has both rpy and quat_xyzw; keep one")]
+    #[error("{owner}: <origin> has both rpy and quat_xyzw; remove one of them")]
     TwoOrientations { owner: String },
     #[error("{owner}: the quaternion '{text}' has norm zero; give a unit quaternion")]
     ZeroQuaternion { owner: String, text: String },
     #[error(
-        "joint '{joint}' is of type '{kind}'; the types are revolute, continuous, prismatic, fixed, planar, \
-         ball and floating{}",
+        "joint '{joint}' has the unknown type '{kind}'; expected revolute, continuous, prismatic, fixed, planar, \
+         ball or floating{}",
         way_out(.kind)
     )]
     JointType { joint: String, kind: String },
@@ -124,7 +124,7 @@ pub enum UrdfProblem {
         .joints[0], .joints[1]
     )]
     TwoParents { link: String, joints: [String; 2] },
-    #[error("the links {} form a closed loop; all links must descend from one root, which is the child of no joint", list(.links))]
+    #[error("the links {} form a closed loop; remove a joint so that all links descend from one root link", list(.links))]
     Loop { links: Vec<String> },
     #[error(
         "{} links are not the child of a joint: {}; connect all of them except the root by joints",
@@ -157,9 +157,9 @@ fn way_out(kind: &str) -> String {
         "revolute" | "continuous" | "prismatic" | "fixed" | "planar" | "spherical" | "ball" | "floating" => {
             "; write it in lower case"
         }
-        "universal" => "; replace it by two revolute joints with intersecting axes",
+        "universal" => "; use two revolute joints with intersecting axes instead",
         "screw" | "helical" | "cylindrical" => {
-            "; replace it by a prismatic and a revolute joint on one axis (they are not coupled)"
+            "; use a prismatic and a revolute joint on one axis instead (their motions are not coupled)"
         }
         "rotational" | "hinge" => "; write revolute",
         "slide" | "slider" | "translational" => "; write prismatic",
@@ -174,7 +174,7 @@ fn way_out(kind: &str) -> String {
     advice.to_owned()
 }
 
-/// Returns a list of the names, shortened if there are many.
+/// Returns the names as a list, shortened if there are many.
 pub(super) fn list(names: &[String]) -> String {
     const SHOWN: usize = 5;
     let shown: Vec<String> = names.iter().take(SHOWN).map(|name| format!("'{name}'")).collect();

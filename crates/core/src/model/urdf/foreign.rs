@@ -1,13 +1,13 @@
-//! Elements that are not URDF: extensions of other tools and xacro tags.
+//! XML elements that are not part of URDF: extensions of other tools and xacro tags.
 
 use super::element::prefix;
 use super::error::{UrdfError, UrdfProblem, list};
 use crate::model::ModelWarning;
 use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
-/// Largest number of tags, texts and comments of a file; a large robot has 10⁴.
+/// Largest number of tags, texts and comments in a file; a large robot has 10⁴.
 const MAX_NODES: u32 = 1_000_000;
-/// Children of `<robot>`, besides links, joints and materials, that are ignored without a warning.
+/// Names of children of `<robot>`, besides links, joints and materials, that are ignored without a warning.
 const KNOWN: &[&str] = &[
     "gazebo",
     "transmission",
@@ -25,18 +25,18 @@ const KNOWN: &[&str] = &[
     "drake",
 ];
 
-/// Parses text that [`check`](super::precheck::check) has accepted.
+/// Parses a text that [`check`](super::precheck::check) has accepted.
 pub(super) fn parse(xml: &str) -> Result<Document<'_>, XmlError> {
     Document::parse_with_options(xml, ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() })
 }
 
-/// Elements of a robot that are ignored.
+/// XML elements of a robot description that are ignored.
 pub(super) struct Ignored<'a> {
-    /// Outermost tags of xacro, anywhere in the file.
+    /// Outermost xacro tags, anywhere in the file.
     xacro: Vec<Node<'a, 'a>>,
-    /// Children of the robot with another prefix.
+    /// Children of `<robot>` with a foreign namespace prefix.
     prefixed: Vec<Node<'a, 'a>>,
-    /// Children of the robot that are not defined by URDF.
+    /// Children of `<robot>` with names that URDF does not define.
     unknown: Vec<Node<'a, 'a>>,
 }
 
@@ -67,8 +67,8 @@ impl<'a> Ignored<'a> {
         if let Some(first) = self.xacro.first() {
             let (line, more) = (line(*first), others(self.xacro.len() - 1));
             notes.push(format!(
-                "line {line}: {} is an xacro tag and is ignored{more}; expand the file with xacro if the \
-                 robot lacks parts",
+                "line {line}: {} is an xacro tag and is ignored{more}; expand the file with xacro if parts of \
+                 the robot are missing",
                 tag(*first)
             ));
         }
@@ -86,14 +86,15 @@ impl<'a> Ignored<'a> {
         notes.into_iter().map(ModelWarning::Note).collect()
     }
 
-    /// Returns true if the xacro elements of the file only define macros and instantiate none.
+    /// Returns true if the xacro tags of the file only define macros, without a use of any macro.
     fn is_macros(&self) -> bool {
         let defines = |name| matches!(name, "macro" | "property" | "arg" | "include");
         let mut names = self.xacro.iter().map(|node| node.tag_name().name());
         names.clone().all(defines) && names.any(|name| name == "macro")
     }
 
-    /// Returns an error that names the ignored elements if they made the robot incomplete; otherwise `error`.
+    /// Returns an error that names the ignored elements if the robot is incomplete without them; otherwise
+    /// returns `error`.
     pub(super) fn explain(&self, error: UrdfError) -> UrdfError {
         let is_incomplete = matches!(
             *error.problem,

@@ -1,7 +1,8 @@
-//! Deserialization of elements of the parsed tree into the types of urdf-rs, following the schema.
+//! Deserialization of parsed XML elements into the types of urdf-rs, according to the schema.
 //!
 //! `urdf_rs::read_from_string` parses its text twice and takes nearly four times as long as loading the whole
-//! robot. Here its types are filled from the existing tree, and all values are checked on the way.
+//! robot does here. This module fills the types of urdf-rs from the existing XML tree instead, and checks all
+//! values while doing so.
 
 use super::element::Element;
 use super::error::UrdfError;
@@ -16,7 +17,7 @@ impl<'a> Element<'a> {
         T::deserialize(Value::Element(self)).map_err(|refusal| refusal.at(&self))
     }
 
-    /// Returns the names and values of the fields that the schema lists for the element.
+    /// Returns the names and values of the fields that the schema lists for this element.
     fn fields(self) -> impl Iterator<Item = (&'static str, Value<'a>)> {
         let is_read = move |name: &str| !self.unread.contains(&name);
         let texts = attributes(self.tag()).iter().filter_map(move |&attribute| {
@@ -34,12 +35,12 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Value of a field of a type of urdf-rs.
+/// Value of one field of a urdf-rs type.
 enum Value<'a> {
     Element(Element<'a>),
     /// The text of an attribute, or its default.
     Text(Element<'a>, Attribute, &'a str),
-    /// A missing element; all its numbers are zero.
+    /// A missing element, whose numbers are all zero.
     Zeros,
 }
 
@@ -115,7 +116,8 @@ impl<'a> IntoDeserializer<'a, Refusal> for Value<'a> {
     }
 }
 
-/// Element of a shape: its name is the variant, its attributes are the fields.
+/// Element of a shape, deserialized as an enum: the element name is the variant, the attributes are its
+/// fields.
 struct Shape<'a>(Element<'a>);
 
 impl<'a> EnumAccess<'a> for Shape<'a> {
@@ -158,7 +160,7 @@ mod tests {
     use std::fmt::Debug;
     use urdf_rs::{Collision, Inertial, Joint, Mass, Material, Visual};
 
-    /// Contains every field of the schema, so that the result can be compared with what urdf-rs itself reads.
+    /// Contains every field of the schema, so that the result can be compared with the result of urdf-rs.
     const ALL: &str = "<robot name='r'><material name='m'><color rgba='0.1 0.2 0.3 1'/></material>
         <link name='a'>
           <inertial><origin xyz='1 2 3' rpy='0.1 0.2 0.3'/><mass value='4'/>
@@ -186,7 +188,7 @@ mod tests {
         assert_eq!(format!("{ours:?}"), format!("{theirs:?}"), "{tag}");
     }
 
-    /// urdf-rs does not guarantee the names of its serde fields: this test fails if they change.
+    /// The names of the serde fields of urdf-rs may change between versions; this test then fails.
     #[test]
     fn the_tree_and_urdf_rs_own_reading_give_the_same() {
         let document = Document::parse(ALL).expect("is XML");

@@ -10,8 +10,8 @@ use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
 use urdf_rs::{JointLimit, JointType};
 
-/// Reads axis, limits and friction of a joint. A joint of several degrees of freedom becomes a chain of
-/// joints of one degree of freedom. `is_taken` returns true for names that occur in the file.
+/// Reads the axis, limits and friction of a joint. A joint with several degrees of freedom becomes a chain of
+/// joints with one degree of freedom each. `is_taken` returns true for names that already occur in the file.
 pub(super) fn read_joints(
     joint: &JointElement<'_>,
     is_taken: impl Fn(&str) -> bool,
@@ -36,9 +36,10 @@ pub(super) fn read_joints(
     }
     if let (Some(given), Some(dynamics)) = (read.dynamics, element.child("dynamics")) {
         (result.damping, result.friction) = (given.damping, given.friction);
-        // extension: URDF has only one friction coefficient
+        // extension of URDF, which has only one friction coefficient
         result.static_friction = dynamics.number("static_friction")?;
-        // extension: the rotor inertia seen at the joint, as `armature` (MuJoCo) or `rotor_inertia`
+        // extension of URDF: the rotor inertia reflected to the joint, named `armature` (as in MuJoCo) or
+        // `rotor_inertia`
         result.rotor_inertia = match dynamics.number("armature")? {
             Some(armature) => armature,
             None => dynamics.number("rotor_inertia")?.unwrap_or(0.0),
@@ -50,7 +51,7 @@ pub(super) fn read_joints(
     Ok(vec![result])
 }
 
-/// Returns the child elements and attributes that do not apply to a kind of joint and are not read.
+/// Returns the child elements and attributes that are ignored because they do not apply to a kind of joint.
 fn unread(kind: &str) -> &'static [&'static str] {
     match kind {
         "continuous" => &["lower", "upper"],
@@ -71,8 +72,9 @@ fn mimic_note(name: &str, mimic: Element<'_>) -> String {
     )
 }
 
-/// Converts limits of urdf-rs, in which infinity means no limit. `bounds` is the element with the position limits,
-/// if these apply. If one of them is missing it is 0, URDF's default; if both are, there is no position limit.
+/// Converts limits of urdf-rs, in which infinity means no limit. `bounds` is the element with the position
+/// limits, or `None` if the joint has none. If one position limit is missing, its value is 0, as URDF
+/// specifies; if both are missing, the position is unlimited.
 fn limits(
     name: &str,
     read: &JointLimit,
@@ -81,7 +83,7 @@ fn limits(
 ) -> Limits {
     let is_given = |end| bounds.is_some_and(|limit| limit.text(end).is_some());
     let position = (is_given("lower") || is_given("upper")).then(|| {
-        // either infinity means no bound
+        // an infinite number means that there is no bound, whatever its sign
         let bound = |value: f64, none: f64| if value.is_finite() { value } else { none };
         (bound(read.lower, f64::NEG_INFINITY), bound(read.upper, f64::INFINITY))
     });
@@ -97,7 +99,7 @@ fn limits(
         low <= high && (low > f64::NEG_INFINITY || high < f64::INFINITY)
     });
     let mut largest = |what: &str, value: f64| {
-        // Gazebo writes -1 for no limit
+        // Gazebo writes -1 for "no limit"
         if value.is_finite() && value < 0.0 {
             note(format!("its {what} limit is negative and is ignored ({})", short(value)));
         }

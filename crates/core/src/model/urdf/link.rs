@@ -8,11 +8,11 @@ use super::pose::pose;
 use crate::model::{Geometry, Inertial, Link, LinkChange, ModelWarning, Visual};
 use nalgebra::Matrix3;
 
-/// Data from the rest of the file that links require, and the warnings collected while reading.
+/// Data from other parts of the file that are needed to read links, and the warnings found so far.
 pub(super) struct ReadContext<'a> {
     pub(super) materials: Materials<'a>,
     pub(super) meshes: Meshes<'a>,
-    /// Replacements for values of the file.
+    /// Values that replace those in the file.
     pub(super) changes: &'a [LinkChange],
     pub(super) warnings: Vec<ModelWarning>,
 }
@@ -30,7 +30,7 @@ pub(super) fn read_link(
         change.apply(&mut result).map_err(|error| link.fail(UrdfProblem::Model(error)))?;
     }
     for visual in link.children("visual") {
-        // visual shapes do not affect the dynamics: an unreadable one is omitted with a warning
+        // visual shapes do not affect the dynamics, so an unreadable shape is omitted with a warning
         match read_visual(visual, context) {
             Ok(visual) => result.visuals.push(visual),
             Err(error) => {
@@ -39,7 +39,7 @@ pub(super) fn read_link(
             }
         }
     }
-    // no warnings here: collision shapes are only drawn as a substitute for a visual mesh
+    // without warnings, because collision shapes are only drawn as substitutes for missing visual shapes
     for collision in link.children("collision") {
         let mesh = collision.child("geometry").and_then(|geometry| geometry.child("mesh"));
         let file = mesh.map(|mesh| mesh.text("filename").unwrap_or_default());
@@ -50,7 +50,7 @@ pub(super) fn read_link(
     Ok(result)
 }
 
-/// Returns mass and inertia, or `None` if there is no `<mass>`, as in urdfdom.
+/// Reads mass and inertia. Returns `None` if there is no `<mass>`, as urdfdom does.
 fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<Option<Inertial>, UrdfError> {
     let owner = element.owner;
     let mut note = |text: String| context.warnings.push(ModelWarning::Note(text));
@@ -81,14 +81,14 @@ fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<
         given.ixy, given.iyy, given.iyz, //
         given.ixz, given.iyz, given.izz,
     );
-    // rotation from the axes of <origin> to the link axes: I = R I' Rᵀ
+    // rotate from the axes of <origin> to link axes: I = R I' Rᵀ
     let origin = pose(element, &origin)?;
     let rot = origin.rotation.to_rotation_matrix().into_inner();
     let (com, inertia) = (origin.translation.vector, rotated(&rot, &inertia));
     Ok(Some(Inertial { mass: mass.value, com, inertia }))
 }
 
-/// Returns `R I Rᵀ`, exactly symmetric.
+/// Returns `R I Rᵀ` with exactly equal entries on both sides of the diagonal.
 fn rotated(rot: &Matrix3<f64>, inertia: &Matrix3<f64>) -> Matrix3<f64> {
     let result = rot * inertia * rot.transpose();
     (result + result.transpose()) * 0.5

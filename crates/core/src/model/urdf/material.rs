@@ -1,4 +1,4 @@
-//! Reader of `<material>`: colours, defined once and referred to by name.
+//! Reader of `<material>`: colours, which are defined once and then referred to by name.
 
 use super::element::Element;
 use super::error::UrdfError;
@@ -11,8 +11,8 @@ pub(super) struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
-    /// Collects the materials defined by the robot element, then those defined inside visuals, because in some files
-    /// other visuals refer to them.
+    /// Collects the materials defined in `<robot>`, followed by those defined inside visuals, because in some
+    /// files other visuals refer to the latter.
     pub(super) fn new(robot: Element<'a>) -> Self {
         let nested = robot
             .children("link")
@@ -27,7 +27,8 @@ impl<'a> Materials<'a> {
         Self { named }
     }
 
-    /// Returns the colour of a visual's material: either its own colour or the one defined under its name.
+    /// Returns the colour of a visual's material: the colour given there, or else the colour defined
+    /// elsewhere under the same name.
     pub(super) fn rgba(&self, material: urdf_rs::Material) -> Result<Option<[f64; 4]>, UrdfError> {
         let named = || self.named.get(material.name.as_str()).map(|color| color.read::<Color>());
         let color = material.color.map(Ok).or_else(named).transpose()?;

@@ -1,4 +1,4 @@
-//! Resolution of the names of mesh files: `package://`, `file://`, relative names, and files near the URDF.
+//! Search for mesh files by name: `package://`, `file://`, relative paths, and files near the URDF.
 
 use super::mesh_name::MeshName;
 use super::mesh_near::Near;
@@ -6,18 +6,18 @@ use crate::model::ModelWarning;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Finder of mesh files, which records missing files.
+/// Finder of mesh files, which records the missing ones.
 pub(super) struct Meshes<'a> {
     /// Folder of the URDF file.
     folder: Option<&'a Path>,
     /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],
-    /// Results by name, since many links refer to the same file.
+    /// Results by name, cached because many links refer to the same file.
     known: HashMap<String, Option<Found>>,
-    /// True for each folder that exists. This cache avoids a system call for each file in a missing folder.
+    /// True for each folder that exists; cached to avoid a system call for each file in a missing folder.
     folders: HashMap<PathBuf, bool>,
     near: Near<'a>,
-    /// Package for which each file was found.
+    /// For each file found, the package in whose name it was found.
     taken: HashMap<String, String>,
     missing: Vec<String>,
     guessed: Vec<(String, String)>,
@@ -26,7 +26,7 @@ pub(super) struct Meshes<'a> {
 #[derive(Clone)]
 struct Found {
     path: String,
-    /// True if only the bare file name matches.
+    /// True if only the bare file name matches, without any folder.
     is_guess: bool,
 }
 
@@ -44,7 +44,8 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// Returns the path of a mesh; if it does not exist, returns the name and records it as missing.
+    /// Returns the path of a mesh file. If it does not exist, returns `name` unchanged and records the file
+    /// as missing.
     pub(super) fn resolve(&mut self, name: &str) -> String {
         match self.look_up(name) {
             Some(Found { path, is_guess: false }) => path,
@@ -63,12 +64,12 @@ impl<'a> Meshes<'a> {
         }
     }
 
-    /// Returns the path of a mesh if it exists.
+    /// Returns the path of a mesh file if it exists.
     pub(super) fn find(&mut self, name: &str) -> Option<String> {
         self.look_up(name).map(|found| found.path)
     }
 
-    /// Returns a warning about missing meshes and one about meshes whose location was guessed, if any.
+    /// Returns up to two warnings: about missing meshes, and about meshes whose location was guessed.
     pub(super) fn warnings(&self) -> impl Iterator<Item = ModelWarning> {
         self.about_missing().into_iter().chain(self.about_guessed()).map(ModelWarning::Note)
     }
@@ -83,7 +84,7 @@ impl<'a> Meshes<'a> {
             _ => "; copy the missing files into a folder 'meshes' beside the robot's file".to_owned(),
         };
         Some(format!(
-            "{files} not found, of which the first is '{first}'; simpler shapes are drawn \
+            "{files} not found, the first being '{first}'; simpler shapes are drawn \
         instead{hint}"
         ))
     }
@@ -107,8 +108,8 @@ impl<'a> Meshes<'a> {
         found
     }
 
-    /// Searches for a file at the path of its name; [`Self::in_package`] describes the search for names in a
-    /// package.
+    /// Searches for a file at the exact path that its name states; for names in a package, see
+    /// [`Self::in_package`].
     fn at_its_path(&mut self, name: &MeshName) -> Option<Found> {
         let candidates = match name {
             MeshName::InPackage { package, rest } => self.in_package(package, rest),
@@ -122,8 +123,9 @@ impl<'a> Meshes<'a> {
         Some(Found { path, is_guess: false })
     }
 
-    /// Returns the paths at which `rest` of `package` is searched for: below the given folders, then below the
-    /// URDF's folder and each of its parents. Each of these folders may be the package or contain it.
+    /// Returns the paths at which the file `rest` of `package` may be: first below the given folders, then
+    /// below the folder of the URDF and each of its parents. Each of these folders may either be the package
+    /// or contain it.
     fn in_package(&self, package: &str, rest: &Path) -> Vec<PathBuf> {
         let parents = self.folder.into_iter().flat_map(Path::ancestors);
         let roots = self.packages.iter().map(PathBuf::as_path).chain(parents);
@@ -147,8 +149,8 @@ impl<'a> Meshes<'a> {
         None
     }
 
-    /// Returns true unless the file was found for another package, since two packages may both contain
-    /// `meshes/base.stl`.
+    /// Returns true unless the file was already found in the name of another package; two packages may both
+    /// contain `meshes/base.stl`.
     fn is_free(&mut self, path: &str, name: &MeshName) -> bool {
         let MeshName::InPackage { package, .. } = name else { return true };
         self.taken.entry(path.to_owned()).or_insert_with(|| package.clone()) == package
@@ -229,7 +231,8 @@ mod tests {
         assert_eq!(found.resolve("package://arm/stl/hand.stl"), hand);
         let guesses: Vec<_> = found.warnings().map(|warning| warning.to_string()).collect();
         assert!(guesses.len() == 1 && guesses[0].contains("'package://arm/stl/hand.stl'"), "{guesses:?}");
-        // files of the same name in another package, or above the folders that identify the package
+        // files of the same name in another package, or above the folders that identify the package, are not
+        // used
         for other in ["package://gripper/meshes/visual/arm.dae", "package://arm/bus.stl"] {
             assert_eq!(found.resolve(other), other);
         }

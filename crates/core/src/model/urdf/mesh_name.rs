@@ -2,15 +2,15 @@
 
 use std::path::{Component, Path, PathBuf};
 
-/// Largest number of components in a tail of a path.
+/// Largest number of path components compared when searching for a file by the end of its path.
 const LONGEST_TAIL: usize = 5;
 
 /// Parsed `filename` of a mesh.
 #[derive(Debug, PartialEq)]
 pub(super) enum MeshName {
-    /// `package://name/rest`, also with a third slash, or Gazebo's `model://name/rest`.
+    /// `package://name/rest` (also with a third slash), or Gazebo's `model://name/rest`.
     InPackage { package: String, rest: PathBuf },
-    /// A path, absolute or relative to the URDF, with or without `file://`.
+    /// Path, absolute or relative to the URDF, with or without `file://`.
     File(PathBuf),
 }
 
@@ -41,15 +41,16 @@ impl MeshName {
     }
 }
 
-/// Returns the tails of a path with at most `LONGEST_TAIL` components, the longest first; the root and `..` are
-/// omitted.
+/// Returns the path endings with at most `LONGEST_TAIL` components, the longest first, omitting the root and
+/// `..`.
 pub(super) fn tails(path: &Path) -> Vec<PathBuf> {
     let names: Vec<_> = path.components().filter(|part| matches!(part, Component::Normal(_))).collect();
     let first = names.len().saturating_sub(LONGEST_TAIL);
     (first..names.len()).map(|start| names[start..].iter().collect()).collect()
 }
 
-/// Decodes the escapes of a URI (`%20`); any other `%` stays. Backslashes become slashes.
+/// Decodes the escapes of a URI (`%20`) and replaces backslashes by slashes. A `%` that begins no escape is
+/// kept.
 fn plain(uri: &str) -> String {
     let hex = |at: usize| uri.get(at..at + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
     let (mut bytes, mut at) = (Vec::with_capacity(uri.len()), 0);

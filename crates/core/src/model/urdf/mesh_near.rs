@@ -1,4 +1,4 @@
-//! Search near the URDF for meshes that do not exist at their named path.
+//! Search near the URDF for meshes that do not exist at the path that their name states.
 
 use super::mesh_name::tails;
 use std::collections::{HashMap, HashSet};
@@ -6,26 +6,25 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Number of parent folders of the URDF in which tails of a path are searched.
+/// Number of parent folders of the URDF that are searched as well.
 const PARENTS: usize = 3;
 
-/// Finder of files by the tail of their name, which lists each folder only once, since many links have
-/// meshes.
+/// Finder of files by the end of their path. Each folder is listed only once, because many links have meshes.
 pub(super) struct Near<'a> {
     /// Folder of the URDF file.
     folder: Option<&'a Path>,
     /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],
-    /// Candidate folders of a file, by the folder in its name.
+    /// Folders that may contain a file, by the folder part of its name.
     places: HashMap<PathBuf, Rc<[Place]>>,
-    /// Entries of a folder; empty if it does not exist.
+    /// Names of the entries of each folder; empty if the folder does not exist.
     listings: HashMap<PathBuf, Rc<HashSet<OsString>>>,
 }
 
 struct Place {
     folder: PathBuf,
     names: Rc<HashSet<OsString>>,
-    /// True if none of the folders in the file's name matches.
+    /// True if none of the folders in the name of the file matches.
     is_guess: bool,
 }
 
@@ -34,8 +33,8 @@ impl<'a> Near<'a> {
         Self { folder, packages, places: HashMap::new(), listings: HashMap::new() }
     }
 
-    /// Returns the files that match a tail of a path, the longest tail first, each with true if only the bare file name
-    /// matches.
+    /// Returns the files that match the end of a path, the longest match first. Each is paired with true if
+    /// only the bare file name matches.
     pub(super) fn candidates(&mut self, path: &Path) -> Vec<(PathBuf, bool)> {
         let (Some(folder), Some(file)) = (path.parent(), path.file_name()) else { return Vec::new() };
         let places = self.places(folder);
@@ -43,9 +42,9 @@ impl<'a> Near<'a> {
         holding.map(|place| (place.folder.join(file), place.is_guess)).collect()
     }
 
-    /// Returns the folders that match a tail of `folder`, below the given folders, the folder of the URDF and some of
-    /// its parents. These are followed by the folder of the URDF and its subfolder `meshes`, in which only the bare
-    /// file name must match.
+    /// Returns the folders that match the end of the path `folder`, below the given folders, the folder of
+    /// the URDF and some of its parents. These are followed by the folder of the URDF and its subfolder
+    /// `meshes`, in which only the bare file name must match.
     fn places(&mut self, folder: &Path) -> Rc<[Place]> {
         if let Some(known) = self.places.get(folder) {
             return known.clone();

@@ -1,12 +1,12 @@
-//! Robots from URDF files.
+//! Reader of robots from URDF files.
 //!
-//! roxmltree parses the text and provides line numbers; text that it rejects but tinyxml2 accepts is rewritten first
-//! (`repair`). Serde fills the types of urdf-rs from the parsed tree (`from_tree`), using the first element of each
-//! name and checking attributes against one table (`schema`). `docs/design.md` explains why urdf-rs does not read the
-//! text itself.
+//! roxmltree parses the text and provides line numbers; text that it rejects but tinyxml2 accepts is
+//! rewritten first (`repair`). Serde fills the types of urdf-rs from the parsed tree (`from_tree`), using the
+//! first element of each name and checking attributes against one table (`schema`). `docs/design.md` explains
+//! why the parser of urdf-rs is not used.
 //!
-//! Transmissions, sensors and the elements of other tools are ignored. Elements with a prefix, unknown elements and
-//! xacro tags are ignored with a warning. Prefixes do not have to be declared.
+//! Transmissions, sensors and known extensions of other tools are ignored. Elements with a foreign prefix,
+//! unknown elements and xacro tags are ignored with a warning. Prefixes do not have to be declared.
 
 mod assemble;
 mod element;
@@ -47,19 +47,20 @@ use std::path::{Path, PathBuf};
 /// Options for reading a URDF.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options<'a> {
-    /// Folders that are ROS packages or contain ROS packages; they are searched for `package://` meshes before the
-    /// parents of the file.
+    /// Folders that are ROS packages or contain ROS packages. They are searched for `package://` meshes
+    /// before the parent folders of the URDF.
     pub packages: &'a [PathBuf],
-    /// Values that replace those of the file before the robot is checked.
+    /// Inertial values that replace those in the file before the robot is checked.
     pub changes: &'a [LinkChange],
-    /// True if the robot is a part to be attached to another; its own dynamics may then be singular.
+    /// True if the robot will be attached to another one; its dynamics on its own may then be singular.
     pub is_part: bool,
 }
 
-/// Loads a robot with a floating root link. A mesh that is not found keeps its name and adds a warning.
+/// Loads a robot with a floating root link. If a mesh file is not found, its name is kept and a warning is
+/// added.
 ///
 /// # Errors
-/// [`UrdfError`] with the file, the line and the link or joint.
+/// [`UrdfError`] with the file, the line and the name of the link or joint.
 pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError> {
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
     precheck::read(path)
@@ -67,10 +68,10 @@ pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError>
         .map_err(|error| error.in_file(path))
 }
 
-/// Loads a robot from the text of a URDF; relative mesh names refer to `folder`.
+/// Loads a robot from the text of a URDF; relative names of mesh files refer to `folder`.
 ///
 /// # Errors
-/// [`UrdfError`] with the line and the link or joint.
+/// [`UrdfError`] with the line and the name of the link or joint.
 pub fn from_str(xml: &str, folder: Option<&Path>, options: &Options<'_>) -> Result<Model, UrdfError> {
     read(xml, folder, options, None)
 }
@@ -107,7 +108,7 @@ fn read_robot(
     options: &Options<'_>,
     mut warnings: Vec<ModelWarning>,
 ) -> Result<Model, UrdfError> {
-    // errors name the link or joint; the elements borrow these names
+    // names of links and joints for error messages; the elements borrow them
     let names = |tag| owners(robot, tag);
     let (link_owners, joint_owners) = (names("link"), names("joint"));
     let robot = Element::new(robot, "the robot");
@@ -138,7 +139,7 @@ fn read_robot(
     built.map_err(|error| UrdfError::new(None, UrdfProblem::Model(error)))
 }
 
-/// Returns `link 'hand'` for each link, in order.
+/// Returns the owner string, such as `link 'hand'`, of each link or joint (`tag`), in order.
 fn owners(robot: Node<'_, '_>, tag: &'static str) -> Vec<String> {
     Element::new(robot, "")
         .children(tag)
@@ -146,7 +147,7 @@ fn owners(robot: Node<'_, '_>, tag: &'static str) -> Vec<String> {
         .collect()
 }
 
-/// Returns a warning about names that contain xacro expressions; they are kept as names.
+/// Returns a warning if names contain xacro expressions, which are not evaluated.
 fn expression_warning(links: &[NamedLink<'_>], joints: &[JointElement<'_>]) -> Option<ModelWarning> {
     let mut names = links.iter().map(|(name, _)| *name).chain(joints.iter().map(|joint| joint.name));
     let name = names.find(|name| has_expression(name))?;
@@ -157,7 +158,7 @@ fn expression_warning(links: &[NamedLink<'_>], joints: &[JointElement<'_>]) -> O
     Some(ModelWarning::Note(note))
 }
 
-/// Returns an error for a document whose root is not `<robot>`.
+/// Checks that the root element of the document is `<robot>`.
 fn check_root(robot: Node<'_, '_>) -> Result<(), UrdfError> {
     let root = robot.tag_name().name();
     if root == "robot" {
@@ -167,7 +168,7 @@ fn check_root(robot: Node<'_, '_>) -> Result<(), UrdfError> {
 }
 
 fn not_xml(error: XmlError) -> UrdfError {
-    // the parser's message ends with the location, which this crate states at the start of its message
+    // the parser's message ends with the location, but error messages of this crate begin with the location
     let (reason, place) = (error.to_string(), format!(" at {}", error.pos()));
     let reason = reason.strip_suffix(&place).unwrap_or(&reason).to_owned();
     UrdfError::new(Some(error.pos().row), UrdfProblem::NotXml { reason })

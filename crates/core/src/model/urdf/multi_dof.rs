@@ -14,12 +14,13 @@ pub(super) enum MultiDof {
     Floating,
 }
 
-/// Returns the chain of joints from the parent outward. Their names are the joint's name with a suffix, and a number if
-/// the file already contains such a name.
+/// Returns the chain of joints, in order from the parent, that replaces a joint. Their names are the name of
+/// the joint with a suffix, and with a number if the file already contains that name.
 ///
-/// A planar joint becomes two prismatic joints along the axes of the plane and a revolute one about its normal. A ball
-/// joint becomes revolute joints about z, y and x: the yaw, pitch and roll of the child in the parent, as in URDF's
-/// `rpy`. A floating joint becomes prismatic joints along x, y and z, followed by the joints of a ball joint.
+/// A planar joint becomes two prismatic joints along the axes of the plane and a revolute joint about its
+/// normal. A ball joint becomes revolute joints about z, y and x, whose positions are the yaw, pitch and roll
+/// of the child relative to the parent, as in URDF's `rpy`. A floating joint becomes prismatic joints along
+/// x, y and z, followed by the joints of a ball joint.
 pub(super) fn split(
     joint: &JointElement<'_>,
     kind: MultiDof,

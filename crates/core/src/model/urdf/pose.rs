@@ -6,9 +6,9 @@ use crate::model::ModelWarning;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-/// Returns the pose given by the `<origin>` of `element`. `read` holds `xyz`, m, and `rpy`, rad, about the fixed axes
-/// x, y, z in turn. URDF versions after 1.0 may give `quat_xyzw` instead of `rpy`; urdf-rs does not store it, so it is
-/// read from `element`.
+/// Returns the pose given by the `<origin>` of `element`. `read` holds `xyz`, m, and `rpy`, the angles in rad
+/// about the fixed axes x, y and z, applied in this order. URDF versions after 1.0 allow `quat_xyzw` instead
+/// of `rpy`; because urdf-rs does not store the quaternion, it is read from `element`.
 pub(super) fn pose(element: Element<'_>, read: &urdf_rs::Pose) -> Result<Isometry3<f64>, UrdfError> {
     let [roll, pitch, yaw] = *read.rpy;
     let rotation = match element.child("origin").map(quaternion).transpose()?.flatten() {
@@ -33,12 +33,14 @@ fn quaternion(origin: Element<'_>) -> Result<Option<UnitQuaternion<f64>>, UrdfEr
     unit.ok_or_else(|| origin.fail(zero)).map(Some)
 }
 
-/// Returns true if the URDF version of the file supports quaternions, which all versions after 1.0 (the default) do.
+/// Returns true if the URDF version of the file, which is 1.0 by default, is later than 1.0 and thus allows
+/// quaternions.
 fn knows_quaternions(robot: Node<'_, '_>) -> bool {
     robot.attribute("version").is_some_and(|version| !matches!(version.trim(), "1.0" | "1"))
 }
 
-/// Returns a warning if the file contains quaternions that are ignored because of its version.
+/// Returns a warning if the file contains quaternions that are ignored because its version does not allow
+/// them.
 pub(super) fn quaternion_warning(robot: Node<'_, '_>) -> Option<ModelWarning> {
     if knows_quaternions(robot) || !robot.document().input_text().contains("quat_xyzw") {
         return None;
@@ -46,7 +48,8 @@ pub(super) fn quaternion_warning(robot: Node<'_, '_>) -> Option<ModelWarning> {
     let is_origin = |node: &Node<'_, '_>| node.has_tag_name("origin") && node.has_attribute("quat_xyzw");
     let origin = robot.descendants().find(is_origin)?;
     let line = origin.document().text_pos_at(origin.range().start).row;
-    let note =
-        format!("line {line}: quat_xyzw is ignored in version 1.0; write <robot version=\"1.1\"> or use rpy");
+    let note = format!(
+        "line {line}: quat_xyzw is ignored in URDF version 1.0; write <robot version=\"1.1\"> or use rpy"
+    );
     Some(ModelWarning::Note(note))
 }

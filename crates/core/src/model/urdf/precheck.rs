@@ -1,4 +1,4 @@
-//! Validation of size, encoding and nesting depth of the text before it is parsed.
+//! Checks of size, encoding and nesting depth of a text before it is parsed.
 
 use super::error::{UrdfError, UrdfProblem};
 use super::tokens::{Kind, Token, tokens};
@@ -6,16 +6,16 @@ use crate::model::ModelWarning;
 use crate::text_file::{TextFileError, read_bytes};
 use std::path::Path;
 
-/// Largest size of a file, bytes. The URDF of a humanoid with hands has 0.1 MB; files with embedded sensors and plugins
-/// have 1 to 2 MB.
+/// Largest size of a file, bytes. The URDF of a humanoid with hands has 0.1 MB; files with embedded sensors
+/// and plugins have 1 to 2 MB.
 pub(super) const MAX_BYTES: usize = 16 << 20;
-/// Largest nesting depth, equal to the limit of tinyxml2, which urdfdom uses. A URDF has 6 levels, or about 12 with
-/// plugins of simulators.
+/// Largest nesting depth, equal to the limit of tinyxml2, which urdfdom uses. A URDF has 6 levels, or about
+/// 12 with simulator plugins.
 const MAX_DEPTH: usize = 500;
-/// Largest number of attributes of a tag: XML parsers compare each with every other.
+/// Largest number of attributes of a tag, limited because XML parsers compare each attribute with all others.
 const MAX_ATTRIBUTES: usize = 1000;
 
-/// Returns the text of a file of limited size, with a warning if it is not UTF-8.
+/// Reads a file of limited size. Returns its text, with a warning if the file is not UTF-8.
 pub(super) fn read(path: &Path) -> Result<(String, Option<ModelWarning>), UrdfError> {
     let bytes = read_bytes(path, MAX_BYTES).map_err(|error| {
         let problem = match error {
@@ -29,7 +29,7 @@ pub(super) fn read(path: &Path) -> Result<(String, Option<ModelWarning>), UrdfEr
     decode(bytes)
 }
 
-/// Decodes bytes that are not UTF-8 as Latin-1, which occurs in comments and names. UTF-16, which contains
+/// Decodes bytes as UTF-8, or else as Latin-1, which occurs in comments and names. UTF-16, which contains
 /// zero bytes, is rejected.
 fn decode(bytes: Vec<u8>) -> Result<(String, Option<ModelWarning>), UrdfError> {
     let (bytes, at) = match String::from_utf8(bytes) {
@@ -49,7 +49,8 @@ fn decode(bytes: Vec<u8>) -> Result<(String, Option<ModelWarning>), UrdfError> {
     Ok((bytes.into_iter().map(char::from).collect(), Some(ModelWarning::Note(note))))
 }
 
-/// Returns an error for text that must not reach the parser: too large, empty, too deep, too many attributes.
+/// Checks that a text may be passed to the parser: not too large, not empty, not too deeply nested, without
+/// tags that have too many attributes.
 pub(super) fn check(xml: &str) -> Result<(), UrdfError> {
     if xml.len() > MAX_BYTES {
         return Err(UrdfError::new(None, UrdfProblem::TooLarge { limit: MAX_BYTES }));
@@ -75,7 +76,7 @@ pub(super) fn check(xml: &str) -> Result<(), UrdfError> {
     Ok(())
 }
 
-/// Returns the line of a byte offset, from 1.
+/// Returns the line number of a byte offset, counted from 1.
 pub(super) fn line(xml: &str, at: usize) -> Option<u32> {
     let before = xml.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count();
     u32::try_from(before + 1).ok()

@@ -1,4 +1,4 @@
-//! Error type of the deserializer, and its conversion to a [`UrdfError`].
+//! Error type of the deserializer, which is converted to a [`UrdfError`].
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -6,12 +6,12 @@ use super::schema::elements;
 use serde::de;
 use std::fmt;
 
-/// Reason why a type of urdf-rs cannot be deserialized.
+/// Reason why a urdf-rs type cannot be deserialized.
 #[derive(Debug)]
 pub(super) enum Refusal {
-    /// A required field is missing; the element is not known yet.
+    /// A required field is missing; the element is not yet known.
     Missing(&'static str),
-    /// Another reason, as worded by urdf-rs.
+    /// Another reason, with the message of urdf-rs.
     Other(String),
     /// An error with its location.
     Placed(UrdfError),
@@ -50,7 +50,7 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// Returns the error for an unknown type of joint.
+/// Creates the error for an unknown type of joint.
 pub(super) fn unknown_kind(element: &Element<'_>, kind: &str) -> UrdfError {
     let joint = element.text("name").unwrap_or_default().to_owned();
     element.fail(UrdfProblem::JointType { joint, kind: kind.to_owned() })

@@ -9,10 +9,10 @@ use super::tokens::{Kind, Token, tokens};
 use crate::model::ModelWarning;
 use std::ops::Range;
 
-/// Converts `xml` to well-formed XML and returns it, with a warning if elements outside the robot were
-/// removed:
+/// Converts `xml` to well-formed XML, and adds a warning if elements outside the robot were removed:
 ///
-/// - only the outermost `<robot>`, or else the first element, is kept; the text ends at the first zero byte;
+/// - only the outermost `<robot>`, or else the first element, is kept; text after the first zero byte is
+///   dropped;
 /// - comments, processing instructions, document types and characters that XML forbids are removed;
 /// - `&` and `<` that are not markup are escaped;
 /// - attributes are separated by spaces;
@@ -40,7 +40,7 @@ pub(super) fn repair(xml: &str) -> Result<(String, Option<ModelWarning>), UrdfEr
     Ok((writer.finish(), note))
 }
 
-/// Returns the range of the robot, with a warning about elements outside it.
+/// Returns the byte range of the robot's element, with a warning about elements outside that range.
 fn outermost(xml: &str) -> (Range<usize>, Option<ModelWarning>) {
     let (mut depth, mut found) = (0_usize, Vec::new());
     for token in tokens(xml).filter(Token::is_tag) {

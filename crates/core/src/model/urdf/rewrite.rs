@@ -1,18 +1,18 @@
-//! Writer of parts of a malformed text as XML.
+//! Writer of the tokens of a malformed text as well-formed XML.
 
 use super::tokens::{Kind, Token};
 use std::collections::BTreeSet;
 
-/// Largest number of prefixes of a file; the parser compares each with every other.
+/// Largest number of prefixes in a file, limited because the parser compares each prefix with all others.
 const MOST_PREFIXES: usize = 1000;
 
 /// Writer of the converted text.
 pub(super) struct Writer<'a> {
     out: String,
     prefixes: BTreeSet<&'a str>,
-    /// Offset of the end of the outermost tag's name.
+    /// Offset of the end of the name of the outermost tag.
     root_name_ends: usize,
-    /// True if a document type defines entities.
+    /// True if a document type (`<!DOCTYPE>`) defines entities.
     has_entities: bool,
 }
 
@@ -20,25 +20,25 @@ pub(super) struct Writer<'a> {
 pub(super) type Written = Result<(), String>;
 
 impl<'a> Writer<'a> {
-    /// Returns a writer with a capacity of `length` bytes.
+    /// Creates a writer with a capacity of `length` bytes.
     pub(super) fn new(length: usize, has_entities: bool) -> Self {
         let out = String::with_capacity(length);
         Self { out, prefixes: BTreeSet::new(), root_name_ends: 0, has_entities }
     }
 
-    /// Writes only the line breaks.
+    /// Writes only the line breaks of a text.
     pub(super) fn blank(&mut self, text: &str) -> Written {
         self.out.extend(text.chars().filter(|&c| c == '\n'));
         Ok(())
     }
 
-    /// Writes the text with a space for each character that XML forbids.
+    /// Writes a text with a space in place of each character that XML forbids.
     pub(super) fn plain(&mut self, text: &str) -> Written {
         self.out.extend(text.chars().map(|c| if is_character(c) { c } else { ' ' }));
         Ok(())
     }
 
-    /// Writes the text with references in place of markup characters.
+    /// Writes a text with markup characters replaced by references.
     pub(super) fn escaped(&mut self, text: &str) -> Written {
         for (at, c) in text.char_indices() {
             match c {
@@ -55,12 +55,12 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// Writes a tag with a space before each attribute, without declarations of prefixes.
+    /// Writes a tag with a space before each attribute, but without declarations of prefixes.
     pub(super) fn tag(&mut self, tag: &Token<'a>) -> Written {
         let (name, mut rest) = tag.split_name();
         self.out.push_str(if tag.kind == Kind::Close { "</" } else { "<" });
         self.name(name)?;
-        // a line break before the name is written after it
+        // a line break before the name of a tag is moved behind the name
         let front = tag.text.len() - name.len() - rest.len();
         self.blank(&tag.text[..front])?;
         if tag.kind == Kind::Close {
@@ -90,7 +90,7 @@ impl<'a> Writer<'a> {
         self.plain(rest)
     }
 
-    /// Writes a name; only its first colon ends a prefix.
+    /// Writes a name, in which only the first colon separates a prefix.
     fn name(&mut self, name: &'a str) -> Written {
         let is_free = |prefix: &str| !matches!(prefix, "" | "xml" | "xmlns");
         let split = name.split_once(':').filter(|(prefix, local)| is_free(prefix) && !local.is_empty());
@@ -104,7 +104,7 @@ impl<'a> Writer<'a> {
         self.plain(&local.replace(':', "_"))
     }
 
-    /// Returns the text, with the prefixes declared at the outermost tag.
+    /// Returns the written text, with all prefixes declared in the outermost tag.
     pub(super) fn finish(mut self) -> String {
         let declare = |prefix: &&str| format!(" xmlns:{prefix}=\"urn:prefix:{prefix}\"");
         let declared: String = self.prefixes.iter().take(MOST_PREFIXES).map(declare).collect();
@@ -113,7 +113,8 @@ impl<'a> Writer<'a> {
     }
 }
 
-/// Splits a text into the part before the first attribute value, its quote, and the value.
+/// Splits a text into three parts: the text before the first attribute value, the quote character, and the
+/// value.
 fn first_value(text: &str) -> Option<(&str, char, &str)> {
     let open = text.find(['"', '\''])?;
     let (before, rest) = text.split_at(open);
@@ -122,7 +123,7 @@ fn first_value(text: &str) -> Option<(&str, char, &str)> {
     Some((before, quote, value))
 }
 
-/// Returns the name in `&name;` if the text starts with such a reference.
+/// Returns `name` if the text starts with the reference `&name;`.
 fn reference(text: &str) -> Option<&str> {
     let rest = text.strip_prefix('&')?;
     let fits = |c: char| c.is_alphanumeric() || matches!(c, '#' | '-' | '_' | '.' | ':');
@@ -130,7 +131,7 @@ fn reference(text: &str) -> Option<&str> {
     (!name.is_empty() && end.starts_with(';')).then_some(name)
 }
 
-/// Returns true if a reference is predefined in XML.
+/// Returns true if XML predefines the reference `name`.
 fn is_known(name: &str) -> bool {
     let code = match (name.strip_prefix("#x"), name.strip_prefix('#')) {
         (Some(digits), _) => u32::from_str_radix(digits, 16),

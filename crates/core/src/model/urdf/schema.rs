@@ -1,4 +1,5 @@
-//! Schema of the URDF elements that are read: their children, their attributes and the kinds of values.
+//! Schema of the URDF elements that are read: their child elements, and the kinds of values of their
+//! attributes.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -6,24 +7,24 @@ use super::error::{UrdfError, UrdfProblem};
 /// Kind of value of an attribute.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
-    /// Name defined by the file, which may be any text.
+    /// A name that the file defines, which may be any text.
     Name,
-    /// Text with a meaning, such as a path or a type; xacro expressions are rejected.
+    /// Text that is interpreted, such as a path or a type; xacro expressions are rejected.
     Text,
-    /// Given number of finite numbers.
+    /// A given number of finite numbers.
     Numbers(usize),
-    /// Given number of positive, finite numbers, such as edge lengths or a radius.
+    /// A given number of positive, finite numbers, such as edge lengths or a radius.
     Sizes(usize),
-    /// Finite number, or `inf` for no limit.
+    /// A finite number, or `inf` for no limit.
     Limit,
 }
 use Kind::{Limit, Name, Numbers, Sizes, Text};
 
-/// Attribute: name, kind, and the default text if the file omits it. Without a default text the default of
-/// urdf-rs applies, or the attribute is required.
+/// Attribute: name, kind, and the text that is used if the file omits the attribute. If there is no such
+/// text, the default of urdf-rs applies, or the attribute is required.
 pub(super) type Attribute = (&'static str, Kind, Option<&'static str>);
 
-/// Returns the attributes of an element that are read.
+/// Returns those attributes of an element that are read.
 pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     match tag {
         "joint" => &[("name", Name, None), ("type", Text, None)],
@@ -68,7 +69,7 @@ pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     }
 }
 
-/// Returns an error if the text of an attribute does not match the kind in the schema. Without this check, urdf-rs
+/// Checks that the text of an attribute has the kind that the schema specifies. Without this check, urdf-rs
 /// would read `1,0 0 0 0` as three zeros.
 pub(super) fn check(element: &Element<'_>, attribute: Attribute, text: &str) -> Result<(), UrdfError> {
     let (name, kind, _) = attribute;
@@ -90,7 +91,7 @@ pub(super) fn check(element: &Element<'_>, attribute: Attribute, text: &str) -> 
     }
 }
 
-/// Returns true for `inf` and its variants, but not for digits that overflow to infinity.
+/// Returns true for spellings of infinity such as `inf`, but false for digits that overflow to infinity.
 fn is_infinite(text: &str) -> bool {
     text.trim().parse().is_ok_and(f64::is_infinite) && !text.contains(|c: char| c.is_ascii_digit())
 }

@@ -1,6 +1,6 @@
 //! Tokenizer that splits a text into tags, comments and the text between them, without validation.
 //!
-//! Reads the text in one pass without recursion, so that neither a deeply nested document nor an entity bomb can
+//! The text is read in one pass without recursion, so that neither deep nesting nor an entity bomb can
 //! exhaust the stack or the memory.
 
 /// Kind of a token.
@@ -19,11 +19,11 @@ pub(super) enum Kind {
     Empty,
 }
 
-/// Token: a part of the text.
+/// Token, a contiguous part of the text.
 #[derive(Clone, Copy)]
 pub(super) struct Token<'a> {
     pub(super) kind: Kind,
-    /// Offset of its first byte.
+    /// Byte offset of the start of the token in the text.
     pub(super) at: usize,
     pub(super) text: &'a str,
 }
@@ -39,7 +39,7 @@ impl Token<'_> {
 }
 
 impl<'a> Token<'a> {
-    /// Returns the name of a tag and the text after it.
+    /// Splits a tag into its name and the text after the name.
     pub(super) fn split_name(&self) -> (&'a str, &'a str) {
         let rest = inside(self.text);
         let rest = rest.strip_prefix('/').map_or(rest, str::trim_start);
@@ -48,12 +48,12 @@ impl<'a> Token<'a> {
     }
 }
 
-/// Returns a tag without `<` and the spaces after it, which tinyxml2 accepts.
+/// Returns a tag without its leading `<` and the spaces that follow, which tinyxml2 accepts.
 fn inside(tag: &str) -> &str {
     tag.strip_prefix('<').map_or(tag, str::trim_start)
 }
 
-/// Returns all tokens in order; concatenated they are the text.
+/// Returns all tokens of a text in order; concatenated, they are the text.
 pub(super) fn tokens(xml: &str) -> impl Iterator<Item = Token<'_>> {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -77,7 +77,7 @@ fn first(rest: &str) -> (Kind, usize) {
         ("<?", "?>", Kind::Instruction),
     ] {
         if let Some(inside) = rest.strip_prefix(start) {
-            // the dashes that open a comment do not end it
+            // the dashes that open a comment are not part of its end
             let length = inside.find(end).map(|at| start.len() + at + end.len());
             return (kind, length.unwrap_or(rest.len()));
         }
