@@ -73,6 +73,36 @@ def test_members_and_roots_of_a_chain() -> None:
     assert found["free_dc"] == (("d",), ("b", "a"), ("c",))
 
 
+def test_the_joints_of_a_seating_are_those_of_the_engine() -> None:
+    """A tree has two more joints until the seating ends."""
+    seat = {"seat": 1.5, "pose": {"position": [1, 0, 0], "attitude": {"roll_pitch_yaw": [0.1, 0, 0]}}}
+    scenario = chain(
+        ("ab", {"at": 1}, capture("a", "b") | seat),
+        ("cd", {"at": 2}, capture("c", "d") | seat),
+        ("free_ab", {"after": "ab", "delay": 2}, {"release": "ab"}),
+        ("free_cd", {"at": 5}, {"release": "cd"}),
+    )
+    found = stages(scenario)
+    assert [stage.seating_joints for stage in found] == [(), (2, 0, 0), (2, 2), (0, 2, 0), (0, 0, 0, 0)]
+    stepper = build_world(scenario).simulation.start(duration=10.0)
+    for stage in found[1:]:
+        stepper.advance_to(stage.time + 0.1)
+        counts = []
+        for group in json.loads(stepper.checkpoint().state)["groups"]:
+            counts += [len(tree["q"]) - 7 for tree in group["progress"]["state"]["trees"]]
+        assert sorted(counts) == sorted(stage.seating_joints), stage
+
+
+def test_a_seating_that_begins_at_a_latch_is_counted() -> None:
+    latch = {"latch": {"within": [0.1, 0.1]}}
+    scenario = chain(
+        ("ab", latch, capture("a", "b") | {"seat": 2}),
+        ("soon", {"after": "ab", "delay": 1}, capture("c", "d")),
+        ("later", {"after": "soon", "delay": 2}, {"release": "soon"}),
+    )
+    assert [sum(stage.seating_joints) for stage in stages(scenario)] == [0, 2, 2, 0]
+
+
 def test_events_without_a_time_are_in_the_order_of_declaration() -> None:
     latch = {"latch": {"within": [0.1, 0.1]}}
     scenario = chain(
@@ -123,7 +153,8 @@ def test_the_command_prints_json() -> None:
     assert [system["name"] for system in found["systems"]] == ["servicer", "target"]
     after = {stage["after"]: stage["trees"] for stage in found["trees"]}
     (tree,) = after["grasp"]
-    assert (tree["systems"], tree["root"], tree["joints"]) == (["servicer", "target"], "servicer", 7)
+    assert (tree["systems"], tree["root"], tree["joints"]) == (["servicer", "target"], "servicer", 9)
+    assert tree["seating_joints"] == 2
     assert np.isclose(tree["mass_kg"], sum(system["mass_kg"] for system in found["systems"]))
     assert len(after["let_go"]) == len(after[None]) == 2
 

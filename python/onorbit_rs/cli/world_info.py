@@ -39,17 +39,24 @@ def describe_world(scenario: WorldScenario, models: Mapping[str, Model]) -> dict
         "trees": [
             {
                 "after": stage.event, "time_s": stage.time, "remark": stage.remark,
-                "trees": [_tree(tree, models) for tree in stage.trees],
+                "trees": _trees(stage, models),
             }
             for stage in stages(scenario)
         ],
     }  # fmt: skip
 
 
-def _tree(systems: tuple[str, ...], models: Mapping[str, Model]) -> dict[str, Any]:
-    joints = sum(len(models[name].joint_names) for name in systems)
-    mass = math.fsum(models[name].mass for name in systems)
-    return {"systems": list(systems), "root": systems[0], "joints": joints, "mass_kg": mass}
+def _trees(stage: Stage, models: Mapping[str, Model]) -> list[dict[str, Any]]:
+    """Return the trees of a stage; ``joints`` contains the joints of seatings."""
+    seatings = stage.seating_joints or (0,) * len(stage.trees)
+    return [
+        {
+            "systems": list(systems), "root": systems[0],
+            "joints": seating + sum(len(models[name].joint_names) for name in systems),
+            "seating_joints": seating, "mass_kg": math.fsum(models[name].mass for name in systems),
+        }
+        for systems, seating in zip(stage.trees, seatings, strict=True)
+    ]  # fmt: skip
 
 
 def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: Console) -> None:
@@ -82,6 +89,10 @@ def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: C
     for stage in found:
         _add_stage(table, stage, models)
     print_table(console, table)
+    if any(sum(stage.seating_joints) for stage in found):
+        console.print(
+            "+ 2: a prismatic and a revolute joint, which a seating moves until it ends", soft_wrap=True
+        )
     if any(stage.time is None for stage in found):
         console.print(
             "events without a time depend on the motion or on a command; they are listed in the order of "
@@ -96,12 +107,12 @@ def _add_stage(table: Any, stage: Stage, models: Mapping[str, Model]) -> None:
     if stage.remark:
         table.add_row(after, time, f"[yellow]{text(stage.remark)}[/yellow]", "", "")
         return
-    for number, systems in enumerate(stage.trees):
-        tree = _tree(systems, models)
-        names = text(" + ".join(systems))
-        shown = f"[bold]{names}[/bold]" if len(systems) > 1 else names
+    for number, tree in enumerate(_trees(stage, models)):
+        names, seating = text(" + ".join(tree["systems"])), tree["seating_joints"]
+        shown = f"[bold]{names}[/bold]" if len(tree["systems"]) > 1 else names
         first = (after, time) if number == 0 else ("", "")
-        table.add_row(*first, shown, str(tree["joints"]), f"{tree['mass_kg']:.5g}")
+        joints = f"{tree['joints'] - seating} + {seating}" if seating else str(tree["joints"])
+        table.add_row(*first, shown, joints, f"{tree['mass_kg']:.5g}")
 
 
 def _left(table: Any, *columns: int) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,6 +22,8 @@ class Stage:
     """Names of the systems of each tree, its root first."""
     remark: str = ""
     """Why the event changes no tree; otherwise empty."""
+    seating_joints: tuple[int, ...] = ()
+    """Number of joints of each tree whose positions seatings give, until these end."""
 
 
 @dataclass(frozen=True)
@@ -28,6 +31,12 @@ class _Weld:
     capture: str
     by: str
     of: str
+    seat: float
+    """Duration of the seating, s; zero without one."""
+
+
+SEATING_JOINTS = 2
+"""Joints of a seating: one prismatic and one revolute joint."""
 
 
 def stages(scenario: WorldScenario) -> list[Stage]:
@@ -40,6 +49,7 @@ def stages(scenario: WorldScenario) -> list[Stage]:
     welds: list[_Weld] = []
     roots: list[str] = []
     found = [Stage(None, 0.0, _trees(names, welds, roots))]
+    by_name = {event.name: event for event in scenario.events}
     for event, time in expected_order(scenario.events):
         if time is not None and time > scenario.simulation.duration:
             remark = "after the end of the run"
@@ -47,8 +57,22 @@ def stages(scenario: WorldScenario) -> list[Stage]:
             remark = _capture(event, found[-1].trees, welds, roots)
         else:
             remark = _release(str(event.do.release), names, welds, roots)
-        found.append(Stage(event.name, time, _trees(names, welds, roots), remark))
+        trees = _trees(names, welds, roots)
+        seated = [weld for weld in welds if _elapsed(event, weld.capture, by_name) < weld.seat]
+        joints = tuple(SEATING_JOINTS * sum(weld.by in tree for weld in seated) for tree in trees)
+        found.append(Stage(event.name, time, trees, remark, joints))
     return found
+
+
+def _elapsed(event: Event, capture: str, by_name: dict[str, Event]) -> float:
+    """Return the time from a capture to an event, s; infinity if it is not known before the run."""
+    before, delay = event, 0.0
+    while before.name != capture and before.when.after is not None:
+        before, delay = by_name[before.when.after], delay + before.when.delay
+    if before.name == capture:
+        return delay
+    start, end = _time(by_name[capture], by_name), _time(event, by_name)
+    return math.inf if start is None or end is None else end - start
 
 
 def expected_order(events: Sequence[Event]) -> list[tuple[Event, float | None]]:
@@ -85,7 +109,7 @@ def _capture(event: Event, trees: Sequence[Sequence[str]], welds: list[_Weld], r
     first, second = (next(tree for tree in trees if name in tree) for name in (by, of))
     if first == second:
         return f"stops the run: {by} and {of} are connected already"
-    welds.append(_Weld(event.name, by, of))
+    welds.append(_Weld(event.name, by, of, event.do.seat or 0.0))
     roots[:] = [root for root in roots if root not in (first[0], second[0])] + [first[0]]
     return ""
 
