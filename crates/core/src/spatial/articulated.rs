@@ -1,4 +1,4 @@
-//! Articulated-body inertia: the apparent inertia of a body whose subtree can move at its joints.
+//! Articulated-body inertia: the apparent inertia of a body whose subtree can move at the joints.
 
 use super::inertia::SpatialInertia;
 use super::mat3::Mat3;
@@ -8,7 +8,8 @@ use super::sym3::Sym3;
 use super::vec3::Vec3;
 use std::ops::Add;
 
-/// Articulated-body inertia: a symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first, with 21 independent entries.
+/// Articulated-body inertia: a symmetric 6 × 6 operator `[[A, H], [Hᵀ, I]]`, linear first, with 21
+/// independent entries.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ArticulatedInertia<S> {
     /// Linear block, kg.
@@ -86,7 +87,7 @@ impl<S: Real> ArticulatedInertia<S> {
         }
     }
 
-    /// Computes the factors of `IA⁻¹` by block elimination: `A⁻¹`, `A⁻¹ H`, `(I − Hᵀ A⁻¹ H)⁻¹`.
+    /// Computes the factors of `IA⁻¹` by block elimination: `A⁻¹`, `A⁻¹ H` and `(I − Hᵀ A⁻¹ H)⁻¹`.
     #[inline(always)]
     pub fn inverse(&self) -> InverseArticulated<S> {
         let a = self.linear.inverse();
@@ -103,14 +104,14 @@ impl<S: Real> ArticulatedInertia<S> {
         InverseArticulated { linear: a, a_inv_h: Mat3::from_columns(x, y, z), angular: schur.inverse() }
     }
 
-    /// Returns `IA⁻¹ f`.
+    /// Returns `IA⁻¹ f`, the acceleration that the force `f` causes.
     #[inline(always)]
     pub fn solve(&self, f: Force<S>) -> Motion<S> {
         self.inverse().apply(f)
     }
 }
 
-/// Factors of `IA⁻¹` for several right-hand sides.
+/// Factors of `IA⁻¹`, with which several right-hand sides can be solved.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InverseArticulated<S> {
     /// `A⁻¹`.

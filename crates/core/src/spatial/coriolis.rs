@@ -1,4 +1,4 @@
-//! Derivative of the bias force of a body with respect to the motion of its parent.
+//! Derivative of the bias force of a body with respect to the twist of its parent.
 
 use super::inertia::SpatialInertia;
 use super::mat3::Mat3;
@@ -7,10 +7,11 @@ use super::scalar::Real;
 use super::vec3::Vec3;
 use std::ops::AddAssign;
 
-/// Coriolis operator `2B = v×* I − I v× + (I v) ×̄*` of one or several bodies, where `f ×̄* m = m ×* f`.
+/// Coriolis operator `2B = v×* I − I v× + (I v) ×̄*` of one or several bodies with inertia `I` and twist `v`,
+/// where `f ×̄* m = m ×* f`.
 ///
-/// `2B m` is twice the Coriolis force summed over all points of the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`, `2B m
-/// = (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular half `ω` of `m`.
+/// `2B m` is twice the Coriolis force summed over all points of the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ
+/// dm`, `2B m = (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular half `ω` of `m`.
 ///
 /// Source: Singh, Russell and Wensing, IEEE Robotics and Automation Letters 7(2), 2022.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,11 +23,11 @@ pub struct Coriolis<S> {
 }
 
 impl<S: Real> Coriolis<S> {
-    /// Returns the operator of a body with its inertia, its twist `v = (u, ω)` and its momentum `I v`.
+    /// Creates the operator of a body with inertia `i`, twist `v = (u, ω)` and `momentum` `I v`.
     #[inline(always)]
     pub fn of(i: &SpatialInertia<S>, v: Motion<S>, momentum: Force<S>) -> Self {
         let (j, w, two) = (&i.about_origin, v.angular, S::of(2.0));
-        // ∫ r rᵀ dm = ½ tr(J) 1 − J, doubled, by columns
+        // ∫ r rᵀ dm = ½ tr(J) 1 − J, multiplied by two, by columns
         let trace = j.xx + j.yy + j.zz;
         let x = Vec3::new(trace - two * j.xx, -(two * j.xy), -(two * j.xz));
         let y = Vec3::new(-(two * j.xy), trace - two * j.yy, -(two * j.yz));

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-/// Features of this processor, detected once, because detecting them at every call of a kernel takes as long as a small
+/// Features of this processor. They are detected only once, because a detection takes as long as a small
 /// kernel.
 static DETECTED: LazyLock<Features> = LazyLock::new(Features::detect);
 

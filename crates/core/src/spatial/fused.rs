@@ -6,16 +6,16 @@ use super::scalar::{Real, Scalar};
 use super::sine::{FAST_SINE_LIMIT, sin_cos};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// Scalar `f64` whose [`mul_add`](Real::mul_add) is one instruction.
+/// Scalar `f64` whose [`mul_add`](Real::mul_add) compiles to one instruction.
 ///
-/// Use it inside [`Real::enter`] on a processor for which [`Fused::is_available`] returns true. Outside `enter` the
-/// results are the same but are computed slowly. On other processors `enter` panics.
+/// It must be used inside [`Real::enter`], on a processor for which [`Fused::is_available`] returns true; on
+/// other processors `enter` panics. Outside `enter` the results are the same but their computation is slow.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Fused(pub f64);
 
 impl Fused {
-    /// Returns true if this processor has the instructions that [`Real::enter`] uses.
+    /// Returns true if this processor supports the instructions that [`Real::enter`] uses.
     #[inline(always)]
     pub fn is_available() -> bool {
         has_fma()
@@ -137,7 +137,7 @@ impl Real for Fused {
         #[cfg(target_arch = "x86_64")]
         {
             assert!(Self::is_available(), "fused kernels entered on a processor without AVX2 and FMA");
-            // SAFETY: the line above checks that the processor has both features.
+            // SAFETY: the assertion above guarantees that the processor has both features.
             unsafe { enter_fused(kernel) }
         }
         #[cfg(not(target_arch = "x86_64"))]

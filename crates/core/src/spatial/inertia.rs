@@ -6,10 +6,10 @@ use super::sym3::Sym3;
 use super::vec3::Vec3;
 use std::ops::{Add, AddAssign};
 
-/// Inertia of a rigid body: mass, centre of mass `c` and inertia `I_c` about it.
+/// Inertia of a rigid body: mass, centre of mass `c`, and inertia `I_c` about the centre of mass.
 ///
-/// Twist, momentum and force are referred to the origin, but products are formed at the centre of mass, which
-/// avoids cancellation for small bodies far from the origin.
+/// Twists, momenta and forces refer to the origin, but their products with the inertia are formed at the
+/// centre of mass, which avoids cancellation for small bodies far from the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidInertia<S> {
     /// Mass, kg.
@@ -27,13 +27,14 @@ impl<S: Real> RigidInertia<S> {
         SpatialInertia::at_com(self.mass, self.com, self.about_com)
     }
 
-    /// Returns the momentum `I v`: `p = m (v + ω × c)`, `L = I_c ω + c × p`.
+    /// Returns the momentum `I v` for the twist `v = (v, ω)`: `p = m (v + ω × c)`, `L = I_c ω + c × p`.
     #[inline(always)]
     pub fn momentum(&self, v: Motion<S>) -> Force<S> {
         Force::at(v.at(self.com) * self.mass, self.about_com * v.angular, self.com)
     }
 
-    /// Returns the rate of the momentum, `I a + v ×* I v`, for the spatial acceleration `a = (a, α)`:
+    /// Returns the rate of change of the momentum, `I a + v ×* I v`, for the spatial acceleration `a = (a,
+    /// α)`:
     ///
     /// `f = m (a + α × c + ω × (v + ω × c))`, `n = I_c α + ω × I_c ω + c × f`.
     #[inline(always)]
@@ -44,7 +45,7 @@ impl<S: Real> RigidInertia<S> {
     }
 }
 
-/// Inertia about the origin: mass `m`, first moment `h = m c`, second moment `I_o`.
+/// Inertia about the origin: mass `m`, first moment `h = m c` and rotational inertia `I_o`.
 ///
 /// The 6 × 6 matrix, linear first, is `[[m 1, −h×], [h×, I_o]]`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,20 +59,20 @@ pub struct SpatialInertia<S> {
 }
 
 impl<S: Real> SpatialInertia<S> {
-    /// Returns the zero inertia.
+    /// Returns the inertia of a body without mass.
     #[inline(always)]
     pub fn zero() -> Self {
         Self { mass: S::of(0.0), moment: Vec3::zero(), about_origin: Sym3::diagonal(S::of(0.0)) }
     }
 
-    /// Returns the inertia from the centre of mass `c` and the inertia about it.
+    /// Creates the inertia from the centre of mass `c` and the inertia `about_com` about the centre of mass.
     #[inline(always)]
     pub fn at_com(mass: S, c: Vec3<S>, about_com: Sym3<S>) -> Self {
         let moment = c * mass;
         Self { mass, moment, about_origin: about_com.shift(moment, c) }
     }
 
-    /// Returns the momentum `I v`: `p = m v + ω × h`, `L = I_o ω + h × v`.
+    /// Returns the momentum `I v` for the twist `v = (v, ω)`: `p = m v + ω × h`, `L = I_o ω + h × v`.
     #[inline(always)]
     pub fn momentum(&self, v: Motion<S>) -> Force<S> {
         Force::new(
@@ -117,7 +118,7 @@ impl<S: Real> SpatialInertia<S> {
     }
 }
 
-/// Factors of `I⁻¹` for several right-hand sides.
+/// Factors of `I⁻¹`, with which several right-hand sides can be solved.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InverseInertia<S> {
     inverse_mass: S,
@@ -127,7 +128,7 @@ pub struct InverseInertia<S> {
 }
 
 impl<S: Real> SpatialInertia<S> {
-    /// Computes the factors of `I⁻¹`.
+    /// Computes the factors of `I⁻¹`. The mass must not be zero.
     #[inline(always)]
     pub fn inverse(&self) -> InverseInertia<S> {
         let inverse_mass = S::of(1.0) / self.mass;
@@ -138,14 +139,15 @@ impl<S: Real> SpatialInertia<S> {
 }
 
 impl<S: Real> InverseInertia<S> {
-    /// Returns `I⁻¹ f`, both about the centre of mass, where the two halves decouple: `ω = I_c⁻¹ n`, `v =
-    /// f/m`.
+    /// Returns `I⁻¹ f` with the force `f = (f, n)` and the result about the centre of mass, where the linear
+    /// and angular parts decouple: `ω = I_c⁻¹ n`, `v = f/m`.
     #[inline(always)]
     pub fn at_com(&self, f: Force<S>) -> Motion<S> {
         Motion::new(f.linear * self.inverse_mass, self.inverse_about_com * f.angular)
     }
 
-    /// Returns `I⁻¹ f`: `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω × c`.
+    /// Returns `I⁻¹ f` for the force `f = (f, n)` about the origin: `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω ×
+    /// c`.
     #[inline(always)]
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
         let angular = self.inverse_about_com * (f.angular - self.com.cross(f.linear));

@@ -1,29 +1,29 @@
-//! Instruction sets of the kernels.
+//! Instruction sets for which the kernels are compiled.
 
 use super::fused::Fused;
 use super::lanes::Lanes8;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Instruction sets that the kernels are compiled for.
+/// Instruction sets for which the kernels are compiled, as levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum InstructionSet {
-    /// Instructions that all processors of the family have.
+    /// Instructions that every processor of the architecture has.
     Baseline = 0,
     /// Fused multiply-add (x86-64: AVX2 and FMA).
     Fused = 1,
-    /// 512-bit vectors in batches (x86-64: AVX-512 F, DQ and VL).
+    /// 512-bit vectors in batch computations (x86-64: AVX-512 F, DQ and VL).
     Wide = 2,
 }
 
-/// Highest allowed level; all levels are allowed by default.
+/// Highest allowed level; initially all levels are allowed.
 static ALLOWED: AtomicU8 = AtomicU8::new(u8::MAX);
 
 impl InstructionSet {
     /// All levels, lowest first.
     pub const ALL: [Self; 3] = [Self::Baseline, Self::Fused, Self::Wide];
 
-    /// Returns the highest level that the processor has and [`InstructionSet::limit`] allows.
+    /// Returns the highest level that the processor supports and that [`InstructionSet::limit`] allows.
     pub fn current() -> Self {
         let allowed = ALLOWED.load(Ordering::Relaxed);
         if allowed >= Self::Wide as u8 && Lanes8::is_available() {
@@ -35,17 +35,17 @@ impl InstructionSet {
         }
     }
 
-    /// Limits all threads to `level` from now on.
+    /// Limits the level used by all threads to at most `level`, until the next call.
     pub fn limit(level: Self) {
         ALLOWED.store(level as u8, Ordering::Relaxed);
     }
 
-    /// Returns the level with this [`name`](Self::name).
+    /// Returns the level with the given [`name`](Self::name), if there is one.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|level| level.name() == name)
     }
 
-    /// Returns the name of the level.
+    /// Returns the name by which users refer to the level.
     pub fn name(self) -> &'static str {
         match self {
             Self::Baseline => "baseline",

@@ -5,7 +5,7 @@ use super::vec3::Vec3;
 use nalgebra::Matrix3;
 use std::ops::{Add, AddAssign, Mul};
 
-/// 3 × 3 matrix; `rot_ab` converts B components to A components.
+/// 3 × 3 matrix. A rotation matrix `rot_ab` converts B components to A components.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mat3<S> {
     /// First column.
@@ -25,7 +25,7 @@ impl<S> Mat3<S> {
 }
 
 impl<S: Real> Mat3<S> {
-    /// Returns the matrix with these columns.
+    /// Creates a matrix from its columns.
     #[inline(always)]
     pub fn from_columns(x: Vec3<S>, y: Vec3<S>, z: Vec3<S>) -> Self {
         Self { x, y, z }
@@ -44,7 +44,7 @@ impl<S: Real> Mat3<S> {
         Self::from_columns(Vec3::zero(), Vec3::zero(), Vec3::zero())
     }
 
-    /// Returns a matrix with the same entries in every lane.
+    /// Returns the matrix `m` in every lane.
     #[inline(always)]
     pub fn of(m: &Mat3<f64>) -> Self {
         Self::from_columns(Vec3::of(&m.x), Vec3::of(&m.y), Vec3::of(&m.z))
@@ -118,7 +118,7 @@ impl<S: Real> AddAssign for Mat3<S> {
     }
 }
 
-/// Returns a pose as a row-major `(4, 4)` matrix.
+/// Returns the pose with rotation `r` and position `p` as a homogeneous `(4, 4)` matrix, row major.
 #[inline(always)]
 pub fn pose_rows<S: Real>(r: &Mat3<S>, p: Vec3<S>) -> [S; 16] {
     let (o, l) = (S::of(0.0), S::of(1.0));

@@ -1,4 +1,4 @@
-//! Spatial algebra on a generic scalar: vectors, rotations, motions, forces, inertias.
+//! Spatial algebra for a generic scalar: vectors, rotations, motions, forces and inertias.
 //!
 //! All types are plain data with `#[inline(always)]` methods, so that the arithmetic is compiled for the
 //! instruction set of the kernel that uses it. Linear parts precede angular parts.

@@ -4,17 +4,18 @@ use super::scalar::Real;
 use super::vec3::Vec3;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// Twist of a body, or spatial acceleration, which is the rate of change of a twist.
+/// Motion vector: the twist of a body, or its spatial acceleration, which is the time derivative of the
+/// twist.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<S> {
-    /// Velocity of the body-fixed point at the origin, m/s; in a spatial acceleration, the rate of change of the
-    /// velocity at the origin, m/s².
+    /// Velocity of the body-fixed point at the origin, m/s; for a spatial acceleration, the rate of change of
+    /// the velocity at the origin, m/s².
     pub linear: Vec3<S>,
     /// Angular velocity, rad/s, or angular acceleration, rad/s².
     pub angular: Vec3<S>,
 }
 
-/// Wrench or spatial momentum about the origin.
+/// Force vector: a wrench, or a spatial momentum, about the origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Force<S> {
     /// Force, N, or linear momentum, kg m/s.
@@ -26,19 +27,19 @@ pub struct Force<S> {
 macro_rules! pair {
     ($name:ident) => {
         impl<S: Real> $name<S> {
-            /// Returns the pair of the halves `linear` and `angular`.
+            /// Creates the vector from its linear and angular parts.
             #[inline(always)]
             pub fn new(linear: Vec3<S>, angular: Vec3<S>) -> Self {
                 Self { linear, angular }
             }
 
-            /// Returns the zero pair.
+            /// Returns the zero vector.
             #[inline(always)]
             pub fn zero() -> Self {
                 Self::new(Vec3::zero(), Vec3::zero())
             }
 
-            /// Returns the pair with the first six numbers of a slice, linear before angular.
+            /// Creates the vector from the first six numbers of a slice, linear before angular.
             #[inline(always)]
             pub fn from_slice(s: &[S]) -> Self {
                 Self::new(Vec3::from_slice(s), Vec3::from_slice(&s[3..]))
@@ -103,7 +104,7 @@ pair!(Motion);
 pair!(Force);
 
 impl<S: Real> Motion<S> {
-    /// Returns the power `vᵀ f`, W.
+    /// Returns the scalar product `vᵀ f`; for a twist and a wrench, the power, W.
     #[inline(always)]
     pub fn dot(self, f: Force<S>) -> S {
         self.linear.dot(f.linear) + self.angular.dot(f.angular)
@@ -115,15 +116,15 @@ impl<S: Real> Motion<S> {
         self.linear.dot_add(f.linear, s) + self.angular.dot(f.angular)
     }
 
-    /// Returns `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`: the rate of a motion `m` fixed in a frame that moves with
-    /// `v`.
+    /// Returns `v × m = (ω × m_lin + v × m_ang, ω × m_ang)`, the rate of change of a motion `m` that is fixed
+    /// in a frame with the twist `v`.
     #[inline(always)]
     pub fn cross(self, m: Self) -> Self {
         Self::new(self.angular.cross(m.linear) + self.linear.cross(m.angular), self.angular.cross(m.angular))
     }
 
-    /// Returns `v ×* f = (ω × f_lin, ω × f_ang + v × f_lin)`: the rate of a force `f` fixed in a frame that moves with
-    /// `v`.
+    /// Returns `v ×* f = (ω × f_lin, ω × f_ang + v × f_lin)`, the rate of change of a force `f` that is fixed
+    /// in a frame with the twist `v`.
     #[inline(always)]
     pub fn cross_force(self, f: Force<S>) -> Force<S> {
         Force::new(self.angular.cross(f.linear), self.angular.cross(f.angular) + self.linear.cross(f.linear))
@@ -135,7 +136,7 @@ impl<S: Real> Motion<S> {
         self.linear + self.angular.cross(p)
     }
 
-    /// Returns this motion with the linear part at the point `p`.
+    /// Returns this motion with its linear part referred to the point `p` instead of the origin.
     #[inline(always)]
     #[must_use]
     pub fn referred_to(self, p: Vec3<S>) -> Self {
@@ -144,21 +145,21 @@ impl<S: Real> Motion<S> {
 }
 
 impl<S: Real> Force<S> {
-    /// Returns the wrench about the origin of `force` acting at `p` and of a free `moment`.
+    /// Returns the wrench, about the origin, of a `force` acting at `p` plus a free `moment`.
     #[inline(always)]
     pub fn at(force: Vec3<S>, moment: Vec3<S>, p: Vec3<S>) -> Self {
         Self::new(force, moment + p.cross(force))
     }
 
-    /// Returns this wrench, whose moment is about the point `p`, with the moment about the origin.
+    /// Returns this wrench, whose moment is about the point `p`, with its moment about the origin.
     #[inline(always)]
     #[must_use]
     pub fn from_point(self, p: Vec3<S>) -> Self {
         Self::new(self.linear, p.cross_add(self.linear, self.angular))
     }
 
-    /// Computes [`from_point`](Self::from_point) with the product formed first: three more operations, but a
-    /// shorter dependency chain if the moment is the last result of a recursion.
+    /// Computes [`from_point`](Self::from_point) with the cross product evaluated first. This takes three
+    /// more operations, but shortens the dependency chain if the moment is the last result of a recursion.
     #[inline(always)]
     #[must_use]
     pub fn from_point_late(self, p: Vec3<S>) -> Self {

@@ -1,8 +1,8 @@
-//! Curvatures at the knots of quintic splines with given values and slopes.
+//! Curvatures at the knots of quintic splines with given values and slopes at the knots.
 
-/// Returns the curvatures (K, n) for which the third derivative is continuous at all inner knots, and the fourth
-/// derivative at the first and the last of them (not-a-knot). The spline is of order 6. Up to three points define a
-/// single polynomial.
+/// Returns the curvatures (K, n) with which the third derivative is continuous at all inner knots, and the
+/// fourth derivative at the first and the last inner knot (not-a-knot condition). The spline is of order 6.
+/// Two or three points define a single polynomial.
 pub(super) fn curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; values.len()];
     for i in 0..width {
@@ -18,7 +18,7 @@ pub(super) fn curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[
     out
 }
 
-/// Returns the curvatures of the Hermite polynomial through all points.
+/// Returns the curvatures of the Hermite polynomial through all points `tᵢ` with values `xᵢ` and slopes `vᵢ`.
 ///
 /// `aᵢ = Σⱼ 2 cᵢⱼ² [(1 - 2 cⱼⱼ (tᵢ - tⱼ)) (xⱼ - xᵢ) + (tᵢ - tⱼ) vⱼ] + 4 cᵢᵢ vᵢ` over `j ≠ i`, where `cᵢⱼ` is
 /// the slope at `tᵢ` of the Lagrange polynomial that is 1 at `tⱼ`.
@@ -36,7 +36,7 @@ fn hermite_curvatures(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     (0..t.len()).map(at).collect()
 }
 
-/// Returns the curvatures of the spline through four points or more.
+/// Returns the curvatures of the spline through four or more points.
 fn spline_curvatures(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     let last = t.len() - 1;
     let gap = |i: usize| t[i + 1] - t[i];
@@ -52,15 +52,15 @@ fn spline_curvatures(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
         (v[i + 1] * 168.0 + v[i] * 192.0 - chord(i) * 360.0) * (l * l * l)
             + (v[i] * 192.0 + v[i - 1] * 168.0 - chord(i - 1) * 360.0) * (k * k * k)
     };
-    // -3k aᵢ₋₁ + 9 (k + l) aᵢ - 3l aᵢ₊₁ = j,  k = 1/hᵢ₋₁, l = 1/hᵢ, j the jump of the third derivative
+    // -3k aᵢ₋₁ + 9 (k + l) aᵢ - 3l aᵢ₊₁ = j with k = 1/hᵢ₋₁, l = 1/hᵢ and the jump j of the third derivative
     let mut rows: Vec<[f64; 4]> = (1..last)
         .map(|i| {
             let (k, l) = (1.0 / gap(i - 1), 1.0 / gap(i));
             [-3.0 * k, 9.0 * (k + l), -3.0 * l, jerk_jump(i)]
         })
         .collect();
-    // -24k² a₀ + 36 (k² - l²) a₁ + 24l² a₂ = s, the jump of the fourth: a₀ = α a₁ + β a₂ - s/24k²; likewise
-    // at the end
+    // -24k² a₀ + 36 (k² - l²) a₁ + 24l² a₂ = s, the jump of the fourth derivative: a₀ = α a₁ + β a₂ - s/24k²;
+    // the same holds at the end
     let end = |own: f64, next: f64, snap_jump: f64| {
         let r2 = (own / next) * (own / next);
         (1.5 * (1.0 - r2), r2, snap_jump * own * own / 24.0)
@@ -81,7 +81,8 @@ fn spline_curvatures(t: &[f64], x: &[f64], v: &[f64]) -> Vec<f64> {
     a
 }
 
-/// Solves the diagonally dominant tridiagonal system `below xᵢ₋₁ + middle xᵢ + above xᵢ₊₁ = right`.
+/// Solves the diagonally dominant tridiagonal system with the rows `below xᵢ₋₁ + middle xᵢ + above xᵢ₊₁ =
+/// right`.
 fn solve(mut rows: Vec<[f64; 4]>) -> Vec<f64> {
     for i in 1..rows.len() {
         let factor = rows[i][0] / rows[i - 1][1];

@@ -21,7 +21,7 @@ impl Real for f64 {
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
-        self * a + b // not f64::mul_add, which is a library call on processors without the instruction
+        self * a + b // f64::mul_add would be a library call on processors without the instruction
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

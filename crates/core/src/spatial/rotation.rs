@@ -5,7 +5,7 @@ use super::scalar::Real;
 use super::vec3::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Unit quaternion, stored x, y, z, w.
+/// Unit quaternion, stored in the order x, y, z, w.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quat<S> {
     /// Vector part.
@@ -15,20 +15,20 @@ pub struct Quat<S> {
 }
 
 impl<S: Real> Quat<S> {
-    /// Returns the quaternion of the slice `[x, y, z, w]`.
+    /// Creates the quaternion from a slice `[x, y, z, w]`.
     #[inline(always)]
     pub fn from_xyzw(s: &[S]) -> Self {
         Self { v: Vec3::from_slice(s), w: s[3] }
     }
 
-    /// Writes `[x, y, z, w]`.
+    /// Writes the components to `out` in the order `[x, y, z, w]`.
     #[inline(always)]
     pub fn write_xyzw(self, out: &mut [S]) {
         self.v.write(out);
         out[3] = self.w;
     }
 
-    /// Returns the Hamilton product: the rotation `o` first, then `self`.
+    /// Returns the Hamilton product, which rotates by `o` first and by `self` second.
     #[inline(always)]
     #[must_use]
     pub fn product(self, o: Self) -> Self {
@@ -38,7 +38,7 @@ impl<S: Real> Quat<S> {
         }
     }
 
-    /// Returns the inverse rotation.
+    /// Returns the conjugate, which is the inverse rotation.
     #[inline(always)]
     #[must_use]
     pub fn conjugate(self) -> Self {
@@ -53,8 +53,8 @@ impl<S: Real> Quat<S> {
         Self { v: self.v * s, w: self.w * s }
     }
 
-    /// Returns [`normalized`](Self::normalized) for a length that differs from one by rounding, with one
-    /// Newton step for `1/|q|`.
+    /// Normalizes a quaternion whose norm differs from one only by rounding, with one Newton step for
+    /// `1/|q|`.
     #[inline(always)]
     #[must_use]
     pub fn renormalized(self) -> Self {
@@ -63,9 +63,9 @@ impl<S: Real> Quat<S> {
         Self { v: self.v * s, w: self.w * s }
     }
 
-    /// Returns a quaternion of the rotation matrix.
+    /// Returns the quaternion of a rotation matrix; of its two signs, either may be returned.
     ///
-    /// The largest component in magnitude is computed first, which avoids cancellation.
+    /// The component of largest magnitude is computed first, which avoids cancellation.
     ///
     /// Source: Shepperd, J. Guidance and Control 1(3), 1978.
     #[inline(always)]
@@ -113,8 +113,8 @@ impl<S: Real> Quat<S> {
 /// Returns `exp(θ)`: the rotation by the angle `|θ|`, rad, about `θ`.
 #[inline(always)]
 pub fn exp_so3<S: Real>(theta: Vec3<S>) -> Quat<S> {
-    // q = (sin(φ/2)/φ θ, cos(φ/2)); below 0.25 rad, as in every step of a simulation, the series in z =
-    // (φ/2)², exact to 3e-17
+    // q = (sin(φ/2)/φ θ, cos(φ/2)); below 0.25 rad, which covers every step of a simulation, use the series
+    // in z = (φ/2)², exact to 3e-17
     let of = S::of;
     let z = theta.dot(theta) * of(0.25);
     let s = z.mul_add(
@@ -144,16 +144,16 @@ pub fn exp_so3<S: Real>(theta: Vec3<S>) -> Quat<S> {
     Quat { v: theta * s, w: c }
 }
 
-/// Returns `log(q)`: the rotation vector of the smaller angle, rad.
+/// Returns `log(q)`: the rotation vector, rad, with an angle of at most π.
 #[inline(always)]
 pub fn log_so3<S: Real>(q: Quat<S>) -> Vec3<S> {
-    // θ = 2 atan2(|v|, w) v/|v|, with the sign of q chosen for w ≥ 0
+    // θ = 2 atan2(|v|, w) v/|v|, with the sign of q chosen such that w ≥ 0
     let of = S::of;
     let sign = S::select(S::less(q.w, of(0.0)), of(-1.0), of(1.0));
     let (v, w) = (q.v * sign, q.w * sign);
     let squared = v.dot(v);
     let is_large = S::less(of(1e-4), squared);
-    // series of atan(x)/x with x = |v|/w below 0.01, where x¹⁰/11 is below rounding
+    // series of atan(x)/x with x = |v|/w below 0.01, where the omitted term x¹⁰/11 is below rounding
     let inverse_w = of(1.0) / S::select(is_large, of(1.0), w);
     let y = squared * inverse_w * inverse_w;
     let series = y.mul_add(
@@ -168,18 +168,19 @@ pub fn log_so3<S: Real>(q: Quat<S>) -> Vec3<S> {
     v * scale
 }
 
-/// Returns `log(R)`: the rotation vector of the smaller angle, rad, accurate up to half a turn.
+/// Returns `log(R)`: the rotation vector, rad, with an angle of at most π. It is accurate up to half a turn.
 #[inline(always)]
 pub fn log_rotation<S: Real>(r: &Mat3<S>) -> Vec3<S> {
     log_so3(Quat::from_matrix(r))
 }
 
-/// Returns the rate of the rotation vector: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`, for `R = R₀ exp(θ)` and the angular
-/// velocity `ω` in body axes.
+/// Returns the time derivative of the rotation vector `θ` in `R = R₀ exp(θ)` for the angular velocity `ω` in
+/// body axes: `θ̇ = ω + ½ θ×ω + b θ×(θ×ω)`.
 ///
-/// `b = 1/12 + |θ|²/720`: the inverse differential of the exponential with an error of sixth order in `θ`, which is
-/// below that of the integrators, whose `θ` is the rotation of one step. It is `dexp⁻¹` of `−θ` in the convention of
-/// Hairer, Lubich and Wanner (section III.4.1), since `ω` is in body axes.
+/// `b = 1/12 + |θ|²/720` truncates the inverse differential of the exponential. The error is of sixth order
+/// in `θ`, below the error of the integrators, for which `θ` is the rotation of one step. Because `ω` is in
+/// body axes, the result is `dexp⁻¹` of `−θ` in the convention of Hairer, Lubich and Wanner (section
+/// III.4.1).
 ///
 /// Source: Munthe-Kaas, BIT 38, 1998.
 #[inline(always)]
@@ -189,7 +190,7 @@ pub fn dexp_inv<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {
     theta.cross(first).scale_add(b, first.scale_add(S::of(0.5), omega))
 }
 
-/// Returns [`dexp_inv`] in closed form, for rotations of less than one turn: `b = (1 − φ/2 cot φ/2)/φ²`,
+/// Computes [`dexp_inv`] in closed form, for rotations of less than one turn: `b = (1 − φ/2 cot φ/2)/φ²` with
 /// `φ = |θ|`.
 #[inline(always)]
 pub fn dexp_inv_exact<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {
@@ -199,7 +200,7 @@ pub fn dexp_inv_exact<S: Real>(theta: Vec3<S>, omega: Vec3<S>) -> Vec3<S> {
     let half = angle * S::of(0.5);
     let (s, c) = half.sin_cos();
     let closed = (S::of(1.0) - half * c / s) / (angle * angle);
-    // 1/12 + φ²/720 + φ⁴/30240 + φ⁶/1209600: exact to 1e-16 below 0.1 rad, where the closed form cancels
+    // 1/12 + φ²/720 + φ⁴/30240 + φ⁶/1209600: exact to 1e-16 below 0.1 rad, where the closed form loses digits
     let tail = squared.mul_add(S::of(1.0 / 1_209_600.0), S::of(1.0 / 30_240.0));
     let series = squared.mul_add(squared.mul_add(tail, S::of(1.0 / 720.0)), S::of(1.0 / 12.0));
     let first = theta.cross(omega);

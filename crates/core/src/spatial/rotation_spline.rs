@@ -8,18 +8,18 @@ use nalgebra::{Matrix3, Vector3};
 /// Distance from half a turn, rad, within which the direction of rotation between two attitudes is ambiguous.
 const HALF_TURN_MARGIN: f64 = 1e-6;
 
-/// Spline `R(t) = Rk exp(φ(t))` between attitudes, where `φ` is the quintic with the given rates and
-/// accelerations at the knots.
+/// Spline `R(t) = Rk exp(φ(t))` between attitudes `Rk`, where `φ` is the quintic polynomial with the given
+/// angular velocities and accelerations at the knots.
 ///
-/// With zero rates and accelerations at the knots each piece is a geodesic. Outside the knots the first or last
-/// attitude is held.
+/// With zero rates and accelerations at the knots each piece is a geodesic. Outside the knots the first or
+/// last attitude is held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RotationSpline {
     times: Vec<f64>,
     pieces: Vec<Piece>,
 }
 
-/// Curve between two attitudes.
+/// Curve between two successive attitudes.
 #[derive(Clone, Debug, PartialEq)]
 struct Piece {
     start: Quat<f64>,
@@ -30,18 +30,18 @@ struct Piece {
 }
 
 impl RotationSpline {
-    /// Returns the spline that is at rest at every attitude (K,).
+    /// Creates the spline that is at rest at each of the attitudes (K,).
     ///
     /// # Errors
-    /// [`SplineError`] for fewer than two points, wrong lengths, times that do not increase, or neighbours
-    /// half a turn apart.
+    /// [`SplineError`] for fewer than two points, wrong lengths, times that do not increase, or successive
+    /// attitudes half a turn apart.
     pub fn resting(times: &[f64], attitudes: &[Quat<f64>]) -> Result<Self, SplineError> {
         let zeros = vec![Vec3::zero(); attitudes.len()];
         Self::new(times, attitudes, &zeros, &zeros)
     }
 
-    /// Returns the spline through the attitudes, with rates and accelerations of the C² cubic spline through
-    /// their quaternions.
+    /// Creates the spline through the attitudes whose angular velocities and accelerations are those of the
+    /// C² cubic spline through the quaternions.
     ///
     /// # Errors
     /// The errors of [`RotationSpline::resting`].
@@ -61,8 +61,8 @@ impl RotationSpline {
         Self::new(times, &attitudes, &rates, &accelerations)
     }
 
-    /// Returns the spline through the attitudes with the given `rates` (K,), rad/s in body axes. The
-    /// accelerations are those of the cubic spline through the rates.
+    /// Creates the spline through the attitudes with the given angular velocities `rates` (K,), rad/s in body
+    /// axes. The angular accelerations are those of the cubic spline through the angular velocities.
     ///
     /// # Errors
     /// The errors of [`RotationSpline::resting`].
@@ -78,7 +78,7 @@ impl RotationSpline {
         Self::new(times, attitudes, rates, &accelerations)
     }
 
-    /// Returns the spline from attitudes with rates and accelerations in body axes.
+    /// Creates the spline from attitudes with angular velocities and accelerations in body axes.
     fn new(
         times: &[f64],
         attitudes: &[Quat<f64>],
@@ -94,7 +94,7 @@ impl RotationSpline {
             if turn.norm() > std::f64::consts::PI - HALF_TURN_MARGIN {
                 return Err(SplineError::HalfTurn { point: k });
             }
-            // φ̇ = J⁻¹ ω, φ̈ = J⁻¹ (α − J̇ φ̇); J is 1 where φ is 0
+            // φ̇ = J⁻¹ ω, φ̈ = J⁻¹ (α − J̇ φ̇), where J is the differential of exp, equal to 1 at φ = 0
             let rate = inverse_differential(turn, rates[k + 1]);
             let (_, bias) = differential(turn, rate, Vec3::zero());
             let phi_acceleration = inverse_differential(turn, accelerations[k + 1] - bias);
@@ -108,8 +108,8 @@ impl RotationSpline {
         Ok(Self { times: times.to_vec(), pieces })
     }
 
-    /// Returns the attitude at `t`, its angular velocity (rad/s) and acceleration (rad/s²) in the reference
-    /// axes.
+    /// Returns the attitude at `t`, s, and the angular velocity (rad/s) and acceleration (rad/s²) in the
+    /// reference axes.
     pub fn sample(&self, t: f64) -> (Quat<f64>, Vec3<f64>, Vec3<f64>) {
         let at = KnotInterval::of(&self.times, t);
         let Piece { start, from, to } = &self.pieces[at.segment];
@@ -124,7 +124,7 @@ impl RotationSpline {
     }
 }
 
-/// Returns the attitudes with the signs chosen such that neighbouring quaternions are close.
+/// Returns the attitudes with signs chosen such that successive quaternions are close to each other.
 fn continuous(attitudes: &[Quat<f64>]) -> Vec<Quat<f64>> {
     let mut out: Vec<Quat<f64>> = Vec::with_capacity(attitudes.len());
     for q in attitudes {
@@ -134,9 +134,10 @@ fn continuous(attitudes: &[Quat<f64>]) -> Vec<Quat<f64>> {
     out
 }
 
-/// Returns angular velocity and acceleration of `exp(φ)` in body axes.
+/// Returns the angular velocity and acceleration of `exp(φ)` in body axes.
 ///
-/// `ω = φ̇ − B φ×φ̇ + C φ×(φ×φ̇)` and its derivative, `B = (1 − cos|φ|)/|φ|²`, `C = (|φ| − sin|φ|)/|φ|³`.
+/// `ω = φ̇ − B φ×φ̇ + C φ×(φ×φ̇)` and its derivative, with `B = (1 − cos|φ|)/|φ|²` and `C = (|φ| −
+/// sin|φ|)/|φ|³`.
 ///
 /// Source: Iserles et al., Acta Numerica 9, 2000, eq. B.11.
 fn differential(phi: Vec3<f64>, rate: Vec3<f64>, phi_acceleration: Vec3<f64>) -> (Vec3<f64>, Vec3<f64>) {
@@ -151,7 +152,7 @@ fn differential(phi: Vec3<f64>, rate: Vec3<f64>, phi_acceleration: Vec3<f64>) ->
     (omega, alpha)
 }
 
-/// Returns the `φ̇` for the angular velocity `ω` in body axes.
+/// Returns the rate `φ̇` of the rotation vector for the angular velocity `ω` in body axes.
 fn inverse_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
     let column = |axis: Vector3<f64>| differential(phi, axis.into(), Vec3::zero()).0.to_nalgebra();
     let jacobian = Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(column));
@@ -159,8 +160,9 @@ fn inverse_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
     (inverse * omega.to_nalgebra()).into()
 }
 
-/// Returns `B` and `C` as functions of `x = |φ|²`, and their derivatives in `x`, by the series `Σ (−x)ᵏ/(2k+2)!` and `Σ
-/// (−x)ᵏ/(2k+3)!`: they have no cancellation at zero and an error of 1e-16 up to a full turn.
+/// Returns `B` and `C` of [`differential`] as functions of `x = |φ|²`, and their derivatives in `x`. The
+/// series `Σ (−x)ᵏ/(2k+2)!` and `Σ (−x)ᵏ/(2k+3)!` have no cancellation at zero and an error of 1e-16 up to a
+/// full turn.
 fn coefficients(x: f64) -> ([f64; 2], [f64; 2]) {
     let (mut value, mut slope) = ([0.0; 2], [0.0; 2]);
     let mut term = 0.5; // 1/(2k+2)! times (−1)ᵏ

@@ -1,13 +1,13 @@
-//! Interface of the scalar types for which all kernels are generic.
+//! Interface of the scalar types over which all kernels are generic.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// Scalar of the kernels: a real number, or one number in each lane of a vector.
+/// Scalar of the kernels: a real number, or a vector with a number in each lane.
 ///
-/// A single state is computed with [`f64`] (any processor) or [`Fused`](super::Fused) (processors with fused
-/// multiply-add), batches with lanes of numbers. Kernels may branch on the structure of the model but not on values,
-/// for which they use [`select`](Real::select).
+/// Single states are computed with [`f64`] (any processor) or [`Fused`](super::Fused) (processors with fused
+/// multiply-add), and batches with vectors of several lanes. Kernels may branch on the structure of the model
+/// but not on computed values, between which they choose with [`select`](Real::select).
 pub trait Real:
     Copy
     + Debug
@@ -24,7 +24,7 @@ pub trait Real:
     + SubAssign
     + MulAssign
 {
-    /// Result of a comparison, one truth value per lane.
+    /// Result of a comparison, with one truth value per lane.
     type Mask: Copy;
 
     /// Number of lanes.
@@ -46,19 +46,19 @@ pub trait Real:
         *self = Self::from_lanes(|lane| if lane == i { x } else { before.lane(lane) });
     }
 
-    /// Reads rows into lanes: number `i` of the row that begins at `offset(l)` becomes lane `l` of `to[i]`.
+    /// Reads rows into lanes: element `i` of the row that begins at `offset(l)` becomes lane `l` of `to[i]`.
     #[inline(always)]
     fn gather(from: &[f64], offset: impl Fn(usize) -> usize, to: &mut [Self]) {
         gather_each(from, offset, to);
     }
 
-    /// Writes the first `count` lanes to rows, the inverse of [`gather`](Real::gather).
+    /// Writes the first `count` lanes to rows. This is the inverse of [`gather`](Real::gather).
     #[inline(always)]
     fn scatter(from: &[Self], to: &mut [f64], count: usize, offset: impl Fn(usize) -> usize) {
         scatter_each(from, to, count, offset);
     }
 
-    /// Returns `self · a + b`, fused if the instruction set of the type has the operation.
+    /// Returns `self · a + b`, as a fused operation if the instruction set of the type has one.
     #[must_use]
     fn mul_add(self, a: Self, b: Self) -> Self;
 
@@ -70,10 +70,11 @@ pub trait Real:
     #[must_use]
     fn abs(self) -> Self;
 
-    /// Returns sine and cosine, rad. The error is below 2.3e-16 up to 1e5 rad.
+    /// Returns the sine and cosine of an angle in rad, with an error below 2.3e-16 up to 1e5 rad.
     fn sin_cos(self) -> (Self, Self);
 
-    /// Computes [`sin_cos`](Real::sin_cos) of many angles, several at once if possible, with the same bits.
+    /// Computes the sines and cosines of many angles with the bits of [`sin_cos`](Real::sin_cos), several at
+    /// once if possible.
     #[inline(always)]
     fn sin_cos_each(angles: &[Self], out: &mut [(Self, Self)]) {
         for (angle, out) in angles.iter().zip(out) {
@@ -81,28 +82,28 @@ pub trait Real:
         }
     }
 
-    /// Returns the angle of the point `(x, self)`, rad.
+    /// Returns the angle from the x axis to the point `(x, self)`, rad.
     #[must_use]
     fn atan2(self, x: Self) -> Self;
 
-    /// Returns the mask of `self < other`.
+    /// Returns the mask that is true where `self < other`.
     fn less(self, other: Self) -> Self::Mask;
 
     /// Returns `a` where the mask is true, `b` elsewhere.
     #[must_use]
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
 
-    /// Returns true if the mask is true in any lane, to skip computations that no lane needs.
+    /// Returns true if the mask is true in any lane; used to skip computations that no lane needs.
     fn any(mask: Self::Mask) -> bool;
 
-    /// Runs `kernel` compiled for the instruction set of this scalar.
+    /// Runs `kernel`, compiled for the instruction set of this scalar.
     ///
     /// The closure and all functions that it calls must be `#[inline(always)]`: code that is not inlined is
-    /// compiled for the baseline and is slow.
+    /// compiled for the baseline instruction set and is slow.
     fn enter<R>(kernel: impl FnOnce() -> R) -> R;
 }
 
-/// Implements [`Real::gather`] for any number of lanes and any width.
+/// Implements [`Real::gather`] for any number of lanes and any row length.
 #[inline(always)]
 pub(super) fn gather_each<S: Real>(from: &[f64], offset: impl Fn(usize) -> usize, to: &mut [S]) {
     for lane in 0..S::LANES {
@@ -113,7 +114,7 @@ pub(super) fn gather_each<S: Real>(from: &[f64], offset: impl Fn(usize) -> usize
     }
 }
 
-/// Implements [`Real::scatter`] for any number of lanes and any width.
+/// Implements [`Real::scatter`] for any number of lanes and any row length.
 #[inline(always)]
 pub(super) fn scatter_each<S: Real>(
     from: &[S],
@@ -129,8 +130,8 @@ pub(super) fn scatter_each<S: Real>(
     }
 }
 
-/// Scalar with a single lane.
+/// Scalar that holds a single number.
 pub trait Scalar: Real {
-    /// Returns the number.
+    /// Returns the number that the scalar holds.
     fn value(self) -> f64;
 }

@@ -1,14 +1,14 @@
-//! Branch-free sine and cosine for lanes.
+//! Branch-free sine and cosine of scalars with several lanes.
 
 use super::scalar::Real;
 
-/// Largest angle, rad, up to which the fast reduction keeps all digits.
+/// Largest angle, rad, for which the fast range reduction keeps all digits.
 pub(super) const FAST_SINE_LIMIT: f64 = 1e5;
 
-/// Returns sine and cosine of `x`, rad, for `|x| < 1e5`.
+/// Returns the sine and cosine of `x`, rad, for `|x| < 1e5`.
 ///
-/// Reduces `x = k π/2 + r` with `|r| ≤ π/4` in three parts (Cody and Waite), then evaluates the minimax
-/// polynomials of FreeBSD's `k_sin.c` and `k_cos.c`.
+/// Reduces the angle to `r = x − k π/2` with `|r| ≤ π/4` by subtracting π/2 in three parts (Cody and Waite),
+/// then evaluates the minimax polynomials of FreeBSD's `k_sin.c` and `k_cos.c`.
 #[inline(always)]
 pub(super) fn sin_cos<S: Real>(x: S) -> (S, S) {
     const ROUND: f64 = 6_755_399_441_055_744.0; // 1.5 · 2^52: adding it rounds to an integer
@@ -21,7 +21,7 @@ pub(super) fn sin_cos<S: Real>(x: S) -> (S, S) {
     let z = r * r;
     let (s, c) = (sine(r, z), cosine(z));
 
-    // k mod 4 determines which of ±s, ±c is the sine
+    // k mod 4 determines which of ±s and ±c is the sine
     let quarter = (k * S::of(0.25) + S::of(ROUND)) - S::of(ROUND);
     let m = k - quarter * S::of(4.0); // in -2..=2, where ±2 are the same quadrant
     let is_odd = S::less((m.abs() - S::of(1.0)).abs(), S::of(0.5));
@@ -35,7 +35,7 @@ pub(super) fn sin_cos<S: Real>(x: S) -> (S, S) {
     (a * flip_sine, b * flip_cosine)
 }
 
-/// Returns `sin r` on `|r| ≤ π/4`, `z = r²`.
+/// Returns `sin r` for `|r| ≤ π/4`, where `z = r²`.
 #[inline(always)]
 fn sine<S: Real>(r: S, z: S) -> S {
     let p = z.mul_add(S::of(1.589_690_995_211_55e-10), S::of(-2.505_076_025_340_686_3e-8));
@@ -46,7 +46,7 @@ fn sine<S: Real>(r: S, z: S) -> S {
     (z * r).mul_add(p, r)
 }
 
-/// Returns `cos r` on `|r| ≤ π/4`, `z = r²`, with the rounding error of `1 - z/2` compensated.
+/// Returns `cos r` for `|r| ≤ π/4`, where `z = r²`, and compensates the rounding error of `1 - z/2`.
 #[inline(always)]
 fn cosine<S: Real>(z: S) -> S {
     let p = z.mul_add(S::of(-1.135_964_755_778_819_5e-11), S::of(2.087_572_321_298_175e-9));
@@ -70,8 +70,8 @@ mod tests {
             for i in -1000..=1000 {
                 let x = scale * f64::from(i) / 1000.0;
                 let (s, c) = sin_cos(x);
-                // 1.2e-16 is half a unit in the last place near 1; the tolerance is twice that, to allow for the error
-                // of the polynomial
+                // 1.2e-16 is half a unit in the last place near 1; the tolerance is twice as large, to allow
+                // for the error of the polynomial
                 assert!((s - x.sin()).abs() < 2.3e-16, "sin {x}: {s} {}", x.sin());
                 assert!((c - x.cos()).abs() < 2.3e-16, "cos {x}: {c} {}", x.cos());
                 if Fused::is_available() {

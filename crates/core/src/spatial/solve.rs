@@ -1,4 +1,4 @@
-//! Small dense solvers on row-major slices.
+//! Small dense solvers for row-major matrices.
 
 use super::scalar::Real;
 
@@ -16,8 +16,8 @@ pub fn dot<S: Real>(a: &[S], b: &[S]) -> S {
 /// Computes the square-root-free Cholesky factors `A = L D Lᵀ` of a positive definite `n × n` matrix in
 /// place.
 ///
-/// Reads the lower triangle and replaces it by `L`, with the *inverse* pivots `1/D_ii` in place of its unit
-/// diagonal, since the solves multiply by them. The upper triangle is workspace.
+/// Reads the lower triangle and replaces it by `L`. The diagonal receives the inverse pivots `1/D_ii`, by
+/// which the solver multiplies, instead of the unit diagonal of `L`. The upper triangle is used as workspace.
 #[inline(always)]
 pub fn cholesky_factor<S: Real>(a: &mut [S], n: usize) {
     for j in 0..n {
@@ -37,7 +37,7 @@ pub fn cholesky_factor<S: Real>(a: &mut [S], n: usize) {
     }
 }
 
-/// Computes `x ← A⁻¹ x` with the factors of [`cholesky_factor`].
+/// Computes `x ← A⁻¹ x` with the factors computed by [`cholesky_factor`].
 #[inline(always)]
 pub fn cholesky_solve<S: Real>(l: &[S], n: usize, x: &mut [S]) {
     for i in 1..n {

@@ -4,7 +4,7 @@ use super::quintic_spline::curvatures;
 use crate::number_text::{count, short, unlike};
 use thiserror::Error;
 
-/// Errors of points that do not define a curve.
+/// Errors of points and times through which no curve can be constructed.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SplineError {
@@ -32,24 +32,25 @@ pub enum SplineError {
 pub enum Ends {
     /// Zero slope and zero curvature.
     Rest,
-    /// Slope equal to that of the cubic through the four points nearest to the end, or of the polynomial through all
-    /// points if there are fewer.
+    /// Slope of the cubic polynomial through the four points nearest to the end, or of the polynomial through
+    /// all points if there are fewer than four.
     Free,
 }
 
-/// Spline of quintics between knots with given value, slope and curvature, which makes it C².
+/// Spline of quintic polynomials with given value, slope and curvature at the knots, which is C².
 ///
-/// The C² cubic spline is a special case. Outside the knots the end values are held.
+/// The C² cubic spline is a special case. Outside the knots, the value of the nearest end is held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline {
     times: Vec<f64>,
     width: usize,
-    /// Value, slope and curvature of each knot, (K, 3, n).
+    /// Value, slope and curvature at each knot, (K, 3, n).
     knots: Vec<f64>,
 }
 
 impl Spline {
-    /// Returns the spline with `times` (K,), s, and `values`, `slopes`, `curvatures` (K, n).
+    /// Creates the spline with knots at `times` (K,), s, and with `values`, `slopes` and `curvatures` (K, n)
+    /// at the knots.
     ///
     /// # Errors
     /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite, or times that
@@ -74,7 +75,7 @@ impl Spline {
         Ok(Self { times: times.to_vec(), width, knots })
     }
 
-    /// Returns the spline that is at rest at every point.
+    /// Creates the spline that is at rest at every point.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].
@@ -83,8 +84,8 @@ impl Spline {
         Self::new(times, width, values, &zeros, &zeros)
     }
 
-    /// Returns the spline through the points with slopes and curvatures of their C² cubic spline; with [`Ends::Rest`]
-    /// those of the first and the last point are zero.
+    /// Creates the spline through the points whose slopes and curvatures are those of the C² cubic spline.
+    /// With [`Ends::Rest`], the slopes and curvatures of the first and the last point are zero.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].
@@ -101,7 +102,8 @@ impl Spline {
         Self::new(times, width, values, &slopes, &curvatures)
     }
 
-    /// Returns the spline of order 6 through the points with the given `slopes` and a continuous third derivative.
+    /// Creates the spline of order 6 through the points with the given `slopes`, which has a continuous third
+    /// derivative.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].
@@ -122,17 +124,17 @@ impl Spline {
         &self.times
     }
 
-    /// Returns the number of components.
+    /// Returns the number of components of a value.
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// Returns value, slope and curvature of knot `k`, (3, n).
+    /// Returns the value, slope and curvature at knot `k`, (3, n).
     pub fn knot(&self, k: usize) -> &[f64] {
         &self.knots[3 * self.width * k..][..3 * self.width]
     }
 
-    /// Computes value, slope and curvature at `t`, (n,) each.
+    /// Computes the value, slope and curvature at `t`, s; each is (n,).
     pub fn sample(&self, t: f64, value: &mut [f64], slope: &mut [f64], curvature: &mut [f64]) {
         let (n, at) = (self.width, KnotInterval::of(&self.times, t));
         let (start, end) = (self.knot(at.segment), self.knot(at.segment + 1));
@@ -143,12 +145,12 @@ impl Spline {
     }
 }
 
-/// Position of a time between knots.
+/// Position of a time relative to the knots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct KnotInterval {
     pub(super) segment: usize,
     length: f64,
-    /// Normalized time in the segment, 0 to 1.
+    /// Normalized time in the interval between two knots, 0 to 1.
     u: f64,
     is_outside: bool,
 }
@@ -162,8 +164,8 @@ impl KnotInterval {
         Self { segment, length, u: ((t - times[segment]) / length).clamp(0.0, 1.0), is_outside }
     }
 
-    /// Returns value, slope and curvature of the quintic between two knots; `start` and `end` hold those of the knots.
-    /// Outside the knots the curve is at rest.
+    /// Returns the value, slope and curvature of the quintic polynomial between two knots; `start` and `end`
+    /// hold those of the knots. Outside the knots the curve is at rest.
     pub(super) fn interpolate(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
         let (h, u) = (self.length, self.u);
         if self.is_outside {
@@ -172,14 +174,14 @@ impl KnotInterval {
         if u <= 0.5 {
             return quintic(h, u, start, end);
         }
-        // the second half is evaluated backwards in time, so that the end is also met exactly
+        // the second half is evaluated backwards in time, so that the value at the end is also exact
         let back = |[p, v, a]: [f64; 3]| [p, -v, a];
         back(quintic(h, 1.0 - u, back(end), back(start)))
     }
 }
 
-/// Evaluates `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵`, `s = u h`, with coefficients that meet the conditions at both
-/// ends. The conditions at `s = 0` are met to the bit.
+/// Evaluates `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵` at `s = u h`, with coefficients that satisfy the
+/// conditions at both ends. The conditions at `s = 0` are satisfied to the last bit.
 fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
     // differences of position, velocity and acceleration at the far end, over h³, h² and h
     let difference_p = ((p1 - p) / h - v - a * (0.5 * h)) / (h * h);
@@ -195,7 +197,7 @@ fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64;
     [value, slope, curvature]
 }
 
-/// Checks that there are two or more times and that they increase.
+/// Checks that there are at least two times and that they increase.
 pub(super) fn check_times(times: &[f64]) -> Result<(), SplineError> {
     if times.len() < 2 {
         return Err(SplineError::TooFew { got: times.len(), least: 2 });
@@ -226,10 +228,11 @@ pub(super) fn check_rows(
     }
 }
 
-/// Returns the slopes of the C² cubic spline through the points.
+/// Returns the slope at each point of the C² cubic spline through all points.
 ///
-/// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at each inner point, where `m` is the slope, `h` the interval
-/// and `Δ` the slope of the chord after the point; `₋` and `₊` mark the neighbours.
+/// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at each inner point, where `m` is the slope, `h` the
+/// length of the interval after the point, and `Δ` the slope of the chord over that interval; `₋` and `₊`
+/// mark the neighbours.
 ///
 /// Source: de Boor, A Practical Guide to Splines, 1978, ch. IV.
 fn cubic_slopes(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Vec<f64> {
@@ -258,7 +261,7 @@ fn cubic_slopes(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Vec<
     m
 }
 
-/// Returns the slope at one end of the polynomial through the (at most four) points nearest to it.
+/// Returns the slope at one end of the polynomial through the (at most four) points nearest to that end.
 fn end_slope(times: &[f64], value: impl Fn(usize) -> f64, index: impl Fn(usize) -> usize) -> f64 {
     let count = times.len().min(4);
     let t = |k: usize| times[index(k)];
@@ -272,7 +275,7 @@ fn end_slope(times: &[f64], value: impl Fn(usize) -> f64, index: impl Fn(usize) 
     slope
 }
 
-/// Returns the curvatures of the cubics with these values and slopes.
+/// Returns the curvatures of the cubic polynomials with these values and slopes.
 fn cubic_curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64], ends: Ends) -> Vec<f64> {
     let last = times.len() - 1;
     let mut out = vec![0.0; values.len()];
@@ -280,7 +283,7 @@ fn cubic_curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64],
         let k = j / width;
         let is_end = k == 0 || k == last;
         if !(is_end && ends == Ends::Rest) {
-            // p̈ = (6Δ − 4m − 2m₊)/h from the next point, or (−6Δ + 4m + 2m₋)/h from the one before
+            // p̈ = (6Δ − 4m − 2m₊)/h from the next point, or (−6Δ + 4m + 2m₋)/h from the preceding point
             let other = if k < last { j + width } else { j - width };
             let h = times[other / width] - times[k];
             *out = (6.0 * (values[other] - values[j]) / h - 4.0 * slopes[j] - 2.0 * slopes[other]) / h;

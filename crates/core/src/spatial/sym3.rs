@@ -33,7 +33,7 @@ impl<S> Sym3<S> {
 }
 
 impl<S: Real> Sym3<S> {
-    /// Returns the matrix with these entries.
+    /// Creates the matrix from its six independent entries.
     #[inline(always)]
     pub fn new(xx: S, yy: S, zz: S, xy: S, xz: S, yz: S) -> Self {
         Self { xx, yy, zz, xy, xz, yz }
@@ -46,7 +46,7 @@ impl<S: Real> Sym3<S> {
         Self::new(s, s, s, o, o, o)
     }
 
-    /// Returns a matrix with the same entries in every lane.
+    /// Returns the matrix `m` in every lane.
     #[inline(always)]
     pub fn of(m: &Sym3<f64>) -> Self {
         Self::new(S::of(m.xx), S::of(m.yy), S::of(m.zz), S::of(m.xy), S::of(m.xz), S::of(m.yz))
@@ -66,7 +66,7 @@ impl<S: Real> Sym3<S> {
         self.add_parallel(u, u * s)
     }
 
-    /// Returns `A + u wᵀ`, where `w` is a multiple of `u`.
+    /// Returns `A + u wᵀ`, which is symmetric because `w` is a multiple of `u`.
     #[inline(always)]
     #[must_use]
     pub fn add_parallel(&self, u: Vec3<S>, w: Vec3<S>) -> Self {
@@ -80,7 +80,7 @@ impl<S: Real> Sym3<S> {
         )
     }
 
-    /// Returns `R A Rᵀ`: the same tensor in other axes.
+    /// Returns `R A Rᵀ`, which is the tensor `A` in other axes.
     #[inline(always)]
     #[must_use]
     pub fn rotate(&self, r: &Mat3<S>) -> Self {
@@ -101,7 +101,8 @@ impl<S: Real> Sym3<S> {
         )
     }
 
-    /// Returns `A + m (c² 1 − c cᵀ)`: the parallel-axis shift by `c`, with `h = m c`.
+    /// Returns `A + m (c² 1 − c cᵀ)`, the shift of an inertia by `c` (parallel-axis theorem), where `h = m
+    /// c`.
     #[inline(always)]
     #[must_use]
     pub fn shift(&self, h: Vec3<S>, c: Vec3<S>) -> Self {
@@ -116,7 +117,7 @@ impl<S: Real> Sym3<S> {
         )
     }
 
-    /// Returns `A⁻¹` by cofactors, for a positive definite matrix.
+    /// Returns `A⁻¹` by cofactors. The matrix must be positive definite.
     #[inline(always)]
     #[must_use]
     pub fn inverse(&self) -> Self {

@@ -25,7 +25,7 @@ impl<S> Vec3<S> {
 }
 
 impl<S: Real> Vec3<S> {
-    /// Returns the vector `(x, y, z)`.
+    /// Creates the vector `(x, y, z)`.
     #[inline(always)]
     pub fn new(x: S, y: S, z: S) -> Self {
         Self { x, y, z }
@@ -37,13 +37,13 @@ impl<S: Real> Vec3<S> {
         Self::new(S::of(0.0), S::of(0.0), S::of(0.0))
     }
 
-    /// Returns a vector with the same components in every lane.
+    /// Returns the vector `v` in every lane.
     #[inline(always)]
     pub fn of(v: &Vec3<f64>) -> Self {
         Self::new(S::of(v.x), S::of(v.y), S::of(v.z))
     }
 
-    /// Returns the vector `f(i)` in lane `i`.
+    /// Creates the vector with the components of `f(i)` in lane `i`.
     #[inline(always)]
     pub fn from_lanes(f: impl Fn(usize) -> Vec3<f64>) -> Self {
         Self::new(S::from_lanes(|i| f(i).x), S::from_lanes(|i| f(i).y), S::from_lanes(|i| f(i).z))
@@ -55,13 +55,13 @@ impl<S: Real> Vec3<S> {
         Vec3::new(self.x.lane(i), self.y.lane(i), self.z.lane(i))
     }
 
-    /// Returns the first three numbers of a slice.
+    /// Creates the vector from the first three numbers of a slice.
     #[inline(always)]
     pub fn from_slice(s: &[S]) -> Self {
         Self::new(s[0], s[1], s[2])
     }
 
-    /// Writes the components to the first three places of a slice.
+    /// Writes the components to the first three elements of a slice.
     #[inline(always)]
     pub fn write(self, out: &mut [S]) {
         out[0] = self.x;
@@ -81,7 +81,7 @@ impl<S: Real> Vec3<S> {
         self.x.mul_add(o.x, self.y.mul_add(o.y, self.z.mul_add(o.z, s)))
     }
 
-    /// Returns the vector product `self × o`.
+    /// Returns the cross product `self × o`.
     #[inline(always)]
     pub fn cross(self, o: Self) -> Self {
         Self::new(

@@ -66,7 +66,7 @@ impl<const N: usize> Array<N> {
     pub(super) fn all(held: [bool; N]) -> bool {
         !held.contains(&false)
     }
-    /// Returns the transpose: number `j` of array `i` becomes number `i` of array `j`.
+    /// Returns the transpose: element `j` of array `i` becomes element `i` of array `j`.
     #[inline(always)]
     pub(super) fn transpose(rows: [Self; N]) -> [Self; N] {
         std::array::from_fn(|j| Self::each(|i| rows[i].0[j]))

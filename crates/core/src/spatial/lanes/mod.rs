@@ -1,6 +1,7 @@
-//! Scalars of batches, with several states in the lanes of a vector register.
+//! Scalars for batch computations, with one state in each lane of a vector register.
 //!
-//! The lane types are private to the crate, since their arithmetic uses instructions that not every processor has.
+//! The lane types are private to the crate, because their arithmetic uses instructions that not every
+//! processor supports.
 
 #[cfg_attr(target_arch = "x86_64", path = "x86.rs")]
 #[cfg_attr(not(target_arch = "x86_64"), path = "array.rs")]
@@ -22,7 +23,7 @@ macro_rules! lanes {
         pub(crate) struct $name(register::$register);
 
         impl $name {
-            /// Returns true if this processor has the instructions that [`Real::enter`] uses.
+            /// Returns true if this processor supports the instructions that [`Real::enter`] uses.
             #[inline(always)]
             pub(crate) fn is_available() -> bool {
                 $available
@@ -151,7 +152,8 @@ macro_rules! lanes {
                 if register::$register::all(near) {
                     return (s, c);
                 }
-                // lanes are replaced one by one, so that no angle changes the bits of the other lanes
+                // lanes are replaced individually, so that the angle in one lane does not affect the bits of
+                // other lanes
                 (Self::select(near, s, self.each(f64::sin)), Self::select(near, c, self.each(f64::cos)))
             }
             #[inline(always)]
@@ -176,7 +178,7 @@ macro_rules! lanes {
                 #[cfg(target_arch = "x86_64")]
                 {
                     assert!(Self::is_available(), "lanes entered on a processor without their instructions");
-                    // SAFETY: the line above checks that the processor has these features.
+                    // SAFETY: the assertion above guarantees that the processor has these features.
                     unsafe { $enter(kernel) }
                 }
                 #[cfg(not(target_arch = "x86_64"))]
@@ -204,11 +206,11 @@ macro_rules! lanes {
 }
 
 lanes!(
-    /// Scalar with four states, for processors with AVX2 and FMA (or fused multiply-add in the baseline).
+    /// Scalar with four lanes, for processors with AVX2 and FMA (or with fused multiply-add in the baseline).
     Lanes4, F64x4, Mask4, 4, "avx2,fma", enter_lanes4, has_fma()
 );
 lanes!(
-    /// Scalar with eight states, for processors with AVX-512.
+    /// Scalar with eight lanes, for processors with AVX-512.
     Lanes8, F64x8, Mask8, 8, "avx512f,avx512dq,avx512vl,avx2,fma", enter_lanes8, has_avx512()
 );
 

@@ -1,8 +1,8 @@
 //! Vector registers of x86-64.
 //!
-//! Values of intrinsic register types stay in registers when they are passed between bodies, whereas LLVM copies arrays
-//! through memory.
-#![allow(unsafe_code)] // each intrinsic requires its instruction set
+//! Values of intrinsic register types stay in registers when they are passed from body to body, whereas LLVM
+//! would copy arrays through memory.
+#![allow(unsafe_code)] // intrinsics are unsafe, because each requires an instruction set
 
 use std::arch::x86_64 as x86;
 
@@ -18,8 +18,8 @@ macro_rules! register {
         #[repr(transparent)]
         pub(super) struct $name(x86::$register);
 
-        // SAFETY, for all of the following: lanes are used only inside `Real::enter`, where their
-        // instructions exist, and a register has the layout of an array.
+        // SAFETY (for all functions below): lanes are used only inside `Real::enter`, where the processor is
+        // known to have these instructions, and a register has the memory layout of an array.
         impl $name {
             #[inline(always)]
             pub(super) fn from_array(x: [f64; $width]) -> Self {
@@ -103,7 +103,7 @@ impl F64x4 {
     #[inline(always)]
     pub(super) fn transpose(rows: [Self; 4]) -> [Self; 4] {
         let [a, b, c, d] = rows.map(|row| row.0);
-        // SAFETY: as above.
+        // SAFETY: as for the functions above.
         let columns = unsafe {
             use x86::{
                 _mm256_permute2f128_pd as halves, _mm256_unpackhi_pd as odd, _mm256_unpacklo_pd as even,
@@ -125,10 +125,10 @@ impl F64x8 {
     #[inline(always)]
     pub(super) fn transpose(rows: [Self; 8]) -> [Self; 8] {
         let [a, b, c, d, e, f, g, h] = rows.map(|row| row.0);
-        // SAFETY: as above.
+        // SAFETY: as for the functions above.
         let columns = unsafe {
             use x86::{_mm512_shuffle_f64x2 as pairs, _mm512_unpackhi_pd as odd, _mm512_unpacklo_pd as even};
-            // pairs of lanes 0, 2 (0x88) or 1, 3 (0xdd) of both
+            // select the pairs of lanes 0 and 2 (0x88), or 1 and 3 (0xdd), of both registers
             let (ab, cd, ef, gh) = (even(a, b), even(c, d), even(e, f), even(g, h));
             let (x0, x2) = (pairs::<0x88>(ab, cd), pairs::<0xdd>(ab, cd));
             let (y0, y2) = (pairs::<0x88>(ef, gh), pairs::<0xdd>(ef, gh));
