@@ -200,20 +200,21 @@ def laws(robot: oo.Model, q: Any) -> dict[str, tuple[Any, Any]]:
         "compliance": (oo.Compliance(robot, "tool", stiffness=stiffness, damping=[20.0] * 3 + [1] * 3), line),
         "joints": (oo.JointComputedTorque(kp=gains, kd=5.0, compensate_friction=False), joints),
         "pid": (oo.JointPid(p=gains, i=0.3, d=4.0, i_limit=0.01, effort_limit=2.0), joints),
+        "external": (oo.External(gains, 5.0, timeout=0.5, on_timeout="damp"), None),
         "user": (RateDamper(3.0), None),
     }  # fmt: skip
 
 
-@pytest.mark.parametrize("law", ["computed torque", "compliance", "joints", "pid", "user"])
+@pytest.mark.parametrize("law", ["computed torque", "compliance", "joints", "pid", "external", "user"])
 def test_a_pickled_law_runs_to_the_same_bits(law: str) -> None:
     robot = oo.robots.load("servicer")
     q = robot.neutral()
     q[7:] = [0, 1.4260, 0, 1.3391, 0, -1.1943, 0]
     controller, reference = laws(robot, q)[law]
-    goal = None if law == "user" else oo.Goal(tolerance=1e-9, path_tolerance=1.0, time=0.2)
+    goal = None if law in ("external", "user") else oo.Goal(tolerance=1e-9, path_tolerance=1.0, time=0.2)
     control = oo.Control(
         controller, reference=reference, joints=list(robot.joint_names), tool="tool", name="arm",
-        start=0.05, end=0.45, goal=goal, starts_at_present=law != "user",
+        start=0.05, end=0.45, goal=goal, starts_at_present=goal is not None,
     )  # fmt: skip
     system = oo.System("a", robot, q, np.full(robot.nv, 0.01), controller=[control], control_period=0.01)
     here = oo.World([system])

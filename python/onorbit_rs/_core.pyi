@@ -81,6 +81,7 @@ __all__ = [
     "Effect",
     "EventRecord",
     "ExponentialAtmosphere",
+    "External",
     "Faces",
     "FixedFrame",
     "Frame",
@@ -836,13 +837,26 @@ class Compliance:
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
 @final
+class External:
+    def __new__(
+        cls,
+        kp: ArrayLike = 0.0,
+        kd: ArrayLike = 0.0,
+        *,
+        timeout: float | None = None,
+        on_timeout: Literal["hold", "damp", "zero"] = "hold",
+        compensate_environment: bool = True,
+        compensate_friction: bool = True,
+    ) -> External: ...
+
+@final
 class Goal:
     def __new__(
         cls, *, tolerance: ArrayLike, path_tolerance: ArrayLike | None = None, time: float | None = None
     ) -> Goal: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 
-_Law = ComputedTorque | JointComputedTorque | JointPid | Compliance | _Controller
+_Law = ComputedTorque | JointComputedTorque | JointPid | Compliance | External | _Controller
 
 @final
 class Control:
@@ -1174,6 +1188,34 @@ class SystemStepper:
     @property
     def v(self) -> _Array: ...
     def command(self, tau: ArrayLike | dict[str, float]) -> None: ...
+    def send(
+        self,
+        control: str,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        effort: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+    ) -> None: ...
+    def send_trajectory(
+        self,
+        control: str,
+        times: ArrayLike,
+        positions: ArrayLike,
+        *,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        start: float | None = None,
+    ) -> None: ...
+    def wrench(
+        self,
+        body: str,
+        force: ArrayLike | None = None,
+        torque: ArrayLike | None = None,
+        frame: Literal["world", "body"] = "world",
+    ) -> None: ...
+    @property
+    def external(self) -> dict[str, list[str]]: ...
 
 @final
 class Simulation:
@@ -1232,6 +1274,34 @@ class Stepper:
     def advance(self, dt: float) -> None: ...
     def advance_to(self, t: float, *, wall_s: float | None = None) -> None: ...
     def command(self, tau: ArrayLike | dict[str, float]) -> None: ...
+    def send(
+        self,
+        control: str,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        effort: ArrayLike | None = None,
+        acceleration: ArrayLike | None = None,
+    ) -> None: ...
+    def send_trajectory(
+        self,
+        control: str,
+        times: ArrayLike,
+        positions: ArrayLike,
+        *,
+        velocities: ArrayLike | None = None,
+        accelerations: ArrayLike | None = None,
+        start: float | None = None,
+    ) -> None: ...
+    def wrench(
+        self,
+        body: str,
+        force: ArrayLike | None = None,
+        torque: ArrayLike | None = None,
+        frame: Literal["world", "body"] = "world",
+    ) -> None: ...
+    @property
+    def external(self) -> dict[str, list[str]]: ...
     def trigger(self, name: str) -> None: ...
     @property
     def events(self) -> list[EventRecord]: ...

@@ -1,24 +1,19 @@
 //! Runs that are advanced step by step.
 
 use crate::arrays::constant;
-use crate::checkpoint::{PyCheckpoint, Since, checkpoint_of, columns_since, row_counts};
+use crate::checkpoint::{PyCheckpoint, Since, checkpoint_of, columns_since};
 use crate::errors::{SimulationErrorExt, plain};
-use crate::interrupt::{PACE, period};
-use crate::run_failure::{interrupted, run_failure};
-use crate::shared_run::{Runs, SharedRun};
-use crate::torques::torques;
+use crate::interrupt::period;
+use crate::shared_run::SharedRun;
 use crate::world::{PyEventRecord, PySystemStepper, Systems};
 use numpy::PyArrayDyn;
 use onorbit_core::number_text::short;
-use onorbit_core::simulation::{Recording, RunFailure, SimulationError, Stepper};
+use onorbit_core::simulation::{SimulationError, Stepper};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::ops::ControlFlow;
-use std::sync::{Arc, MutexGuard};
-use std::time::{Duration, Instant};
+use std::sync::Arc;
 
-/// Callback at regular intervals of wall-clock time, which receives the run and its wall-clock time so far, s.
-type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResult<()>;
+type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Run that is advanced step by step, as returned by :meth:`Simulation.start`.
 ///
@@ -27,16 +22,16 @@ type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResul
 /// step; the whole step is taken later.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
-    run: SharedRun,
-    number: u64,
-    systems: Arc<Systems>,
+    pub(crate) run: SharedRun,
+    pub(crate) number: u64,
+    pub(crate) systems: Arc<Systems>,
 }
 
 #[pymethods]
 impl PyStepper {
     /// Current time, s.
     #[getter]
-    fn time(&self, py: Python<'_>) -> PyResult<f64> {
+    pub(crate) fn time(&self, py: Python<'_>) -> PyResult<f64> {
         self.with(py, |stepper| stepper.time())
     }
 
@@ -131,6 +126,129 @@ impl PyStepper {
     fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
         let system = self.only("command")?;
         self.command_system(system, tau)
+    }
+
+    /// Send a command to the joints of an :class:`External` controller.
+    ///
+    /// It takes effect at the next update of the controllers (``control_period``), at the current time if that is one,
+    /// and is held until the next command. A command that has not taken effect yet is replaced.
+    ///
+    /// Parameters
+    /// ----------
+    /// control : str
+    ///     Name of the control: a key of :attr:`external`; a single controller of all joints is ``control``.
+    /// position : (k,) array, optional
+    ///     Positions of the joints of the control, rad or m; without ``velocity`` they are held at rest.
+    /// velocity : (k,) array, optional
+    ///     Velocities, rad/s or m/s; without ``position`` there is no position error.
+    /// effort : (k,) array, optional
+    ///     Torques, N m (N for a prismatic joint): the torques if given alone, otherwise they are added.
+    /// acceleration : (k,) array, optional
+    ///     Accelerations that are added to the law of position and velocity, rad/s² or m/s².
+    ///
+    /// Raises
+    /// ------
+    /// ControlError
+    ///     If there is no such control, it is not :class:`External`, it has ended, the command is empty, or a gain that
+    ///     the command requires is zero; the run is unchanged.
+    /// ShapeError, InputError
+    ///     If an array has the wrong length or holds numbers that are not finite; the run is unchanged.
+    #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None))]
+    fn send(
+        &self,
+        py: Python<'_>,
+        control: &str,
+        position: Optional<'_, '_>,
+        velocity: Optional<'_, '_>,
+        effort: Optional<'_, '_>,
+        acceleration: Optional<'_, '_>,
+    ) -> PyResult<()> {
+        let system = self.only("send")?;
+        self.send_to(py, system, control, [position, velocity, acceleration, effort])
+    }
+
+    /// Send a motion through points to the joints of an :class:`External` controller.
+    ///
+    /// Between the points the motion is interpolated as by ROS's joint_trajectory_controller: linearly, with cubics if
+    /// velocities are given, and with quintics if accelerations are given too. It begins with the desired state at the
+    /// update at which it takes effect (where nothing is desired: the actual one), and holds the last positions.
+    ///
+    /// Parameters
+    /// ----------
+    /// control : str
+    ///     Name of the control.
+    /// times : (K,) array
+    ///     Times of the points after ``start``, s; increasing, at least 0.
+    /// positions : (K, k) array
+    ///     Positions of the joints of the control, rad or m.
+    /// velocities : (K, k) array, optional
+    ///     Velocities, rad/s or m/s.
+    /// accelerations : (K, k) array, optional
+    ///     Accelerations, rad/s² or m/s²; require velocities.
+    /// start : float, optional
+    ///     Simulation time of the start, s; default: now. Until a later start the previous command is held; with an
+    ///     earlier one, the points that have passed are skipped.
+    ///
+    /// Raises
+    /// ------
+    /// ControlError, ShapeError, InputError
+    ///     As :meth:`send`, and if times do not increase or the trajectory ends before the current time.
+    #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
+    fn send_trajectory(
+        &self,
+        py: Python<'_>,
+        control: &str,
+        times: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        velocities: Optional<'_, '_>,
+        accelerations: Optional<'_, '_>,
+        start: Option<f64>,
+    ) -> PyResult<()> {
+        let system = self.only("send_trajectory")?;
+        self.send_trajectory_to(py, system, control, (start, times, positions), [velocities, accelerations])
+    }
+
+    /// Apply a wrench to a body from the current time until the next wrench on it.
+    ///
+    /// The current time becomes the end of a step. The wrench counts in ``impulse`` and ``work`` as effects of the
+    /// environment do; with ``record_wrenches`` it is ``trace.wrenches["wrench_command"]`` in runs with an
+    /// :class:`External` controller.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : str
+    ///     Link or frame; as that of :class:`BodyWrench`, the force acts at its origin.
+    /// force : (3,) array, optional
+    ///     Force, N; default: 0.
+    /// torque : (3,) array, optional
+    ///     Torque, N m; default: 0.
+    /// frame : {"world", "body"}
+    ///     Axes in which force and torque are constant: those of W, or those of the body.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError, InputError, ShapeError
+    ///     If there is no such body, or a number is not finite; the run is unchanged.
+    /// EngineError
+    ///     If another physics engine moves the robot.
+    #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
+    fn wrench(
+        &self,
+        py: Python<'_>,
+        body: &str,
+        force: Optional<'_, '_>,
+        torque: Optional<'_, '_>,
+        frame: &str,
+    ) -> PyResult<()> {
+        let system = self.only("wrench")?;
+        self.wrench_on(py, system, body, (force, torque, frame))
+    }
+
+    /// Names of the joints of each :class:`External` controller, by the name of the control.
+    #[getter]
+    fn external(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
+        let system = self.only("external")?;
+        self.external_of(py, system)
     }
 
     /// Trigger an event that happens on command, at the current time.
@@ -255,121 +373,12 @@ impl PyStepper {
         self.systems.only("stepper", what).map(|()| 0)
     }
 
-    /// Sets the torques of a system.
-    pub(crate) fn command_system(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<()> {
-        let torques = torques(&self.systems.models[system], tau)?;
-        self.try_with(tau.py(), |stepper| stepper.command(system, &torques))
-    }
-
-    /// Runs to the end and returns the whole trace; `pause` is called at intervals.
-    pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<Py<PyAny>> {
-        let mut runs = self.run.lock(py)?;
-        if let Err(error) = self.advance_locked(py, &mut runs, duration, None, pause) {
-            runs.end(self.number);
-            return Err(error);
-        }
-        self.end(py, &mut runs, true)
-    }
-
-    /// Ends the run and returns its trace.
-    fn end(&self, py: Python<'_>, runs: &mut MutexGuard<'_, Runs>, is_complete: bool) -> PyResult<Py<PyAny>> {
-        let finished = runs.with(self.number, |stepper| py.detach(|| stepper.finish()));
-        let wall_s = runs.wall_s;
-        runs.end(self.number);
-        match finished.ok_or_else(|| ended(py))? {
-            Ok(recording) => self.systems.wrap(py, recording, is_complete, wall_s),
-            Err(RunFailure { error, recording }) => Err(self.ended_early(py, error, *recording, wall_s)),
-        }
-    }
-
-    /// Advances in slices of wall-clock time, without the GIL.
-    fn advance_locked(
-        &self,
-        py: Python<'_>,
-        runs: &mut MutexGuard<'_, Runs>,
-        t: f64,
-        limit: Option<Duration>,
-        pause: Pause<'_>,
-    ) -> PyResult<()> {
-        let (start, wall_before) = (Instant::now(), runs.wall_s);
-        let slice = limit.map_or(PACE, |limit| limit.min(PACE));
-        loop {
-            let wall_s = wall_before + start.elapsed().as_secs_f64();
-            let advanced = runs.with(self.number, |stepper| {
-                let result = py.detach(|| {
-                    let from = Instant::now();
-                    stepper.advance_until(t, &mut |_| match from.elapsed() < slice {
-                        true => ControlFlow::Continue(()),
-                        false => ControlFlow::Break(()),
-                    })
-                });
-                match result {
-                    Ok(ControlFlow::Continue(())) => Ok(true),
-                    Ok(ControlFlow::Break(())) => match pause(py, stepper, wall_s) {
-                        Ok(()) => Ok(limit.is_some_and(|limit| start.elapsed() >= limit)),
-                        Err(error) => Err(self.stopped(py, stepper, error, wall_s)),
-                    },
-                    Err(error) => Err(self.failed(py, stepper, error, wall_s)),
-                }
-            });
-            runs.wall_s = wall_before + start.elapsed().as_secs_f64();
-            let is_done = advanced.ok_or_else(|| ended(py))?;
-            runs.warn(py, self.number)?;
-            if is_done? {
-                return Ok(());
-            }
-        }
-    }
-
-    /// Returns the exception for an error of the core, with the rows of the run if the error ended it.
-    fn failed(
-        &self,
-        py: Python<'_>,
-        stepper: &mut Stepper<'_>,
-        error: SimulationError,
-        wall_s: f64,
-    ) -> PyErr {
-        if !stepper.has_failed() {
-            return error.into_python_with(py, None);
-        }
-        let recording = stepper.finish().unwrap_or_default();
-        self.ended_early(py, error, recording, wall_s)
-    }
-
-    /// Returns the exception for an error that ended the run, with its rows.
-    fn ended_early(
-        &self,
-        py: Python<'_>,
-        error: SimulationError,
-        recording: Recording,
-        wall_s: f64,
-    ) -> PyErr {
-        let last = recording.systems.first().and_then(|trace| trace.time.last().copied());
-        run_failure(py, error, last, self.systems.wrap(py, recording, false, wall_s).ok())
-    }
-
-    /// Returns the exception for a signal or an error of a callback between two steps.
-    fn stopped(&self, py: Python<'_>, stepper: &mut Stepper<'_>, error: PyErr, wall_s: f64) -> PyErr {
-        let time = stepper.time();
-        match stepper.recording() {
-            Ok(recording) => {
-                interrupted(py, error, time, self.systems.wrap(py, recording, false, wall_s).ok())
-            }
-            Err(failure) => self.failed(py, stepper, failure, wall_s),
-        }
-    }
-
-    fn with<R>(&self, py: Python<'_>, work: impl FnOnce(&mut Stepper<'_>) -> R) -> PyResult<R> {
+    pub(crate) fn with<R>(&self, py: Python<'_>, work: impl FnOnce(&mut Stepper<'_>) -> R) -> PyResult<R> {
         self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
     }
 
-    /// Returns the number of rows that each system has recorded so far.
-    pub(crate) fn row_counts(&self, py: Python<'_>) -> PyResult<Vec<usize>> {
-        self.with(py, |stepper| row_counts(stepper, self.systems.names.len()))
-    }
-
     /// Calls `work`, in which a Python controller may run, and converts its error.
-    fn try_with<R>(
+    pub(crate) fn try_with<R>(
         &self,
         py: Python<'_>,
         work: impl FnOnce(&mut Stepper<'_>) -> Result<R, SimulationError>,
@@ -381,18 +390,10 @@ impl PyStepper {
         });
         result.ok_or_else(|| ended(py))?
     }
-
-    /// Returns the configuration and the velocity of a system at the current time.
-    pub(crate) fn state(&self, py: Python<'_>, system: usize) -> PyResult<(Vec<f64>, Vec<f64>)> {
-        let model = &self.systems.models[system];
-        let (mut q, mut v) = (vec![0.0; model.nq()], vec![0.0; model.nv()]);
-        self.try_with(py, |stepper| stepper.read_state(system, &mut q, &mut v))?;
-        Ok((q, v))
-    }
 }
 
 /// Returns the error of a stepper whose run has ended.
-fn ended(py: Python<'_>) -> PyErr {
+pub(crate) fn ended(py: Python<'_>) -> PyErr {
     let message = "the run has ended; start a new one (a simulation has one run at a time)";
     plain(py, "SimulationError", message)
 }

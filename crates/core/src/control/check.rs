@@ -45,6 +45,9 @@ fn check_group(control: &Control, model: &Model) -> Result<(), ControlError> {
 }
 
 fn check_goal(control: &Control) -> Result<(), ControlError> {
+    if control.law.external().is_some() && (control.starts_at_present || control.goal.is_some()) {
+        return Err(ControlError::GoalOfExternal { control: control.name.clone() });
+    }
     let width = control.width();
     if width == 0 && (control.starts_at_present || control.goal.is_some()) {
         return Err(ControlError::NothingTracked { control: control.name.clone() });

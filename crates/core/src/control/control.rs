@@ -62,11 +62,13 @@ impl Control {
     }
 
     /// Returns the length of the tracking error: 6 for a frame (m, rad), one per joint, or 0 without a reference or if
-    /// the reference commands efforts.
+    /// the reference commands efforts. The error of a law that follows commands from outside is zero while no positions are
+    /// commanded.
     pub fn width(&self) -> usize {
         match (self.law.task(), self.law.joint_reference()) {
             (Some(_), _) => 6,
             (None, Some(_)) if self.law.interface() != Interface::Effort => self.joints.len(),
+            (None, None) if self.law.external().is_some() => self.joints.len(),
             _ => 0,
         }
     }

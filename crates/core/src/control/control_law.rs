@@ -61,6 +61,12 @@ pub(super) trait ControlLaw {
         0.0
     }
 
+    /// Returns the effort that is added to the torque of the joint at `place` in the group, N m (N), for
+    /// [`JointCommand::Acceleration`].
+    fn feedforward(&self, _place: usize) -> Option<f64> {
+        None
+    }
+
     /// Returns the acceleration of the tracked frame, for [`JointCommand::Task`], from its pose error, its velocity
     /// error and the desired acceleration.
     fn task_acceleration(

@@ -4,6 +4,7 @@ use super::computed_torque::task_error;
 use super::control::Control;
 use super::control_law::{Interface, PidMemory};
 use super::error::ControlError;
+use super::external::ExternalMemory;
 use super::goal::{Goal, Outcome};
 use crate::reference::{Hold, JointPath, JointSample, ReferenceError, TaskReference, TaskSample};
 use crate::spatial::{Mat3, Motion, Vec3};
@@ -36,6 +37,9 @@ pub struct ControlMemory {
     pub(super) last_tick: Option<f64>,
     /// State saved by a user's controller.
     pub(super) user: Vec<u8>,
+    /// State of a law that follows commands from outside of the run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) external: Option<ExternalMemory>,
 }
 
 /// State of a control, with its desired motion and its error at the last instant evaluated.
@@ -74,6 +78,7 @@ impl ControlState {
             pid: PidMemory { integral: vec![0.0; k], previous: vec![None; k] },
             last_tick: None,
             user: Vec::new(),
+            external: None,
         };
         Self {
             memory,
@@ -164,7 +169,21 @@ impl ControlState {
                     if is_rate { self.desired.v[place] - rates[j] } else { self.desired.q[place] - q[j] };
             }
         }
+        if let Some(law) = control.law.external() {
+            self.take_joints(control, q, rates);
+            law.sample(t, &mut self.desired);
+            for (place, error) in self.error.iter_mut().enumerate() {
+                *error = self.desired.q[place] - q[control.joints[place]];
+            }
+        }
         Ok(())
+    }
+
+    /// Sets the desired positions and rates to the current ones; `q` and `rates` contain the values of all joints.
+    pub(super) fn take_joints(&mut self, control: &Control, q: &[f64], rates: &[f64]) {
+        for (place, &j) in control.joints.iter().enumerate() {
+            (self.desired.q[place], self.desired.v[place]) = (q[j], rates[j]);
+        }
     }
 
     fn sample(&self, reference: &TaskReference, t: f64) -> Result<TaskSample<f64>, ReferenceError> {

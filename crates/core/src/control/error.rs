@@ -1,5 +1,6 @@
 //! Errors of controls.
 
+use crate::model::nearest;
 use crate::number_text::{count, short, unlike};
 use crate::reference::ReferenceError;
 use thiserror::Error;
@@ -103,9 +104,77 @@ pub enum ControlError {
          with the original one"
     )]
     OtherMemory { control: String },
+    #[error("timeout is {value} s; it must be positive and finite", value = short(*value))]
+    Timeout { value: f64 },
+    #[error(
+        "on_timeout '{used_by}' requires {gain} > 0 for all joints; give kp and kd, such as kp=100, kd=20, \
+         or use on_timeout 'zero'"
+    )]
+    TimeoutGain { gain: &'static str, used_by: &'static str },
+    #[error(
+        "control '{control}' follows commands from outside, so it has neither a goal nor a reference to shift; omit \
+         'goal' and 'starts_at_present'"
+    )]
+    GoalOfExternal { control: String },
+    #[error("there is no control '{name}'{hint}", hint = named(known, name))]
+    UnknownControl { name: String, known: Vec<String> },
+    #[error("control '{control}' follows no commands from outside{hint}", hint = externals(known))]
+    NotExternal { control: String, known: Vec<String> },
+    #[error("control '{control}' has ended, so it takes no commands; command a control that is active")]
+    ControlEnded { control: String },
+    #[error(
+        "{name} of the command to '{control}' has {got}; expected {expected}",
+        got = count(*got, "number"),
+        expected = if *points == 1 { format!("{joints}, one per joint of its group") }
+            else { format!("{points} rows of {joints}, one per time and joint") }
+    )]
+    CommandLength { control: String, name: &'static str, points: usize, joints: usize, got: usize },
+    #[error(
+        "{name}[{index}] of the command to '{control}' is {value}; it must be finite and within ±1e60 (SI units)",
+        value = short(*value)
+    )]
+    CommandNumber { control: String, name: &'static str, index: usize, value: f64 },
+    #[error(
+        "the command to '{control}' is empty; give a position, a velocity or an effort, or at least one point of a \
+         trajectory"
+    )]
+    EmptyCommand { control: String },
+    #[error(
+        "the command to '{control}' has accelerations without velocities; give the velocities too (accelerations are \
+         added to the law of positions and velocities)"
+    )]
+    AccelerationAlone { control: String },
+    #[error(
+        "times[{index}] of the trajectory of '{control}' is {after} s after {before} s; times must increase from 0",
+        before = short(*before), after = unlike(*after, &[*before])
+    )]
+    TimesNotIncreasing { control: String, index: usize, before: f64, after: f64 },
+    #[error(
+        "the trajectory of '{control}' ends at t = {end} s, before the current time, {now} s; give a later 'start'",
+        end = unlike(*end, &[*now]), now = short(*now)
+    )]
+    PastTrajectory { control: String, end: f64, now: f64 },
+    #[error(
+        "control '{control}' gets {of}, which require {gain} > 0 for all of its joints; construct it with gains, such as \
+         External(kp=100, kd=20), or send efforts"
+    )]
+    CommandGain { control: String, gain: &'static str, of: &'static str },
     #[error("at t = {time} s: {source}", time = short(*time))]
     Reference { time: f64, source: ReferenceError },
     /// Error of a user's controller, unchanged.
     #[error(transparent)]
     User(Box<dyn std::error::Error + Send + Sync>),
+}
+
+/// Returns which of the controls that follow commands was meant.
+fn named(known: &[String], name: &str) -> String {
+    if known.is_empty() { externals(known) } else { nearest(known, name) }
+}
+
+/// Returns how to send commands to those controls that follow them.
+fn externals(known: &[String]) -> String {
+    match known {
+        [] => "; give the joints to command the controller External".to_owned(),
+        _ => format!("; those that do are: {}", known.join(", ")),
+    }
 }

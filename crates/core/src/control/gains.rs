@@ -23,6 +23,11 @@ impl PerJoint {
         self.0.iter().any(|x| *x != 0.0)
     }
 
+    /// Returns true if all numbers are positive.
+    pub(super) fn is_positive(&self) -> bool {
+        self.0.iter().all(|x| *x > 0.0)
+    }
+
     /// Checks that there is one number, or one for each of `count` joints, and that none is negative.
     pub(super) fn check(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;

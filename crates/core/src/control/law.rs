@@ -8,6 +8,7 @@ use super::computed_torque::{ComputedTorque, check_frame};
 use super::control_law::{ControlLaw, Interface};
 use super::controller::Controller;
 use super::error::ControlError;
+use super::external::External;
 use super::joint_computed_torque::JointComputedTorque;
 use super::joint_pid::JointPid;
 use crate::model::Model;
@@ -23,6 +24,8 @@ pub enum Law {
     Pid(JointPid, JointReference),
     /// Compliance of a frame.
     Compliance(Box<Compliance>, TaskReference),
+    /// Commands from outside of the run.
+    External(Box<External>),
     /// A user's controller and, if it tracks one, the frame (index) and its reference.
     User(Box<dyn Controller>, Option<(usize, TaskReference)>),
 }
@@ -35,6 +38,7 @@ impl Law {
             Self::JointComputedTorque(law, _) => law,
             Self::Pid(law, _) => law,
             Self::Compliance(law, _) => &**law,
+            Self::External(law) => &**law,
             Self::User(controller, _) => controller,
         }
     }
@@ -46,6 +50,7 @@ impl Law {
             Self::JointComputedTorque(law, _) => law,
             Self::Pid(law, _) => law,
             Self::Compliance(law, _) => &mut **law,
+            Self::External(law) => &mut **law,
             Self::User(controller, _) => controller,
         }
     }
@@ -56,7 +61,7 @@ impl Law {
             Self::TaskComputedTorque(law, reference) => Some((law.frame, reference)),
             Self::Compliance(law, reference) => Some((law.frame, reference)),
             Self::User(_, tracked) => tracked.as_ref().map(|(frame, reference)| (*frame, reference)),
-            Self::JointComputedTorque(..) | Self::Pid(..) => None,
+            Self::JointComputedTorque(..) | Self::Pid(..) | Self::External(_) => None,
         }
     }
 
@@ -64,7 +69,23 @@ impl Law {
     pub fn joint_reference(&self) -> Option<&JointReference> {
         match self {
             Self::JointComputedTorque(_, reference) | Self::Pid(_, reference) => Some(reference),
-            Self::TaskComputedTorque(..) | Self::Compliance(..) | Self::User(..) => None,
+            Self::TaskComputedTorque(..) | Self::Compliance(..) | Self::External(_) | Self::User(..) => None,
+        }
+    }
+
+    /// Returns the law as one that follows commands from outside of the run, if it is.
+    pub fn external(&self) -> Option<&External> {
+        match self {
+            Self::External(law) => Some(law),
+            _ => None,
+        }
+    }
+
+    /// Returns the law as a mutable one that follows commands from outside of the run, if it is.
+    pub(super) fn external_mut(&mut self) -> Option<&mut External> {
+        match self {
+            Self::External(law) => Some(law),
+            _ => None,
         }
     }
 

@@ -177,7 +177,7 @@ fn base_advice(joints: &[String]) -> String {
 
 /// Returns `; did you mean 'x'?` with the candidate `x` closest to `name`, or a list of the candidates if
 /// there are only a few.
-pub(super) fn nearest(candidates: &[String], name: &str) -> String {
+pub(crate) fn nearest(candidates: &[String], name: &str) -> String {
     match closest(candidates, name) {
         Some(meant) => format!("; did you mean '{meant}'?"),
         None if (1..=12).contains(&candidates.len()) => {

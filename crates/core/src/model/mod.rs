@@ -24,6 +24,7 @@ pub use builder::ModelBuilder;
 pub use configuration::{difference, integrate, neutral};
 pub use coordinates::{ANGULAR, BASE_NQ, BASE_NV, QUATERNION};
 pub use description::{Description, Geometry, Inertial, Joint, JointKind, Limits, Link, Visual};
+pub(crate) use error::nearest;
 pub use error::{ModelError, ModelWarning};
 pub use link_change::LinkChange;
 pub use tree::{Axis, Frame, JointProperties, Model, Node};

@@ -15,6 +15,7 @@ use super::state::State;
 use super::state_range::{UNIT_NORM, attitude_norm};
 use super::step_doubling::Errors;
 use super::tree_state::TreeState;
+use super::wrench_commands::WrenchCommands;
 use crate::control::ControlMemory;
 use crate::model::BASE_NV;
 use crate::spatial::InstructionSet;
@@ -44,6 +45,9 @@ pub(super) struct GroupCheckpoint {
     pub(super) schedule: Schedule,
     pub(super) progress: Progress,
     pub(super) local_reference: Option<LocalReference>,
+    /// Wrenches from outside of the run.
+    #[serde(default, skip_serializing_if = "WrenchCommands::is_empty")]
+    pub(super) wrenches: WrenchCommands,
     pub(super) controllers: SavedControllers,
 }
 
@@ -219,7 +223,9 @@ impl GroupCheckpoint {
         let has_step = step_control.as_ref().is_none_or(|control| {
             is_step(control.step) && control.trees.iter().all(|system| system.size >= 0.0)
         });
-        let reason = if !state.is_finite() {
+        let reason = if !self.wrenches.is_finite() {
+            "a commanded wrench is not finite"
+        } else if !state.is_finite() {
             "its state is not finite"
         } else if !state.trees.iter().all(has_unit_attitude) {
             "an attitude is not a unit quaternion"

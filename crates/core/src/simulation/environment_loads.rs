@@ -8,6 +8,7 @@ use super::members::{Members, Place};
 use super::reference_cache::{Instant, ReferenceCache};
 use super::state::State;
 use super::tree::Tree;
+use super::wrench_commands::WrenchCommands;
 use crate::earth::Earth;
 use crate::environment::{
     Bodies, DifferentialGravity, Effect, EnvironmentError, GravityMode, Reference, Scene, Wrench, Wrenches,
@@ -24,6 +25,8 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct EnvironmentLoads {
     effects: Vec<Arc<dyn Effect>>,
+    /// Wrenches from outside of the run.
+    pub(super) commands: WrenchCommands,
     reads_velocities: bool,
     /// Orbit on which the origin of W moves.
     reference: Option<Arc<dyn Orbit>>,
@@ -59,6 +62,7 @@ impl EnvironmentLoads {
         Self {
             reads_velocities: effects.iter().any(|effect| effect.reads_velocities()),
             effects,
+            commands: WrenchCommands::default(),
             in_free_fall: orbit.as_deref().is_some_and(|orbit| obeys(orbit, gravity.as_ref())),
             reference: orbit.clone(),
             local_reference: None,
@@ -166,9 +170,25 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Returns the wrench of one effect on each body at `t`, s, for the body states gathered last.
+    /// Adds the commanded wrenches on `self.bodies` at `t`, s, to `self.wrenches`.
+    fn add_commands(&mut self, t: f64) -> Result<(), SimulationError> {
+        let added = self.commands.add_to(&self.bodies, &mut self.wrenches);
+        added.map_err(|source| SimulationError::Environment { time: t, source })
+    }
+
+    /// Returns the number of effects.
+    pub(super) fn effect_count(&self) -> usize {
+        self.effects.len()
+    }
+
+    /// Returns the wrench of one effect on each body at `t`, s, for the body states gathered last; those after the last
+    /// effect are the commanded wrenches.
     pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&Wrenches, SimulationError> {
-        self.sum_effects(t, effect..effect + 1)?;
+        let count = self.effects.len();
+        self.sum_effects(t, effect.min(count)..(effect + 1).min(count))?;
+        if effect >= count {
+            self.add_commands(t)?;
+        }
         Ok(&self.wrenches)
     }
 }
@@ -217,7 +237,7 @@ impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
         t: f64,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
-        if self.effects.is_empty() {
+        if !ExternalLoads::<S>::is_active(self) {
             return Ok(());
         }
         members.follow(trees, &state.trees);
@@ -231,6 +251,7 @@ impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
         }
         self.interval = interval;
         self.sum_effects(t, 0..self.effects.len())?;
+        self.add_commands(t)?;
         for (number, place) in places.iter().enumerate() {
             let mut system = match *place {
                 Place::Tree(tree) => trees[tree].loaded(&state.trees[tree].q),
@@ -244,6 +265,6 @@ impl<S: Scalar> ExternalLoads<S> for EnvironmentLoads {
     }
 
     fn is_active(&self) -> bool {
-        !self.effects.is_empty()
+        !(self.effects.is_empty() && self.commands.is_empty())
     }
 }

@@ -8,7 +8,7 @@ use super::members::Place;
 use super::recording::GroupRecording;
 use super::run_state::RunState;
 use super::schedule::{Cursor, Interval};
-use super::stepper::Monitor;
+use super::steps::Monitor;
 use super::tree::Tree;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;

@@ -157,7 +157,7 @@ impl Recorder {
         if let Some(shift) = &self.shift {
             shift.transform_row(trace, model);
         }
-        let gravity = trace.wrenches.len().wrapping_sub(1); // gravity is the last effect
+        let gravity = loads.effect_count().wrapping_sub(1); // gravity is the last effect
         for (effect, column) in trace.wrenches.iter_mut().enumerate() {
             let shift = self.shift.as_ref().filter(|_| effect == gravity);
             for (wrench, node) in loads.wrenches_of(effect, t)?.of_system(self.number).zip(model.nodes()) {

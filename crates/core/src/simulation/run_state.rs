@@ -161,6 +161,7 @@ impl<S: Scalar> RunState<'_, S> {
             schedule: self.schedule.clone(),
             progress: self.progress(),
             local_reference: loads.local_reference().cloned(),
+            wrenches: loads.commands.clone(),
             controllers: SavedControllers { controllers_updated: self.controllers_updated, systems },
         })
     }
@@ -173,7 +174,8 @@ impl<S: Scalar> RunState<'_, S> {
         self.restore_members(from.progress.world.members.clone())?;
         self.check_members(&from.progress.world)?;
         from.check_trees(&self.state)?;
-        let GroupCheckpoint { time, progress, local_reference, controllers: saved, .. } = from;
+        let GroupCheckpoint { time, progress, local_reference, wrenches, controllers: saved, .. } = from;
+        self.equations.loads.commands = wrenches;
         self.check_estimates(&progress)?;
         for (run, rows) in self.systems.iter_mut().zip(rows) {
             run.recorder.resume(rows)?;

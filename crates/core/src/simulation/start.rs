@@ -133,6 +133,7 @@ impl Simulation {
             tolerance: self.tolerance,
             rereference_beyond: self.rereference_beyond,
             record_wrenches: self.record_wrenches,
+            takes_commands: self.record_wrenches && self.has_external(),
             record_every: self.record_every,
         }
     }
@@ -163,6 +164,12 @@ impl Simulation {
         let mu = orbit.mu()?;
         let given = self.gravity.as_ref().or(orbit.gravity());
         Some(given.cloned().unwrap_or_else(|| Arc::new(Gravity::point_mass(mu))))
+    }
+
+    /// Returns true if a control follows commands from outside of the run.
+    fn has_external(&self) -> bool {
+        let mut controls = self.systems.iter().flat_map(|system| &system.controls);
+        controls.any(|control| control.law.external().is_some())
     }
 
     /// Returns the loads of the environment on the bodies of all systems.

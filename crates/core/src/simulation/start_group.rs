@@ -21,6 +21,7 @@ use super::run_system::RunSystem;
 use super::schedule::{Clock, LONGEST_INTERVAL, Schedule};
 use super::state::State;
 use super::tree::Tree;
+use super::wrench_commands::WRENCH_COMMAND;
 use crate::control::Control;
 use crate::earth::Earth;
 use crate::environment::{Effect, GravityMode};
@@ -54,6 +55,8 @@ pub(super) struct Shared {
     pub(super) tolerance: f64,
     pub(super) rereference_beyond: f64,
     pub(super) record_wrenches: bool,
+    /// True if wrenches are recorded, and a control follows commands from outside.
+    pub(super) takes_commands: bool,
     pub(super) record_every: usize,
 }
 
@@ -198,11 +201,17 @@ impl Shared {
         RecordOptions {
             tool,
             has_reference: has_reference || tracks_tool,
-            effects: if self.record_wrenches { self.effect_names.clone() } else { Vec::new() },
+            effects: self.recorded_effects(),
             has_orbit: self.orbit.is_some(),
             compensates_friction: compensates_friction && model.has_friction() && !self.has_engine,
             records_residual: self.gravity.is_some() && self.gravity_mode == GravityMode::Carried,
         }
+    }
+
+    /// Returns the names of the effects whose wrenches are recorded, and of the commanded wrenches after them.
+    fn recorded_effects(&self) -> Vec<String> {
+        let effects = self.effect_names.iter().filter(|_| self.record_wrenches).cloned();
+        effects.chain(self.takes_commands.then(|| WRENCH_COMMAND.to_owned())).collect()
     }
 
     /// Returns the distance from the origin of W beyond which a system changes to a local reference orbit, m; infinity
@@ -254,7 +263,10 @@ impl Shared {
 /// Returns true if a control depends on the position of the robot in W.
 fn tracks_world(system: &System) -> bool {
     system.reference.is_some()
-        || system.controls.iter().any(|control| control.law.joint_reference().is_none())
+        || system
+            .controls
+            .iter()
+            .any(|Control { law, .. }| law.joint_reference().is_none() && law.external().is_none())
 }
 
 /// Returns the events of the systems with these numbers, in which systems and events have the numbers of the group.

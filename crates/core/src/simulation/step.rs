@@ -73,7 +73,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
-        let is_due = !self.controllers_updated && self.find_due(t);
+        let is_due = self.find_due(t);
         let uses_loads =
             is_due && self.systems.iter().any(|run| run.controllers.set.compensates_environment());
         if is_due {
@@ -100,15 +100,23 @@ impl<S: Scalar> RunState<'_, S> {
         self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
     }
 
-    /// Finds the systems whose controllers are due at `t`, s: at their own ticks, and when an event starts one of them.
+    /// Finds the systems whose controllers are due at `t`, s: at their own ticks, and when an event starts one of them. If a
+    /// trial step has updated them at this cut, they are due again only if a command has come since.
     /// Returns true if there are any.
     fn find_due(&mut self, t: f64) -> bool {
-        let Self { systems, schedule, has_event, .. } = self;
-        for (number, run) in systems.iter_mut().enumerate() {
-            let starts_at_event = *has_event && run.controllers.set.is_started_by_event();
-            run.is_due = starts_at_event || schedule.is_tick(number, t);
+        let is_repeated = self.controllers_updated;
+        for number in 0..self.systems.len() {
+            let set = &self.systems[number].controllers.set;
+            let starts_at_event = self.has_event && set.is_started_by_event();
+            let is_due = match is_repeated {
+                false => starts_at_event || self.schedule.is_tick(number, t),
+                true => self.has_new_command(number, t) && self.schedule.is_tick(number, t),
+            };
+            let run = &mut self.systems[number];
+            run.is_due = is_due;
+            run.controllers.set.set_repeated(is_repeated);
         }
-        systems.iter().any(|run| run.is_due)
+        self.systems.iter().any(|run| run.is_due)
     }
 
     /// Updates the controllers that are due of those systems whose value of `compensates_environment` equals the
@@ -159,7 +167,8 @@ impl<S: Scalar> RunState<'_, S> {
             let tree = equations.members.tree_at(place);
             run.recorder.trace.work_done += mover.work_of_step(tree, &state.trees[tree]).abs();
         }
-        let is_smooth = !interval.is_event && !equations.has_modes();
+        let has_jump = equations.loads.commands.changed_at() == Some(interval.start);
+        let is_smooth = !interval.is_event && !has_jump && !equations.has_modes();
         accuracy.measure_step(
             (span.0, reached),
             is_smooth,

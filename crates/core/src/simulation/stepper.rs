@@ -1,19 +1,11 @@
 //! Stepper: a run that the caller advances.
 
-use super::attached::AttachedControl;
-use super::checkpoint::{Checkpoint, GroupCheckpoint};
-use super::equations::EquationsOfMotion;
+use super::checkpoint::Checkpoint;
 use super::error::{RunFailure, SimulationError};
-use super::members::Place;
-use super::recording::{EventRecord, GroupRecording, Recording};
-use super::run_state::RunState;
+use super::recording::Recording;
+use super::steps::{Monitor, Steps};
 use super::trace::Trace;
-use crate::spatial::Scalar;
 use std::ops::ControlFlow;
-
-/// Callback that receives the time reached, s, at intervals during an advance. Returning `Break` stops the advance at
-/// the end of the current step.
-pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
 /// A run that the caller advances; see [`Simulation::start`](super::Simulation::start).
 ///
@@ -22,7 +14,7 @@ pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 pub struct Stepper<'a> {
     pub(super) groups: Vec<Group<'a>>,
     /// Group of each system, and number of the system in the group.
-    places: Vec<(usize, usize)>,
+    pub(super) places: Vec<(usize, usize)>,
     /// Length of a regular step, s.
     time_step: f64,
     status: Status,
@@ -45,33 +37,6 @@ enum Status {
     Running,
     Failed,
     Finished,
-}
-
-/// Interface of the run of a group, independent of its scalar type. Systems are given by their number in the group.
-pub(super) trait Steps: Send {
-    fn time(&self) -> f64;
-    fn duration(&self) -> Option<f64>;
-    fn check_time(&self, t: f64) -> Result<(), SimulationError>;
-    fn advance_to(&mut self, t: f64, monitor: Monitor<'_>) -> Result<ControlFlow<()>, SimulationError>;
-    fn read_state(&mut self, system: usize, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError>;
-    fn check_command(&self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError>;
-    fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError>;
-    /// Returns the names of the events.
-    fn events(&self) -> Vec<String>;
-    /// Returns the events that have happened.
-    fn records(&self) -> &[EventRecord];
-    /// Returns the controls whose frames are rigidly connected to those that they follow.
-    fn attached_controls(&self) -> Vec<AttachedControl>;
-    /// Returns the number of the event with this name if it can be triggered; `None` if there is none.
-    fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError>;
-    fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;
-    fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
-    fn rows(&self, system: usize) -> &Trace;
-    fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
-    /// Adds a row at the current time.
-    fn record_current_time(&mut self) -> Result<(), SimulationError>;
-    /// Removes and returns the rows recorded so far, with the error estimates and the outcomes of goals.
-    fn take_rows(&mut self) -> GroupRecording;
 }
 
 impl<'a> Stepper<'a> {
@@ -180,8 +145,7 @@ impl<'a> Stepper<'a> {
     /// [`SimulationError::CommandedJoint`] leave the run unchanged. The errors of a step end the run.
     pub fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.check()?;
-        let (group, system) = self.places[system];
-        let run = &mut self.groups[group].run;
+        let (run, system) = self.run_of(system);
         run.check_command(system, tau)?;
         let result = run.command(system, tau);
         self.ended_by(result)
@@ -244,6 +208,12 @@ impl<'a> Stepper<'a> {
         self.status == Status::Failed
     }
 
+    /// Returns the run of the group of a system, and the number of the system in the group.
+    pub(super) fn run_of(&mut self, system: usize) -> (&mut (dyn Steps + 'a), usize) {
+        let (group, system) = self.places[system];
+        (&mut *self.groups[group].run, system)
+    }
+
     pub(super) fn check(&self) -> Result<(), SimulationError> {
         if self.status == Status::Running { Ok(()) } else { Err(SimulationError::Ended) }
     }
@@ -254,127 +224,5 @@ impl<'a> Stepper<'a> {
             self.status = Status::Failed;
         }
         result
-    }
-}
-
-impl<S: Scalar> Steps for RunState<'_, S> {
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn duration(&self) -> Option<f64> {
-        self.schedule.duration()
-    }
-
-    fn check_time(&self, t: f64) -> Result<(), SimulationError> {
-        if !t.is_finite() {
-            return Err(SimulationError::NotPositive { name: "t", value: t });
-        }
-        if self.schedule.is_later(self.time, t) {
-            return Err(SimulationError::PastTime { t, time: self.time });
-        }
-        if let Some(end) = self.duration().filter(|end| self.schedule.is_later(t, *end)) {
-            return Err(SimulationError::AfterEnd { t, end });
-        }
-        if let Some(earth) = &self.earth {
-            earth.covers(t)?;
-        }
-        Ok(())
-    }
-
-    fn advance_to(&mut self, t: f64, monitor: Monitor<'_>) -> Result<ControlFlow<()>, SimulationError> {
-        RunState::advance_to(self, t, monitor)
-    }
-
-    fn read_state(&mut self, system: usize, q: &mut [f64], v: &mut [f64]) -> Result<(), SimulationError> {
-        RunState::read_state(self, system, q, v)
-    }
-
-    fn check_command(&self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
-        let place = &self.layout.systems()[system];
-        let (got, expected) = (tau.len(), place.joints.len());
-        if got != expected {
-            return Err(SimulationError::WrongLength { name: "tau", expected, got });
-        }
-        let set = &self.systems[system].controllers.set;
-        for (index, value) in tau.iter().enumerate().filter_map(|(j, tau)| Some((j, (*tau)?))) {
-            if !value.is_finite() {
-                return Err(SimulationError::NotFinite { name: "tau", index, value });
-            }
-            if let Some(control) = set.driver_of(index, self.time) {
-                let (joint, control) = (place.joints[index].clone(), control.name.clone());
-                return Err(SimulationError::CommandedJoint { joint, control });
-            }
-        }
-        Ok(())
-    }
-
-    fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
-        self.cut_at_current_time()?;
-        let EquationsOfMotion { trees, members, .. } = &mut self.equations;
-        let set = &mut self.systems[system].controllers.set;
-        let moved = match members.places[system] {
-            Place::Tree(tree) => &mut trees[tree],
-            Place::Part(part) => &mut members.parts[part].own,
-        };
-        set.command(tau);
-        for (j, tau) in tau.iter().enumerate() {
-            // a control may have become active in the step that ended here
-            if let Some(tau) = tau.filter(|_| set.driver_of(j, self.time).is_none()) {
-                moved.command[j] = S::of(tau);
-            }
-        }
-        if let Place::Part(part) = members.places[system] {
-            let part = &members.parts[part];
-            part.drive(&mut trees[part.tree]);
-        }
-        Ok(())
-    }
-
-    fn records(&self) -> &[EventRecord] {
-        &self.events.records
-    }
-
-    fn attached_controls(&self) -> Vec<AttachedControl> {
-        RunState::attached_controls(self)
-    }
-
-    fn events(&self) -> Vec<String> {
-        self.events.list.iter().map(|event| event.name.clone()).collect()
-    }
-
-    fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError> {
-        let Some(number) = self.events.find(name) else { return Ok(None) };
-        self.events.check_trigger(number).map(|()| Some(number))
-    }
-
-    fn trigger(&mut self, event: usize) -> Result<(), SimulationError> {
-        self.cut_at_current_time()?;
-        self.events.states[event].due = Some(self.time);
-        self.events_changed();
-        Ok(())
-    }
-
-    fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError> {
-        RunState::checkpoint(self)
-    }
-
-    fn rows(&self, system: usize) -> &Trace {
-        &self.systems[system].recorder.trace
-    }
-
-    fn recording(&mut self) -> Result<GroupRecording, SimulationError> {
-        RunState::recording(self)
-    }
-
-    fn record_current_time(&mut self) -> Result<(), SimulationError> {
-        RunState::record_current_time(self)
-    }
-
-    fn take_rows(&mut self) -> GroupRecording {
-        self.conclude();
-        let systems = self.systems.iter_mut().map(|run| std::mem::take(&mut run.recorder.trace)).collect();
-        let (events, balance) = (std::mem::take(&mut self.events.records), std::mem::take(&mut self.balance));
-        GroupRecording { systems, events, balance }
     }
 }

@@ -35,6 +35,7 @@ pub use rotation::{Quat, dexp_inv, dexp_inv_exact, exp_so3, log_rotation, log_so
 pub use rotation_spline::RotationSpline;
 pub use scalar::{Real, Scalar};
 pub use solve::{cholesky_factor, cholesky_solve, dot};
+pub(crate) use spline::KnotInterval;
 pub use spline::{Ends, Spline, SplineError};
 pub use sym3::Sym3;
 pub use vec3::Vec3;

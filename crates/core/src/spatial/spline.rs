@@ -147,8 +147,8 @@ impl Spline {
 
 /// Position of a time relative to the knots.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct KnotInterval {
-    pub(super) segment: usize,
+pub(crate) struct KnotInterval {
+    pub(crate) segment: usize,
     length: f64,
     /// Normalized time in the interval between two knots, 0 to 1.
     u: f64,
@@ -156,7 +156,7 @@ pub(super) struct KnotInterval {
 }
 
 impl KnotInterval {
-    pub(super) fn of(times: &[f64], t: f64) -> Self {
+    pub(crate) fn of(times: &[f64], t: f64) -> Self {
         let last = times.len() - 2;
         let segment = times.partition_point(|knot| *knot <= t).saturating_sub(1).min(last);
         let length = times[segment + 1] - times[segment];
@@ -166,7 +166,7 @@ impl KnotInterval {
 
     /// Returns the value, slope and curvature of the quintic polynomial between two knots; `start` and `end`
     /// hold those of the knots. Outside the knots the curve is at rest.
-    pub(super) fn interpolate(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn interpolate(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
         let (h, u) = (self.length, self.u);
         if self.is_outside {
             return [if u > 0.5 { end[0] } else { start[0] }, 0.0, 0.0];

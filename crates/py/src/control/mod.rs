@@ -6,6 +6,7 @@ mod compliance;
 mod computed_torque;
 #[allow(clippy::module_inception)] // the file of `Control`
 mod control;
+mod external;
 mod gains;
 mod joint_computed_torque;
 mod joint_pid;
@@ -17,17 +18,19 @@ use pyo3::prelude::*;
 use compliance::PyCompliance;
 pub(crate) use computed_torque::PyComputedTorque;
 pub(crate) use control::controls_of;
+use external::PyExternal;
 use joint_computed_torque::PyJointComputedTorque;
 use joint_pid::PyJointPid;
 pub(crate) use native_law::Robot;
 use native_law::{LawOf, law_of};
 
 /// Control laws of the core. A new law requires a file, an entry in this list and a class in this module.
-const LAWS: [LawOf; 4] = [
+const LAWS: [LawOf; 5] = [
     law_of::<PyComputedTorque>,
     law_of::<PyJointComputedTorque>,
     law_of::<PyJointPid>,
     law_of::<PyCompliance>,
+    law_of::<PyExternal>,
 ];
 
 pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -35,6 +38,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyJointComputedTorque>()?;
     m.add_class::<PyJointPid>()?;
     m.add_class::<PyCompliance>()?;
+    m.add_class::<PyExternal>()?;
     m.add_class::<control::PyControl>()?;
     m.add_class::<control::PyGoal>()?;
     m.add_class::<user::PyState>()

@@ -48,6 +48,33 @@ impl IntoPython for ControlError {
             | Self::TooLarge { name, value, .. } => {
                 raise(py, "ControlError", &message, &fields!(py, "name": name, "got": value))
             }
+            Self::CommandLength { name, points, joints, got, .. } => {
+                shape_error(py, &message, name, points * joints, got)
+            }
+            Self::CommandNumber { name, value, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
+            }
+            Self::TimesNotIncreasing { after, before, .. } => raise(
+                py,
+                "InputError",
+                &message,
+                &fields!(py, "name": "times", "got": after, "expected": before),
+            ),
+            Self::PastTrajectory { end, now, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": "start", "got": end, "expected": now))
+            }
+            Self::Timeout { value } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": "timeout", "got": value))
+            }
+            Self::TimeoutGain { gain, .. } | Self::CommandGain { gain, .. } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": gain, "got": 0.0, "expected": "> 0"))
+            }
+            Self::UnknownControl { ref name, ref known } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": name, "expected": known.clone()))
+            }
+            Self::NotExternal { ref control, .. } | Self::ControlEnded { ref control } => {
+                raise(py, "ControlError", &message, &fields!(py, "name": control))
+            }
             Self::OtherControls { .. } | Self::OtherMemory { .. } => plain(py, "CheckpointError", &message),
             _ => plain(py, "ControlError", &message),
         }

@@ -11,6 +11,7 @@ use onorbit_core::model::Model;
 use onorbit_core::simulation::{Recording, Simulation, Stepper};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::Arc;
 
 /// Returns the number of the system with this name.
@@ -29,6 +30,8 @@ pub(super) fn attribute_of_systems(names: &[String], owner: &str, attribute: &st
         examples.join(", ")
     ))
 }
+
+type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Names and models of the systems of a run.
 pub(crate) struct Systems {
@@ -127,5 +130,94 @@ impl PySystemStepper {
     ///     If an active controller drives one of the joints.
     fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
         self.stepper.get().command_system(self.system, tau)
+    }
+
+    /// Send a command to the joints of an :class:`External` controller of this system; see :meth:`Stepper.send`.
+    ///
+    /// Parameters
+    /// ----------
+    /// control : str
+    ///     Name of the control.
+    /// position : (k,) array, optional
+    ///     Positions of the joints of the control, rad or m.
+    /// velocity : (k,) array, optional
+    ///     Velocities, rad/s or m/s.
+    /// effort : (k,) array, optional
+    ///     Torques, N m (N for a prismatic joint).
+    /// acceleration : (k,) array, optional
+    ///     Accelerations, rad/s² or m/s².
+    #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None))]
+    fn send(
+        &self,
+        py: Python<'_>,
+        control: &str,
+        position: Optional<'_, '_>,
+        velocity: Optional<'_, '_>,
+        effort: Optional<'_, '_>,
+        acceleration: Optional<'_, '_>,
+    ) -> PyResult<()> {
+        self.stepper.get().send_to(py, self.system, control, [position, velocity, acceleration, effort])
+    }
+
+    /// Send a motion through points to the joints of an :class:`External` controller of this system; see
+    /// :meth:`Stepper.send_trajectory`.
+    ///
+    /// Parameters
+    /// ----------
+    /// control : str
+    ///     Name of the control.
+    /// times : (K,) array
+    ///     Times of the points after ``start``, s.
+    /// positions : (K, k) array
+    ///     Positions of the joints of the control, rad or m.
+    /// velocities : (K, k) array, optional
+    ///     Velocities, rad/s or m/s.
+    /// accelerations : (K, k) array, optional
+    ///     Accelerations, rad/s² or m/s².
+    /// start : float, optional
+    ///     Simulation time of the start, s; default: now.
+    #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
+    fn send_trajectory(
+        &self,
+        py: Python<'_>,
+        control: &str,
+        times: &Bound<'_, PyAny>,
+        positions: &Bound<'_, PyAny>,
+        velocities: Optional<'_, '_>,
+        accelerations: Optional<'_, '_>,
+        start: Option<f64>,
+    ) -> PyResult<()> {
+        let path = (start, times, positions);
+        self.stepper.get().send_trajectory_to(py, self.system, control, path, [velocities, accelerations])
+    }
+
+    /// Apply a wrench to a body of this system until the next wrench on it; see :meth:`Stepper.wrench`.
+    ///
+    /// Parameters
+    /// ----------
+    /// body : str
+    ///     Link or frame, at whose origin the force acts.
+    /// force : (3,) array, optional
+    ///     Force, N; default: 0.
+    /// torque : (3,) array, optional
+    ///     Torque, N m; default: 0.
+    /// frame : {"world", "body"}
+    ///     Axes in which force and torque are constant.
+    #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
+    fn wrench(
+        &self,
+        py: Python<'_>,
+        body: &str,
+        force: Optional<'_, '_>,
+        torque: Optional<'_, '_>,
+        frame: &str,
+    ) -> PyResult<()> {
+        self.stepper.get().wrench_on(py, self.system, body, (force, torque, frame))
+    }
+
+    /// Names of the joints of each :class:`External` controller of this system, by the name of the control.
+    #[getter]
+    fn external(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
+        self.stepper.get().external_of(py, self.system)
     }
 }

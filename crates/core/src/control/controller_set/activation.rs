@@ -56,6 +56,10 @@ impl<S: Scalar> ControllerSet<'_, S> {
                     }
                 }
                 let started = states[i].start(&controls[i], t, &self.q[BASE_NQ..]);
+                let Control { law, joints, .. } = &mut controls[i];
+                if let Some(law) = law.external_mut() {
+                    law.start(joints.iter().map(|&j| self.q[BASE_NQ + j]));
+                }
                 started.map_err(|source| ControlError::Reference { time: t, source })?;
                 has_changed = true;
             }

@@ -1,6 +1,7 @@
 //! Set of the controls of a run.
 
 mod activation;
+mod commands;
 mod errors;
 mod friction;
 mod torques;
@@ -58,6 +59,8 @@ pub struct ControllerSet<'a, S> {
     group: [Vec<f64>; 3],
     /// Tree of connected robots that the laws know.
     known: Option<Box<KnownTree>>,
+    /// True if the next update repeats the last one: laws with a state, such as those of users, then keep their torques.
+    is_repeated: bool,
 }
 
 impl<'a, S: Scalar> ControllerSet<'a, S> {
@@ -110,6 +113,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             events: Vec::new(),
             group: [zeros(n), zeros(n), zeros(n)],
             known: None,
+            is_repeated: false,
         })
     }
 
@@ -216,6 +220,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         let saved = states.map(|(control, state)| {
             let mut memory = state.memory.clone();
             memory.user = control.law.control_law().save()?;
+            memory.external = control.law.external().map(|law| law.memory().clone());
             Ok(memory)
         });
         saved.collect()
@@ -235,6 +240,13 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         for ((control, state), memory) in self.controls.iter_mut().zip(&mut self.states).zip(saved) {
             state.restore(control, memory)?;
             control.law.control_law_mut().load(&memory.user)?;
+            let Control { name, joints, law, .. } = control;
+            if let Some(law) = law.external_mut() {
+                let is_own = |memory| law.restore(memory, name, joints.len());
+                if !memory.external.as_ref().is_some_and(is_own) {
+                    return Err(ControlError::OtherMemory { control: name.clone() });
+                }
+            }
         }
         Ok(())
     }
@@ -258,12 +270,12 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         tau: &mut [S],
     ) -> Result<(), ControlError> {
         self.update_errors(t, model, data, q, v)?;
-        if self.activate(t, model)? {
+        if self.activate(t, model)? | self.follow_commands(t) {
             self.evaluated_at = f64::NAN; // other controls are active now
             self.update_errors(t, model, data, q, v)?;
         }
         if !self.task_of_whole_robot(model, data, q, v, tau) {
-            self.torques_of_groups(t, model, data, q, v)?;
+            self.torques_of_groups(t, model, data, (q, v), tau)?;
             tau.iter_mut().zip(&self.tau).for_each(|(to, from)| *to = S::of(*from));
         }
         for state in self.states.iter_mut().filter(|state| state.is_running()) {
@@ -294,14 +306,14 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         true
     }
 
-    /// Computes the torques of several groups of joints.
+    /// Computes the torques of several groups of joints; `last` holds those of the last update.
     fn torques_of_groups(
         &mut self,
         t: f64,
         model: &Model,
         data: &mut Data<S>,
-        q: &[S],
-        v: &[S],
+        (q, v): (&[S], &[S]),
+        last: &[S],
     ) -> Result<(), ControlError> {
         // laws that solve for accelerations take the torques of the other joints into account
         self.tau.iter_mut().zip(&self.commanded).for_each(|(tau, held)| *tau = held.unwrap_or(0.0));
@@ -315,7 +327,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
                 None => free_floating_recursion(model, data, q, v, 0, &mut self.reduced),
             }
         }
-        self.efforts(t, model, data, q, v)?;
+        self.efforts(t, model, data, (q, v), last)?;
         if has_accelerations {
             self.accelerations(model, data, q, v);
         }

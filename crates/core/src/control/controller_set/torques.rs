@@ -1,7 +1,7 @@
 //! Torques of the active laws.
 
 use super::{ControllerSet, running};
-use crate::control::control_law::{EffortInput, EffortWork, JointCommand};
+use crate::control::control_law::{ControlLaw, EffortInput, EffortWork, JointCommand};
 use crate::control::control_state::ControlState;
 use crate::control::error::ControlError;
 use crate::control::known_tree::KnownTree;
@@ -13,19 +13,23 @@ use crate::reference::TaskReference;
 use crate::spatial::{Motion, Scalar};
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Computes the torques of the laws that command efforts.
+    /// Computes the torques of the laws that command efforts; `last` holds those of the last update.
     pub(super) fn efforts(
         &mut self,
         t: f64,
         model: &Model,
         data: &Data<S>,
-        q: &[S],
-        v: &[S],
+        (q, v): (&[S], &[S]),
+        last: &[S],
     ) -> Result<(), ControlError> {
         let n = model.joint_count();
         for (control, state) in self.controls.iter_mut().zip(&mut self.states) {
             let law = control.law.control_law();
             if !state.is_running() || law.joint_command() != JointCommand::Effort {
+                continue;
+            }
+            if self.is_repeated && control.law.external().is_none() {
+                control.joints.iter().for_each(|&j| self.tau[j] = last[j].value());
                 continue;
             }
             let [tau, rates, scratch] = &mut self.group;
@@ -73,7 +77,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
         for (control, _) in running(self.controls, &self.states) {
             let law = control.law.control_law();
-            if law.compensates_friction() {
+            if has_compensation(law) {
                 for (place, &j) in control.joints.iter().enumerate() {
                     let acceleration = self.dynamics.acceleration[j];
                     self.desired_accelerations[j] = Some(law.desired_acceleration(place, acceleration));
@@ -95,7 +99,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         for (control, state) in running(self.controls, &self.states) {
             let law = control.law.control_law();
             let (command, damping) = (law.joint_command(), law.task_damping());
-            let is_compensated = law.compensates_friction();
+            let is_compensated = has_compensation(law);
             compensates_friction |= is_compensated;
             for (place, &j) in control.joints.iter().enumerate() {
                 let rate = self.v[BASE_NV + j];
@@ -105,6 +109,9 @@ impl<S: Scalar> ControllerSet<'_, S> {
                     JointCommand::Acceleration => {
                         let error = state.error[place];
                         dynamics.acceleration[j] = law.joint_acceleration(place, error, rate, &state.desired);
+                        if let Some(effort) = law.feedforward(place) {
+                            dynamics.load[j] += effort;
+                        }
                     }
                     JointCommand::Task => dynamics.null_damping[j] = [damping.null_space, damping.suppressed],
                     JointCommand::Effort | JointCommand::Held => {}
@@ -147,6 +154,11 @@ impl ControlState {
         let desired = self.desired_pose.map_or(Motion::zero(), |desired| desired.velocity);
         desired - motion(reduced.velocity)
     }
+}
+
+/// Returns true if a law compensates damping and friction; one that commands efforts does not.
+fn has_compensation(law: &dyn ControlLaw) -> bool {
+    law.compensates_friction() && law.joint_command() != JointCommand::Effort
 }
 
 /// Computes Jacobian, velocity and drift of a frame, in W, or relative to the base if its reference is.

@@ -1,0 +1,73 @@
+//! Commands from outside of the run.
+
+use super::ControllerSet;
+use crate::control::control::Control;
+use crate::control::control_state::Phase;
+use crate::control::error::ControlError;
+use crate::control::external_command::ExternalCommand;
+use crate::model::{BASE_NQ, BASE_NV};
+use crate::spatial::Scalar;
+
+impl<S: Scalar> ControllerSet<'_, S> {
+    /// Returns the controls that follow commands from outside of the run.
+    pub fn external(&self) -> impl Iterator<Item = &Control> {
+        self.controls.iter().filter(|control| control.law.external().is_some())
+    }
+
+    /// Gives a control a command at `now`, s, which takes effect at the next update.
+    ///
+    /// # Errors
+    /// [`ControlError`] for a control that does not exist, follows no commands or has ended, and for an invalid command;
+    /// nothing is changed.
+    pub fn send(&mut self, name: &str, command: ExternalCommand, now: f64) -> Result<(), ControlError> {
+        let names =
+            |list: &mut dyn Iterator<Item = &Control>| list.map(|control| control.name.clone()).collect();
+        let Some(number) = self.controls.iter().position(|control| control.name == name) else {
+            let known = names(&mut self.external());
+            return Err(ControlError::UnknownControl { name: name.to_owned(), known });
+        };
+        let control = name.to_owned();
+        if self.states[number].memory.phase == Phase::Over || self.controls[number].end <= now {
+            return Err(ControlError::ControlEnded { control });
+        }
+        let count = self.controls[number].joints.len();
+        if self.controls[number].law.external().is_none() {
+            let known = names(&mut self.external());
+            return Err(ControlError::NotExternal { control, known });
+        }
+        let Some(law) = self.controls[number].law.external_mut() else { return Ok(()) };
+        law.check_command(&command, name, count, now)?;
+        law.send(command, now);
+        Ok(())
+    }
+
+    /// Returns true if a command takes effect at `t`, s.
+    pub fn has_due_command(&self, t: f64) -> bool {
+        let now = t + self.same_instant;
+        let is_due = |control: &Control| control.law.external().is_some_and(|law| law.has_due_command(now));
+        self.controls.iter().any(is_due)
+    }
+
+    /// Sets whether the next update repeats the last one, at the same time and state: laws with a state, such as those of
+    /// users, are then not evaluated again and keep their torques.
+    pub fn set_repeated(&mut self, is_repeated: bool) {
+        self.is_repeated = is_repeated;
+    }
+
+    /// Lets the controls take the commands that are due at `t`, s. Returns true if a command of joints has changed.
+    pub(super) fn follow_commands(&mut self, t: f64) -> bool {
+        let Self { controls, states, same_instant, q, v, .. } = self;
+        let mut has_changed = false;
+        for (control, state) in controls.iter_mut().zip(states) {
+            let now = t + *same_instant;
+            if state.is_running() && control.law.external().is_some_and(|law| law.is_due(now)) {
+                state.take_joints(control, &q[BASE_NQ..], &v[BASE_NV..]);
+                if let Some(law) = control.law.external_mut() {
+                    law.follow(t, now, &mut state.desired);
+                }
+                has_changed = true; // the desired motion is evaluated again
+            }
+        }
+        has_changed
+    }
+}

@@ -1,0 +1,241 @@
+//! Joint-space control that follows commands from outside of the run.
+
+use super::control_law::{ControlLaw, EffortInput, EffortWork, JointCommand};
+use super::error::ControlError;
+use super::external_command::{ExternalCommand, Setpoint};
+use super::joint_computed_torque::JointComputedTorque;
+use crate::model::Model;
+use crate::reference::JointSample;
+use serde::{Deserialize, Serialize};
+
+/// Law of joints whose commands come from outside of the run, through [`Stepper::send`](crate::simulation::Stepper::send).
+///
+/// A command is held until the next one. If it has positions or rates, the torque is that of [`JointComputedTorque`],
+/// `τ = M* (a + kd (vd − q̇) + kp (qd − q)) + c* − Q* + f`, plus the commanded effort; the position term is absent without
+/// positions, and a position without a rate is to be held at rest. A command of efforts alone is the torque.
+///
+/// Before its first command a group holds its initial positions if `kp` is not zero, else damps its rates if `kd` is not
+/// zero, else has no torque.
+#[derive(Clone, Debug)]
+pub struct External {
+    /// Computed torque of commands with positions or rates.
+    pub law: JointComputedTorque,
+    /// Time after the last command, or after the end of the last trajectory, at which `on_timeout` applies, s.
+    pub timeout: Option<f64>,
+    /// What happens when no command comes.
+    pub on_timeout: OnTimeout,
+    pub(super) memory: ExternalMemory,
+}
+
+/// What an [`External`] law does when no command comes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OnTimeout {
+    /// Hold the commanded positions or, after a command without positions, those at the timeout.
+    #[default]
+    Hold,
+    /// Bring the joints to rest by `kd`.
+    Damp,
+    /// No torque.
+    Zero,
+}
+
+/// State of an [`External`] law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ExternalMemory {
+    /// Command that has not taken effect yet, and the time at which it was sent, s.
+    pending: Option<(f64, ExternalCommand)>,
+    current: ExternalCommand,
+    /// Time at which the last command times out, s.
+    deadline: Option<f64>,
+}
+
+impl Default for ExternalMemory {
+    fn default() -> Self {
+        Self { pending: None, current: ExternalCommand::Setpoint(Setpoint::default()), deadline: None }
+    }
+}
+
+impl External {
+    /// Returns a law with these gains and without a timeout.
+    pub fn new(law: JointComputedTorque) -> Self {
+        Self { law, timeout: None, on_timeout: OnTimeout::Hold, memory: ExternalMemory::default() }
+    }
+
+    /// Checks the gains and the timeout for a group of `count` joints.
+    ///
+    /// # Errors
+    /// [`ControlError`] if a gain is invalid, the timeout is not positive, or the behaviour after the timeout requires a gain
+    /// that is zero.
+    pub fn check(&self, count: usize) -> Result<(), ControlError> {
+        self.law.check(count)?;
+        let Some(timeout) = self.timeout else { return Ok(()) };
+        if !(timeout.is_finite() && timeout > 0.0) {
+            return Err(ControlError::Timeout { value: timeout });
+        }
+        let lacks =
+            |gain: &'static str, used_by: &'static str| Err(ControlError::TimeoutGain { gain, used_by });
+        match self.on_timeout {
+            OnTimeout::Hold if !self.law.kp.is_positive() => lacks("kp", "hold"),
+            OnTimeout::Hold if !self.law.kd.is_positive() => lacks("kd", "hold"),
+            OnTimeout::Damp if !self.law.kd.is_positive() => lacks("kd", "damp"),
+            _ => Ok(()),
+        }
+    }
+
+    /// Checks a command to control `control` of `count` joints that is sent at `now`, s.
+    pub(super) fn check_command(
+        &self,
+        command: &ExternalCommand,
+        control: &str,
+        count: usize,
+        now: f64,
+    ) -> Result<(), ControlError> {
+        command.check(control, count, now)?;
+        let (has_position, has_velocity) = match command {
+            ExternalCommand::Setpoint(setpoint) => (setpoint.position.is_some(), setpoint.velocity.is_some()),
+            ExternalCommand::Trajectory(_) => (true, false),
+        };
+        let lacks = |gain, of| Err(ControlError::CommandGain { control: control.to_owned(), gain, of });
+        if has_position && !self.law.kp.is_positive() {
+            return lacks("kp", "positions");
+        }
+        if has_velocity && !self.law.kd.is_positive() {
+            return lacks("kd", "velocities");
+        }
+        Ok(())
+    }
+
+    /// Accepts a checked command at `now`, s; it replaces one that has not taken effect yet.
+    pub(super) fn send(&mut self, command: ExternalCommand, now: f64) {
+        self.memory.deadline = self.timeout.map(|timeout| command.end(now) + timeout);
+        self.memory.pending = Some((now, command));
+    }
+
+    /// Returns true if a command takes effect at `now`, s, or before.
+    pub(super) fn has_due_command(&self, now: f64) -> bool {
+        self.memory.pending.as_ref().is_some_and(|(sent, command)| command.begin(*sent) <= now)
+    }
+
+    /// Sets what the law does before its first command, at the positions `q` of the group.
+    pub(super) fn start(&mut self, q: impl Iterator<Item = f64>) {
+        let zeros = |q: Vec<f64>| vec![0.0; q.len()];
+        let setpoint = match (self.law.kp.is_positive(), self.law.kd.is_positive()) {
+            (true, _) => Setpoint::position(q.collect()),
+            (false, true) => Setpoint::velocity(zeros(q.collect())),
+            (false, false) => Setpoint::default(),
+        };
+        self.memory.current = ExternalCommand::Setpoint(setpoint);
+    }
+
+    /// Returns true if a command, or the timeout, takes effect at `now`, s.
+    pub(super) fn is_due(&self, now: f64) -> bool {
+        let ExternalMemory { pending, deadline, .. } = &self.memory;
+        match pending {
+            Some(_) => self.has_due_command(now),
+            None => deadline.is_some_and(|deadline| deadline <= now),
+        }
+    }
+
+    /// Takes the command that is due at the control tick at `t`, s, or else applies the timeout. `now` is the latest time
+    /// that counts as the same, s; `state` holds the positions and rates of the group.
+    pub(super) fn follow(&mut self, t: f64, now: f64, state: &mut JointSample) {
+        let memory = &mut self.memory;
+        if let Some((_, command)) = memory.pending.take_if(|(sent, command)| command.begin(*sent) <= now) {
+            let before = std::mem::replace(&mut memory.current, command);
+            if let ExternalCommand::Trajectory(trajectory) = &mut memory.current {
+                before.sample(t, state);
+                trajectory.start_from(t, state);
+            }
+            return;
+        }
+        memory.deadline = None;
+        memory.current = ExternalCommand::Setpoint(match self.on_timeout {
+            OnTimeout::Hold => {
+                Setpoint::position(memory.current.last_position().unwrap_or(&state.q).to_vec())
+            }
+            OnTimeout::Damp => Setpoint::velocity(vec![0.0; state.q.len()]),
+            OnTimeout::Zero => Setpoint::default(),
+        });
+    }
+
+    /// Computes the desired motion at `t`, s; `out` holds the positions and rates of the group, which remain where none is
+    /// commanded.
+    pub(super) fn sample(&self, t: f64, out: &mut JointSample) {
+        self.memory.current.sample(t, out);
+    }
+
+    /// Returns the state for a checkpoint.
+    pub(super) fn memory(&self) -> &ExternalMemory {
+        &self.memory
+    }
+
+    /// Restores the state of a law of `count` joints; returns false if it does not fit.
+    pub(super) fn restore(&mut self, memory: &ExternalMemory, control: &str, count: usize) -> bool {
+        let fits = |command: &ExternalCommand| {
+            let is_none = *command == ExternalCommand::Setpoint(Setpoint::default());
+            is_none || command.check_sizes(control, count)
+        };
+        let ExternalMemory { pending, current, .. } = memory;
+        let is_own = fits(current) && pending.as_ref().is_none_or(|(_, command)| fits(command));
+        if is_own {
+            self.memory.clone_from(memory);
+        }
+        is_own
+    }
+
+    fn effort(&self, place: usize) -> Option<f64> {
+        match &self.memory.current {
+            ExternalCommand::Setpoint(Setpoint { effort: Some(effort), .. }) => Some(effort[place]),
+            _ => None,
+        }
+    }
+}
+
+impl ControlLaw for External {
+    fn check_group(&self, _: &str, joints: &[usize], _: &Model) -> Result<(), ControlError> {
+        self.check(joints.len())
+    }
+
+    fn joint_command(&self) -> JointCommand {
+        if self.memory.current.is_effort() { JointCommand::Effort } else { JointCommand::Acceleration }
+    }
+
+    fn uses_error(&self) -> bool {
+        true
+    }
+
+    fn compensates_environment(&self) -> Option<bool> {
+        self.law.compensates_environment()
+    }
+
+    fn compensates_friction(&self) -> bool {
+        self.law.compensates_friction()
+    }
+
+    fn efforts(
+        &mut self,
+        _: &EffortInput<'_>,
+        _: EffortWork<'_>,
+        tau: &mut [f64],
+    ) -> Result<(), ControlError> {
+        tau.iter_mut().enumerate().for_each(|(place, tau)| *tau = self.effort(place).unwrap_or(0.0));
+        Ok(())
+    }
+
+    fn joint_acceleration(&self, place: usize, error: f64, rate: f64, desired: &JointSample) -> f64 {
+        self.law.joint_acceleration(place, error, rate, desired)
+    }
+
+    fn feedforward(&self, place: usize) -> Option<f64> {
+        self.effort(place)
+    }
+
+    fn desired_acceleration(&self, place: usize, acceleration: f64) -> f64 {
+        self.law.desired_acceleration(place, acceleration)
+    }
+
+    fn reset(&mut self) -> Result<(), ControlError> {
+        self.memory = ExternalMemory::default();
+        Ok(())
+    }
+}

@@ -1,0 +1,162 @@
+//! Commands that the caller of a stepper gives to a run.
+
+use super::equations::EquationsOfMotion;
+use super::error::SimulationError;
+use super::members::Place;
+use super::run_state::RunState;
+use super::stepper::Stepper;
+use super::wrench_commands::WrenchCommand;
+use crate::control::ExternalCommand;
+use crate::spatial::Scalar;
+
+impl Stepper<'_> {
+    /// Gives the joints of a control with the law [`External`](crate::control::External) a command, which takes effect at
+    /// the next control tick, or at the current time if that is one. It is held until the next command.
+    ///
+    /// # Errors
+    /// [`SimulationError::Control`] for a control that does not exist, follows no commands or has ended, and for an invalid
+    /// command; the run is unchanged.
+    pub fn send(
+        &mut self,
+        system: usize,
+        control: &str,
+        command: ExternalCommand,
+    ) -> Result<(), SimulationError> {
+        self.check()?;
+        let (run, system) = self.run_of(system);
+        run.send(system, control, command)
+    }
+
+    /// Applies a wrench at the origin of a frame (index) of a system, from the current time until the next one at this frame.
+    /// The current step ends at the current time.
+    ///
+    /// # Errors
+    /// [`SimulationError::UnknownFrame`], [`SimulationError::NotFinite`] and, with an external engine,
+    /// [`SimulationError::EngineOfWorld`] leave the run unchanged. The errors of a step end the run.
+    pub fn wrench(
+        &mut self,
+        system: usize,
+        frame: usize,
+        wrench: WrenchCommand,
+    ) -> Result<(), SimulationError> {
+        self.check()?;
+        let (run, system) = self.run_of(system);
+        run.check_wrench(system, frame, &wrench)?;
+        let result = run.wrench(system, frame, wrench);
+        self.ended_by(result)
+    }
+
+    /// Returns the controls of a system that follow commands from outside of the run, and their joints.
+    pub fn external(&self, system: usize) -> Vec<(String, Vec<String>)> {
+        let (group, system) = self.places[system];
+        self.groups[group].run.external(system)
+    }
+}
+
+impl<S: Scalar> RunState<'_, S> {
+    pub(super) fn check_command(&self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
+        let place = &self.layout.systems()[system];
+        let (got, expected) = (tau.len(), place.joints.len());
+        if got != expected {
+            return Err(SimulationError::WrongLength { name: "tau", expected, got });
+        }
+        let set = &self.systems[system].controllers.set;
+        for (index, value) in tau.iter().enumerate().filter_map(|(j, tau)| Some((j, (*tau)?))) {
+            if !value.is_finite() {
+                return Err(SimulationError::NotFinite { name: "tau", index, value });
+            }
+            if let Some(control) = set.driver_of(index, self.time) {
+                let (joint, control) = (place.joints[index].clone(), control.name.clone());
+                return Err(SimulationError::CommandedJoint { joint, control });
+            }
+        }
+        Ok(())
+    }
+
+    /// Holds joint torques from the current time on, where they are given.
+    pub(super) fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
+        self.cut_at_current_time()?;
+        let EquationsOfMotion { trees, members, .. } = &mut self.equations;
+        let set = &mut self.systems[system].controllers.set;
+        let moved = match members.places[system] {
+            Place::Tree(tree) => &mut trees[tree],
+            Place::Part(part) => &mut members.parts[part].own,
+        };
+        set.command(tau);
+        for (j, tau) in tau.iter().enumerate() {
+            // a control may have become active in the step that ended here
+            if let Some(tau) = tau.filter(|_| set.driver_of(j, self.time).is_none()) {
+                moved.command[j] = S::of(tau);
+            }
+        }
+        if let Place::Part(part) = members.places[system] {
+            let part = &members.parts[part];
+            part.drive(&mut trees[part.tree]);
+        }
+        Ok(())
+    }
+
+    /// Gives a control a command at the current time.
+    pub(super) fn send(
+        &mut self,
+        system: usize,
+        control: &str,
+        command: ExternalCommand,
+    ) -> Result<(), SimulationError> {
+        let time = self.time;
+        Ok(self.systems[system].controllers.set.send(control, command, time)?)
+    }
+
+    /// Returns the controls of a system that follow commands, and their joints.
+    pub(super) fn external(&self, system: usize) -> Vec<(String, Vec<String>)> {
+        let joints = &self.layout.systems()[system].joints;
+        let controls = self.systems[system].controllers.set.external();
+        let named = |j: &usize| joints[*j].clone();
+        controls.map(|control| (control.name.clone(), control.joints.iter().map(named).collect())).collect()
+    }
+
+    pub(super) fn check_wrench(
+        &self,
+        system: usize,
+        frame: usize,
+        wrench: &WrenchCommand,
+    ) -> Result<(), SimulationError> {
+        let place = &self.layout.systems()[system];
+        if self.mover.is_external() {
+            let (what, remedy) = ("wrenches from outside", "give them as effects of the environment");
+            return Err(SimulationError::EngineOfWorld { name: place.name.clone(), what, remedy });
+        }
+        let count = self.model(system).frames().len();
+        if frame >= count {
+            return Err(SimulationError::UnknownFrame { frame, count });
+        }
+        for (name, vector) in [("force", &wrench.force), ("torque", &wrench.torque)] {
+            if let Some((index, &value)) = vector.iter().enumerate().find(|(_, x)| !x.is_finite()) {
+                return Err(SimulationError::NotFinite { name, index, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// Holds a wrench at a frame from the current time on.
+    pub(super) fn wrench(
+        &mut self,
+        system: usize,
+        frame: usize,
+        wrench: WrenchCommand,
+    ) -> Result<(), SimulationError> {
+        self.cut_at_current_time()?;
+        let place = (self.numbers[system], frame);
+        let frame = self.model(system).frames()[frame].clone();
+        self.equations.loads.commands.set(self.schedule.now(), place, &frame, wrench);
+        Ok(())
+    }
+
+    /// Returns true if the controllers of a system, already updated at `t`, s, by a trial step, are due again because of a
+    /// command that was given since.
+    pub(super) fn has_new_command(&self, system: usize, t: f64) -> bool {
+        let set = &self.systems[system].controllers.set;
+        let has_wrench = || self.equations.loads.commands.changed_at() == Some(t);
+        set.has_due_command(t) || set.compensates_environment() && has_wrench()
+    }
+}

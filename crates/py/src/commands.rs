@@ -1,0 +1,131 @@
+//! Commands to joints and wrenches that the caller of a stepper gives to a run.
+
+use crate::arrays::{Input, fixed, wrong_shape};
+use crate::errors::{IntoPython, fields, raise};
+use crate::stepper::PyStepper;
+use crate::torques::torques;
+use nalgebra::Vector3;
+use onorbit_core::control::{ExternalCommand, JointTrajectory, Setpoint};
+use onorbit_core::simulation::{WrenchAxes, WrenchCommand};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+impl PyStepper {
+    /// Sets the torques of a system.
+    pub(crate) fn command_system(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<()> {
+        let torques = torques(&self.systems.models[system], tau)?;
+        self.try_with(tau.py(), |stepper| stepper.command(system, &torques))
+    }
+
+    /// Sends a constant command to a control of a system: positions, velocities, accelerations, efforts.
+    pub(crate) fn send_to(
+        &self,
+        py: Python<'_>,
+        system: usize,
+        control: &str,
+        values: [Optional<'_, '_>; 4],
+    ) -> PyResult<()> {
+        let command = ExternalCommand::Setpoint(setpoint(values)?);
+        self.try_with(py, |stepper| stepper.send(system, control, command))
+    }
+
+    /// Sends a trajectory, with its start, times and positions, and its velocities and accelerations, to a control.
+    pub(crate) fn send_trajectory_to(
+        &self,
+        py: Python<'_>,
+        system: usize,
+        control: &str,
+        (start, times, positions): (Option<f64>, &Bound<'_, PyAny>, &Bound<'_, PyAny>),
+        derivatives: [Optional<'_, '_>; 2],
+    ) -> PyResult<()> {
+        let start = start.map_or_else(|| self.time(py), Ok)?;
+        let command = ExternalCommand::Trajectory(trajectory(start, times, positions, derivatives)?);
+        self.try_with(py, |stepper| stepper.send(system, control, command))
+    }
+
+    /// Applies a wrench, given by its force, its torque and its axes, at the origin of a frame of a system.
+    pub(crate) fn wrench_on(
+        &self,
+        py: Python<'_>,
+        system: usize,
+        body: &str,
+        (force, torque, axes): (Optional<'_, '_>, Optional<'_, '_>, &str),
+    ) -> PyResult<()> {
+        let frame = self.systems.models[system].frame(body).map_err(|error| error.into_python(py))?;
+        let wrench = wrench(py, force, torque, axes)?;
+        self.try_with(py, |stepper| stepper.wrench(system, frame, wrench))
+    }
+
+    /// Returns the names of the joints of each external control of a system.
+    pub(crate) fn external_of(&self, py: Python<'_>, system: usize) -> PyResult<Py<PyDict>> {
+        let names = PyDict::new(py);
+        for (control, joints) in self.with(py, |stepper| stepper.external(system))? {
+            names.set_item(control, joints)?;
+        }
+        Ok(names.unbind())
+    }
+}
+
+/// Reads a constant command to joints: positions, velocities, accelerations and efforts.
+fn setpoint(values: [Optional<'_, '_>; 4]) -> PyResult<Setpoint> {
+    let read = |value: Optional<'_, '_>, name| value.map(|value| array(value, name, 1)).transpose();
+    let [position, velocity, acceleration, effort] = values;
+    Ok(Setpoint {
+        position: read(position, "position")?,
+        velocity: read(velocity, "velocity")?,
+        acceleration: read(acceleration, "acceleration")?,
+        effort: read(effort, "effort")?,
+    })
+}
+
+/// Reads a motion of joints through points: times, positions, velocities and accelerations.
+fn trajectory(
+    start: f64,
+    times: &Bound<'_, PyAny>,
+    positions: &Bound<'_, PyAny>,
+    derivatives: [Optional<'_, '_>; 2],
+) -> PyResult<JointTrajectory> {
+    let read = |value: Optional<'_, '_>, name| value.map(|value| array(value, name, 2)).transpose();
+    let [velocities, accelerations] = derivatives;
+    Ok(JointTrajectory {
+        start,
+        times: array(times, "times", 1)?,
+        positions: array(positions, "positions", 2)?,
+        velocities: read(velocities, "velocities")?,
+        accelerations: read(accelerations, "accelerations")?,
+    })
+}
+
+/// Reads a wrench in the axes `frame`.
+fn wrench(
+    py: Python<'_>,
+    force: Optional<'_, '_>,
+    torque: Optional<'_, '_>,
+    frame: &str,
+) -> PyResult<WrenchCommand> {
+    let vector = |value: Optional<'_, '_>, name| -> PyResult<Vector3<f64>> {
+        Ok(value.map_or(Ok([0.0; 3]), |value| fixed::<3>(value, name, &[3]))?.into())
+    };
+    let axes = match frame {
+        "world" => WrenchAxes::World,
+        "body" => WrenchAxes::Body,
+        other => {
+            let message = format!("frame is '{other}'; the choices are 'world' and 'body'");
+            return Err(raise(py, "InputError", &message, &fields!(py, "name": "frame", "got": other)));
+        }
+    };
+    Ok(WrenchCommand { force: vector(force, "force")?, torque: vector(torque, "torque")?, axes })
+}
+
+/// Reads an array with a number of axes.
+fn array(value: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<f64>> {
+    let input = Input::new(value, name)?;
+    if input.shape().len() != axes {
+        let expected = if axes == 1 { "(k,), one number per joint" } else { "(K, k), one row per time" };
+        let expected = if name == "times" { "(K,)" } else { expected };
+        return Err(wrong_shape(value.py(), name, expected, input.shape()));
+    }
+    Ok(input.data().to_vec())
+}

@@ -1,0 +1,107 @@
+//! Joint-space control that follows commands from outside of the run.
+
+use super::gains::{one_count, per_joint};
+use super::native_law::{Group, NativeLaw};
+use crate::errors::{IntoPython, fields, plain, raise};
+use crate::pickling::{ConstructorCall, Reduced, call_of};
+use onorbit_core::control::{External, JointComputedTorque, Law, OnTimeout};
+use pyo3::prelude::*;
+
+type Any<'a, 'py> = &'a Bound<'py, PyAny>;
+
+/// Joint control whose commands come from outside of the run: :meth:`Stepper.send` and
+/// :meth:`Stepper.send_trajectory`.
+///
+/// A command is held until the next one. If it has positions or velocities, the torque is that of
+/// :class:`JointComputedTorque` with the errors of what is given, plus the commanded effort: a position without a
+/// velocity is to be held at rest, and a velocity without a position has no position error. A command of efforts alone
+/// is the torque. Before the first command, the joints hold their initial positions if ``kp`` is positive, are brought
+/// to rest if only ``kd`` is, and have no torque without gains.
+///
+/// Parameters
+/// ----------
+/// kp : float or (k,) array
+///     Position gain, 1/s²; positions and trajectories require it. For example 100.
+/// kd : float or (k,) array
+///     Rate gain, 1/s; velocities require it. For example 20.
+/// timeout : float, optional
+///     Time after the last command, or after the end of the last trajectory, at which ``on_timeout`` applies, s;
+///     default: never.
+/// on_timeout : {"hold", "damp", "zero"}
+///     ``hold``: the commanded positions are held at rest; after a command without positions, those of the joints at
+///     the timeout. ``damp``: ``kd`` brings the joints to rest. ``zero``: no torque.
+/// compensate_environment : bool
+///     As for :class:`JointComputedTorque`, while positions or velocities are commanded.
+/// compensate_friction : bool
+///     As for :class:`JointComputedTorque`, while positions or velocities are commanded.
+///
+/// Raises
+/// ------
+/// ControlError, ShapeError
+///     If a gain or the timeout is invalid, or ``on_timeout`` requires a gain that is zero.
+#[pyclass(name = "External", frozen, module = "onorbit_rs")]
+pub(crate) struct PyExternal {
+    law: External,
+    constructor_call: ConstructorCall,
+}
+
+#[pymethods]
+impl PyExternal {
+    #[new]
+    #[pyo3(signature = (
+        kp=None, kd=None, *, timeout=None, on_timeout="hold", compensate_environment=true, compensate_friction=true,
+    ), text_signature = "(kp=0.0, kd=0.0, *, timeout=None, on_timeout='hold', compensate_environment=True, \
+       compensate_friction=True)")]
+    fn new(
+        py: Python<'_>,
+        kp: Option<Any<'_, '_>>,
+        kd: Option<Any<'_, '_>>,
+        timeout: Option<f64>,
+        on_timeout: &str,
+        compensate_environment: bool,
+        compensate_friction: bool,
+    ) -> PyResult<Self> {
+        let constructor_call = call_of!(
+            py,
+            "External",
+            kp,
+            kd,
+            timeout,
+            on_timeout,
+            compensate_environment,
+            compensate_friction
+        )?;
+        let (kp, kd) = (per_joint(kp, "kp", 0.0)?, per_joint(kd, "kd", 0.0)?);
+        let count = one_count(py, &[&kp, &kd])?;
+        let law = JointComputedTorque { kp: kp.0, kd: kd.0, compensate_environment, compensate_friction };
+        let mut law = External::new(law);
+        law.timeout = timeout;
+        law.on_timeout = match on_timeout {
+            "hold" => OnTimeout::Hold,
+            "damp" => OnTimeout::Damp,
+            "zero" => OnTimeout::Zero,
+            other => {
+                let message = format!("on_timeout is '{other}'; the choices are 'hold', 'damp' and 'zero'");
+                let fields = fields!(py, "name": "on_timeout", "got": other);
+                return Err(raise(py, "ControlError", &message, &fields));
+            }
+        };
+        law.check(count).map_err(|error| error.into_python(py))?;
+        Ok(Self { law, constructor_call })
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        self.constructor_call.reduce(py)
+    }
+}
+
+impl NativeLaw for PyExternal {
+    fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law> {
+        if group.reference.is_some() {
+            let message = "an External controller gets its motion from commands, so it has no reference; omit it, or \
+                           use JointComputedTorque";
+            return Err(plain(py, "ControlError", message));
+        }
+        Ok(Law::External(Box::new(self.law.clone())))
+    }
+}
