@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import os
 import subprocess
@@ -30,6 +31,10 @@ SCENARIO["events"][0]["when"] = {"latch": {"within": ["5 cm", "2 deg"], "held_fo
 SCENARIO["events"][1]["when"]["delay"] = "2 s"
 """The latch is held for 1 s, and the craft are connected until 3 s; ``witness`` is another group."""
 
+SEATED = copy.deepcopy(SCENARIO)
+SEATED["events"][0]["do"] |= {"seat": "1.5 s"}
+"""The same with a seating from 1 s to 2.5 s."""
+
 PROGRAM = """
 import json, os, signal, sys
 import onorbit_rs as oo
@@ -56,10 +61,16 @@ else:
 
 
 def stopped_at(
-    out: Path, time: float, how: str, *, resumes: bool = False, threads: int = 1
+    out: Path,
+    time: float,
+    how: str,
+    *,
+    scenario: dict[str, Any] = SCENARIO,
+    resumes: bool = False,
+    threads: int = 1,
 ) -> dict[str, Any]:
     """Runs or resumes the scenario until a signal stops the process; returns the state of the first group."""
-    source = "resume" if resumes else json.dumps(SCENARIO)
+    source = "resume" if resumes else json.dumps(scenario)
     command = [sys.executable, "-c", PROGRAM, source, str(out), str(time), how]
     done = subprocess.run(
         command, env=dict(os.environ) | {"RAYON_NUM_THREADS": str(threads)}, capture_output=True, text=True,
@@ -83,6 +94,18 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr("onorbit_rs.simulation.finish.write_pictures", lambda *_, **__: None)
         oo.run(SCENARIO, out, quiet=True)
     return out
+
+
+def test_a_world_killed_during_a_seating_has_the_bits_of_an_uninterrupted_run(tmp_path: Path) -> None:
+    whole, out = tmp_path / "whole", tmp_path / "out"
+    oo.run(SEATED, whole, quiet=True)
+    for time, resumes in ((1.3, False), (2.0, True)):
+        world = stopped_at(out, time, "SIGKILL", scenario=SEATED, resumes=resumes)["progress"]["world"]
+        (weld,) = world["members"]["active"]["welds"]
+        start = weld["seating"]["start"]
+        assert 0.99 < start < time < start + weld["seating"]["duration"]
+    oo.resume(out, quiet=True)
+    assert_same_results(out, whole)
 
 
 def without_clock(value: Any) -> Any:
