@@ -27,6 +27,8 @@ _IDLE_S = 1e-3
 """Wall-clock time between two looks at the topics while the simulation waits, s."""
 _BLOCK_S = 0.02
 """Simulated time that a node in pace ``fast`` advances between two looks at the topics, s."""
+_DELIVERY_S = 1.0
+"""Longest time that a node waits for subscribers that have not received all messages at its end, s."""
 _SHORTEST_TICK = 1e-3
 """Shortest simulated time between two looks at the topics, unless the time step is longer, s."""
 
@@ -93,14 +95,14 @@ class Node:
         self._clock = RealTime(self._tick)
         self.topics: Topics = topics(self._models, self._first_rows())
         self._stepper, self._rows = self._started()
-        self._writers = {
-            topic: self._participant.writer(topic.name, topic.kind) for topic in self.topics.series
-        }
+        kinds = {topic.name: topic.kind for topic in self.topics.series}  # several series may share a topic
+        self._writers = {name: self._participant.writer(name, kind) for name, kind in kinds.items()}
         for latched in self.topics.latched:
             writer = self._participant.writer(latched.name, latched.kind, is_latched=True)
             writer.write(latched.data)
         self._events: Writer = self._participant.writer("/events", _EVENTS)
         self._inbox = self._subscribed()
+        self._participant.announce("onorbit")
 
     @property
     def jitter(self) -> dict[str, float]:
@@ -138,7 +140,7 @@ class Node:
         return self._simulation.start(), dict.fromkeys(self._models, 0)
 
     def _first_rows(self) -> dict[str, Rows]:
-        """Return the row at the start, from a run of its own."""
+        """Return the row at the start, from a second run."""
         probe = self._simulation.start()
         probe.advance_to(self._simulation.time_step)
         return rows_of_columns(probe.columns(), self._models)
@@ -203,7 +205,7 @@ class Node:
         for k in range(max((len(data) for _, data in found), default=0)):
             for topic, data in found:
                 if k < len(data):
-                    self._writers[topic].write(data[k].tobytes())
+                    self._writers[topic.name].write(data[k].tobytes())
 
     def _obey(self) -> None:
         """Obey the messages that have arrived."""
@@ -256,9 +258,8 @@ class Node:
         self._tell(f"{name}: {text}")
 
     def close(self) -> None:
-        """Leave the domain, after subscribers have received all messages."""
-        for writer in self._writers.values():
-            writer.wait_for_delivery(0.5)
+        """Leave the domain, after subscribers have received all messages; no effect the second time."""
+        self._participant.wait_for_delivery(_DELIVERY_S)
         self._participant.close()
 
 

@@ -1,13 +1,12 @@
-"""A DDS participant that ROS 2 nodes see as publishers and subscribers of topics."""
+"""A DDS participant that ROS 2 nodes see as a node with publishers and subscriptions."""
 
 from __future__ import annotations
 
 import os
-import socket
-from collections.abc import Iterator
-from contextlib import suppress
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+import time
+from dataclasses import dataclass
+from typing import Any
+from weakref import WeakValueDictionary
 
 from cyclonedds._clayer import ddspy_take, ddspy_write
 from cyclonedds.core import DDSException, InstanceState, Policy, Qos, SampleState, ViewState
@@ -18,28 +17,27 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from onorbit_rs.exceptions import InputError, Ros2Error
+from onorbit_rs.ros2 import graph, loopback
 from onorbit_rs.ros2.dds_types import declared
 from onorbit_rs.ros2.messages import STORE
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
 
 LARGEST_DOMAIN = 232
 """Largest domain whose ports are below 65536, by the port mapping of DDSI-RTPS."""
 
-_PEERS = 64
-"""Largest number of participants on this machine that find each other without multicast."""
-
 _ANY = SampleState.Any | ViewState.Any | InstanceState.Any
 _MOST = 1000
-"""Largest number of messages taken at once."""
+"""Largest number of messages taken at once, and depth of topics that are not latched."""
 
-_LOOPBACK = f"""<CycloneDDS><Domain id="any">
-<General><Interfaces><NetworkInterface address="127.0.0.1" multicast="false"/></Interfaces>
-<AllowMulticast>false</AllowMulticast></General>
-<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>{_PEERS}</MaxAutoParticipantIndex>
-<SPDPInterval>500 ms</SPDPInterval><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
-</Domain></CycloneDDS>"""
+
+@dataclass(frozen=True)
+class _Joined:
+    """A domain that this process has joined, which its participants share."""
+
+    domain: Domain
+    network: str
+
+
+_JOINED: WeakValueDictionary[int, _Joined] = WeakValueDictionary()
 
 
 class Participant:
@@ -61,66 +59,79 @@ class Participant:
         InputError
             If the domain or the network is invalid.
         Ros2Error
-            If there is no such network interface or the domain's ports are taken.
+            If there is no network interface, the domain's ports are taken, or this process has joined the
+            domain on the other network.
         """
         _check(domain, network)
-        before = set(_datagram_sockets())
         try:
-            self._domain = Domain(domain, _LOOPBACK) if network == "loopback" else None
-            self._entity = DomainParticipant(domain)
+            self._joined: _Joined | None = _join(domain, network)
+            self._entity: Any = DomainParticipant(domain, qos=Qos(Policy.Userdata(graph.ENCLAVE)))
         except DDSException as error:
             raise Ros2Error(
-                f"cannot join DDS domain {domain} on the {network} network ({error}): check that the "
-                f"interface is up and that there are fewer than {_PEERS} participants, or use another domain"
+                f"cannot join DDS domain {domain} on the {network} network ({error}): check that an "
+                f"interface is up and the settings in CYCLONEDDS_URI, or use another domain"
             ) from error
-        if network == "loopback":
-            _restrict_to_loopback(before)
-        self._kept: list[Any] = []
+        self._writers: list[Any] = []
+        self._readers: list[Any] = []
+        topic = Topic(self._entity, graph.TOPIC, declared(graph.KIND))
+        self._graph: Any = DataWriter(self._entity, topic, qos=_qos(graph.KIND, is_latched=True))
 
     def writer(self, topic: str, kind: str, *, is_latched: bool = False) -> Writer:
         """Return a reliable publisher; a latched one repeats its last message to late subscribers."""
-        depth = 1 if is_latched else _MOST
-        durability = Policy.Durability.TransientLocal if is_latched else Policy.Durability.Volatile
-        writer = DataWriter(self._entity, self._topic(topic, kind), qos=_qos(kind, durability, depth))
-        self._kept.append(writer)
-        return Writer(writer)
+        self._writers.append(DataWriter(self._entity, self._topic(topic, kind), qos=_qos(kind, is_latched)))
+        return Writer(self._writers[-1], topic)
 
     def reader(self, topic: str, kind: str) -> Reader:
         """Return a reliable subscription that keeps the messages since the last :meth:`Reader.take`."""
-        qos = _qos(kind, Policy.Durability.Volatile, _MOST)
-        reader = DataReader(self._entity, self._topic(topic, kind), qos=qos)
-        self._kept.append(reader)
-        return Reader(reader, topic, kind)
+        self._readers.append(DataReader(self._entity, self._topic(topic, kind), qos=_qos(kind)))
+        return Reader(self._readers[-1], topic, kind)
+
+    def announce(self, node: str) -> None:
+        """Announce to ROS that the publishers and subscriptions made so far are those of a node."""
+        data = graph.entities_message(node, self._entity, self._writers, self._readers)
+        Writer(self._graph, graph.TOPIC).write(data)
 
     def _topic(self, name: str, kind: str) -> Any:
         return Topic(self._entity, f"rt{name}", declared(kind))
 
+    def wait_for_delivery(self, seconds: float) -> bool:
+        """Wait until reliable subscribers have received all messages; return False if time, s, is up."""
+        end = time.monotonic() + seconds
+        for writer in self._writers:
+            left = max(0, round(1e9 * (end - time.monotonic())))
+            # DataWriter.wait_for_acks of 11.0.1 raises AttributeError when time is up
+            if writer._wait_for_acks(writer._ref, left):
+                return False
+        return True
+
     def close(self) -> None:
-        """Leave the domain."""
-        self._kept.clear()
-        del self._entity, self._domain
+        """Leave the domain; no effect if this has been done."""
+        self._writers.clear()
+        self._readers.clear()
+        self._graph = self._entity = self._joined = None
 
 
 class Writer:
     """Publisher of one topic."""
 
-    def __init__(self, entity: Any) -> None:
+    def __init__(self, entity: Any, topic: str) -> None:
         """Wrap a writer of CycloneDDS."""
-        self._entity = entity
+        self._entity, self.topic = entity, topic
 
     def write(self, data: bytes) -> None:
-        """Publish a message in CDR."""
-        ddspy_write(self._entity._ref, data)
+        """Publish a message in CDR.
+
+        Raises
+        ------
+        Ros2Error
+            If CycloneDDS does not accept it.
+        """
+        if code := ddspy_write(self._entity._ref, data):
+            raise Ros2Error(f"CycloneDDS did not accept a message of {self.topic}: {DDSException(code).msg}")
 
     def subscribers(self) -> int:
         """Return the number of subscriptions found."""
         return len(self._entity.get_matched_subscriptions())
-
-    def wait_for_delivery(self, seconds: float) -> bool:
-        """Wait until reliable subscribers have received all messages; return False if time is up."""
-        with suppress(DDSException):
-            return bool(self._entity.wait_for_acks(duration(seconds=seconds)))
-        return False
 
 
 class Reader:
@@ -132,18 +143,25 @@ class Reader:
         self.topic, self.kind = topic, kind
 
     def take(self) -> list[tuple[bytes, int]]:
-        """Return the payloads received since the last call, in CDR, each with a number of its sender."""
+        """Return the payloads received since the last call, in CDR, each with a number of its sender.
+
+        Raises
+        ------
+        Ros2Error
+            If CycloneDDS reports an error.
+        """
         taken = ddspy_take(self._entity._ref, _ANY, _MOST)
         if isinstance(taken, int):
-            return []
+            raise Ros2Error(f"CycloneDDS could not read {self.topic}: {DDSException(taken).msg}")
+        # a sender that leaves adds a sample without data
         return [(data, info.publication_handle) for data, info in taken if info.valid_data]
 
 
-def _qos(kind: str, durability: Any, depth: int) -> Qos:
+def _qos(kind: str, is_latched: bool = False) -> Qos:
     return Qos(
         Policy.Reliability.Reliable(duration(milliseconds=100)),
-        durability,
-        Policy.History.KeepLast(depth),
+        Policy.Durability.TransientLocal if is_latched else Policy.Durability.Volatile,
+        Policy.History.KeepLast(1 if is_latched else _MOST),
         Policy.DataRepresentation(use_cdrv0_representation=True),
         Policy.Userdata(f"typehash={STORE.hash_rihs01(kind)};".encode()),
     )
@@ -162,25 +180,22 @@ def _check(domain: int, network: str) -> None:
         )  # fmt: skip
 
 
-def _datagram_sockets() -> Iterator[int]:
-    """Return the file descriptors of this process that are UDP sockets."""
-    folder = Path("/proc/self/fd")
-    for entry in folder.iterdir() if folder.is_dir() else ():
-        with suppress(OSError):
-            if str(entry.readlink()).startswith("socket:") and _is_datagram(int(entry.name)):
-                yield int(entry.name)
-
-
-def _is_datagram(descriptor: int) -> bool:
-    with socket.socket(fileno=os.dup(descriptor)) as copy:
-        return copy.family in (socket.AF_INET, socket.AF_INET6) and copy.type == socket.SOCK_DGRAM
-
-
-def _restrict_to_loopback(before: Iterable[int]) -> None:
-    """Bind the new sockets to the loopback device: CycloneDDS opens them on all addresses."""
-    device = getattr(socket, "SO_BINDTODEVICE", None)
-    if device is None:
-        return
-    for descriptor in set(_datagram_sockets()) - set(before):
-        with socket.socket(fileno=os.dup(descriptor)) as copy:
-            copy.setsockopt(socket.SOL_SOCKET, device, b"lo")
+def _join(domain: int, network: str) -> _Joined:
+    """Return the domain, whose sockets CycloneDDS opens once in a process."""
+    if joined := _JOINED.get(domain):
+        if joined.network != network:
+            raise Ros2Error(
+                f"this process has joined DDS domain {domain} on the {joined.network} network; close that "
+                "node, use the same network or another domain"
+            )
+        return joined
+    if network == "loopback":
+        loopback.check(domain)
+        before = set(loopback.udp_sockets())
+        joined = _Joined(Domain(domain, f"{loopback.ENDING},{loopback.LOOPBACK}"), network)
+        loopback.restrict(before)
+    else:
+        settings = filter(None, [loopback.ENDING, os.environ.get("CYCLONEDDS_URI")])
+        joined = _Joined(Domain(domain, ",".join(settings)), network)
+    _JOINED[domain] = joined
+    return joined

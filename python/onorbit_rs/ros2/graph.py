@@ -1,0 +1,29 @@
+"""The graph of ROS: which node has which publishers and subscriptions, as in ``ros2 node list``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from onorbit_rs.ros2.messages import encode, message
+
+TOPIC, KIND = "ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo"
+
+ENCLAVE = b"enclave=/;"
+"""User data of participants that ROS recognises as its own."""
+
+
+def entities_message(node: str, participant: Any, writers: Iterable[Any], readers: Iterable[Any]) -> bytes:
+    """Return the message that gives ROS the node of the writers and readers of a participant."""
+    own = message(
+        "rmw_dds_common/msg/NodeEntitiesInfo", node_namespace="/", node_name=node,
+        reader_gid_seq=[_gid(entity) for entity in readers],
+        writer_gid_seq=[_gid(entity) for entity in writers],
+    )  # fmt: skip
+    return encode(message(KIND, gid=_gid(participant), node_entities_info_seq=[own]))
+
+
+def _gid(entity: Any) -> Any:
+    return message("rmw_dds_common/msg/Gid", data=np.frombuffer(entity.get_guid().bytes, np.uint8))

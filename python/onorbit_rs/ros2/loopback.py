@@ -1,0 +1,104 @@
+"""Settings and checks of CycloneDDS for participants that only this machine can reach."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import closing, suppress
+from pathlib import Path
+
+from onorbit_rs.exceptions import Ros2Error
+
+PARTICIPANTS = 60
+"""Largest number of participants on this machine that find each other; ports of domain 232 end after 63."""
+
+ENDING = """<CycloneDDS><Domain id="any"><Internal><WriterLingerDuration>0 s</WriterLingerDuration></Internal>
+</Domain></CycloneDDS>"""
+"""A publisher does not wait at its end for subscribers that have stopped: the node does so once for all."""
+
+LOOPBACK = f"""<CycloneDDS><Domain id="any">
+<General><Interfaces><NetworkInterface address="127.0.0.1" multicast="false"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General>
+<Discovery><ParticipantIndex>auto</ParticipantIndex>
+<MaxAutoParticipantIndex>{PARTICIPANTS}</MaxAutoParticipantIndex>
+<SPDPInterval>500 ms</SPDPInterval><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
+</Domain></CycloneDDS>"""
+"""A node that only listens to multicast is found only if the announcements are frequent."""
+
+
+def check(domain: int) -> None:
+    """Raise an error if the loopback interface is down or all participants of the domain are taken.
+
+    CycloneDDS prints such causes and raises an error without them.
+
+    Raises
+    ------
+    Ros2Error
+        With the cause.
+    """
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
+        try:
+            probe.connect(("127.0.0.1", 9))  # finds a route; sends nothing
+        except OSError as error:
+            raise Ros2Error(
+                f"the loopback interface cannot be used ({error.strerror}); enable it: ip link set lo up"
+            ) from error
+    if not any(_is_free(port) for port in _ports(domain)):
+        first, last = _ports(domain)[0], _ports(domain)[-1]
+        raise Ros2Error(
+            f"DDS domain {domain} has no free participant: the UDP ports {first}, {first + 2}, ... {last} "
+            "are taken; end other nodes or use another domain"
+        )
+
+
+def _ports(domain: int) -> range:
+    """Return the ports of the participants of a domain, by the port mapping of DDSI-RTPS."""
+    first = 7400 + 250 * domain + 10
+    return range(first, first + 2 * PARTICIPANTS, 2)
+
+
+def _is_free(port: int) -> bool:
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
+        try:
+            probe.bind(("", port))
+        except OSError:
+            return False
+    return True
+
+
+def udp_sockets() -> Iterator[int]:
+    """Return the file descriptors of this process that are UDP sockets; none outside Linux."""
+    folder = Path("/proc/self/fd")
+    for entry in folder.iterdir() if folder.is_dir() else ():
+        with suppress(OSError):
+            if str(entry.readlink()).startswith("socket:") and _is_udp(int(entry.name)):
+                yield int(entry.name)
+
+
+def _is_udp(descriptor: int) -> bool:
+    with socket.socket(fileno=os.dup(descriptor)) as copy:
+        return copy.family in (socket.AF_INET, socket.AF_INET6) and copy.type == socket.SOCK_DGRAM
+
+
+def restrict(before: Iterable[int]) -> None:
+    """Bind the sockets opened since to the loopback device: CycloneDDS opens them on all addresses.
+
+    Warns where the system does not allow this.
+    """
+    reason = None if sys.platform == "linux" else f"{sys.platform} has no such option"
+    for descriptor in set(udp_sockets()) - set(before):
+        with socket.socket(fileno=os.dup(descriptor)) as copy:
+            try:
+                copy.setsockopt(socket.SOL_SOCKET, socket.SO_BINDTODEVICE, b"lo")
+            except OSError as error:
+                reason = str(error.strerror)
+    if reason is not None:
+        warnings.warn(
+            f"the UDP ports of DDS could not be bound to the loopback device ({reason}); block them with a "
+            "firewall if other machines must not reach them",
+            UserWarning,
+            stacklevel=4,
+        )

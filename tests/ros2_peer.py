@@ -1,0 +1,120 @@
+"""A process that speaks DDS through CycloneDDS' own typed messages, driven by JSON lines on standard input.
+
+It needs neither ROS nor rosbags nor the package, so it is an independent witness of what is on the wire.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from dataclasses import asdict, fields, is_dataclass
+from typing import Any
+
+from cyclonedds.core import Policy, Qos
+from cyclonedds.domain import Domain, DomainParticipant
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+from cyclonedds.util import duration
+from ros2_types import TYPES
+
+LOOPBACK = """<CycloneDDS><Domain id="any">
+<General><Interfaces><NetworkInterface address="127.0.0.1" multicast="false"/></Interfaces>
+<AllowMulticast>false</AllowMulticast></General>
+<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>
+<SPDPInterval>100 ms</SPDPInterval><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
+</Domain></CycloneDDS>"""
+
+
+def _qos(is_latched: bool) -> Qos:
+    return Qos(
+        Policy.Reliability.Reliable(duration(seconds=1)),
+        Policy.Durability.TransientLocal if is_latched else Policy.Durability.Volatile,
+        Policy.History.KeepLast(5000),
+        Policy.DataRepresentation(use_cdrv0_representation=True),
+    )
+
+
+def _message(kind: Any, values: Any) -> Any:
+    """Returns a message of nested dicts; fields that are not given are empty or zero."""
+    built = {}
+    hints = kind.__annotations__
+    for field in fields(kind):
+        hint = hints[field.name]
+        value = values.get(field.name)
+        if is_dataclass(hint):
+            built[field.name] = _message(hint, value or {})
+        elif (item := _item(hint)) is not None:
+            given = value or []
+            built[field.name] = [_message(item, one) if is_dataclass(item) else one for one in given]
+        else:
+            built[field.name] = value if value is not None else ("" if hint is str else 0)
+    return kind(**built)
+
+
+def _item(hint: Any) -> Any:
+    """Returns the type of the items of a sequence; None for other types."""
+    for part in getattr(hint, "__metadata__", ()):
+        if hasattr(part, "subtype"):
+            return part.subtype
+    return None
+
+
+class Peer:
+    def __init__(self, domain: int) -> None:
+        self.domain = Domain(domain, LOOPBACK)
+        self.participant = DomainParticipant(domain)
+        self.readers: dict[str, DataReader] = {}
+        self.writers: dict[str, DataWriter] = {}
+
+    def hear(self, topic: str, kind: str, is_latched: bool = False) -> None:
+        """Subscribes a topic anew; only names that begin with a slash are those of ROS topics."""
+        name = f"rt{topic}" if topic.startswith("/") else topic
+        named = Topic(self.participant, name, TYPES[kind])
+        self.readers[topic] = DataReader(self.participant, named, qos=_qos(is_latched))
+
+    def take(self, topic: str, count: int, seconds: float = 5.0) -> list[Any]:
+        """Returns at least `count` messages, or those that arrive within a time."""
+        found: list[Any] = []
+        end = time.monotonic() + seconds
+        while True:
+            taken = self.readers[topic].take(5000)
+            found += [asdict(message) for message in taken if is_dataclass(message)]
+            if len(found) >= count or time.monotonic() > end:
+                return found
+            time.sleep(0.002)
+
+    def say(self, topic: str, kind: str, values: Any, seconds: float = 5.0) -> bool:
+        """Sends a message when somebody listens."""
+        if topic not in self.writers:
+            named = Topic(self.participant, f"rt{topic}", TYPES[kind])
+            self.writers[topic] = DataWriter(self.participant, named, qos=_qos(False))
+        writer = self.writers[topic]
+        end = time.monotonic() + seconds
+        while not writer.get_matched_subscriptions():
+            if time.monotonic() > end:
+                return False
+            time.sleep(0.002)
+        writer.write(_message(TYPES[kind], values))
+        return True
+
+    def publisher(self, topic: str, seconds: float = 5.0) -> list[int] | None:
+        """Returns the identity of the publisher of a subscribed topic when it is found."""
+        end = time.monotonic() + seconds
+        while not (found := self.readers[topic].get_matched_publications()):
+            if time.monotonic() > end:
+                return None
+            time.sleep(0.002)
+        return list(self.readers[topic].get_matched_publication_data(found[0]).key.bytes)
+
+
+def main() -> None:
+    peer = Peer(int(sys.argv[1]))
+    for line in sys.stdin:
+        name, options = json.loads(line)
+        print(json.dumps(getattr(peer, name)(**options), default=list), flush=True)
+
+
+if __name__ == "__main__":
+    main()
