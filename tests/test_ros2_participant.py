@@ -136,9 +136,7 @@ def test_a_subscriber_that_stops_delays_the_end_by_a_second_at_most() -> None:
         peer.hear(*STATES)
         peer.hear("/odom", "nav_msgs/msg/Odometry")
         assert peer.publisher("/joint_states") and peer.publisher("/odom")
-        while not all(
-            writer.subscribers() for topic, writer in node._writers.items() if topic.name == "/odom"
-        ):
+        while not all(node._writers[topic].subscribers() for topic in ("/joint_states", "/odom")):
             time.sleep(0.01)
         os.kill(peer.process.pid, signal.SIGSTOP)
         node.spin(0.1)
