@@ -205,7 +205,7 @@ def test_a_figure_edited_by_the_user_is_not_replaced(copy: Path, tmp_path: Path)
     figure = copy / "figures" / "ledger.png"
     figure.write_bytes(b"a figure with arrows")
     said = refusal("run", "mine.yaml", "--out", "out", "--force", cwd=tmp_path)
-    assert "ledger.png: it was changed since it was drawn; move it out of the folder to keep it" in said
+    assert "ledger.png: the figure was edited after it was drawn; move the figure out" in said
     assert figure.read_bytes() == b"a figure with arrows"
     assert oo.compare(copy, copy).agrees, "nothing may be removed after a rejection"
     with (
@@ -221,7 +221,7 @@ def test_a_figure_edited_by_the_user_is_not_replaced(copy: Path, tmp_path: Path)
 
 def test_resuming_rejects_an_edited_figure_before_it_continues(copy: Path) -> None:
     (copy / "figures" / "ledger.png").write_bytes(b"a figure with arrows")
-    with pytest.raises(OutputNotEmptyError, match=r"ledger\.png: it was changed"):
+    with pytest.raises(OutputNotEmptyError, match=r"ledger\.png: the figure was edited"):
         oo.resume(copy, quiet=True)
 
 

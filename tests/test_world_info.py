@@ -144,7 +144,7 @@ def test_the_command_shows_systems_events_and_trees(tmp_path: Path) -> None:
     assert ["the", "start", "0", "chaser", "7", "1088"] in rows
     assert ["grasp", "-", "chaser", "+", "target", "7", "1588"] in rows
     assert ["let_go", "-", "chaser", "7", "1088"] in rows
-    assert "order of declaration" in done.stdout
+    assert "order of the scenario" in done.stdout
     assert done.stdout.endswith("next: onorbit run pair.yaml --out DIR\n")
 
 
@@ -164,6 +164,6 @@ def test_scenarios_of_one_robot_and_without_events(tmp_path: Path) -> None:
     assert done.stdout.startswith("humanoid_torso: ") and "onorbit run humanoid_reach" in done.stdout
     assert "no events: every system moves alone" in onorbit("info", "formation").stdout
     assert "no such scenario" in refusal("info", tmp_path / "none.yaml")
-    assert "--picture draws one robot" in refusal("info", "formation", "--picture", tmp_path / "x.png")
+    assert "draws a single robot" in refusal("info", "formation", "--picture", tmp_path / "x.png")
     assert onorbit("info", "servicer").stdout.startswith("servicer: ")  # a robot, as before
     assert oo.robots.load("servicer").name == "servicer"

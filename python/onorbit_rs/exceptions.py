@@ -22,7 +22,7 @@ class                       built-in               fields: cause
 ``ControlError``            ``ValueError``         ``name, got, expected``: gains, controllers, references
 ``WorldError``              ``ValueError``         ``name, got``: a system or an event of a world
 ``SimulationError``         ``ArithmeticError``    ``time, q, v, trace``: the run diverged
-``EngineError``             ``ValueError``         ``name, got, expected``: another physics engine
+``EngineError``             ``ValueError``         ``name, got, expected``: engine missing or wrong setting
 ``CompareError``            ``ValueError``         ``name, got, expected``: two runs that cannot be compared
 ``CheckpointError``         ``ValueError``         ``path``: a checkpoint that cannot be resumed
 ``ConvergenceError``        ``ArithmeticError``    ``iterations, residual``: an iteration or factorisation
@@ -151,7 +151,8 @@ class FrameError(OnOrbitError, KeyError):
 class OrbitError(OnOrbitError, ValueError):
     """Invalid orbital elements, or an invalid use of an orbit.
 
-    ``time``, s, if the error depends on it; ``index`` of the orbit in a batch.
+    ``time`` is the time of the error, s, if the error depends on time; ``index`` is the index of the orbit in
+    a batch.
     """
 
     name: Any = None
@@ -162,17 +163,17 @@ class OrbitError(OnOrbitError, ValueError):
 
 
 class ElementSetError(OrbitError):
-    """Invalid TLE or OMM: at ``line`` and ``column`` (from 1) of a TLE, or in the entry ``name``."""
+    """Invalid TLE, with the error at ``line`` and ``column`` (from 1), or invalid OMM keyword ``name``."""
 
     line: Any = None
     column: Any = None
 
 
 class Sgp4Error(OrbitError):
-    """SGP4 has no state at ``time``, s from the epoch; ``code`` is the error number of the reference code.
+    """SGP4 has no state at ``time``, s from the epoch; ``code`` is the error code of the SGP4 reference code.
 
-    1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; 5 is no
-    longer raised. ``got`` is the offending value.
+    Codes: 1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; code
+    5 is no longer used. ``got`` is the offending value.
     """
 
     code: Any = None
@@ -188,7 +189,7 @@ class PathError(OrbitError):
 
 
 class EarthError(OnOrbitError, ValueError):
-    """Invalid epoch or parameters of the Earth, or a time at which it, the Sun or the Moon is unknown."""
+    """Invalid epoch or Earth parameters, or a time outside the data for the Earth, the Sun or the Moon."""
 
     name: Any = None
     got: Any = None
@@ -196,7 +197,7 @@ class EarthError(OnOrbitError, ValueError):
 
 
 class WorldError(OnOrbitError, ValueError):
-    """Invalid system or event of a world, or unknown name of one."""
+    """Invalid system or event of a world, or an unknown system or event name."""
 
     name: Any = None
     got: Any = None
@@ -211,7 +212,7 @@ class EffectError(OnOrbitError, ValueError):
 
 
 class GravityError(OnOrbitError, ValueError):
-    """Invalid gravity field, or a position where it is invalid; ``path`` and ``line`` of its file."""
+    """Invalid gravity field or position; ``path`` and ``line`` locate an error in the coefficient file."""
 
     name: Any = None
     got: Any = None
@@ -229,7 +230,7 @@ class ControlError(OnOrbitError, ValueError):
 
 
 class SimulationError(OnOrbitError, ArithmeticError):
-    """The run diverged; ``trace`` contains the rows recorded before."""
+    """The run diverged; ``trace`` contains the rows recorded before the divergence."""
 
     time: Any = None
     q: Any = None
@@ -238,7 +239,7 @@ class SimulationError(OnOrbitError, ArithmeticError):
 
 
 class EngineError(OnOrbitError, ValueError):
-    """Physics engine that is not installed, or does not support a setting."""
+    """A physics engine is not installed, or does not support a setting."""
 
     name: Any = None
     got: Any = None
@@ -254,7 +255,7 @@ class CompareError(OnOrbitError, ValueError):
 
 
 class CheckpointError(OnOrbitError, ValueError):
-    """Checkpoint that cannot be resumed: invalid, or of another scenario, version or instruction set."""
+    """Checkpoint that is invalid, or was written with another scenario, version or instruction set."""
 
     path: Any = None
 
@@ -282,7 +283,7 @@ class ReadError(OnOrbitError, OSError):
 
 
 class IntegrityError(ReadError):
-    """A file of a run differs from what the run wrote, by size or SHA-256 (``expected`` and ``got``)."""
+    """The size or SHA-256 of a file has changed since the run wrote the file (``expected`` and ``got``)."""
 
     expected: Any = None
     got: Any = None
@@ -295,7 +296,7 @@ class OutputFolderError(OnOrbitError, OSError):
 
 
 class OutputInUseError(OutputFolderError, BlockingIOError):
-    """Another process writes to the output folder: its ``pid`` and ``command``, and its start, ``since``."""
+    """Another process is writing to the output folder: its ``pid``, ``command`` and start time ``since``."""
 
     pid: Any = None
     command: Any = None
@@ -303,7 +304,7 @@ class OutputInUseError(OutputFolderError, BlockingIOError):
 
 
 class OutputNotEmptyError(OutputFolderError, FileExistsError):
-    """The output folder already contains files, or a file exists that may not be replaced."""
+    """The output folder already contains files, or an existing output file may not be replaced."""
 
 
 class OutputNotWritableError(OutputFolderError, PermissionError):
@@ -341,7 +342,7 @@ class Ros2Error(OnOrbitError, RuntimeError):
 
 
 class RunInterrupted(_Fields, KeyboardInterrupt):
-    """Ctrl-C during a run; ``trace`` contains the rows recorded before."""
+    """Ctrl-C during a run; ``trace`` contains the rows recorded before the interruption."""
 
     time: Any = None
     trace: Any = None

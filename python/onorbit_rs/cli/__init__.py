@@ -1,4 +1,4 @@
-"""The ``onorbit`` command line. Each command has one file and imports other modules when it is called."""
+"""The ``onorbit`` command line. Each command has one file, which imports other modules only when called."""
 
 from onorbit_rs.cli.app import main
 

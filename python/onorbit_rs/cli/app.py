@@ -78,7 +78,7 @@ def onorbit(context: typer.Context, version: VersionOption = False) -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run a command; errors end with one line and exit code 2 (Ctrl-C 130, SIGTERM 143, SIGHUP 129)."""
+    """Run a command; an error prints one line and exits with code 2 (Ctrl-C 130, SIGTERM 143, SIGHUP 129)."""
     escape_unencodable()
     try:
         with ending_signals(), warnings.catch_warnings(), _announcing_user_code():
@@ -97,9 +97,9 @@ def main(arguments: list[str] | None = None) -> None:
         discard_stdout()
         sys.exit(0)
     except OSError as error:
-        if error.filename is not None:  # the error of a file
+        if error.filename is not None:  # the error concerns a file
             fail(f"cannot use {error.filename}: {error.strerror or error}", 2)
-        discard_stdout()  # the error of stdout, such as a full disk
+        discard_stdout()  # the error concerns stdout, for example a full disk
         fail(f"cannot write the output: {error.strerror or error}", 2)
     except Exception as error:
         if not hasattr(error, "trace"):

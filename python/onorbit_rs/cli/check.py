@@ -1,4 +1,4 @@
-"""``onorbit check``."""
+"""Implements ``onorbit check``, which validates a scenario without running it."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def check(
 
 
 def _sources(scenario: Scenario) -> list[str]:
-    """Return the files or modules of the user that a run would execute."""
+    """Return the user's Python files and modules that a run would execute."""
     from onorbit_rs.common.user_code import is_foreign
     from onorbit_rs.scenario.control import PythonController
     from onorbit_rs.scenario.control.python_source import source_of
@@ -120,7 +120,7 @@ def print_checked(built: Built | BuiltWorld) -> None:
 
 
 def _robot_words(built: Built) -> tuple[str, str]:
-    """Return robot and controllers in words."""
+    """Return short descriptions of the robot and of its controllers."""
     model = built.model
     robot = f"{model.name} ({count(len(model.joint_names), 'joint', 'joints')}, {model.mass:.4g} kg)"
     return robot, ", ".join(law.kind for law in built.scenario.laws) or "no controller"

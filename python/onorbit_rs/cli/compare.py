@@ -1,4 +1,4 @@
-"""``onorbit compare``."""
+"""Implements ``onorbit compare``, which reports the differences between two runs."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ def compare(
     tolerance: Annotated[
         float,
         typer.Option(
-            metavar="X", help="Tolerance relative to the largest value of a quantity, or to 1 in its unit."
+            metavar="X",
+            help="Tolerance relative to the largest value of a quantity, or to 1 if that is larger.",
         ),
     ] = 1e-6,
     as_json: JsonOption = False,
@@ -51,7 +52,7 @@ def compare(
 ) -> None:
     """Compare two runs and report whether and when they diverge.
 
-    Exit code 1 if they do, 2 for errors, 130 after Ctrl-C.
+    Exit code 1 if the runs diverge, 2 for errors, 130 after Ctrl-C.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.tools.comparison import compare as compare_runs
@@ -78,7 +79,7 @@ def compare(
 def _figures(
     compared: Comparison | WorldComparison, out: Path, *, force: bool
 ) -> list[tuple[Path, Comparison]]:
-    """Return the file and the content of each figure: one per system, named after it, for a world."""
+    """Return the file and content of each figure; a world has one per system, named after the system."""
     from onorbit_rs.tools.comparison import Comparison
 
     if isinstance(compared, Comparison):

@@ -1,4 +1,4 @@
-"""Shell completion of arguments: bundled names, then files and folders."""
+"""Shell completion of arguments: suggests bundled names, then files and folders."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from pathlib import Path
 
 
 def scenario_names(incomplete: str) -> list[str]:
-    """Return the bundled scenarios, and YAML files."""
+    """Return the bundled scenarios and the YAML files whose names begin with ``incomplete``."""
     from onorbit_rs import scenarios
 
     return [*_fitting(scenarios.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
 
 
 def robot_names(incomplete: str) -> list[str]:
-    """Return the bundled robots, and URDF and xacro files."""
+    """Return the bundled robots and the URDF and xacro files whose names begin with ``incomplete``."""
     from onorbit_rs import robots
 
     return [*_fitting(robots.names(), incomplete), *_files(incomplete, (".urdf", ".xacro"))]
 
 
 def robot_and_scenario_names(incomplete: str) -> list[str]:
-    """Return the bundled robots and scenarios, and their files."""
+    """Return the bundled names, and robot and scenario files, whose names begin with ``incomplete``."""
     return list(dict.fromkeys([*robot_names(incomplete), *scenario_names(incomplete)]))
 
 
@@ -30,7 +30,7 @@ def _fitting(names: list[str], incomplete: str) -> list[str]:
 
 
 def _files(incomplete: str, endings: tuple[str, ...]) -> Iterator[str]:
-    """Yield files with one of the endings, and folders."""
+    """Yield the folders, and the files with one of the endings, whose paths begin with ``incomplete``."""
     typed, _, start = incomplete.rpartition("/")
     prefix = f"{typed}/" if "/" in incomplete else ""
     try:

@@ -40,9 +40,10 @@ class _Console(Console):
 
 
 def new_console(at_least: int = 0) -> Console:
-    """Return a console on stdout without rich's highlighting; lines are not wrapped if it is not a terminal.
+    """Return a console on stdout without highlighting; lines are wrapped only if stdout is a terminal.
 
-    Its width is at least ``at_least`` columns; a narrower terminal wraps the lines, so that no number is cut.
+    The console is at least ``at_least`` columns wide; a narrower terminal wraps lines without cutting
+    numbers.
     """
     console = _Console(highlight=False)
     console.width = max(console.width, at_least) if console.is_terminal else 10_000
@@ -50,7 +51,7 @@ def new_console(at_least: int = 0) -> Console:
 
 
 def new_table(*header: str) -> Table:
-    """Return a table without lines; numbers are right-aligned, and only the first column may wrap."""
+    """Return a table without borders; numbers are right-aligned, and only the first column may wrap."""
     table = Table(show_header=bool(header), box=None, padding=(0, 2, 0, 0), header_style="dim")
     for number, name in enumerate(header):
         justify: JustifyMethod = "left" if name in ("", "unit") else "right"
@@ -67,6 +68,6 @@ def print_table(console: Console, table: Table) -> None:
 
 
 def _min_width(console: Console, column: Column) -> int:
-    """Return the width of a column that may wrap between words but not within."""
+    """Return the minimum width of a column whose text may wrap between words but not within words."""
     sizes = [console.measure(text) for text in (column.header, *column.cells)]
     return max(size.maximum if column.no_wrap else size.minimum for size in sizes)

@@ -1,4 +1,4 @@
-"""``onorbit convert``."""
+"""Implements ``onorbit convert``, which converts OnOrbitROS files to a scenario."""
 
 from __future__ import annotations
 

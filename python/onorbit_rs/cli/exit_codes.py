@@ -32,7 +32,7 @@ def with_exit_codes(command: Callable[..., None]) -> Callable[..., None]:
 
 @contextmanager
 def ignore_closed_pipe() -> Iterator[None]:
-    """Discard output after the pipe was closed (``| head``), so that the command itself continues."""
+    """Discard output once the pipe is closed (``| head``), so that the command continues."""
     try:
         yield
         if sys.stdout is not None:
@@ -60,7 +60,7 @@ def fail(message: str, code: int) -> NoReturn:
 
 
 def _discard_unwritable_stderr() -> None:
-    """Redirect a closed stderr to the null device; else its buffer would make Python exit with code 120."""
+    """Redirect a closed stderr to the null device; otherwise, flushing it makes Python exit with code 120."""
     try:
         if sys.stderr is not None:
             sys.stderr.flush()

@@ -1,4 +1,4 @@
-"""Checks the files in which commands are to save figures, and saves the figure of a robot."""
+"""Checks the output files of figures before a command runs, and saves the figure of a robot."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KINDS = (".png", ".pdf", ".svg")
 
 
 def check_figure_file(option: str, file: Path | None, *, force: bool) -> None:
-    """Check that a figure can be saved in a file, before any computation.
+    """Check that a figure can be saved in a file; called before any computation.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""``onorbit info``."""
+"""Implements ``onorbit info``, which describes a robot or the systems of a scenario."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def info(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Print a robot's tree, masses, joints, frames, warnings.
+    """Print a robot's tree, masses, joints, frames and warnings.
 
     For a scenario with several systems, print the systems, the events, and the trees of connected systems
     after each event.
@@ -79,7 +79,7 @@ def info(
 
 
 def _scenario(name: str) -> Scenario | WorldScenario | None:
-    """Return the scenario with this name or in this file; None if it is a robot."""
+    """Return the scenario with this name or in this file; None if the argument is a robot."""
     from onorbit_rs import robots, scenarios
     from onorbit_rs.scenario import load
 
@@ -95,7 +95,9 @@ def _world_info(scenario: WorldScenario, name: str, picture: Path | None, *, as_
 
     if picture is not None:
         raise InputError(
-            "--picture draws one robot; give the robot of a system", name="picture", got=str(picture)
+            f"--picture {picture} draws a single robot, but {name} has several; give the robot of one system",
+            name="picture",
+            got=str(picture),
         )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # 'onorbit check' prints them

@@ -1,4 +1,4 @@
-"""``onorbit list``."""
+"""Implements ``onorbit list``, which lists the bundled scenarios and robots."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def list_(as_json: JsonOption = False) -> None:
 
 
 def description(name: str) -> str:
-    """Return the description of a bundled scenario; skips its validation, which takes half a second."""
+    """Return the description of a bundled scenario without validating the scenario, which takes 0.5 s."""
     import yaml
 
     from onorbit_rs import scenarios

@@ -1,4 +1,4 @@
-"""``onorbit new``."""
+"""Implements ``onorbit new``, which writes a scenario for a robot."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def new(
         str | None,
         typer.Argument(
             metavar="[TARGET]",
-            help="A second craft, which the robot captures; a bundled name, a URDF or a xacro file.",
+            help="Spacecraft that the robot captures: a bundled name, a URDF or a xacro file.",
             autocompletion=robot_names,
             show_default=False,
         ),
@@ -44,14 +44,14 @@ def new(
     out: Annotated[Path | None, typer.Option("--out", "-o", metavar="FILE", help="Output file.")] = None,
     tool: Annotated[
         str | None,
-        typer.Option(metavar="FRAME", help="Frame to move, or that captures; default: the most likely tool."),
+        typer.Option(metavar="FRAME", help="Frame that moves or captures; default: the most likely tool."),
     ] = None,
     target_frame: Annotated[
         str | None,
         typer.Option(
             metavar="FRAME",
-            help="Frame of the target to capture; only with a target; default: one that is named grapple, "
-            "handle, grasp, dock or berth, otherwise the base link.",
+            help="Frame of TARGET to capture; default: a frame named grapple, handle, grasp, dock or berth, "
+            "otherwise the base link.",
         ),
     ] = None,
     bus: Annotated[
@@ -64,8 +64,8 @@ def new(
         str | None,
         typer.Option(
             metavar="FRAME",
-            help="Frame of the bus to attach the robot to; only with --bus; default: the only frame of the "
-            "bus, if it has one.",
+            help="Frame of the bus to attach the robot to; only with --bus; required if the bus has several "
+            "frames.",
         ),
     ] = None,
     prefix: Annotated[
@@ -149,7 +149,7 @@ def _check_target(target: str | None, frame: str | None) -> None:
 
 
 def _motion(result: Draft | CaptureDraft) -> str:
-    """Describe the motion of a draft."""
+    """Return a description of the motion in a draft scenario."""
     from onorbit_rs.tools.new_scenario import CaptureDraft
 
     if isinstance(result, CaptureDraft):
@@ -159,5 +159,5 @@ def _motion(result: Draft | CaptureDraft) -> str:
     return (
         "a body without joints"
         if result.tool is None
-        else "all joints are held: no motion of the arm passed its trial"
+        else "all joints are held, because every tried motion of the arm failed"
     )

@@ -62,8 +62,8 @@ def reading_options(
     Raises
     ------
     InputError
-        If an option has no effect: the robot is bundled, a folder is missing, or the file is not xacro.
-        If there is a ``bus``, the message explains where to put the arguments of its xacro file.
+        If an option does not apply to a bundled robot or to the type of the file, or a folder does not
+        exist. With a ``bus``, the message explains where to put the arguments of its xacro file.
     typer.BadParameter
         If an argument is not written ``name=value``.
     """
@@ -106,7 +106,7 @@ def as_arguments(robot: str, packages: list[Path] | None, arguments: list[str] |
 
 
 def xacro_arguments(arguments: list[str] | None) -> dict[str, str] | None:
-    """Return xacro arguments, written ``name=value`` or ``name:=value``, as a mapping; None without any."""
+    """Return xacro arguments (``name=value`` or ``name:=value``) as a mapping, or None without arguments."""
     pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]
     for argument, (name, equals, _) in zip(arguments or [], pairs, strict=True):
         if not equals or not name:

@@ -10,7 +10,7 @@ from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
 
 
 def check_output_file(file: Path | None, *, force: bool) -> None:
-    """Check that a file can be written, before any computation.
+    """Check that a file can be written; called before any computation.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""``onorbit report``."""
+"""Implements ``onorbit report``, which writes the HTML report of a run."""
 
 from __future__ import annotations
 

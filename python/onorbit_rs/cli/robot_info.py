@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
 _DEEPEST = 12
-"""Largest indentation of the tree; deeper bodies are printed at this level."""
+"""Largest indentation level of the tree; deeper bodies are printed at this level."""
 
 
 def print_info(model: Model, console: Console) -> None:

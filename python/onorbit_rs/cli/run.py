@@ -1,4 +1,4 @@
-"""``onorbit run`` and ``onorbit resume``."""
+"""Implements ``onorbit run`` and ``onorbit resume``, which simulate a scenario."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def run(
 
     if checkpoint_every is not None and out is None:
         raise InputError(
-            "--checkpoint-every requires a folder for checkpoints; add --out DIR",
+            f"--checkpoint-every {checkpoint_every:g} requires a folder for checkpoints; add --out DIR",
             name="checkpoint_every", got=checkpoint_every,
         )  # fmt: skip
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
@@ -75,7 +75,7 @@ def resume(
 
 
 def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
-    """Run the job and print the summary."""
+    """Run the simulation and print its summary; exit with code 1 if the certificate failed."""
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.cli.summary import print_summary
 

@@ -1,4 +1,4 @@
-"""``onorbit show``."""
+"""Implements ``onorbit show``, which prints the summary of a run and opens its recording."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def show(
             name="picture", got=picture.suffix, expected=".png",
         )  # fmt: skip
     if at is not None and picture is None:
-        raise InputError("--at sets the time of a picture; add --picture FILE", name="at", got=at)
+        raise InputError(f"--at {at:g} sets the time of a picture; add --picture FILE.png", name="at", got=at)
     saved = SavedRun(folder)
     summary = saved.summary()
     _check_time(at or 0.0, float(summary.get("simulated_s") or 0.0))
@@ -66,7 +66,7 @@ def show(
 
 
 def open_viewer(folder: Path) -> None:
-    """Open the recording of a run, or print that there is none or, without a display, how to open it.
+    """Open the recording of a run; print a message if there is no recording or no display.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def _check_time(at_s: float, end_s: float) -> None:
     """Raise InputError for a time outside a run that ends at ``end_s``."""
     if not (math.isfinite(at_s) and 0.0 <= at_s <= end_s):
         raise InputError(
-            f"--at {at_s:g} s is outside the run; it must be from 0 to {end_s:g} s",
+            f"--at {at_s:g} is outside the run; it must be between 0 and {end_s:g} s",
             name="at", got=at_s, expected=f"0 to {end_s:g} s",
         )  # fmt: skip
 

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from types import FrameType
 
 REPEATS_S = 5.0
-"""Wall-clock time during which repeated signals are ignored, so that they do not interrupt the final writing.
+"""Wall-clock time, s, during which repeated signals are ignored, so that the final files are complete.
 
 A closing terminal sends SIGHUP twice, from the shell and from the kernel.
 """
@@ -31,7 +31,7 @@ class _Handler:
 
 @contextmanager
 def ending_signals() -> Iterator[None]:
-    """In a block in the main thread, handle SIGTERM and SIGHUP unless they have handlers or are ignored."""
+    """Handle SIGTERM and SIGHUP during a block in the main thread, unless already handled or ignored."""
     handler, replaced = _Handler(), []
     if threading.current_thread() is threading.main_thread():
         for name in ("SIGTERM", "SIGHUP"):  # Windows has no SIGHUP

@@ -22,7 +22,7 @@ _ROWS = (
     ("base_rotation_max_rad", "base rotation in W, largest", "rad"),
     ("base_displacement_max_m", "base displacement in W, largest", "m"),
     ("simulated_s", "simulated", "s"),
-    ("wall_s", "wall clock of the simulation loop", "s"),
+    ("wall_s", "wall-clock time of the simulation loop", "s"),
     ("real_time_factor", "times real time", ""),
 )
 _FILES = (
@@ -35,7 +35,7 @@ _FILES = (
 )
 _AUDIT = (("impulse_ns", "N s"), ("energy_lost_j", "J"))
 _OF_THE_RUN = ("simulated_s", "wall_s", "real_time_factor")
-"""Numbers that all systems share."""
+"""Summary keys whose values apply to all systems of a run."""
 _VERDICTS = {True: "[green]holds[/green]", False: "[red]BROKEN[/red]", None: "[yellow]not evaluated[/yellow]"}
 
 
@@ -106,7 +106,7 @@ def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, A
 
 
 def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:
-    """Return the largest tracking errors, per controller if there are several."""
+    """Return labels and values of the largest tracking errors, per controller if there are several."""
     found = [(tracking(key), value) for key, value in summary.items()]
     largest = [(error, value) for error, value in found if error is not None and error.is_largest]
     named = [(error, value) for error, value in largest if error.owner]
@@ -115,7 +115,7 @@ def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _goals(summary: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """Yield the results of the controllers' goals."""
+    """Yield the label and the outcome of each controller's goal."""
     for key, value in summary.items():
         if (whose := goal_of(key)) is not None:
             yield f"{whose}: goal", str(value).replace("_", " ")

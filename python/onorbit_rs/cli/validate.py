@@ -1,4 +1,4 @@
-"""``onorbit validate``."""
+"""Implements ``onorbit validate``, which runs the published validation cases."""
 
 from __future__ import annotations
 

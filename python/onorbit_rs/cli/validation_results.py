@@ -29,7 +29,7 @@ def print_cases(cases: Sequence[Case]) -> None:
 
 
 def print_verdicts(verdicts: Sequence[Verdict], *, in_full: bool) -> None:
-    """Print checks by family and source: all, or those that failed, or each case's nearest to its gate."""
+    """Print checks by family and source: all, or per case the failed ones or the one nearest to its gate."""
     console = new_console(at_least=72)
     rows = [(verdict, _rows(verdict, in_full=in_full)) for verdict in verdicts]
     widths = _widths([row for _, some in rows for row in some], console.width)
@@ -62,7 +62,7 @@ def _rows(verdict: Verdict, *, in_full: bool) -> list[Row]:
 
 
 def _widths(rows: Sequence[Row], at_most: int) -> list[int]:
-    """Return the widths of the columns; on a narrow terminal, names wrap."""
+    """Return the column widths; on a narrow terminal, the columns of names shrink and their texts wrap."""
     widths = [max(len(str(row[column])) for row in rows) for column in range(4)] + [len("skipped")]
     for column, least in ((0, 24), (1, 12)):
         too_wide = max(0, sum(widths) + _GAPS - at_most)

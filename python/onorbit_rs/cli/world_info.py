@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def describe_world(scenario: WorldScenario, models: Mapping[str, Model]) -> dict[str, Any]:
-    """Return the data that ``onorbit info`` prints of a scenario with several systems, in SI."""
+    """Return the content of ``onorbit info`` for a scenario with several systems, in SI units."""
     from onorbit_rs.scenario.event_stages import stages
 
     return {
@@ -95,13 +95,13 @@ def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: C
         )
     if any(stage.time is None for stage in found):
         console.print(
-            "events without a time depend on the motion or on a command; they are listed in the order of "
-            "declaration, which may not be that of the run", soft_wrap=True,
+            "events without a time depend on the motion or on a command; they are listed in the order of the "
+            "scenario and may happen in another order", soft_wrap=True,
         )  # fmt: skip
 
 
 def _add_stage(table: Any, stage: Stage, models: Mapping[str, Model]) -> None:
-    """Add the rows of a stage: one per tree, or the remark that nothing changes."""
+    """Add one row per tree of a stage, or a remark if the event does not change the trees."""
     after = text(stage.event or "the start")
     time = "-" if stage.time is None else f"{stage.time:.6g}"
     if stage.remark:

@@ -23,7 +23,9 @@ def path(name: str, kind: str, folder: Path, ending: str) -> Path:
     kind : str
         Kind of the files, for messages.
     folder : path
+        Folder of the package that contains the files.
     ending : str
+        Ending of the file names, such as ``.yaml``.
 
     Raises
     ------

@@ -2,5 +2,5 @@
 
 
 def count(number: int, one: str, many: str) -> str:
-    """Return ``1 joint`` or ``2 joints``."""
+    """Return a number with its noun, such as ``1 joint`` or ``2 joints``."""
     return f"{number} {one if number == 1 else many}"

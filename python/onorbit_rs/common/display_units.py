@@ -15,7 +15,7 @@ ROUNDING = 1e-12
 ROUNDING_DEG = 1e-9
 """Angle, degrees, below which a value is rounding error; these errors accumulate over a run."""
 OR = " or "
-"""Separator of two units in one label; such labels have no prefix."""
+"""Separator between the two units of a label such as ``rad or m``, which takes no SI prefix."""
 
 
 def with_prefix(peak: float, unit: str) -> tuple[float, str]:
@@ -31,7 +31,7 @@ def with_prefix(peak: float, unit: str) -> tuple[float, str]:
 
 
 def degrees_with_prefix(peak: float, unit: str = "deg") -> tuple[float, str]:
-    """Return factor and unit of an angle; prefixes are used only from :data:`ROUNDING_DEG` to 0.01 deg."""
+    """Return the factor and unit of an angle; only peaks of :data:`ROUNDING_DEG` to 0.01 deg get a prefix."""
     return with_prefix(peak, unit) if ROUNDING_DEG <= peak < 0.01 else (1.0, unit)
 
 
@@ -47,7 +47,7 @@ def amount(value: float, unit: str) -> str:
 
 
 def round_up(value: float) -> float:
-    """Round up to 1, 2 or 5 times a power of ten, at least 0; a value above the largest such is unchanged."""
+    """Return ``value`` rounded up to 1, 2 or 5 times a power of ten; 0 if it is not positive."""
     if not 0.0 < value < math.inf:
         return 0.0 if value <= 0.0 else value
     power = 10.0 ** math.floor(math.log10(value))
@@ -68,6 +68,6 @@ _REVOLUTE, _PRISMATIC = (JointUnits(*units) for units in zip(*(unit.split(OR) fo
 
 
 def joint_units(kinds: Iterable[str]) -> JointUnits:
-    """Return the units of joints of these kinds: ``rad``, ``m``, or ``rad or m`` for both or no kinds."""
+    """Return the units of joints of these kinds; ``rad or m`` for mixed kinds or none."""
     found = {kind == "prismatic" for kind in kinds}
     return (_PRISMATIC if found.pop() else _REVOLUTE) if len(found) == 1 else JointUnits(*_ALL)

@@ -33,7 +33,7 @@ class Evaluator(ast.NodeVisitor, ABC):
     """
 
     constants: ClassVar[tuple[type, ...]] = (int, float)
-    """Types of literals."""
+    """Types of the literals that an expression may contain."""
     unary: ClassVar[Mapping[type[ast.unaryop], Callable[[Any], Any]]] = {}
     binary: ClassVar[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {}
 
@@ -42,7 +42,7 @@ class Evaluator(ast.NodeVisitor, ABC):
         raise self.refused(node)
 
     def visit_Constant(self, node: ast.Constant) -> Any:
-        """Return the value of a literal; a bool is not accepted as an int."""
+        """Return the value of a literal; True and False are rejected unless bool is one of the types."""
         if type(node.value) not in self.constants:
             raise self.refused(node)
         return node.value

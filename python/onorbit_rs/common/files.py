@@ -42,10 +42,10 @@ def read_bounded(stream: BinaryIO, most: int) -> bytes:
     """Return the content of a stream; raises a ValueError if it has more than ``most`` bytes."""
     size = os.fstat(stream.fileno()).st_size
     content = b"" if size > most else stream.read(size + 1)
-    if size < len(content) <= most:  # the file has grown meanwhile
+    if size < len(content) <= most:  # the file has grown since its size was read
         content += stream.read(most + 1 - len(content))
     if max(size, len(content)) > most:
-        raise ValueError(f"it is larger than {most} bytes")
+        raise ValueError(f"it is larger than the limit of {most} bytes")
     return content
 
 
@@ -63,12 +63,12 @@ def open_to_change(file: Path) -> BinaryIO:
 
 
 def create(file: Path) -> None:
-    """Create an empty file; raises an OSError if the name exists, even as a link."""
+    """Create an empty file; raises an OSError if the path exists, also as a link without a target."""
     os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL | _NO_LINK, 0o666))
 
 
 def exists(path: Path) -> bool:
-    """Return whether the name exists, even as a link without a target."""
+    """Return whether the path exists; a link without a target counts as existing."""
     return os.path.lexists(path)
 
 
@@ -98,7 +98,7 @@ def is_real_folder(path: Path) -> bool:
 
 
 def remove(file: Path) -> None:
-    """Remove a file if it is a regular file; anything else is unchanged."""
+    """Remove a regular file; folders, links and other kinds of file are kept."""
     if is_regular(file):
         file.unlink(missing_ok=True)
 

@@ -15,9 +15,10 @@ if TYPE_CHECKING:
 
 
 def group_momentum(momenta: Sequence[Floats], centers: Sequence[Floats], masses: Sequence[float]) -> Floats:
-    """Return the momentum (systems, T, 6) of each system; their sum is that of all systems together.
+    """Return the momentum (systems, T, 6) of each system about the common centre of mass, in axes of W.
 
-    The angular part is about the common centre of mass `c`: `L_k + (c_k − c) × P_k`.
+    With the common centre of mass `c`, the angular part of system `k` is `L_k + (c_k − c) × P_k`. The sum
+    over the systems is the total momentum.
 
     Parameters
     ----------
@@ -34,9 +35,9 @@ def group_momentum(momenta: Sequence[Floats], centers: Sequence[Floats], masses:
 
 
 def shared_rows(times: Sequence[Floats]) -> list[NDArray[np.int64]]:
-    """Return the indices of the rows at the times that all systems have, for each system.
+    """Return, for each system, the indices of its rows at the times that are common to all systems.
 
-    Systems with equal times share all rows; otherwise the last row of each common time is used.
+    If all systems have equal times, every row is used; otherwise the last row at each common time is used.
     """
     first = times[0]
     if all(np.array_equal(other, first) for other in times):

@@ -15,10 +15,10 @@ LARGEST_TEXT = 16_000_000
 """Size limit of an element set, a resolved scenario or a robot, bytes."""
 
 LARGEST_TABLE = 256_000_000
-"""Size limit of a CSV file, bytes: three million rows."""
+"""Size limit of a CSV file, bytes; corresponds to about three million rows."""
 
 LARGEST_MESH = 256_000_000
-"""Size limit of a mesh, bytes: five million triangles in STL."""
+"""Size limit of a mesh, bytes; corresponds to about five million triangles in STL."""
 
 
 def check_regular(path: str | os.PathLike[str], kind: str = "file") -> None:
@@ -61,13 +61,13 @@ def read_bytes(path: str | os.PathLike[str], limit: int, kind: str = "file") -> 
     Raises
     ------
     NotFoundError, ReadError
-        As :func:`check_regular`, or if the file is larger than ``limit``.
+        As for :func:`check_regular`, or if the file is larger than ``limit``.
     """
     return _read(path, kind, lambda stream: read_bounded(stream, limit))
 
 
 def read_head(path: str | os.PathLike[str], most: int, kind: str = "file") -> bytes:
-    """Return up to ``most`` bytes from the start of a file; raises as :func:`check_regular`."""
+    """Return up to ``most`` bytes from the start of a file; raises the errors of :func:`check_regular`."""
     return _read(path, kind, lambda stream: stream.read(most))
 
 
@@ -94,7 +94,7 @@ def read_text(path: str | os.PathLike[str], limit: int = LARGEST_TEXT, kind: str
     Raises
     ------
     NotFoundError, ReadError
-        As :func:`read_bytes`, or if the file is not UTF-8.
+        As for :func:`read_bytes`, or if the file is not UTF-8.
     """
     try:
         return read_bytes(path, limit, kind).decode("utf-8-sig")

@@ -1,4 +1,4 @@
-"""Converts numbers given by callers, such as those of numpy or :mod:`fractions`, to floats."""
+"""Converts numbers given by callers, such as numpy scalars or :class:`fractions.Fraction`, to floats."""
 
 from __future__ import annotations
 

@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from rich.progress import Progress as Bar
 
 ProgressCallback = Callable[[float, float], None]
-"""Called with the simulated time and the duration, s."""
+"""Callback that receives the simulated time and the duration of the run, s."""
 
 
 @dataclass(frozen=True)
 class Progress:
-    """Progress of a run: the simulation loop calls ``move``; ``tell`` displays the name of each later task.
+    """Progress of a run: the simulation loop calls ``move``; ``tell`` shows the name of each later task.
 
     ``move`` is None if nothing is displayed.
     """
@@ -42,7 +42,7 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
 
 @contextmanager
 def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
-    """Show a progress bar in the block; yields a function that sets the part's name and the fraction done."""
+    """Show a progress bar during the block; yields a function that sets task name and completed fraction."""
     if quiet or not _is_watched():
         yield lambda part, done: None
         return
@@ -53,7 +53,7 @@ def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None
 
 @contextmanager
 def _drawn(bar: Bar) -> Iterator[Bar]:
-    """Draw the bar during the block; errors of a terminal that is closed meanwhile are ignored."""
+    """Draw the bar during the block; errors are ignored if the terminal is closed during that time."""
     bar.start()
     try:
         yield bar
@@ -82,7 +82,7 @@ def _bar() -> Bar:
 
 @contextmanager
 def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
-    """Show a status line during the block; yields a function that sets the name of the current part."""
+    """Show a status line during the block; yields a function that sets the name of the current task."""
     if quiet or not _is_watched():
         yield lambda part: None
         return

@@ -41,7 +41,7 @@ def quaternion_from_matrix(rotation: ArrayLike) -> Floats:
 
 
 def _times_four_components(r: Floats, largest: int) -> Floats:
-    """Return `4 c` times the quaternions (k, 4) of matrices (k, 3, 3), where `c` is one component."""
+    """Return the quaternions (k, 4) of matrices (k, 3, 3) times `4 c`, with `c` the component ``largest``."""
     xx, yy, zz = r[:, 0, 0], r[:, 1, 1], r[:, 2, 2]
     yz, zx, xy = r[:, 2, 1], r[:, 0, 2], r[:, 1, 0]
     zy, xz, yx = r[:, 1, 2], r[:, 2, 0], r[:, 0, 1]
@@ -125,7 +125,7 @@ def has_local_frame(trace: Trace) -> bool:
 
 
 def is_local_frame_defined(position: ArrayLike, velocity: ArrayLike) -> bool:
-    """Return whether L is defined in all rows (T, 3), none of which is at rest or moves radially."""
+    """Return whether L is defined in all rows (T, 3): no velocity may be zero or parallel to the position."""
     r, v = np.asarray(position), np.asarray(velocity)
     momentum = np.linalg.norm(np.cross(r, v), axis=-1)
     return bool(np.all(momentum > 1e-10 * np.linalg.norm(r, axis=-1) * np.linalg.norm(v, axis=-1)))

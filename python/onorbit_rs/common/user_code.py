@@ -8,11 +8,11 @@ from pathlib import Path
 _PACKAGE = Path(__file__).resolve().parents[1]
 
 listeners: list[Callable[[str], None]] = []
-"""Called with the path or module name of the code; the command line prints it."""
+"""Callbacks that receive the path or module name of the code; the command line prints that name."""
 
 
 def is_foreign(source: str) -> bool:
-    """Return whether a file is not part of this package."""
+    """Return whether a file lies outside this package."""
     return not Path(source).resolve().is_relative_to(_PACKAGE)
 
 

@@ -1,8 +1,8 @@
 """Other physics engines that integrate the motion of the robot in place of the native equations of motion.
 
 Pass one to :class:`onorbit_rs.Simulation` as ``engine=``, or write ``engine: mujoco`` in a scenario. Robot,
-controllers, environment, schedule, trace and certificate are the same as in every run. Outside this folder
-only ``tools.validation`` imports MuJoCo, as an oracle that shares no code with this engine.
+controllers, environment, schedule, trace and certificate do not depend on the engine. Outside this folder,
+only ``tools.validation`` imports MuJoCo, as an independent oracle that shares no code with this engine.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def versions(engine: str) -> dict[str, str]:
     Raises
     ------
     EngineError
-        If it is not installed.
+        If the engine is not installed.
     """
     if engine == "native":
         return {"engine": engine}

@@ -31,13 +31,13 @@ _WEIGHTS = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
 class Mujoco:
     """Engine that integrates the motion with MuJoCo: ``onorbit_rs.Simulation(..., engine=Mujoco(model))``.
 
-    ``rk4`` is the Runge-Kutta method of MuJoCo 4, with the environment's wrenches evaluated at every stage.
-    It does not project momentum, so momentum drifts with fourth order in the step. ``semi_implicit_euler`` is
-    MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are MuJoCo's soft constraints with
-    their stiffest settings; the restitution of stops is close to zero. The connections of a world are welds,
-    also soft: a capture removes the relative velocity within a few steps instead of at once. One simulation
-    at a time may use an instance; a concurrent step is refused. MuJoCo's log settings, which are global to
-    the process, are disabled during a step and restored after it.
+    ``rk4`` is MuJoCo's fourth-order Runge-Kutta method, with the environment's wrenches evaluated at every
+    stage. Momentum is not projected, so that its drift is of fourth order in the step.
+    ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are
+    MuJoCo's soft constraints with their stiffest settings; the restitution of stops is close to zero. The
+    connections of a world are welds, also soft: a capture removes the relative velocity within a few steps
+    instead of at once. One simulation at a time may use an instance; a concurrent step is refused. MuJoCo's
+    log settings, which are global to the process, are disabled during a step and restored after it.
 
     Parameters
     ----------
@@ -48,12 +48,13 @@ class Mujoco:
     integrator : str
         ``rk4`` or ``semi_implicit_euler``.
     enforce_limits : bool or list of str
-        Whether rigid stops keep the joints within their position limits, or the systems in which they do.
+        Whether rigid stops keep the joints within their position limits; for a world, the names of the
+        systems with such stops.
 
     Raises
     ------
     EngineError
-        If MuJoCo is not installed or has no such integrator.
+        If MuJoCo is not installed, or the integrator is not available with MuJoCo.
     ModelError
         If MuJoCo cannot represent the robot.
     """
@@ -144,7 +145,7 @@ class Mujoco:
         wrenches: Wrenches,
         welds: Sequence[Weld],
     ) -> tuple[Floats, ...]:
-        """Integrate one step of all systems of a world; as :meth:`step` with the arrays of all systems.
+        """Integrate one step of all systems of a world; the counterpart of :meth:`step` for a world.
 
         Parameters
         ----------
@@ -154,7 +155,8 @@ class Mujoco:
             Configurations, velocities and joint torques of the systems, one after another, units of
             :meth:`step`.
         wrenches : callable
-            ``wrenches(t, q, v)``: the environment on the bodies of all systems.
+            ``wrenches(t, q, v)`` returns the environment's wrenches on the bodies of all systems, as in
+            :meth:`step`.
         welds : list
             Connections: ``(system, body)`` of both sides, the captured origin in the axes of each body,
             (2, 3), m, and the rotation from the axes of the second body to those of the first, (3, 3).
@@ -162,13 +164,13 @@ class Mujoco:
         Returns
         -------
         q, v, acceleration : arrays
-            As of :meth:`step`, of all systems.
+            As in :meth:`step`, for all systems one after another.
         impulse : (systems, 6) array
-            Impulse of the environment on each system, as of :meth:`step`.
+            Impulse of the environment on each system, as in :meth:`step`.
         work, loss : (systems,) arrays
-            Work of motors and environment minus the loss in the joints, and that loss, J.
+            Work of motors and environment minus the energy dissipated in the joints; dissipated energy; J.
         weld_impulse : (systems, 6) array
-            Impulse of the welds on each system.
+            Linear and angular impulse of the welds on each system, N s and N m s.
         weld_work : (systems,) array
             Work of the welds on each system, J.
         orbital : (3,) array
@@ -178,12 +180,13 @@ class Mujoco:
         Raises
         ------
         EngineError
-            As :meth:`step`, and if the instance was made for other systems.
+            As for :meth:`step`, or if the instance was created for other systems.
         """
         if not self._is_world or len(q) != self._model.nq or len(tau) != len(self._dofs):
             raise EngineError(
-                f"this engine has {self._model.nq} coordinates in {len(self._shares)} systems, the world has "
-                f"{len(q)}; create Mujoco({{name: model, ...}}) with all systems in the order of the world",
+                f"this engine has {self._model.nq} coordinates in {len(self._shares)} systems, but the world "
+                f"has {len(q)} coordinates; create Mujoco({{name: model, ...}}) with all systems in the "
+                "order of the world",
                 name="engine", got="mujoco",
             )  # fmt: skip
         qpos, qvel, acceleration, done = self._advance((start, end), (q, v, tau), wrenches, welds)
@@ -239,7 +242,7 @@ class Mujoco:
         return (*self._from_mujoco(qpos, qvel), acceleration, h * mean[2 * nv :])
 
     def _moved(self, qpos: Floats, qvel: Floats, h: float, rate: Floats) -> tuple[Floats, Floats]:
-        """Return the state advanced by `h` at a constant rate, as in MuJoCo's stages."""
+        """Return the state advanced by the time `h` at a constant rate, as in MuJoCo's ``RK4`` stages."""
         nv, moved = self._model.nv, qpos.copy()
         self._mujoco.mj_integratePos(self._model, moved, rate[:nv], h)
         return moved, qvel + h * rate[nv : 2 * nv]

@@ -1,8 +1,8 @@
 """Disables MuJoCo's log during a step.
 
-Warnings about nearly singular matrices then go neither to stderr nor to MUJOCO_LOG.TXT. The log settings are
-global to the process, so MuJoCo's log is also disabled in other threads during that time. The user's settings
-are restored when no engine is in a step.
+MuJoCo would otherwise write warnings about nearly singular matrices to stderr and MUJOCO_LOG.TXT. The log
+settings are global to the process, so the log is also disabled in other threads during a step. The user's
+settings are restored after the last step in progress has ended.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 _lock = threading.Lock()
 _saved: list[Any] = []
-"""The user's log settings, once per engine that is in a step."""
+"""The user's log settings, one entry for each engine that is in a step."""
 
 
 @contextmanager

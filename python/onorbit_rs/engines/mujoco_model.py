@@ -41,7 +41,7 @@ def import_mujoco() -> ModuleType:
 
 def missing() -> EngineError:
     """Return the error to raise if MuJoCo is not installed."""
-    message = "the engine 'mujoco' needs MuJoCo, which is not installed: pip install 'onorbit-rs[mujoco]'"
+    message = "the engine 'mujoco' requires MuJoCo, which is not installed: pip install 'onorbit-rs[mujoco]'"
     return EngineError(message, name="engine", got="mujoco")
 
 
@@ -62,9 +62,9 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
 def world_model(models: Mapping[str, Model], *, time_step: float, with_stops: Collection[str]) -> Any:
     """Return one ``mujoco.MjModel`` of several systems; the names of their links and joints are paths.
 
-    It has an inactive weld for each connection that the systems can have at a time: one less than there are
-    systems, since connections close no loops. ``with_stops`` names the systems with rigid stops. The errors
-    are those of :func:`mujoco_model`.
+    The model has one inactive weld for each possible connection: one fewer than the number of systems,
+    because connections may not close loops. ``with_stops`` names the systems with rigid stops. The errors are
+    those of :func:`mujoco_model`.
     """
     mujoco = import_mujoco()
     spec = mujoco.MjSpec()

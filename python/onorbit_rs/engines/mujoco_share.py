@@ -1,4 +1,4 @@
-"""Places of the systems in a MuJoCo model, and the welds that connect them."""
+"""Indices of the systems in the arrays of a MuJoCo model, and the welds that connect the systems."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.intp]
     Weld = tuple[tuple[int, int], tuple[int, int], Floats, Floats]
-    """System and body of both sides, the captured origin in both bodies, rotation of second to first axes."""
+    """Both (system, body); captured origin in both bodies (2, 3), m; rotation from second to first axes."""
 
 
 @dataclass(frozen=True)
 class Share:
-    """Part of a system in the arrays of a MuJoCo model; its part in the arrays of a run is the same."""
+    """Slices and indices of one system in the arrays of a MuJoCo model and in those of a run."""
 
     velocities: slice
     linear: slice
@@ -33,9 +33,9 @@ class Share:
     quaternion: slice
     origin: slice
     bodies: Indices
-    """MuJoCo's bodies, in the order of the system."""
+    """Ids of MuJoCo's bodies, in the order of the system's model."""
     rows: slice
-    """Its part of the list of all bodies of the run."""
+    """Slice of the system's bodies in the list of all bodies of the run."""
     q_columns: Indices
     """Index in MuJoCo's configuration of each coordinate of the system."""
     v_columns: Indices
@@ -44,7 +44,7 @@ class Share:
 
 
 def shares(compiled: Any, models: Mapping[str, Model]) -> list[Share]:
-    """Return the place of each system in a compiled MuJoCo model."""
+    """Return the slices and indices of each system in a compiled MuJoCo model."""
     found: list[Share] = []
     q, v, row = 0, 0, 0
     for name, model in models.items():
@@ -69,8 +69,8 @@ def shares(compiled: Any, models: Mapping[str, Model]) -> list[Share]:
 def connect(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], welds: Sequence[Weld]) -> None:
     """Activate a weld for each connection, and deactivate the others.
 
-    MuJoCo holds the captured point of both bodies together, and the axes of the second body at the given
-    rotation in those of the first.
+    A weld keeps the captured points of both bodies together, and the axes of the second body at a constant
+    rotation relative to those of the first.
     """
     data.eq_active[:] = 0
     for k, (by, of, points, rotation) in enumerate(welds):
@@ -83,11 +83,12 @@ def connect(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], w
 
 
 def exchanged(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], outer: Floats) -> Floats:
-    """Return what each system receives per second, and the moment of the environment on all of them.
+    """Return the wrenches and powers on each system, and the environment's moment on all systems.
 
     For each system: the environment's force and its torque about the centre of mass, the power of motors and
-    environment minus the loss in the joints, that loss, and force, torque and power of its welds. Then the
-    moment of the environment's forces, at the centres of mass of the systems, about the common one.
+    environment minus the power dissipated in the joints, the dissipated power, and the force, torque and
+    power of its welds. Then the moment of the environment's forces, acting at the centres of mass of the
+    systems, about the common centre of mass. Axes of W; N, N m and W.
     """
     weld = np.zeros(model.nv)
     if data.eq_active.any():

@@ -36,7 +36,7 @@ def of_message(message: Mapping[str, Any], epoch: str, gravity: str) -> Satrec:
     """Return the ``Satrec`` of a message, read by ``sgp4``; ``epoch`` is its epoch in ISO format with a Z."""
     satrec = Satrec()
     given = {key: value for key, value in message.items() if key not in _UNUSED}
-    # SGP4 does not use the catalogue number, and a Satrec has no room for those above 339999
+    # SGP4 does not use the catalogue number, and a Satrec cannot store numbers above 339999
     fixed = {"EPOCH": epoch.rstrip("Z"), "NORAD_CAT_ID": 0}
     omm.initialize(satrec, _UNUSED | given | fixed, MODELS[gravity])
     return satrec
@@ -50,8 +50,8 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
     InputError
         If it is not a ``Satrec``.
     ElementSetError
-        If a number is not finite, the gravity constants are of no known model, or the mode is AFSPC without
-        ``by_reference``: only the reference code has that mode.
+        If a number is not finite, no Earth model has these gravity constants, or the ``Satrec`` is in AFSPC
+        mode and ``by_reference`` is False, since only the reference code implements that mode.
     """
     try:
         names = ("satnum", "operationmode", *_NUMBERS, *_CONSTANTS)

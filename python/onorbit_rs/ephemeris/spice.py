@@ -19,7 +19,7 @@ _NUMBERS = (2, 6)
 """Number of doubles and number of integers in the summary of a segment of positions."""
 
 SOLAR_SYSTEM = 0
-"""Number of the solar system's barycentre, at which the chains of segments end."""
+"""NAIF ID of the solar system's barycentre, at which the chains of segments end."""
 
 Segment = tuple[float, float, float, "NDArray[np.float64]"]
 """Sign, start (s of TDB from J2000.0), interval (s), Chebyshev coefficients (3, intervals, count), km."""
@@ -83,7 +83,7 @@ def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
         body = centres[body]
     if not chain:
         known = ", ".join(str(target) for target in sorted(centres))
-        message = f"{path} does not contain the {name.title()} ({BODIES[name]}); it has {known or 'none'}"
+        message = f"{path} does not contain the {name.title()} ({BODIES[name]}); bodies: {known or 'none'}"
         raise EarthError(message, name="ephemeris", got=str(path), expected=name)
     return chain
 
@@ -104,7 +104,7 @@ def _between(
 def _series(segment: Any, path: str | Path) -> tuple[float, float, NDArray[np.float64]]:
     try:
         start, length, coefficients = segment.load_array()  # days, lowest degree first
-    except Exception as error:  # as above; an AttributeError for another type
+    except Exception as error:  # damaged data, or an AttributeError for another type of segment
         kind = getattr(segment, "data_type", "?")
         if kind in (2, 3):
             message = f"{path}: the segment of body {segment.target} is damaged: {error}"

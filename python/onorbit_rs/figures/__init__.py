@@ -1,6 +1,6 @@
 """Figures of a run: the paper's Fig. 4-7, base reaction, momentum and energy, environment and orbit.
 
-Each is drawn by a function that returns a ``matplotlib.figure.Figure`` and changes no global state.
+Each figure is drawn by a function that returns a ``matplotlib.figure.Figure`` and changes no global state.
 Only this folder imports matplotlib.
 """
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 
 MOST_ABOVE = 3.0
-"""Largest ratio of the limit of a latch to the peak of a quantity for which both are drawn."""
+"""Largest ratio of the limit of a latch to the peak of the quantity at which the limit is drawn as a line."""
 
 
 def captured_motion(
@@ -44,7 +44,8 @@ def captured_motion(
     """Draw the motion of a captured frame in axes of the capturing one, over the whole run.
 
     The panels show position, attitude (as a rotation vector), velocity and angular velocity: the quantities
-    that a latch compares with its envelope. Black lines are magnitudes, dashed ones the limits of the latch.
+    that a latch compares with its limits. Black lines are magnitudes; dashed lines are the limits of the
+    latch.
     """
     moving = [
         MovingFrame(models[system], frame, trace[system].q, trace[system].v)
@@ -74,7 +75,7 @@ def captured_motion(
 
 
 def _limits(connection: Connection) -> list[float | None]:
-    """Return the largest distance, m, angle, deg, speed, m/s, and angular rate, deg/s, of a latch, if any."""
+    """Return the limits of a latch: distance, m, angle, deg, speed, m/s, and angular rate, deg/s; or None."""
     latch = connection.latch
     limits = [] if latch is None else [*latch.within, *(latch.slower_than or ())]
     found: list[float | None] = [*limits, *[None] * (4 - len(limits))]
@@ -83,7 +84,7 @@ def _limits(connection: Connection) -> list[float | None]:
 
 
 def _draw(axes: Axes, time: Floats, values: Floats, unit: str, limit: float | None) -> str:
-    """Draw a vector and the limit of the latch; return the unit with its prefix."""
+    """Draw components and magnitude of a vector and the latch's limit; return the unit with its prefix."""
     size = np.linalg.norm(values, axis=1)
     scaled = degrees_with_prefix if unit.startswith("deg") else with_prefix
     factor, shown = scaled(float(size.max()), unit)
@@ -97,7 +98,7 @@ def _draw(axes: Axes, time: Floats, values: Floats, unit: str, limit: float | No
 
 
 def _draw_limit(axes: Axes, limit: float, peak: float, unit: str) -> None:
-    """Draw the limit of a latch, or print it if the line would compress the others."""
+    """Draw the limit of a latch as a line, or print its value if the line would compress the other lines."""
     if limit <= MOST_ABOVE * peak:
         axes.axhline(limit, color=INK, linewidth=0.7, linestyle=(0, (2, 2)), label="latch")
         return
@@ -106,7 +107,7 @@ def _draw_limit(axes: Axes, limit: float, peak: float, unit: str) -> None:
 
 
 def _broken(values: Floats) -> Floats:
-    """Return rotation vectors (T, 3), deg, without the lines across their jumps at 180 degrees."""
+    """Return rotation vectors (T, 3), deg, with a gap (NaN) at each jump of more than 180 degrees."""
     found = values.copy()
     found[1:][np.linalg.norm(np.diff(values, axis=0), axis=1) > 180.0] = np.nan
     return found

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 FINEST = 1.0 / 400.0
-"""Edge of the first cubes, as a fraction of the robot's size: about a pixel of a panel."""
+"""Initial edge length of the cubes, as a fraction of the robot's size: about one pixel of a panel."""
 
 
 def coarse(parts: Sequence[Part], size: float, most: int) -> list[tuple[Floats, Floats]]:
     """Return the corners (k, 3, 3), m, and colours (k, 3), RGB from 0 to 1, of the triangles of each part.
 
-    The vertices in one cube of a grid are replaced by their mean; triangles that collapse are omitted.
-    The cubes grow until all parts together have at most ``most`` triangles.
+    The vertices in each cube of a grid are replaced by their mean; triangles that collapse are omitted.
+    The cubes are enlarged until all parts together have at most ``most`` triangles.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ def _first_of_each(rows: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def _cubes(points: Floats, edge: float) -> NDArray[np.int64]:
-    """Return the number of the cube that contains each point."""
+    """Return the index of the cube that contains each point."""
     low = points.min(axis=0)
     x, y, z = ((points - low) / edge).astype(np.int64).T
     number: NDArray[np.int64] = (x * (y.max() + 1) + y) * (z.max() + 1) + z

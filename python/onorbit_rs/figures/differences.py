@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 COLUMNS = 2
 LOWEST = 1e-12
-"""Smallest value that a panel shows, as a fraction of its largest."""
+"""Smallest value that a panel shows, as a fraction of the largest value."""
 
 
 def differences(compared: Comparison) -> Figure:
@@ -41,7 +41,7 @@ def differences(compared: Comparison) -> Figure:
         axes.set_visible(False)
     for axes, difference in zip(panels.flat, measured, strict=False):
         _draw(axes, compared, difference)
-    for axes in panels.flat[max(0, len(measured) - COLUMNS) : len(measured)]:  # lowest of each column
+    for axes in panels.flat[max(0, len(measured) - COLUMNS) : len(measured)]:  # lowest panel of each column
         axes.set_xlabel("time [s]", fontsize=NORMAL, color=INK)
         axes.tick_params(labelbottom=True)
     return figure

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from onorbit_rs.figures.subject import Subject
 
 WORTH_AN_ORBIT_DEG = 5.0
-"""Angle around the planet above which the orbit is drawn."""
+"""Smallest angle around the planet, degrees, for which the orbit is drawn."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Drawing:
 
 
 def drawings(subject: Subject) -> Iterator[Drawing]:
-    """Yield every figure that applies to a run; for the paper's experiment, with the paper's numbers."""
+    """Yield every figure that applies to a run; those of the paper's experiment have the paper's numbers."""
     for number, drawing in _all(subject):
         if number and subject.is_the_papers:
             named = f"fig{number}_{drawing.name}"
@@ -50,7 +50,7 @@ def drawings(subject: Subject) -> Iterator[Drawing]:
 
 
 def _all(subject: Subject) -> Iterator[tuple[int, Drawing]]:
-    """Yield the number of the corresponding figure of the paper, or 0, and the drawing."""
+    """Yield each drawing with the number of the corresponding figure in the paper, or 0."""
     yield from _of_the_arm(subject)
     for drawing in _of_the_base(subject):
         yield 0, drawing
@@ -94,7 +94,7 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
         if len(tool.joints) >= 3:
             about = (
                 f"Manipulability of {tool.frame} along its path, √det(J Jᵀ), with the base free (generalized "
-                "Jacobian) and with it fixed; at zero the tool cannot move in some direction."
+                "Jacobian) and with the base fixed; at zero the tool cannot move in some direction."
             )
             name = "manipulability" + (f"_{_file_part(tool.control)}" if len(subject.tools) > 1 else "")
             yield Drawing(name, about, partial(manipulability, trace, model, tool.frame, tool.joints))
@@ -114,8 +114,8 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
         about = "Force and torque of every effect on every body; torques are about the body's centre of mass."
         if subject.is_carried:
             about += (
-                " The robot is carried by its reference, whose motion includes them: the common acceleration "
-                "due to drag and light is removed, and only the tidal part of gravity remains."
+                " The robot is carried by its reference, whose motion includes these effects: the common "
+                "acceleration due to drag and light is removed, and only the tidal part of gravity remains."
             )
         yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))
     if model is not None and has_local_frame(trace) and goes_far(trace, model):
@@ -133,7 +133,7 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
 
 
 def _file_part(name: str) -> str:
-    """Return a user-defined name in the form of a part of a file name."""
+    """Return a user-defined name with characters replaced that a file name may not contain."""
     return "".join(char if char.isalnum() or char in "-_" else "_" for char in name)[:60]
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 STYLES = {"capture": "-", "release": (0, (4, 2))}
 _OTHER = (0, (1, 1.5))
 _LEAST_APART = 0.12
-"""Least time between two names, as a fraction of the time of the last event."""
+"""Smallest time between the names of two events, as a fraction of the time of the last event."""
 
 
 def mark_events(
@@ -38,7 +38,7 @@ def mark_events(
 
 
 def _joined(events: Sequence[EventMark]) -> list[tuple[float, str]]:
-    """Return times, s, and names; names that would cover each other are joined."""
+    """Return the times, s, and names of the events; names that would overlap are joined."""
     if not events:
         return []
     least = _LEAST_APART * max(event.time for event in events)

@@ -47,9 +47,9 @@ DECADES = 1e5
 def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
     """Draw force and torque of every effect on every body; torques are about the body's centre of mass.
 
-    Rounding errors are not drawn. These are magnitudes below
-    :data:`~onorbit_rs.common.display_units.ROUNDING` times the largest force or torque of all effects; the
-    effect's own force counts as a torque with a lever of 1 m, and vice versa.
+    Rounding errors are not drawn: magnitudes below :data:`~onorbit_rs.common.display_units.ROUNDING` times
+    the largest force or torque of all effects, in which the force of an effect counts as a torque with a
+    lever of 1 m, and vice versa.
 
     Parameters
     ----------
@@ -118,5 +118,5 @@ def _plot_bodies(
     else:
         text = "none" if peak == 0.0 else "none above rounding"
         axes.text(0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=SMALL)
-        axes.set_ylim(1.0, 2.0)  # a range without zero
+        axes.set_ylim(1.0, 2.0)  # a logarithmic axis cannot show zero
         axes.set_yticks([])

@@ -30,17 +30,17 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 3_000
 LEAST_PER_REVOLUTION = 40
-"""Smallest number of points per revolution that are connected by a line; fewer are drawn as dots."""
+"""Smallest number of points per revolution for which a line is drawn; fewer points are drawn as dots."""
 
 LOCAL_DEG = 20.0
-"""Extent of a track below which only its surroundings are drawn, as for a geostationary orbit."""
+"""Extent of a track, degrees, below which only its surroundings are drawn (geostationary orbits)."""
 
 
 def ground_track(trace: Trace, earth: Earth) -> Figure:
     """Draw geodetic longitude and latitude of the base, and its height above the ellipsoid.
 
-    The track is a line, or dots if the run has fewer than :data:`LEAST_PER_REVOLUTION` points per
-    revolution, as the legend then states.
+    The track is a line. If the run has fewer than :data:`LEAST_PER_REVOLUTION` points per revolution, the
+    track is drawn as dots, whose spacing in time is in the legend.
     """
     time, label = clock(trace)
     rows = evenly_spaced(len(time), _MOST_ROWS)
@@ -86,14 +86,14 @@ def _set_window(world: Axes, lon: Floats, lat: Floats) -> None:
 
 
 def _revolutions(trace: Trace) -> float:
-    """Return the number of revolutions, from `|r × v| / r²`, because rows may be revolutions apart."""
+    """Return the number of revolutions by integrating `|r × v| / r²`; rows may be revolutions apart."""
     r, v = np.asarray(trace.position_eci), np.asarray(trace.velocity_eci)
     rate = np.linalg.norm(np.cross(r, v), axis=1) / np.einsum("ti,ti->t", r, r)
     return float(np.trapezoid(rate, trace.time)) / (2.0 * np.pi)
 
 
 def _span(seconds: float) -> str:
-    """Return a time span as text."""
+    """Return a time span with a suitable unit as text."""
     return f"{seconds:.3g} s" if seconds < 120.0 else f"{seconds / 60.0:.3g} min"
 
 

@@ -37,7 +37,7 @@ _INTERVALS = 300
 def ledger(trace: Trace) -> Figure:
     """Draw momentum, energy and work on the left; on the right, the balances that should remain zero.
 
-    `P - ∫ΣF dt`, `L_com - ∫ΣT dt` and `K - W` are constant in W, where the work `W` on the robot is that of
+    `P - ∫ΣF dt`, `L_com - ∫ΣT dt` and `K - W` are constant in W. The work `W` on the robot is the work of
     motors and external wrenches minus the energy dissipated in damping, friction and stops.
     """
     time, label = clock(trace)
@@ -59,7 +59,7 @@ def ledger(trace: Trace) -> Figure:
         factor, scaled = with_prefix(float(np.abs(columns).max()), unit)
         plot_lines(panels[row, 0], time, factor * columns, names, COLORS if row == 2 else XYZ_COLORS)
         if row == 2:
-            panels[row, 0].lines[1].set_linestyle((0, (3, 1.5)))  # it may hide the kinetic energy
+            panels[row, 0].lines[1].set_linestyle((0, (3, 1.5)))  # a solid line could hide the kinetic energy
         hide_rounding(panels[row, 0], ROUNDING * max(factor, 1.0))
         tidy(panels[row, 0], label if row == 2 else "", f"{what} [{scaled}]")
         legend_above(panels[row, 0])

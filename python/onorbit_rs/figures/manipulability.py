@@ -32,7 +32,7 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
     """Draw Yoshikawa's measure `w = √det(J Jᵀ)` with the base free (`J = Jg`) and fixed (`J = Jm`).
 
     The upper panel, drawn for six joints or more, is for linear and angular velocity together, the lower
-    one for linear velocity; both in m³ if all joints are revolute. At zero the tool cannot move in some
+    panel for linear velocity; both in m³ if all joints are revolute. At zero the tool cannot move in some
     direction.
 
     Source: Yoshikawa, Int. J. Robotics Research 4(2), 1985; with `Jg` Umetani and Yoshida, 1989.
@@ -42,9 +42,9 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
     trace : Trace
     model : Model
     tool : str
-        Name of the frame.
+        Name of the tool frame.
     joints : sequence of str, optional
-        Joints that move it; default: all.
+        Joints that move the tool; default: all.
     """
     columns = [list(model.joint_names).index(name) for name in joints or model.joint_names]
     time, label = clock(trace)

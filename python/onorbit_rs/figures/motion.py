@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Trace
 
 STEEPEST_DEG = 80.0
-"""Pitch above which roll and yaw are nearly degenerate."""
+"""Pitch, degrees, above which roll and yaw are nearly degenerate."""
 
 
 def base_motion(trace: Trace) -> Figure:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEARLY_ROUND = 1e-5
-"""Relative change of the distance below which only the change is drawn."""
+"""Relative change of the distance from the planet's centre below which only the change is drawn."""
 
 
 def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
@@ -63,7 +63,7 @@ def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
     hide_rounding(lower, ROUNDING_DEG * turn)
     tidy(upper, "", f"{whose} [{unit}]")
     tidy(lower, clock_label, f"attitude\nrelative to L [{turned}]")
-    for axes in (upper, lower):  # an offset would overlap the legend
+    for axes in (upper, lower):  # matplotlib's offset text would overlap the legend
         axes.ticklabel_format(axis="y", useOffset=False)
     upper.tick_params(labelbottom=False)
     legend_above(lower)

@@ -40,16 +40,16 @@ WORTH_A_PATH = 3.0
 _SIDES = 1.35
 """Ratio of the width of a panel to its height."""
 _NEAR = 10.0
-"""Distance of the paths from the reference, divided by their extent, below which the reference is shown."""
+"""Ratio of the paths' distance from the reference to their extent below which the reference is drawn."""
 MOST_ROWS = 3_000
 
 
 def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
     """Draw the paths of base and targets in L of the reference orbit: in its plane, and across it.
 
-    The axes of L are radial, along track, and along the orbit normal. On a circular orbit the relative paths
-    of a free base that does not drift are Hill's ellipses, twice as long as high. All axes have the same
-    scale.
+    The axes of L are radial, along track, and along the orbit normal. On a circular orbit, the relative path
+    of a free base that does not drift is a Hill ellipse, twice as long along track as in radial direction.
+    All axes have the same scale.
     """
     paths = [path[evenly_spaced(len(path), MOST_ROWS)] for path in paths_in_orbit(trace, targets)]
     points = np.vstack(paths)
@@ -100,7 +100,7 @@ def goes_far(trace: Trace, model: Model) -> bool:
 
 
 def set_window(axes: Axes, points: Floats, across: int) -> None:
-    """Set the same scale in both panels."""
+    """Set limits around the points, with the same scale in both panels."""
     low, high = points.min(axis=0), points.max(axis=0)
     sides = high - low
     height = 1.15 * float(max(sides[1] / _SIDES, sides[0], sides[2]))

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from onorbit_rs.figures.subject import Subject
 
 FORMATS = ("png",)
-"""Formats that a run writes; PDF is written with the report."""
-# publishers reject Type 3 fonts, 42 is TrueType; the hash salt makes files reproducible
+"""Formats that a run writes; ``onorbit report`` also writes PDF."""
+# publishers reject Type 3 fonts, and 42 selects TrueType; the hash salt makes files reproducible
 _SETTINGS: Any = {"pdf.fonttype": 42, "svg.hashsalt": "onorbit", "path.simplify_threshold": 0.2}
 _NO_DATE: dict[str, dict[str, Any]] = {
     "png": {"Software": None}, "pdf": {"CreationDate": None}, "svg": {"Date": None},
@@ -39,7 +39,7 @@ def save_all(
     ----------
     subject : Subject
     folder : Path
-        Created if it does not exist.
+        Folder for the figures; created if it does not exist.
     formats : sequence of str
         Any of ``png``, ``pdf`` and ``svg``.
     tell : callable, optional
@@ -48,7 +48,7 @@ def save_all(
     Returns
     -------
     list of Path
-        The files.
+        Paths of the written files.
     """
     folder.mkdir(parents=True, exist_ok=True)
     files = []
@@ -75,9 +75,11 @@ def save(figure: Figure, file: Path) -> None:
 
 
 def as_bytes(figure: Figure, kind: str) -> bytes:
-    """Return a figure in one of the formats."""
+    """Return the content of a figure file; ``kind`` is ``png``, ``pdf`` or ``svg``."""
     content = io.BytesIO()
     with warnings.catch_warnings(), mpl.rc_context(_SETTINGS):
-        warnings.filterwarnings("ignore", message="Glyph .* missing")  # a name in another script
+        warnings.filterwarnings(
+            "ignore", message="Glyph .* missing"
+        )  # a name in a script that the font lacks
         figure.savefig(content, format=kind, metadata=_NO_DATE[kind])
     return content.getvalue()

@@ -17,13 +17,13 @@ DARKEST = 0.15
 """Smallest colour component that is drawn: a black surface would show no shading."""
 
 LIGHT = np.array([0.3, -0.7, 0.65])
-"""Direction to the light, W."""
+"""Unit vector towards the light source, in axes of W."""
 
 
 def add_surfaces(axes: Axes3D, faces: Floats, colors: Floats) -> None:
     """Draw faces (n, 4, 3) with colours (n, 3); the visible side is lit from above and from the front.
 
-    Edges have the colour of their face, which closes the seams between faces.
+    Each edge has the colour of its face, so that no gaps are visible between faces.
     """
     # the diagonals of a face give its normal even if two corners coincide, as at a pole
     normals = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])

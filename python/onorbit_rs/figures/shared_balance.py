@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 _FOR_LABELS = 0.45
-"""Space for the labels of bars, in lengths of the longest bars."""
+"""Space for the labels of the bars, as multiples of the length of the longest bar."""
 MOST_EVENTS = 12
 """Largest number of events whose energies are drawn."""
 
@@ -112,21 +112,21 @@ def _draw_losses(axes: Axes, events: Sequence[EventMark]) -> None:
 
 
 def _common(trace: WorldTrace, systems: Sequence[str]) -> tuple[Floats, dict[str, NDArray[np.int64]]]:
-    """Return the times that systems share, s, and the rows of each at these times."""
+    """Return the times common to the systems, s, and the rows of each system at these times."""
     times = [np.asarray(trace[name].time) for name in systems]
     rows = shared_rows(times)
     return times[0][rows[0]], dict(zip(systems, rows, strict=True))
 
 
 def _draw_with_sum(axes: Axes, time: Floats, values: Floats, systems: Sequence[str]) -> None:
-    """Draw the columns of systems (T, n), and their sum dashed."""
+    """Draw one line per system from the columns of ``values`` (T, n), and their sum as a dashed line."""
     plot_largest(axes, time, values, systems)
     plot_lines(axes, time, values.sum(axis=1)[:, None], ("sum",), (INK,))
     axes.lines[-1].set_linestyle((0, (3, 1.5)))
 
 
 def _legend(figure: Figure, axes: Axes) -> None:
-    """Put the legend of axes above the figure."""
+    """Place the legend of ``axes`` above the figure."""
     figure.legend(
         *axes.get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
         ncols=6, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,

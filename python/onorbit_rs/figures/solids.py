@@ -22,7 +22,7 @@ _AROUND = 20
 """Number of faces around a round body."""
 
 MESH_TRIANGLES = 8_000
-"""Largest number of triangles of all meshes of a robot: 1 s and 200 kB in a PDF, a tenth of that in a PNG."""
+"""Largest number of mesh triangles of a robot: costs 1 s and 200 kB in a PDF, a tenth of that in a PNG."""
 
 
 def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
@@ -54,7 +54,7 @@ def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
 
 
 def _primitives(robot: list[Shape]) -> Iterator[tuple[Shape, Floats, Floats]]:
-    """Yield the primitives with their faces and colours, in their own axes."""
+    """Yield each primitive with its faces, in axes of the primitive, and their colours."""
     for shape in robot:
         if shape.mesh is None:
             faces = _faces(shape)
@@ -62,7 +62,7 @@ def _primitives(robot: list[Shape]) -> Iterator[tuple[Shape, Floats, Floats]]:
 
 
 def _meshes(model: Model, robot: list[Shape], q: Floats) -> Iterator[tuple[Shape, Floats, Floats]]:
-    """Yield the parts of meshes, with their triangles as quadrangles in their own axes, and colours."""
+    """Yield the parts of meshes with their triangles, as quadrangles in axes of the part, and colours."""
     parts = [(shape, part) for shape in robot if shape.mesh is not None for part in shape.mesh.parts]
     if not parts:
         return
@@ -73,7 +73,7 @@ def _meshes(model: Model, robot: list[Shape], q: Floats) -> Iterator[tuple[Shape
 
 
 def _faces(shape: Shape) -> Floats:
-    """Return the faces (n, 4, 3) of a primitive in its own axes."""
+    """Return the faces (n, 4, 3), m, of a primitive in axes of the primitive."""
     size = shape.size
     if shape.kind == "box":
         return _box(np.asarray(size))
@@ -94,7 +94,7 @@ def _box(size: Floats) -> Floats:
 
 
 def _arc(radius: float, height: float, start_deg: float, end_deg: float) -> Floats:
-    """Return points (k, 2) (distance from the axis, height along it) of an arc about (0, height)."""
+    """Return points (k, 2) of an arc about (0, height): distance from the axis and height along the axis."""
     angles = np.radians(np.linspace(start_deg, end_deg, 7))
     return np.column_stack([radius * np.cos(angles), height + radius * np.sin(angles)])
 

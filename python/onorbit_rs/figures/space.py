@@ -24,10 +24,10 @@ def add_space(
     elevation: float = 18.0,
     azimuth: float = -62.0,
 ) -> Axes3D:
-    """Add 3-D axes to a part of a figure (left, bottom, width, height from 0 to 1); angles in degrees."""
+    """Add 3-D axes at ``place`` (left, bottom, width, height, from 0 to 1); view angles are in degrees."""
     axes: Axes3D = figure.add_axes(place, projection="3d")
     axes.set_in_layout(False)
-    axes.patch.set_visible(False)  # it would cover the labels of neighbouring axes
+    axes.patch.set_visible(False)  # the background would cover the labels of neighbouring axes
     axes.view_init(elev=elevation, azim=azimuth)
     axes.tick_params(labelsize=SMALL, colors=INK, pad=-2)
     for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
@@ -39,7 +39,7 @@ def add_space(
 
 
 def label(axes: Axes3D, unit: str, pad: float = -5.0, change: str = "") -> None:
-    """Label the three axes with their unit; ``change`` precedes their names, such as ``Δ``."""
+    """Label the three axes with their names and unit; ``change`` is a prefix of the names, such as ``Δ``."""
     axes.set_xlabel(f"{change}x [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_ylabel(f"{change}y [{unit}]", fontsize=NORMAL, labelpad=pad)
     axes.set_zlabel(f"{change}z [{unit}]", fontsize=NORMAL, labelpad=pad)
@@ -53,9 +53,9 @@ def fit(axes: Axes3D, points: Floats, *, room: tuple[float, float], least: float
     axes : Axes3D
     points : (k, 3) array
     room : pair of float
-        Width and height available for the projected box, in units that make its space diagonal 2.
+        Width and height available for the projected box, relative to half its space diagonal.
     least : float
-        Smallest side as a fraction of the largest.
+        Smallest side of the box as a fraction of the largest side.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     largest = max(float((high - low).max()), 1e-9)
@@ -71,7 +71,7 @@ def fit(axes: Axes3D, points: Floats, *, room: tuple[float, float], least: float
 
 
 def _projected_size(half: Floats, elevation_deg: float, azimuth_deg: float) -> tuple[float, float]:
-    """Return the projected width and height of a box with these half sides."""
+    """Return the width and height of the projection of a box with these half side lengths."""
     elevation, azimuth = np.radians([elevation_deg, azimuth_deg])
     right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
     up = np.array(

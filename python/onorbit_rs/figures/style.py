@@ -34,7 +34,7 @@ DPI = 300
 MOST_POINTS = 4_000
 """Largest number of points of a line between its ends; a printed column has 1050 dots at 300 dpi."""
 LONGEST_NAME = 32
-"""Number of characters above which a name is shortened in a legend."""
+"""Largest number of characters of a name in a legend; longer names are shortened."""
 MOST_LINES = len(COLORS)
 """Largest number of coloured lines in one plot."""
 
@@ -49,7 +49,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def tidy(axes: Axes, x_label: str, y_label: str) -> None:
-    """Set the labels, a light grid and a plain frame of axes."""
+    """Set the axis labels, a light grid and a frame without top and right lines."""
     axes.set_xlabel(x_label, fontsize=NORMAL, color=INK)
     axes.set_ylabel(y_label, fontsize=NORMAL, color=INK)
     axes.tick_params(labelsize=SMALL, colors=INK, length=2.5, width=0.6)
@@ -64,7 +64,7 @@ def tidy(axes: Axes, x_label: str, y_label: str) -> None:
 
 
 def legend_above(axes: Axes, width: float = COLUMN - 0.5) -> None:
-    """Put the legend above the axes, in as many columns as fit into ``width`` inches."""
+    """Place the legend above the axes, in as many columns as fit into ``width`` inches."""
     handles, names = axes.get_legend_handles_labels()
     axes.legend(
         handles, names, loc="lower left", bbox_to_anchor=(0.0, 1.0), frameon=False, fontsize=SMALL,
@@ -74,7 +74,7 @@ def legend_above(axes: Axes, width: float = COLUMN - 0.5) -> None:
 
 
 def legend_height(names: Sequence[str], width: float = COLUMN - 0.5) -> float:
-    """Return the height of the legend of :func:`legend_above`, inches."""
+    """Return the height, inches, of the legend that :func:`legend_above` draws for these names."""
     return 0.13 * -(-len(names) // legend_columns(names, width))
 
 
@@ -86,7 +86,7 @@ def legend_columns(names: Sequence[str], width: float) -> int:
 
 
 def legend_name(name: str) -> str:
-    """Return a user-defined name for a legend: shortened in the middle, without formulas.
+    """Return a user-defined name for a legend: shortened in the middle, with ``$`` escaped.
 
     A leading underscore, with which matplotlib omits a line from the legend, is preceded by a space.
     """
@@ -103,14 +103,14 @@ def hide_rounding(axes: Axes, rounding: float) -> None:
 
 
 def clock(trace: Trace) -> tuple[Floats, str]:
-    """Return the time of each row in a unit that fits the run, and the label of the axis."""
+    """Return the time of each row in a unit that suits the duration, and the label of the time axis."""
     time = np.asarray(trace.time)
     scale, unit = time_unit(time)
     return time / scale, f"time [{unit}]"
 
 
 def time_unit(time: Floats) -> tuple[float, str]:
-    """Return the number of seconds in the unit that fits these times, s, and its name."""
+    """Return the number of seconds per unit, and the name of the unit, that suits these times, s."""
     span = float(time[-1] - time[0])
     return next(((scale, unit) for least, scale, unit in _CLOCK if span >= least), (1.0, "s"))
 
@@ -125,7 +125,7 @@ def plot_lines(
 
 
 def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]) -> list[str]:
-    """Draw the columns with the largest peaks in colours, the others in grey; return the legend."""
+    """Draw the columns with the largest peaks in colours, the others in grey; return the legend entries."""
     names = list(names)
     if len(names) <= MOST_LINES:
         plot_lines(axes, time, columns, names)
@@ -144,12 +144,12 @@ def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]
 
 
 def others_of(count: int) -> str:
-    """Return the legend of the grey lines."""
+    """Return the legend entry for ``count`` grey lines."""
     return f"{count} other{'s' if count > 1 else ''}, smaller"
 
 
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the ends of a line and at most :data:`MOST_POINTS` points: the extremes of every interval."""
+    """Return the end points of a line and at most :data:`MOST_POINTS` extremes, those of equal intervals."""
     if len(time) <= MOST_POINTS:
         return time, values
     intervals = np.array_split(np.arange(len(time)), MOST_POINTS // 2)

@@ -35,8 +35,9 @@ class Subject:
     ----------
     trace : Trace
     model : Model or None
-        None if the robot's file cannot be read or was changed since the run.
+        Robot; None if its file cannot be read or was changed since the run.
     tools : tuple of Tool
+        Controlled frames.
     joint_controls : dict
         Names of the joints of each control in joint space, by the name of the control.
     mu : float or None
@@ -63,7 +64,7 @@ class Subject:
 def subject_of(
     trace: Trace, scenario: Scenario, model: Model | None, orbit: Orbit | None, earth: Earth | None
 ) -> Subject:
-    """Return the subject from the scenario of a run and the objects built from it."""
+    """Return the subject of the figures from the scenario of a run and the objects built from it."""
     names = [] if model is None else list(model.joint_names)
     tools, joint_controls = [], {}
     for control in scenario.laws:
@@ -83,7 +84,7 @@ def subject_of(
 
 
 def _is_the_papers(scenario: Scenario) -> bool:
-    """Return True if the scenario equals the bundled one apart from texts, epoch and simulation settings."""
+    """Return True if the scenario equals the paper's except for texts, epoch and simulation settings."""
     ignored = ("name", "description", "epoch", "simulation")
     given, bundled = (
         {key: value for key, value in one.resolved(Path()).items() if key not in ignored}

@@ -56,7 +56,7 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
     joints : list of str
         Joints of the control; empty for a control of a tool, whose errors are drawn as in Fig. 6.
     model : Model, optional
-        Robot, needed for the kinds of the joints: errors of prismatic joints, m, have a separate panel.
+        Robot, which determines the kinds of the joints: errors of prismatic joints, m, have a separate panel.
     """
     time, label = clock(trace)
     errors = np.asarray(trace.tracking[name])
@@ -82,7 +82,7 @@ def joint_torques(trace: Trace, model: Model) -> Figure:
 
 
 def _by_kind(names: Sequence[str], model: Model | None) -> list[tuple[list[int], JointUnits]]:
-    """Return revolute and prismatic joints with their units; in one group if their kinds are unknown."""
+    """Return columns and units of revolute and of prismatic joints; one group if the kinds are unknown."""
     kinds = {} if model is None else {joint.name: joint.kind for joint in model.joints}
     if not all(name in kinds for name in names):
         return [(list(range(len(names))), joint_units(()))]
@@ -111,7 +111,7 @@ def _many(
 def _plot_joints(
     axes: Axes, time: Floats, columns: Floats, names: list[str], unit: str
 ) -> tuple[list[str], str]:
-    """Draw lines on an axis symmetric about zero; return the legend, and the unit with its prefix."""
+    """Draw lines on an axis symmetric about zero; return the legend entries and the unit with its prefix."""
     peak = max(float(np.abs(columns).max()), ROUNDING)
     factor, scaled = with_prefix(peak, unit) if peak < 0.1 or peak >= 1e3 else (1.0, unit)
     if OR in unit:
@@ -123,7 +123,7 @@ def _plot_joints(
 
 
 def _plot_errors(panels: Sequence[Axes], time: Floats, errors: Sequence[Floats]) -> None:
-    """Plot position and attitude errors (T, 3), each in its panel."""
+    """Draw position and attitude errors (T, 3) in separate panels."""
     for axes, error, name in zip(panels, errors, ("position_error", "attitude_error"), strict=True):
         _plot_error(axes, time, np.asarray(error), COLUMNS[name].unit, name.replace("_", " "))
 

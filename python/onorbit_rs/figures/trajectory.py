@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEARLY_STILL = 0.02
-"""Size of a path, as a fraction of its distance from W's origin, below which it is drawn about its start."""
+"""Ratio of a path's size to its distance from W's origin below which it is drawn relative to its start."""
 
 
 def desired_trajectory(trace: Trace, model: Model) -> Figure:
@@ -58,7 +58,7 @@ def desired_trajectory(trace: Trace, model: Model) -> Figure:
 
 
 def obtained_trajectory(trace: Trace) -> Figure:
-    """Draw Fig. 5: the tool's path, desired and obtained, in W; a small path is drawn about its start."""
+    """Draw Fig. 5: the desired and obtained path of the tool in W; a small path relative to its start."""
     desired = np.asarray(trace.reference_pose)[:, :3, 3]
     obtained = np.asarray(trace.tool_pose)[:, :3, 3]
     both = np.vstack([desired, obtained])
@@ -96,12 +96,12 @@ def _along(path: Floats) -> Floats:
 
 
 def _row_at_half(path: Floats) -> int:
-    """Return the first row after half of the path's length; the middle row of a path of zero length."""
+    """Return the first row after half of the path's length, or the middle row of a path of zero length."""
     length = _along(path)
     return int(np.searchsorted(length, length[-1] / 2.0)) if length[-1] > 0.0 else len(path) // 2
 
 
 def _sparse(path: Floats) -> Floats:
-    """Return at most 2000 points of a path, including its last."""
+    """Return at most 2000 points of a path, including its last point."""
     stride = max(1, len(path) // 1000)
     return np.vstack([path[::stride], path[-1:]])

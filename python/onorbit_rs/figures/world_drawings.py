@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from onorbit_rs.figures.world_subject import WorldSubject
 
 PREFIX = "world_"
-"""Beginning of the names of these figures; no system has the name ``world``."""
+"""Prefix of the names of these figures; ``world`` is reserved and cannot be the name of a system."""
 
 
 def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
-    """Yield every figure of several systems together that applies to a run."""
+    """Yield every figure that applies to a run and shows several systems together."""
     trace, models, events = subject.trace, subject.models, subject.events
     drawn = set()
     for connection in subject.connections:
@@ -30,8 +30,8 @@ def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
         drawn.add(connection.frames)
         by, of = connection.frames
         about = (
-            f"Motion of {of} relative to {by}, in the axes of the latter; the attitude as a rotation vector. "
-            "Solid vertical lines are captures, dashed ones releases."
+            f"Motion of {of} relative to {by}, in axes of {by}; the attitude as a rotation vector. "
+            "Solid vertical lines are captures; dashed vertical lines are releases."
         )
         draw = partial(captured_motion, trace, models, connection, events)
         yield Drawing(f"{PREFIX}capture_{connection.name}", about, draw)

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_PAIRS = 6
-"""Largest number of distances between any two systems; for more systems, those to the first are drawn."""
+"""Largest number of pairs whose distances are drawn; above it, only distances to the first system are."""
 
 
 def formation_motion(trace: WorldTrace, events: Sequence[EventMark] = ()) -> Figure:
@@ -77,7 +77,7 @@ def formation_motion(trace: WorldTrace, events: Sequence[EventMark] = ()) -> Fig
 
 
 def _plot_system(axes: Axes, path: Floats, color: str, name: str) -> None:
-    """Draw a path (T, 2) with its start and its end; paths on one ellipse differ in their ends."""
+    """Draw a path (T, 2) with markers at its start and its end, which distinguish paths on one ellipse."""
     axes.plot(*path.T, color=color, linewidth=LINE, label=legend_name(name))
     axes.plot(*path[0], "o", color="white", markeredgecolor=color, markersize=6, zorder=3)
     axes.plot(*path[-1], "s", color=color, markersize=3, zorder=3)
@@ -96,7 +96,7 @@ def paths_of_systems(trace: WorldTrace) -> list[Floats]:
 
 
 def distances(trace: WorldTrace) -> tuple[Floats, dict[str, Floats]]:
-    """Return the times that all systems share, s, and the distances between their bases by pair, m."""
+    """Return the times common to all systems, s, and the distances between the bases of each pair, m."""
     names = list(trace.names)
     rows = dict(zip(names, shared_rows([np.asarray(trace[name].time) for name in names]), strict=True))
     pairs = list(combinations(names, 2))
@@ -108,7 +108,7 @@ def distances(trace: WorldTrace) -> tuple[Floats, dict[str, Floats]]:
 
 
 def is_apart(trace: WorldTrace, models: Mapping[str, Model]) -> bool:
-    """Return True if systems are farther from each other than :data:`WORTH_A_PATH` sizes of the largest."""
+    """Return True if any distance exceeds :data:`WORTH_A_PATH` times the size of the largest system."""
     sizes = [extent(model, shapes(model), np.asarray(trace[name].q)[:1])[1] for name, model in models.items()]
     _, apart = distances(trace)
     return max(float(values.max()) for values in apart.values()) > WORTH_A_PATH * max(sizes, default=np.inf)

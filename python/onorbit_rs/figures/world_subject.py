@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class EventMark(NamedTuple):
-    """An event as a figure marks it; :class:`onorbit_rs.EventRecord` has the same attributes."""
+    """Event to be marked in a figure; the attributes are those of :class:`onorbit_rs.EventRecord`."""
 
     name: str
     kind: str
@@ -29,9 +29,11 @@ class WorldSubject:
     ----------
     trace : WorldTrace
     models : dict of Model
-        Robots by system, without those whose file cannot be read or was changed since the run.
+        Robots by system, except those whose file cannot be read or was changed since the run.
     events : tuple of EventMark
+        Captures and releases that happened.
     connections : tuple of Connection
+        Pairs of frames that captures connect.
     """
 
     trace: WorldTrace
@@ -41,7 +43,7 @@ class WorldSubject:
 
 
 def marks_of(summary: dict[str, Any]) -> tuple[EventMark, ...]:
-    """Return the events in the summary of a run."""
+    """Return the events in the summary of a run, for marking them in figures."""
     return tuple(
         EventMark(row["name"], row["kind"], row["time_s"], tuple(row["systems"]), row["energy_lost_j"])
         for row in summary["events"]

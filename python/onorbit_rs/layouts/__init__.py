@@ -11,14 +11,14 @@ onorbit_rs      ``p, quat xyzw, joints``                  ``v_B, w_B, rates``
 ``mujoco``      ``p, quat wxyz, joints``                  ``v_W, w_B, rates``
 ``drake``       ``quat wxyz, p, joints``                  ``w_W, v_W, rates``
 ``rbdl``        ``p, quat xyz, joints, quat w``           ``v_W, w_B, rates``
-``spart``       ``(R0, r0, qm)``, ``r0`` mass centre      ``(u0, um)``, ``u0 = w_B, v_W`` of it
+``spart``       ``(R0, r0, qm)``, ``r0`` mass centre      ``(u0, um)``, ``u0 = w_B, dr0/dt``
 ==============  ========================================  ======================================
 
-For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, q, v)``, with the
-tuples of the table for SPART, for one state ``(n,)`` or a batch ``(B, n)``. The order of joints differs
-between engines (Pinocchio sorts siblings by name): ``joints=`` gives their names in the order of the other
-engine or, for Pinocchio, MuJoCo and Drake, the model of that engine. The default is the order of onorbit_rs.
-The base must be the same link in both engines.
+For each engine there is ``to_engine(model, q, v)`` and its inverse ``from_engine(model, q, v)``; SPART uses
+the tuples in the table. They accept one state ``(n,)`` or a batch ``(B, n)``. The order of joints differs
+between engines (Pinocchio sorts siblings by name): ``joints=`` is a list of their names in the order of the
+other engine or, for Pinocchio, MuJoCo and Drake, the model of that engine. The default is the order of
+onorbit_rs. The base must be the same link in both engines.
 
 >>> import onorbit_rs as oo
 >>> model = oo.Model.rigid_body(1.0, [[1, 0, 0], [0, 1, 0], [0, 0, 1]])

@@ -1,4 +1,4 @@
-"""Pinocchio: siblings sorted by name, unbounded joints as cosine and sine; otherwise as onorbit_rs."""
+"""Pinocchio: siblings are sorted by name, unbounded joints are cosine and sine; the rest as here."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def to_pinocchio(
     Returns
     -------
     q : array
-        One entry more per unbounded joint.
+        Configuration with one additional entry per unbounded joint.
     v : (nv,) or (B, nv) array
 
     Raises
@@ -76,8 +76,9 @@ def from_pinocchio(
     ----------
     model : Model
     q, v : array
-        Configuration and velocity of Pinocchio, one or a batch.
+        Configuration and velocity of Pinocchio, one state or a batch.
     joints : sequence of str or pin.Model, optional
+        As in :func:`to_pinocchio`.
     unbounded : sequence of str
         As in :func:`to_pinocchio`.
 
@@ -112,7 +113,7 @@ def from_pinocchio(
 
 
 def _layout(model: Model, joints: Any, unbounded: Sequence[str]) -> tuple[Any, list[bool]]:
-    """Return the order of the joints in Pinocchio, and which of them are represented by two numbers."""
+    """Return the order of the joints in Pinocchio, and whether each is represented by cosine and sine."""
     if names_in(joints, "idx_qs"):
         sizes = [int(size) for size in joints.nqs]  # the first is the universe, the second the free flyer
         if sizes[:2] != [0, 7] or any(size not in (1, 2) for size in sizes[2:]):

@@ -53,7 +53,7 @@ class QuaternionLayout(NamedTuple):
         return q_other, v_other
 
     def to_model(self, name: str, state: list[Floats], order: NDArray[Any]) -> tuple[Floats, Floats]:
-        """Return `q` and `v` of onorbit_rs; ``name`` is the name of the other configuration in messages."""
+        """Return `q` and `v` of onorbit_rs; ``name`` is the name of the given configuration in messages."""
         q_other, v_other = state
         quat, angular = q_other[..., self.quaternion], v_other[..., self.angular]
         check_unit(name, quat)

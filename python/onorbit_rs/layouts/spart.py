@@ -40,8 +40,8 @@ def to_spart(
     """Return SPART's ``(R0, r0, qm)`` and ``(u0, um)``.
 
     ``R0`` rotates base axes to inertial axes, and ``r0 = p + R c`` is the centre of mass of the base link.
-    ``u0 = [w_B, v_W + R (w_B × c)]`` is its angular velocity in base axes and the velocity of ``r0`` in
-    inertial axes; its twist in inertial axes is ``t0 = P0 u0``.
+    ``u0 = [w_B, v_W + R (w_B × c)]`` is the angular velocity of the base link in base axes and the velocity
+    of ``r0`` in inertial axes; the twist of the base link in inertial axes is ``t0 = P0 u0``.
 
     Parameters
     ----------
@@ -53,8 +53,9 @@ def to_spart(
     joints : sequence of str, optional
         Names in SPART's order.
     base_com : (3,) array, optional
-        ``c`` in the axes of the base link, m. Default: that of the base body. SPART does not merge links at
-        fixed joints, so give the centre of mass of the base link alone if others are fixed to it.
+        Centre of mass ``c`` of the base link in its axes, m. Default: that of the base body, which includes
+        links fixed to the base. SPART does not merge such links: with them, give ``c`` of the base link
+        alone.
 
     Returns
     -------
@@ -94,8 +95,11 @@ def from_spart(
     ----------
     model : Model
     position : (R0, r0, qm)
+        Rotation matrix of the base, its centre of mass and joint positions.
     velocity : (u0, um)
+        Twist of the base and joint rates.
     joints : sequence of str, optional
+        As in :func:`to_spart`.
     base_com : (3,) array, optional
         As in :func:`to_spart`.
 

@@ -1,4 +1,4 @@
-"""Shared parts of the converters: checks of arrays, order of joints, rotations of batches."""
+"""Functions shared by the converters: checks of arrays, order of joints, rotations of batches."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
         raise ShapeError(message, name=name, expected=shape, got=array.shape)
     if not np.isfinite(array).all():
         raise InputError(
-            f"{name} contains NaN or infinity; all its numbers must be finite",
+            f"{name} contains NaN or infinity; every entry must be finite",
             name=name,
             got="not finite",
             expected="finite numbers",
@@ -50,14 +50,14 @@ def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
 
 
 def checked_vectors(**given: tuple[ArrayLike, int]) -> list[Floats]:
-    """Return checked vectors, given with their lengths by name; their batch sizes must agree."""
+    """Return finite vectors or batches of equal size; each argument is an array and its required length."""
     arrays = {name: checked(name, value, length) for name, (value, length) in given.items()}
     same_batch(**{name: array[..., 0] for name, array in arrays.items()})
     return list(arrays.values())
 
 
 def checked_state(model: Model, q: ArrayLike, v: ArrayLike) -> tuple[Floats, Floats]:
-    """Return configuration and velocity of onorbit_rs after checking them, one or a batch."""
+    """Return a valid configuration and velocity of onorbit_rs, one state or a batch."""
     checked_q, checked_v = checked_vectors(q=(q, model.nq), v=(v, model.nv))
     check_unit("q", checked_q[..., QUATERNION])
     return checked_q, checked_v
@@ -84,16 +84,16 @@ def check_unit(name: str, vectors: Floats, what: str = "the quaternion") -> None
 
 
 def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
-    """Return the index of each joint of the other engine, in its order, among those of the model.
+    """Return the indices in the model of the joints ``names``, which are in the order of the other engine.
 
     Raises
     ------
     FrameError
-        If the model does not have a joint; suggests the nearest name.
+        If the model has no joint of a given name; suggests the nearest name.
     InputError
         If joints of the model are missing or given twice.
     DtypeError
-        If the names are a single text.
+        If ``names`` is a string instead of a list.
     """
     known = list(model.joint_names)
     if names is None:
@@ -126,32 +126,32 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
 
 
 def names_in(joints: Any, attribute: str) -> bool:
-    """Return whether ``joints`` is a model of the other engine, known by this attribute, and not names."""
+    """Return whether ``joints`` has this attribute, so that it is a model of the other engine, not names."""
     return joints is not None and hasattr(joints, attribute)
 
 
 def no_floating_base(engine: str) -> InputError:
     """Return the error for a model that does not start with a free joint."""
     return InputError(
-        f"the model of {engine} must have a floating base, then joints with one degree of freedom each",
+        f"the {engine} model must start with a floating base, followed by one-degree-of-freedom joints",
         name="joints", got=engine, expected="a floating base",
     )  # fmt: skip
 
 
 def to_world(quat_xyzw: Floats, vector_b: Floats) -> Floats:
-    """Return `R v`, from base to world axes."""
+    """Return `R v`, the vector in world axes, given in base axes."""
     result: Floats = np.einsum("...ij,...j->...i", matrix_from_quaternion(quat_xyzw), vector_b)
     return result
 
 
 def to_body(quat_xyzw: Floats, vector_w: Floats) -> Floats:
-    """Return `Rᵀ v`, from world to base axes."""
+    """Return `Rᵀ v`, the vector in base axes, given in world axes."""
     result: Floats = np.einsum("...ji,...j->...i", matrix_from_quaternion(quat_xyzw), vector_w)
     return result
 
 
 def in_model_order(values: Floats, order: NDArray[np.intp]) -> Floats:
-    """Return joint values in the order of the model, given in that of the other engine."""
+    """Return joint values in the order of the model; ``values`` is in the order of the other engine."""
     result = np.empty_like(values)
     result[..., order] = values
     return result

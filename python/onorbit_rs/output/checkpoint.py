@@ -1,4 +1,4 @@
-"""``checkpoint/`` in the output folder: the rows so far and the state of the run, from which it can resume.
+"""``checkpoint/`` in the output folder: the recorded rows and the state from which the run can resume.
 
 ``<column>.f64`` holds the rows of a column; new rows are appended. ``state.json`` is replaced atomically and
 contains the number of valid rows and the SHA-256 of each column, so the checkpoint is consistent after a kill
@@ -46,14 +46,14 @@ class CheckpointWriter:
     """Writes the checkpoints that :meth:`onorbit_rs.Simulation.run` passes to its ``checkpoint`` callback."""
 
     def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
-        """Prepare to write checkpoints of the scenario with this digest; a resumed run has ``after``."""
+        """Prepare to write checkpoints of a scenario; ``after`` is the checkpoint of a resumed run."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
         self._digest, self._rows = digest, dict(after.rows) if after else {}
         self._digests = dict(after.digests) if after else {}
         self._has_warned = False
 
     def __call__(self, checkpoint: Checkpoint) -> bool:
-        """Write a checkpoint. If that fails, warn once and return False, and the run continues.
+        """Write a checkpoint; return False, after one warning per run, if it cannot be written.
 
         Raises
         ------
@@ -77,7 +77,7 @@ class CheckpointWriter:
         return True
 
     def _write(self, checkpoint: Checkpoint) -> None:
-        """Append the new rows, then replace the state, which makes them valid."""
+        """Append the new rows, then replace the state, which contains the number of valid rows."""
         files = {name: _file_name(name) for name in checkpoint.columns}
         self._folder.expect_checkpoint((STATE, *files.values()))
         columns: dict[str, dict[str, int | str]] = {}
@@ -121,8 +121,8 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
     Raises
     ------
     CheckpointError
-        If there is no checkpoint, its files were changed or damaged, or the scenario or a file that it names
-        was changed since.
+        If there is no checkpoint, its files were changed or damaged, or the scenario or a file named in it
+        was changed since the checkpoint was written.
     """
     path = folder / CHECKPOINT
     if not has_checkpoint(folder):
@@ -138,8 +138,8 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
         found, wall = str(record["fingerprint"]), float(record["wall_s"])
         if found != digest:
             raise _refused(
-                f"the checkpoint in {folder} belongs to another scenario: scenario.yaml, or a file it names, "
-                "was changed since; undo that or run the scenario again",
+                f"the checkpoint in {folder} belongs to another scenario: scenario.yaml, or a file named in "
+                "it, was changed since; undo the change or run the scenario again",
                 path,
             )
         columns, rows, digests = {}, {}, {}
@@ -162,16 +162,18 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
 
 
 def scenario_digest(scenario: dict[str, Any]) -> str:
-    """Return the digest of a resolved scenario and of every readable file that it names by absolute path."""
+    """Return the digest of a resolved scenario and of every readable file named in it by absolute path."""
     digest = hashlib.sha256(json.dumps(scenario, sort_keys=True, default=str).encode())
     for text in _texts(scenario):
         file = Path(text)
         try:
             if file.is_absolute() and file.is_file():
-                with file.open("rb") as stream:  # a SPICE kernel may exceed the memory
+                with file.open(
+                    "rb"
+                ) as stream:  # read in chunks, because a SPICE kernel may be larger than the memory
                     for part in iter(lambda: stream.read(1 << 20), b""):
                         digest.update(part)
-        except OSError:  # a text too long for a path, or an unreadable file, whose reader raises the error
+        except OSError:  # too long for a path, or unreadable; building the scenario raises the error
             continue
     return digest.hexdigest()
 
@@ -184,7 +186,7 @@ def _texts(value: Any) -> list[str]:
 
 
 def _file_name(column: str) -> str:
-    """Return the file name of a column; characters that a path may not contain are quoted."""
+    """Return the file name of a column; characters not allowed in a file name are percent-encoded."""
     return f"{quote(column, safe=' ')}.f64"
 
 
@@ -192,7 +194,7 @@ def _append(file: Path, content: bytes, *, after: int) -> None:
     """Write rows at the byte offset ``after``, replacing invalid rows of a run that was killed."""
     with open_to_change(file) as stream:
         if stream.seek(0, os.SEEK_END) < after:
-            raise _refused(f"rows of the checkpoint are missing from {file}; run the scenario again", file)
+            raise _refused(f"rows of the checkpoint are missing in {file}; run the scenario again", file)
         stream.truncate(after)
         stream.seek(after)
         left = memoryview(content)

@@ -24,7 +24,7 @@ JOINTS = ("joint_step_doubling_rel",)
 """Checks that do not apply to a robot without joints."""
 
 SUSPECT = 0.1
-"""Fraction of its gate from which on a step-doubling error suggests that the time step is too long."""
+"""Smallest ratio of the step-doubling error to its gate that suggests that the time step is too long."""
 
 
 class Check(NamedTuple):
@@ -76,7 +76,7 @@ def is_incomplete(summary: dict[str, Any]) -> bool:
 def advice(summary: dict[str, Any]) -> str:
     """Return advice for a failed certificate; empty if the summary lacks the integrator's settings.
 
-    A shorter step is suggested only if halved steps give another motion, or were not tried.
+    A shorter step is suggested only if halving the step changes the motion, or if that was not evaluated.
     """
     if summary.get("integrator") == "dormand_prince":
         return "try a smaller tolerance"
@@ -87,13 +87,13 @@ def advice(summary: dict[str, Any]) -> str:
     if not ratios or max(ratios) >= SUSPECT:
         return f"try a time_step shorter than {step:g} s"
     return (
-        "halved steps give the same motion, so a shorter time_step will not help; check custom engines and "
-        "effects, or report a bug"
+        "halving the step does not change the motion, so a shorter time_step will not help; check custom "
+        "engines and effects, or report a bug"
     )
 
 
 def _gate_ratio(check: Check) -> float:
-    """Return the ratio of the value to its gate; with either unknown, 0 if the check holds, else infinity."""
+    """Return the ratio of value to gate; if either is unknown, 0 if the check holds, otherwise infinity."""
     if check.value is None or not check.gate:
         return 0.0 if check.holds else float("inf")
     return check.value / check.gate

@@ -8,7 +8,7 @@ from onorbit_rs.common.coordinates import BASE_NQ, BASE_NV
 _PREFIXES = {
     column.path.removesuffix("*"): name for name, column in COLUMNS.items() if column.path.endswith("*")
 }
-"""Names of the columns that belong to a control or to an effect, by the prefix of their path."""
+"""Names of the columns of each control or effect, by the prefix of their paths."""
 
 
 def path_of(name: str, owner: str) -> str:
@@ -17,7 +17,7 @@ def path_of(name: str, owner: str) -> str:
 
 
 def split_path(path: str) -> tuple[str, str | None]:
-    """Return the name of the column with this path, and the control or effect that it belongs to, if any."""
+    """Return the name of the column with this path, and the name of its control or effect, or None."""
     for prefix, name in _PREFIXES.items():
         if path.startswith(prefix):
             return name, path.removeprefix(prefix)

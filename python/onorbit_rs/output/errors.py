@@ -12,13 +12,14 @@ from onorbit_rs.output.manifest import MANIFEST
 def not_empty(folder: Path) -> OutputNotEmptyError:
     """Return the error for a folder that contains files."""
     return OutputNotEmptyError(
-        f"output folder is not empty: {folder}; choose another, or replace its run with --force (force=True)",
+        f"output folder is not empty: {folder}; choose another folder, or replace its run with --force "
+        "(force=True)",
         path=str(folder),
     )
 
 
 def foreign(file: Path) -> OutputNotEmptyError:
-    """Return the error for a path that no run wrote, or that is a link, a pipe or a folder."""
+    """Return the error for a file that was not written by a run, or for a link, a pipe or a folder."""
     is_file = is_regular(file)
     what = "already exists" if is_file else f"is {file_kind(file)}"
     why = f"and {MANIFEST} does not list it as a file that a run wrote" if is_file else "which no run creates"
@@ -30,8 +31,8 @@ def foreign(file: Path) -> OutputNotEmptyError:
 def edited(file: Path) -> OutputNotEmptyError:
     """Return the error for a figure that was edited."""
     return OutputNotEmptyError(
-        f"cannot replace {file}: it was changed since it was drawn; move it out of the folder to keep it, or "
-        "remove it",
+        f"cannot replace {file}: the figure was edited after it was drawn; move the figure out of the folder "
+        "to keep it, or remove it",
         path=str(file),
     )
 

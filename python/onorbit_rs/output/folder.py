@@ -1,4 +1,4 @@
-"""The output folder, which only one process at a time can lock; each file is replaced atomically."""
+"""The output folder of a run: only one process at a time can lock it, and files are replaced atomically."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ class OutputFolder:
         Raises
         ------
         OutputInUseError, OutputNotWritableError, ReadError
-            If another process has locked the folder, it cannot be written, or its manifest is damaged.
+            If another process has locked the folder, the folder is not writable, or its manifest is damaged.
         """
         self.path = path
         self._unfinished: set[str] = set()
-        """Names of temporary files of a process that was killed."""
+        """Names of the temporary files of an earlier process that was killed."""
         try:
             self._lock = FolderLock(path)
         except OutputInUseError:
@@ -68,26 +68,27 @@ class OutputFolder:
         Parameters
         ----------
         path : str or path
+            Output folder.
         force : bool
             If True, remove the files that ``manifest.json`` lists; other files are kept.
 
         Raises
         ------
         OutputNotEmptyError
-            If it contains files and ``force`` is not set, files with names of results that no run wrote, or
-            figures that were edited.
+            If the folder contains files and ``force`` is False, files that have names of results but were not
+            written by a run, or edited figures.
         OutputNotWritableError
-            If it is a file, or cannot be created or written.
+            If the path is a file, or the folder cannot be created or written.
         OutputInUseError
-            If another process writes to it.
+            If another process is writing to the folder.
         ReadError
-            If its manifest is damaged.
+            If the manifest is damaged.
         """
         folder = Path(path)
         _make(folder)
         if not force and not _is_empty(folder):
             if owner_of(folder) is not None:
-                cls(folder).close()  # raises, with the name of its owner
+                cls(folder).close()  # raises an error that names the process
             raise not_empty(folder)
         claimed = cls(folder)
         try:
@@ -115,9 +116,9 @@ class OutputFolder:
 
     @contextmanager
     def replacing(self) -> Iterator[Replacement]:
-        """Yield files that are replaced together at the end; if the block fails, the old files remain.
+        """Yield files that are replaced together after the block; if the block fails, the old files remain.
 
-        The manifest is written first: a reader finds either the listed files, or files that do not match it.
+        The manifest is written first, so that a reader detects files that were not replaced yet.
         """
         files = Replacement(self)
         try:
@@ -133,13 +134,13 @@ class OutputFolder:
         Raises
         ------
         OutputFolderError
-            If the file cannot be written, is an edited figure, or exists although no run wrote it.
+            If the file cannot be written, is an edited figure, or exists but was not written by a run.
         """
         with self.replacing() as files, files.writing(name) as path:
             yield path
 
     def _check_lock(self) -> None:
-        """Lock the folder again if its lock file was removed; called before anything is written.
+        """Lock the folder again if its lock file was removed; called before each writing.
 
         Raises
         ------
@@ -154,12 +155,12 @@ class OutputFolder:
             self._lock.release()
             raise OutputInUseError(
                 f"{self.path} now contains files of another run: {LOCK} was removed while this process wrote "
-                "to the folder, and another process wrote to it too; run it again with another folder",
+                "to the folder, and another process wrote to it too; repeat the run with another folder",
                 path=str(self.path),
             )
         warnings.warn(
-            f"{self._lock.path} was removed while this process writes to the folder, and was created again: "
-            "do not remove it, since it prevents other commands from writing",
+            f"{self._lock.path} was removed while this process was writing to the folder, and was created "
+            "again: do not remove the file, since it prevents other commands from writing",
             UserWarning, stacklevel=2,
         )  # fmt: skip
 
@@ -171,9 +172,9 @@ class OutputFolder:
         Raises
         ------
         OutputNotEmptyError
-            If it is not a regular file that a run wrote, or is a figure that was edited.
+            If the file was not written by a run, is not a regular file, or is an edited figure.
         OutputFolderError
-            If its folder is a link or not a folder.
+            If the parent of the file is a link or not a folder.
         """
         file = self.path / name
         parent = file.parent
@@ -188,7 +189,7 @@ class OutputFolder:
             raise edited(file)
 
     def check_figures(self) -> None:
-        """Raise :class:`OutputNotEmptyError` if a figure was edited after a run or report wrote it."""
+        """Raise :class:`OutputNotEmptyError` if a figure was edited since it was written."""
         for name in [] if self.manifest is None else self.manifest.files:
             if name.startswith(FIGURES):
                 self.check_replaceable(name)
@@ -216,7 +217,7 @@ class OutputFolder:
         self.manifest = manifest
 
     def replace(self, name: str, content: bytes) -> None:
-        """Replace one file atomically, even if no run wrote it."""
+        """Replace one file atomically, whether or not a run wrote the old file."""
         temporary = self.temporary(name)
         with renamed(temporary, self.path / name):
             temporary.write_bytes(content)
@@ -224,7 +225,7 @@ class OutputFolder:
     def temporary(self, name: str) -> Path:
         """Return the temporary path of a new file that will be renamed to ``name``.
 
-        The next owner of the folder removes it if this process is killed.
+        If this process is killed, the next process that locks the folder removes the temporary file.
 
         Raises
         ------
@@ -235,7 +236,7 @@ class OutputFolder:
         return self.path / f".partial-{self._lock.token}-{_as_partial(name)}"
 
     def discard(self) -> None:
-        """Remove the files of a run that did not start."""
+        """Remove the files that were written for a run that failed to start."""
         self._check_lock()
         for name in (SCENARIO, MANIFEST):
             remove(self.path / name)
@@ -251,13 +252,13 @@ class OutputFolder:
         folder = self.path / CHECKPOINT
         if self.manifest is None or not is_real_folder(folder):
             return
-        for name in self.manifest.checkpoint:  # the state first: without it the rows are not valid
+        for name in self.manifest.checkpoint:  # the state first: without the state, the rows are not valid
             remove(folder / name)
         if not any(folder.iterdir()):
             folder.rmdir()
 
     def _remove_temporaries(self) -> None:
-        """Remove temporary files of the process that was killed while it held the lock."""
+        """Remove the temporary files of a process that was killed while it held the lock."""
         previous = self._lock.previous
         if previous is None or not previous.token.isalnum():
             return
@@ -267,7 +268,7 @@ class OutputFolder:
             remove(file)
 
     def _remove_earlier_run(self) -> None:
-        """Remove the files that the manifest lists, after checking every file that a run writes."""
+        """Remove the files listed in the manifest, after checking that each may be replaced."""
         for name in RESULTS:
             self.check_replaceable(name)
         for name in (FIGURES, CHECKPOINT):
@@ -310,7 +311,7 @@ def _is_empty(folder: Path) -> bool:
 
 
 def _as_partial(name: str) -> str:
-    """Return the last part of the temporary file name for ``name``."""
+    """Return the final part of the temporary file name for ``name``."""
     return name.replace("/", "-")
 
 

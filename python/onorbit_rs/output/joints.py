@@ -1,4 +1,4 @@
-"""Joint quantities of the summary, separately for revolute and prismatic joints, each in its unit."""
+"""Joint quantities of the summary, separately for revolute joints (N m, rad) and prismatic joints (N, m)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Summary = dict[str, Any]
 
 _ROUNDING = 1e-9
-"""Fraction of a limit by which a joint held at the limit may exceed it by rounding."""
+"""Relative rounding error by which a joint that is held at a limit may exceed the limit."""
 
 
 def joint_loads(trace: Trace, built: Built) -> Summary:
@@ -43,7 +43,7 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
 def efforts_at_limit(trace: Trace, built: Built) -> Summary:
     """Return the joints under PID control whose effort reached its limit.
 
-    It is the limit of the controller or, if that has none, of the robot.
+    The limit is that of the controller or, if the controller has no limit, that of the robot.
     """
     names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
     pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]
@@ -60,8 +60,8 @@ def efforts_at_limit(trace: Trace, built: Built) -> Summary:
 def largest_fractions(values: Floats, limits: Sequence[float | None]) -> Floats:
     """Return the largest magnitude in each column of ``values``, (T, n), as a fraction of its limit, (n,).
 
-    The fraction is 0 for columns without a limit. A limit of zero means no limit, as exporters write it for
-    unknown limits.
+    The fraction is 0 for columns without a limit. A limit of zero means no limit, because exporters write
+    zero for unknown limits.
     """
     largest = np.abs(values).max(axis=0, initial=0.0)
     fractions = [value / limit if limit else 0.0 for value, limit in zip(largest, limits, strict=True)]
@@ -113,14 +113,14 @@ def single_errors(trace: Trace, built: Built) -> Summary:
     if not isinstance(law, JointLaw) or not has_positions or not built.model.joints:
         return {}
     joints = np.asarray(trace.q)[:, JOINTS_Q]
-    desired = joints[0]  # without a reference the joints are held at their start
+    desired = joints[0]  # without a reference, the joints are held at their initial positions
     if isinstance(built.reference, _core.JointReference):
         desired, _, _ = built.reference.sample(np.asarray(trace.time))
     return joint_errors("tracking", desired - joints, built)
 
 
 def _are_prismatic(built: Built, wanted: list[str] | None) -> NDArray[np.bool_]:
-    """Return whether each joint of the robot, or of a controller's group, is prismatic."""
+    """Return whether each joint, among all joints of the robot or those named ``wanted``, is prismatic."""
     kinds = {joint.name: joint.kind for joint in built.model.joints}
     names = list(built.model.joint_names)
     return np.array(

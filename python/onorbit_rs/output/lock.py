@@ -36,7 +36,7 @@ class Owner(NamedTuple):
     command: str
     since: str
     token: str
-    """Text that the names of the temporary files of this process contain."""
+    """Text that identifies the temporary files of the process by their names."""
 
     def __str__(self) -> str:
         """Return the text ``process 12 on host (onorbit run …) since 2026-01-01 12:00:00``."""
@@ -50,7 +50,7 @@ class FolderLock:
     """Lock on a folder, held from construction to :meth:`release`."""
 
     def __init__(self, folder: Path) -> None:
-        """Acquire the lock; raise :class:`OutputInUseError` if it is held already."""
+        """Acquire the lock; raise :class:`OutputInUseError` if another process holds the lock."""
         self.path = folder / LOCK
         self._descriptor = self._taken(folder)
         _held.add(self._descriptor)
@@ -70,7 +70,7 @@ class FolderLock:
         Raises
         ------
         OutputInUseError
-            If another process acquired it in the meantime.
+            If another process acquired the lock in the meantime.
         """
         again = self._taken(self.path.parent)
         self._close()
@@ -79,7 +79,7 @@ class FolderLock:
         self._sign()
 
     def release(self) -> None:
-        """Release the lock; calling it twice has no effect."""
+        """Release the lock; a second call has no effect."""
         with contextlib.suppress(OSError):  # Windows does not remove open files
             if self._descriptor in _held and self.is_held:
                 remove(self.path)
@@ -113,12 +113,12 @@ class FolderLock:
                 os.close(descriptor)
                 raise
             os.close(descriptor)
-            time.sleep(0.01 if attempt else 0.0)  # readers of the owner hold the lock for an instant
+            time.sleep(0.01 if attempt else 0.0)  # processes that read the owner hold the lock for an instant
         raise _in_use(folder)
 
 
 def owner_of(folder: Path) -> Owner | None:
-    """Return the running process that holds the lock of a folder; None without one or if it is unreadable."""
+    """Return the running process that holds the lock of a folder; None if there is none or it is unknown."""
     try:
         with open_to_read(folder / LOCK) as stream:
             if _try_lock(stream.fileno(), None):
@@ -137,7 +137,7 @@ def _in_use(folder: Path) -> OutputInUseError:
 
 
 def _owner(file: Path) -> Owner | None:
-    """Return the owner stored in a lock file; None if it cannot be read."""
+    """Return the owner stored in a lock file; None if the file cannot be read."""
     try:
         with open_to_read(file) as stream:
             stored: Any = json.loads(stream.read(_MOST))

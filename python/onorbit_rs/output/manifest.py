@@ -57,14 +57,14 @@ class Manifest:
 
     @contextmanager
     def opened(self, folder: Path, name: str) -> Iterator[BinaryIO]:
-        """Open a file for reading and check that it is unchanged.
+        """Open a file for reading and check that its content is unchanged.
 
         Raises
         ------
         IntegrityError
-            If it was changed, or if the run did not write it.
+            If the file was changed, or was not written by the run.
         FileNotFoundError, OSError
-            If it does not exist or cannot be read.
+            If the file does not exist or cannot be read.
         """
         with open_to_read(folder / name) as stream:
             expected = self.files.get(name)
@@ -79,12 +79,12 @@ class Manifest:
 
 
 def read_manifest(folder: Path) -> Manifest | None:
-    """Return the manifest of a folder; None if there is none.
+    """Return the manifest of a folder; None if the folder has no manifest.
 
     Raises
     ------
     ReadError
-        If it cannot be read, is damaged, or lists files that no run writes.
+        If the manifest cannot be read, is damaged, or lists files that no run writes.
     """
     file = folder / MANIFEST
     if not exists(file):
@@ -104,9 +104,9 @@ def read_manifest(folder: Path) -> Manifest | None:
             f"it lacks {error}" if isinstance(error, KeyError) else getattr(error, "strerror", 0) or error
         )
         raise ReadError(
-            f"cannot read {file}: {reason}; the files of the run cannot be verified; run it again in another "
-            f"folder with onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} to read the "
-            "folder without verification",
+            f"cannot read {file}: {reason}; the files of the run cannot be verified; repeat the run in "
+            f"another folder with onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} to read "
+            "the folder without verification",
             path=str(file), kind="manifest",
         ) from error  # fmt: skip
     return Manifest(files, names)
@@ -129,7 +129,7 @@ def _changed(folder: Path, name: str, expected: Entry | None, got: Entry) -> Int
     else:
         what = f"{name} in {folder} was changed since the run wrote it: its SHA-256 differs from {MANIFEST}'s"
     again = f"onorbit run {shell_word(folder / SCENARIO)} --out DIR"
-    fix = f"undo the change, or run it again: {again}"
+    fix = f"undo the change, or repeat the run: {again}"
     return IntegrityError(
         printable(f"{what}; {fix}"), path=str(folder / name), kind=name, expected=expected, got=got
     )

@@ -21,9 +21,9 @@ _HEADER = re.compile(
 
 
 def read_arrays(stream: BinaryIO) -> dict[str, Any]:
-    """Return every array of numbers in an uncompressed ``.npz`` written by :func:`numpy.savez`.
+    """Return every array of an uncompressed ``.npz`` file of numbers, as written by :func:`numpy.savez`.
 
-    The memory used is bounded by the size of the file, whatever its headers state; nothing is unpickled.
+    The memory used is bounded by the size of the file even if its headers are wrong; nothing is unpickled.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def read_arrays(stream: BinaryIO) -> dict[str, Any]:
 
 
 def _check_directory(members: list[zipfile.ZipInfo], size: int) -> None:
-    """Check that members are uncompressed, have distinct names and are no larger than the file."""
+    """Check that members are uncompressed, have distinct names and are in total no larger than the file."""
     names = [member.filename for member in members]
     if len(names) > _MOST_COLUMNS:
         raise ValueError(f"it has {len(names)} columns; at most {_MOST_COLUMNS} are allowed")
@@ -72,7 +72,7 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
         if needed != left:
             raise ValueError(f"{member.filename} has {left} bytes, but its shape {shape} requires {needed}")
         content = bytearray()
-        while chunk := stream.read(_CHUNK):  # the checksum of the zip is checked at its end
+        while chunk := stream.read(_CHUNK):  # zipfile verifies the checksum at the end of the member
             content += chunk
     if len(content) != left:
         raise ValueError(f"{member.filename} is truncated")

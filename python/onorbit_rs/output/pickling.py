@@ -1,4 +1,4 @@
-"""Pickling of a trace: its arrays and computed results under the same names."""
+"""Pickling of a trace: the pickled object has the same columns and computed results as attributes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PickledTrace(SavedTrace):
-    """Result of unpickling a :class:`onorbit_rs.Trace`: the same attributes, read-only, but another class."""
+    """Result of unpickling a :class:`onorbit_rs.Trace`, with the same attributes as read-only values."""
 
     is_complete: bool
     wall_s: float
@@ -30,7 +30,7 @@ class PickledTrace(SavedTrace):
             rows.setflags(write=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return the class and its fields."""
+        """Return the class and the field values, from which pickle rebuilds the trace."""
         return PickledTrace, tuple(getattr(self, part.name) for part in fields(self))
 
     def certificate(self) -> Any:

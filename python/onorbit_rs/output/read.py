@@ -32,10 +32,10 @@ _MOST = 16_000_000
 
 
 class SavedRun:
-    """Files of one run in a folder, each checked against the manifest read at construction."""
+    """Files of one run in a folder; each is checked against the manifest, which is read at construction."""
 
     def __init__(self, folder: Path) -> None:
-        """Read the manifest; a folder of an earlier version without one is read with a warning.
+        """Read the manifest; a folder without a manifest, from an earlier version, causes a warning.
 
         Raises
         ------
@@ -44,7 +44,7 @@ class SavedRun:
         ReadError
             If the manifest is damaged.
         OSError
-            If the path cannot be examined, such as for a name that is too long.
+            If the path cannot be examined, for example because its name is too long.
         """
         self.folder = folder
         check_folder(folder)
@@ -53,16 +53,16 @@ class SavedRun:
 
     @contextmanager
     def opened(self, name: str) -> Iterator[BinaryIO]:
-        """Open a file for reading and check that it is unchanged.
+        """Open a file for reading and check that its content is unchanged.
 
         Raises
         ------
         IntegrityError
-            If it was changed.
+            If the file was changed.
         ReadError
-            If another process is replacing it.
+            If another process is replacing the file.
         FileNotFoundError, OSError
-            If it does not exist or cannot be read.
+            If the file does not exist or cannot be read.
         """
         if self._manifest is None:
             with open_to_read(self.folder / name) as stream:
@@ -81,7 +81,7 @@ class SavedRun:
             raise ReadError(message, path=str(file), kind=name) from error
 
     def check(self, name: str) -> None:
-        """Raise :class:`IntegrityError` if a file was changed, :class:`ReadError` if it cannot be read."""
+        """Raise :class:`IntegrityError` for a changed file and :class:`ReadError` for an unreadable one."""
         try:
             with self.opened(name):
                 pass
@@ -91,7 +91,7 @@ class SavedRun:
             raise _unreadable(self.folder / name, name, error) from error
 
     def summary(self) -> dict[str, Any]:
-        """Return ``summary.json``; raises as :func:`read_summary`."""
+        """Return ``summary.json``; raises the errors of :func:`read_summary`."""
         file = self.folder / SUMMARY
         try:
             with self.opened(SUMMARY) as stream:
@@ -105,13 +105,15 @@ class SavedRun:
             raise _unreadable(file, "summary", error) from error
         except (ValueError, TypeError) as error:
             here = shell_word(self.folder)
-            again = f"run it again with onorbit run {shell_word(self.folder / SCENARIO)} --out {here} --force"
+            again = (
+                f"repeat the run with onorbit run {shell_word(self.folder / SCENARIO)} --out {here} --force"
+            )
             raise ReadError(
                 f"cannot read {file}: {error}; {again}", path=str(file), kind="summary"
             ) from error
 
     def trace(self) -> Trace:
-        """Return ``trace.npz`` of a run with one robot; raises as :func:`read_trace`."""
+        """Return ``trace.npz`` of a run with one robot; raises the errors of :func:`read_trace`."""
         arrays = self._arrays({"time", "q", "v", "momentum"})
         return cast("Trace", SavedTrace(arrays))
 
@@ -121,7 +123,7 @@ class SavedRun:
         Raises
         ------
         NotFoundError, IntegrityError, ReadError
-            As :func:`read_trace` and :func:`read_summary`.
+            As for :func:`read_trace` and :func:`read_summary`.
         """
         arrays = self._arrays({"time", "momentum", "kinetic_energy", *(f"events/{name}" for name in EVENTS)})
         audits = self.summary().get("events", [])
@@ -154,7 +156,7 @@ class SavedRun:
         Raises
         ------
         NotFoundError, ReadError, IntegrityError
-            If it does not exist, cannot be read, or was changed.
+            If the file does not exist, cannot be read, or was changed.
         """
         file = self.folder / SCENARIO
         try:
@@ -169,7 +171,7 @@ class SavedRun:
             raise _unreadable(file, "scenario", error) from error
 
     def scenario(self) -> Scenario | WorldScenario:
-        """Return the scenario of the run; raises as :meth:`scenario_text`, and :class:`ScenarioError`."""
+        """Return the scenario of the run; raises ScenarioError and the errors of :meth:`scenario_text`."""
         self.scenario_text()
         scenario = load(self.folder / SCENARIO)
         self.check(SCENARIO)  # raises if the file was replaced in the meantime
@@ -179,8 +181,8 @@ class SavedRun:
         if not self._has_warned:
             self._has_warned = True
             warnings.warn(
-                f"{self.folder} has no {MANIFEST}, because it was removed or an earlier version wrote the "
-                "folder; changes to its files since the run cannot be detected",
+                f"{self.folder} has no {MANIFEST}, because the manifest was removed or an earlier version "
+                "wrote the folder; changes to the files since the run cannot be detected",
                 UserWarning, stacklevel=2,
             )  # fmt: skip
 
@@ -197,16 +199,16 @@ def check_folder(folder: Path) -> None:
 
 
 def read_trace(folder: Path) -> Trace:
-    """Return the columns in ``trace.npz``, without the methods that compute, such as ``certificate``.
+    """Return the columns in ``trace.npz``; computed results such as ``certificate`` are not available.
 
     Raises
     ------
     NotFoundError
-        If there is no such folder, or no trace in it.
+        If the folder does not exist or contains no trace.
     IntegrityError
-        If it was changed after the run.
+        If the trace was changed after the run.
     ReadError
-        If it is not the trace of a run.
+        If the file is not the trace of a run.
     """
     return SavedRun(folder).trace()
 
@@ -217,13 +219,13 @@ def _unreadable(file: Path, kind: str, error: Exception) -> ReadError:
 
 
 def _hint(folder: Path) -> str:
-    """Return a hint: the process that writes the run or the command that resumes it, or an empty text."""
+    """Return a hint for messages: the process that writes the run, the command that resumes it, or ``""``."""
     owner = owner_of(folder)
     if owner is not None and owner.pid != os.getpid():
         return f"; {owner} is writing it"
     if not has_checkpoint(folder):
         return ""
-    return f"; its run was stopped before its end; continue with: onorbit resume {shell_word(folder)}"
+    return f"; the run was stopped before its end; continue with: onorbit resume {shell_word(folder)}"
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
@@ -232,31 +234,31 @@ def read_summary(folder: Path) -> dict[str, Any]:
     Raises
     ------
     NotFoundError
-        If there is no such folder, or no run in it.
+        If the folder does not exist or contains no run.
     IntegrityError
-        If it was changed after the run.
+        If the summary was changed after the run.
     ReadError
-        If it cannot be read.
+        If the summary cannot be read.
     """
     try:
         return SavedRun(folder).summary()
-    except OSError as error:  # a name too long
+    except OSError as error:  # for example a name that is too long
         if isinstance(error, OnOrbitError):
             raise
         raise _unreadable(folder / SUMMARY, "summary", error) from error
 
 
 _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
-    "status": (str, "a word"),
+    "status": (str, "text"),
     "certificate_passed": ((bool, type(None)), "true, false or null"),
     "simulated_s": ((int, float, type(None)), "a number or null"),
 }
-"""Required types of entries that the output depends on."""
+"""Required types, with their names in messages, of the entries that other code reads."""
 
 
 def _checked(summary: Any) -> dict[str, Any]:
     if not isinstance(summary, dict):
-        raise TypeError(f"it contains a {type(summary).__name__}, expected a mapping")
+        raise TypeError(f"its content is of type {type(summary).__name__}; expected a mapping")
     if isinstance(summary.get("systems"), dict):
         return _checked_world(summary)
     for name, value in summary.items():
@@ -272,7 +274,7 @@ def _checked(summary: Any) -> dict[str, Any]:
 
 
 def _checked_world(summary: dict[str, Any]) -> dict[str, Any]:
-    """Return the summary of a run with several systems if its parts have the right types."""
+    """Return the summary of a run with several systems after checking the types of its parts."""
     for system in summary["systems"].values():
         _checked(system)
     for part in ("events", "certificate"):

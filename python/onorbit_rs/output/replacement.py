@@ -18,7 +18,7 @@ class Replacement:
     """Files that are written under temporary names and then renamed together."""
 
     def __init__(self, folder: OutputFolder) -> None:
-        """Start without files."""
+        """Start an empty group of files in ``folder``."""
         self._folder = folder
         self._written: dict[str, tuple[Path, Entry]] = {}
 
@@ -45,7 +45,7 @@ class Replacement:
                 folder.write_manifest(Manifest({**manifest.files, **entries}, manifest.checkpoint))
             try:
                 self._rename()
-            except KeyboardInterrupt:  # complete the renaming before stopping
+            except KeyboardInterrupt:  # all files are renamed before the run stops
                 self._rename()
                 raise
             for parent in {folder.path, *((folder.path / name).parent for name in entries)}:

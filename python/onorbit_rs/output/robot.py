@@ -13,11 +13,11 @@ from onorbit_rs.scenario import WorldScenario
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
-CHANGED = "the robot's file was changed since the run; the robot differs from the recorded one"
+CHANGED = "the robot's file was changed since the run; the robot differs from that of the run"
 
 
 def was_changed(model: Model, summary: dict[str, Any]) -> bool:
-    """Return True if a robot differs from that of the run; False if the summary has no fingerprint."""
+    """Return True if the robot differs from that of the run; False if the summary has no fingerprint."""
     return has_changed(model, summary.get("robot_fingerprint"))
 
 

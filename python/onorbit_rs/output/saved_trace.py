@@ -48,12 +48,12 @@ class SavedTrace:
 
 
 def check_shapes(arrays: Mapping[str, Any]) -> None:
-    """Check that every column has one entry per row and fits the number of joints.
+    """Check that the shape of every column agrees with the number of rows and of joints.
 
     Raises
     ------
     ValueError
-        If a column does not; the message names the first.
+        If a column has another shape; the message names the first such column.
     """
     rows, joints = np.shape(arrays["time"]), max((np.shape(arrays["q"]) or (0,))[-1] - BASE_NQ, 0)
     if len(rows) != 1 or rows[0] == 0:

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 EVENTS = {"time": (), "impulse": (6,), "point": (3,), "energy_lost": (), "momentum_error": (2,)}
-"""Columns of the events, and the shape of the row of an event."""
+"""Names of the columns of the events, with the shape of one row."""
 
 
 def systems_in(arrays: Mapping[str, Any]) -> list[str]:
-    """Return the names of the systems with a configuration among columns by path."""
+    """Return the names of the systems that have a column ``NAME/q`` among columns by path."""
     return [path.removesuffix("/q") for path in arrays if path.endswith("/q")]
 
 
@@ -34,7 +34,7 @@ def system_in(arrays: Mapping[str, Any], name: str) -> SavedTrace:
 
 @dataclass(frozen=True)
 class SavedWorldTrace:
-    """Trace of a world that is not in the memory of the engine; named as :class:`onorbit_rs.WorldTrace`."""
+    """Trace of a world, read from a file or a pickle; attributes as in :class:`onorbit_rs.WorldTrace`."""
 
     systems: Mapping[str, Any]
     """Trace of each system."""
@@ -43,9 +43,9 @@ class SavedWorldTrace:
     time: Any
     """Times of the rows that all systems recorded, (T,), s."""
     momentum: Any
-    """Momentum of all systems, (T, 6), as that of :class:`onorbit_rs.WorldTrace`."""
+    """Total momentum of all systems, (T, 6), N s and N m s, as in :class:`onorbit_rs.WorldTrace`."""
     kinetic_energy: Any
-    """Kinetic energy of all systems, (T,), J."""
+    """Total kinetic energy of all systems, (T,), J."""
 
     @property
     def names(self) -> list[str]:
@@ -87,23 +87,25 @@ class PickledWorldTrace(SavedWorldTrace):
 
 
 def saved_world(arrays: Mapping[str, Any], audits: Sequence[Mapping[str, Any]]) -> SavedWorldTrace:
-    """Return the trace of columns by path, such as ``chaser/q`` and ``events/time``.
+    """Return the trace of a world with these columns, such as ``chaser/q`` and ``events/time``.
 
     Parameters
     ----------
     arrays : mapping of array
         Columns by path.
     audits : sequence of mapping
-        Entries of ``events`` in the summary, which have the names of the events.
+        Entries of ``events`` in the summary, which contain the names of the events.
 
     Raises
     ------
     ValueError
-        If the events of the columns are not those of the summary.
+        If the numbers of events in the columns and in the summary differ.
     """
     systems = {name: system_in(arrays, name) for name in systems_in(arrays)}
     if len(audits) != len(arrays["events/time"]):
-        raise ValueError(f"it has {len(arrays['events/time'])} events, but the summary has {len(audits)}")
+        raise ValueError(
+            f"it contains {len(arrays['events/time'])} events, but the summary contains {len(audits)}"
+        )
     events = [_event(arrays, row, audit) for row, audit in enumerate(audits)]
     columns = (arrays[name] for name in ("time", "momentum", "kinetic_energy"))
     return SavedWorldTrace(systems, events, *columns)

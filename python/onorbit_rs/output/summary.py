@@ -45,14 +45,14 @@ def summarize(
     built : Built
         The scenario and the objects built from it.
     status : str
-        ``complete``, ``interrupted`` (Ctrl-C or a signal), ``diverged``, or ``failed``: another error ended
-        the run, such as one of a custom controller, the orbit or the environment.
+        ``complete``, ``interrupted`` (Ctrl-C or a signal), ``diverged``, or ``failed`` if another error ended
+        the run, such as an error of a custom controller, the orbit or the environment.
 
     Returns
     -------
     dict
-        Content of ``summary.json``; None for non-finite numbers. ``wall_s`` is the wall-clock time
-        of the simulation loop.
+        Content of ``summary.json``, with None for non-finite numbers. ``wall_s`` is the wall-clock time
+        of the simulation loop, s.
     """
     scenario = built.scenario
     summary = (
@@ -75,7 +75,7 @@ def summarize(
 
 
 def _certificate(trace: Trace) -> Summary:
-    """Return the evaluated checks, whether all passed, and the checks that were not evaluated."""
+    """Return the evaluated checks, the verdict, and the names of checks that were not evaluated."""
     rows = trace.certificate()
     balances: Summary = {name: value for name, value, _, _ in rows if value is not None}
     gates = {GATE + name: gate for name, value, gate, _ in rows if value is not None}
@@ -150,7 +150,7 @@ def _losses(trace: Trace, built: Built) -> Summary:
 
 
 def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -> Summary:
-    """Return duration, speed and settings of a run, and the versions of what ran it."""
+    """Return duration, speed and settings of a run, and the versions of the software that ran it."""
     simulated_s, settings = float(trace.time[-1] - trace.time[0]), scenario.simulation
     return (
         {"simulated_s": simulated_s, "wall_s": trace.wall_s}
@@ -162,7 +162,7 @@ def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -
 
 
 def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:
-    """Return the inertial axes, the source of the velocity, and the residual gravity."""
+    """Return the inertial axes, the source of the inertial velocity, and the residual gravity."""
     if orbit is None:
         return {}
     summary: Summary = {"inertial_axes": orbit.axes, "velocity_eci_source": orbit.velocity_source}

@@ -16,7 +16,7 @@ EXCEEDED = {
     "joint_rates_exceeded": "rate limits of joints",
     "joint_efforts_exceeded": "effort limits of joints",
 }
-"""Labels of the entries of a summary that name joints beyond a limit of the robot."""
+"""Labels of the summary entries that list the joints beyond a limit of the robot."""
 
 
 class Tracking(NamedTuple):
@@ -29,7 +29,7 @@ class Tracking(NamedTuple):
 
 
 def tracking(key: str) -> Tracking | None:
-    """Return the tracking error described by a key; None for other keys."""
+    """Return the tracking error that a key of the summary describes; None for other keys."""
     found = _ERROR.fullmatch(key)
     if found is None:
         return None
@@ -40,6 +40,6 @@ def tracking(key: str) -> Tracking | None:
 
 
 def goal_of(key: str) -> str | None:
-    """Return the name of the control whose goal a key belongs to; None for other keys."""
+    """Return the name of the control if a key of the summary describes its goal; None for other keys."""
     found = _GOAL.fullmatch(key)
     return found[1] if found else None

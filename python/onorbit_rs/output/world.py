@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.build_world import BuiltWorld
 
 WORLD_COLUMNS = ("time", "momentum", "kinetic_energy")
-"""Columns of all systems together."""
+"""Names of the columns that describe all systems together."""
 
 
 def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "complete") -> Summary:
     """Return the summary of a run with several systems.
 
-    ``systems`` has the summary of each system, ``certificate`` the checks of the groups of systems that
-    events may connect and of the events, ``events`` the events that happened. ``certificate_passed`` is True
-    if no check of any of them failed.
+    ``systems`` contains the summary of each system; ``certificate`` the checks of the events and of the
+    groups of systems that events may connect; ``events`` the events that happened. ``certificate_passed`` is
+    True if no check of a system, group or event failed.
     """
     scenario = built.scenario
     systems = {name: summarize(trace[name], alone, status=status) for name, alone in built.systems.items()}
@@ -52,7 +52,7 @@ def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "comp
 
 
 def _missed(trace: WorldTrace, built: BuiltWorld) -> list[str]:
-    """Return a warning for each event that did not happen, and give it."""
+    """Issue a warning for each event that did not happen, and return the warnings."""
     happened = {record.name for record in trace.events}
     found = [
         f"event {event.name!r} did not happen"
@@ -70,7 +70,7 @@ def _check(name: str, value: float | None, gate: float, passed: bool) -> Summary
 
 
 def _event(record: EventRecord) -> Summary:
-    """Return an event and its audit; the impulse acts on the second system, in axes of W."""
+    """Return an event with its balances; the impulse acts on the second system, in axes of W."""
     impulse = np.asarray(record.impulse)
     values: Summary = {
         "name": record.name, "kind": record.kind, "time_s": record.time, "systems": list(record.systems),
@@ -84,9 +84,9 @@ def _event(record: EventRecord) -> Summary:
 
 
 def world_arrays(trace: WorldTrace) -> dict[str, Any]:
-    """Return the columns of a world by path: ``time``, ``chaser/q``, ``events/time``.
+    """Return the columns of a world by path, such as ``time``, ``chaser/q`` and ``events/time``.
 
-    Rows of ``events`` are in the order of the events in the summary, which has their names.
+    The rows of ``events`` are in the order of the events in the summary, which contains their names.
     """
     arrays = {name: np.asarray(getattr(trace, name)) for name in WORLD_COLUMNS}
     for name in trace.names:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> None:
-    """Write ``scenario.yaml`` with all defaults in SI units and absolute paths, to run from any folder."""
+    """Write ``scenario.yaml`` with all defaults, SI units and absolute paths; it runs from any folder."""
     source = scenario.file or "Python"
     header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
     with folder.writing(SCENARIO) as path:
@@ -43,7 +43,7 @@ def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> 
 
 
 def write_trace(files: Replacement, trace: Trace | WorldTrace) -> None:
-    """Write ``trace.npz``: every column of the trace by path."""
+    """Write ``trace.npz``, which contains every column of the trace by path."""
     with files.writing(TRACE) as path, path.open("wb") as stream:
         if isinstance(trace, _core.WorldTrace):
             columns = world_arrays(trace)
@@ -68,9 +68,9 @@ def write_pictures(
     *,
     tell: Callable[[str], None] = lambda doing: None,
 ) -> None:
-    """Write the figures, if the trace has several rows, and the recording; ``tell`` receives each task.
+    """Write the figures, if the trace has several rows, and the recording; ``tell`` is called with each task.
 
-    For a world, the figures of each system begin with its name.
+    For a world, the file names of a system's figures begin with the name of the system.
     """
     if isinstance(trace, _core.WorldTrace):
         assert isinstance(built, BuiltWorld)
@@ -93,7 +93,7 @@ def _write_pictures_of_world(
     built: BuiltWorld,
     tell: Callable[[str], None],
 ) -> None:
-    """Write the figures of all systems together and of each, and the recording."""
+    """Write the figures of all systems together, those of each system, and the recording."""
     from onorbit_rs import figures
 
     if len(trace.time) > 1:

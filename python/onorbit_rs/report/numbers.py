@@ -17,10 +17,10 @@ _UNITS = (
     ("_rel", "relative"), ("_m", "m"), ("_s", "s"), ("_j", "J"), ("_n", "N"),
 )  # fmt: skip
 _LEAST_SCALED = 1e-9
-"""Smallest value shown with a unit prefix; smaller ones are rounding errors, shown with an exponent."""
+"""Smallest value shown with a unit prefix; smaller values are rounding errors, shown with an exponent."""
 _SCALED = ("m", "rad", "N m", "N", "J", "m/s²", "rad/s", "m/s", "N s", "N m s")
 _NAMES = {
-    "wall_s": "wall clock of the loop",
+    "wall_s": "wall-clock time of the loop",
     "real_time_factor": "times real time",
     "base_rotation_max_rad": "base rotation in W, largest",
     "base_displacement_max_m": "base displacement in W, largest",
@@ -54,7 +54,7 @@ _GROUPS = (
     ),
 )
 _ONLY_IF_ANY = ("rereferenced", "joint_dissipation_j")
-"""Entries that are omitted where they are 0."""
+"""Entries that are omitted if their value is 0."""
 _ELSEWHERE = ("scenario", "status", "warnings", *CHECKS)
 
 
@@ -86,7 +86,7 @@ def groups(summary: dict[str, Any]) -> list[tuple[str, list[Row]]]:
 
 
 def row(key: str, value: Any) -> Row:
-    """Return one entry of a summary with its unit, which is the ending of its key."""
+    """Return one entry of a summary as a table row; the unit is the ending of the key."""
     ending, unit = next(((ending, unit) for ending, unit in _UNITS if key.endswith(ending)), ("", ""))
     words = _NAMES.get(key) or _words(key, key.removesuffix(ending))
     shown = value.replace("_", " ") if goal_of(key) and isinstance(value, str) else value

@@ -1,4 +1,4 @@
-"""The report page: a template, filled with escaped text."""
+"""The report page: an HTML template that is filled with escaped text."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def filled(
     again: str,
     version: str,
 ) -> str:
-    """Return the template filled with the parts of a page; texts of the user are escaped."""
+    """Return the template filled with the parts of a page; user-defined texts are escaped."""
     name = printable(summary.get("scenario") or "run")
     return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
         title=escape(f"{name}: onorbit report"),
@@ -80,7 +80,7 @@ def filled(
         remarks=_remarks([*warnings, *remarks]),
         numbers=content.numbers,
         checks=content.checks,
-        figures=content.figures or "<p>There is nothing to draw.</p>",
+        figures=content.figures or "<p>This run has no figures.</p>",
         scenario=escape(scenario),
         again=escape(again),
         version=escape(version),
@@ -89,7 +89,7 @@ def filled(
 
 
 def numbers_section(title: str, found: Sequence[tuple[str, Sequence[Row]]]) -> str:
-    """Return tables of numbers under a heading."""
+    """Return the HTML of tables of numbers under a heading."""
     tables = "\n".join(_table(name, rows) for name, rows in found)
     return f'<h2>{escape(title)}</h2>\n<div class="tables">\n{tables}\n</div>'
 
@@ -130,7 +130,7 @@ def warnings_of(summary: dict[str, Any]) -> list[str]:
 
 
 def _remarks(texts: Sequence[str]) -> str:
-    """Return the warnings, and the remarks on omitted parts of the page."""
+    """Return a list of warnings, such as remarks on omitted parts of the page, as HTML."""
     items = "".join(f"<li>{escape(text)}</li>" for text in texts)
     return (
         f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
@@ -154,7 +154,7 @@ def data_html(row: Row) -> str:
 
 
 def checks_table(found: Sequence[Check]) -> str:
-    """Return a table of checks."""
+    """Return an HTML table of the checks of a certificate."""
     lines = "\n".join(map(_check, found))
     head = (
         '<th scope="col">{}</th><th scope="col" class="number">{}</th><th scope="col" class="number">{}</th>'

@@ -1,4 +1,4 @@
-"""Reads what the figures of a report show from the folder of a run."""
+"""Reads the data for the figures of a report from the folder of a run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class OwnDrawing(NamedTuple):
-    """A figure with the name of its file and the system to which it belongs, if it belongs to one."""
+    """A figure with its file name and the name of its system, which is empty for figures of all systems."""
 
     system: str
     name: str
@@ -29,7 +29,7 @@ class OwnDrawing(NamedTuple):
 def subject_of_run(
     saved: SavedRun, scenario: Scenario, summary: dict[str, Any], remarks: list[str]
 ) -> Subject:
-    """Return the subject of the figures; unreadable robots, orbits and Earth models become remarks."""
+    """Return the subject of the figures; add a remark for each unreadable robot, orbit or Earth model."""
     from onorbit_rs import figures
 
     model = _robot(scenario, summary, remarks)
@@ -37,7 +37,7 @@ def subject_of_run(
 
 
 def figures_of(subject: Subject, system: str) -> list[OwnDrawing]:
-    """Return the figures of one robot, whose names begin with that of its system."""
+    """Return the figures of one robot; their names begin with ``system`` if it is not empty."""
     from onorbit_rs import figures
 
     if len(subject.trace.time) < 2:
@@ -49,7 +49,7 @@ def figures_of(subject: Subject, system: str) -> list[OwnDrawing]:
 def world_figures(
     saved: SavedRun, scenario: WorldScenario, summary: dict[str, Any], remarks: list[str]
 ) -> list[OwnDrawing]:
-    """Return the figures of all systems together, then those of each."""
+    """Return the figures of all systems together, then those of each system."""
     from onorbit_rs import figures
 
     trace = cast("WorldTrace", saved.world_trace())
@@ -70,7 +70,7 @@ def world_figures(
 
 
 def _robot(scenario: Scenario, summary: dict[str, Any], remarks: list[str], system: str = "") -> Model | None:
-    """Return the robot of a run; None, with a remark, if it was changed or cannot be read."""
+    """Return the robot of a run; None, with a remark, if its file was changed or cannot be read."""
     with _remarked(remarks, f"{system}the robot could not be read; figures that show it are omitted"):
         model = scenario.robot.build(scenario)
         if not was_changed(model, summary):

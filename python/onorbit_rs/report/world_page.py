@@ -20,7 +20,7 @@ from onorbit_rs.report.page import (
 )
 
 _PARTS = ("events", "systems", "certificate")
-"""Entries of the summary of a world that are not numbers."""
+"""Entries of the summary of a world that are shown elsewhere than in the tables of numbers."""
 
 _COLUMNS = ("time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
             "angular_momentum_error_rel")  # fmt: skip
@@ -28,7 +28,7 @@ _HEADS = ("event", "kind", "systems", "time", "impulse", "angular impulse", "ene
           "error of linear momentum", "error of angular momentum")  # fmt: skip
 
 _OF_THE_ORBIT = ("inertial_axes", "velocity_eci_source", "gravity_mode")
-"""Entries of systems that are those of their common orbit."""
+"""Entries of a system's summary that describe the common orbit, and are therefore shown once."""
 
 
 def world_page(
@@ -41,7 +41,7 @@ def world_page(
     again: str,
     version: str,
 ) -> str:
-    """Return the HTML of a report; ``pictures`` are by system, those of all systems under an empty name."""
+    """Return the HTML of a report; ``pictures`` are by system, with ``""`` for figures of all systems."""
     systems: dict[str, dict[str, Any]] = summary["systems"]
     own = {key: value for key, value in summary.items() if key not in _PARTS}
     first = next(iter(systems.values()))
@@ -57,27 +57,27 @@ def world_page(
 
 
 def _named(system: str, rows: Sequence[Row]) -> list[Row]:
-    """Return rows whose keys begin with the name of the system."""
+    """Return the rows with the name of the system prepended to their keys."""
     return [entry._replace(key=f"{system}/{entry.key}") for entry in rows]
 
 
 def _events(events: Sequence[dict[str, Any]]) -> str:
-    """Return the table of the events with their audits."""
+    """Return an HTML table of the events with their balances of momentum and energy."""
     if not events:
         return "<h2>Events</h2>\n<p>No event happened.</p>"
     head = "".join(f'<th scope="col">{name}</th>' for name in _HEADS)
     lines = "\n".join(f"<tr>{''.join(_cells(event))}</tr>" for event in events)
     about = (
-        "The impulse acts on the second system; a negative energy was added by a spring. The errors are the "
-        "changes of the momentum of the group, relative to the sum of the magnitudes of the momenta of its "
-        "bodies."
+        "The impulse acts on the second system; a negative energy loss was added by a spring. The errors are "
+        "the changes of the momentum of the group, relative to the sum of the magnitudes of the momenta of "
+        "its bodies."
     )
     table = f'<table class="events"><thead><tr>{head}</tr></thead>{lines}</table>'
     return f'<h2>Events</h2>\n<p class="faint">{about}</p>\n<div class="scroll">{table}</div>'
 
 
 def _cells(event: dict[str, Any]) -> Iterator[str]:
-    """Yield the cells of the row of an event."""
+    """Yield the cells of an event's table row as HTML."""
     for text in (event["name"], event["kind"], ", ".join(event["systems"])):
         yield f"<td>{escape(text)}</td>"
     for key in _COLUMNS:
@@ -88,7 +88,7 @@ def _cells(event: dict[str, Any]) -> Iterator[str]:
 
 
 def _certificates(summary: dict[str, Any]) -> str:
-    """Return the checks of groups and events, and those of each system."""
+    """Return HTML tables of the checks of groups and events, and of each system."""
     found = [check._replace(name=check.name.replace("/", ": ")) for check in world_checks(summary)]
     parts = ["<h3>Groups of systems and events</h3>", checks_table(found)] if found else []
     for name, system in summary["systems"].items():
@@ -98,7 +98,7 @@ def _certificates(summary: dict[str, Any]) -> str:
 
 
 def _figures(pictures: Mapping[str, Sequence[Picture]]) -> str:
-    """Return the figures of all systems together, then those of each."""
+    """Return the HTML of the figures of all systems together, then of those of each system."""
     parts = []
     for name, own in pictures.items():
         if own:

@@ -45,7 +45,7 @@ def write_report(
     Returns
     -------
     Path
-        The page.
+        Path of the page.
 
     Raises
     ------
