@@ -210,7 +210,7 @@ def test_a_figure_edited_by_the_user_is_not_replaced(copy: Path, tmp_path: Path)
     assert oo.compare(copy, copy).agrees, "nothing may be removed after a rejection"
     with (
         OutputFolder(copy) as folder,
-        pytest.raises(OutputNotEmptyError, match="was changed"),
+        pytest.raises(OutputNotEmptyError, match="was edited"),
         folder.writing("figures/ledger.png"),
     ):
         pass
