@@ -16,7 +16,7 @@ def ros_name(name: str) -> str:
 
 
 def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
-    """Return a distinct ROS name for each name; warn where it differs.
+    """Return a distinct ROS name for each name; warn where it differs. Valid names keep theirs.
 
     Parameters
     ----------
@@ -25,13 +25,16 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     kind : str
         What they are, for the warning, such as ``system``.
     """
+    given = list(names)
+    taken = {name for name in given if ros_name(name) == name}
     found: dict[str, str] = {}
-    for name in names:
+    for name in given:
         base = ros_name(name)
         number, candidate = 1, base
-        while candidate in found.values():
+        while candidate != name and candidate in taken:
             number += 1
             candidate = f"{base}_{number}"
+        taken.add(candidate)
         found[name] = candidate
     changed = [f"{name!r} → {other!r}" for name, other in found.items() if name != other]
     if changed:
