@@ -91,7 +91,7 @@ from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.simulation.controller import Controller
 
 if TYPE_CHECKING:
-    from onorbit_rs import engines, layouts
+    from onorbit_rs import engines, layouts, ros2
     from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.simulation.run import Run, resume, run
     from onorbit_rs.tools.comparison import Comparison, compare
@@ -175,6 +175,7 @@ __all__ = [
     "resume",
     "robots",
     "rollout",
+    "ros2",
     "run",
     "scenarios",
 ]
@@ -186,7 +187,7 @@ _LAZY = {
     "WorldScenario": "scenario", "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
 }  # fmt: skip
 """Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
-_LAZY_MODULES = ("engines", "layouts", "scenario")
+_LAZY_MODULES = ("engines", "layouts", "ros2", "scenario")
 
 
 if not TYPE_CHECKING:  # otherwise every misspelt name would have a type

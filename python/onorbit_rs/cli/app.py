@@ -13,6 +13,7 @@ from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
 from onorbit_rs.cli.exit_codes import controller_error, discard_stdout, exit_stopped, fail, with_exit_codes
+from onorbit_rs.cli.export import export
 from onorbit_rs.cli.info import info
 from onorbit_rs.cli.list import list_
 from onorbit_rs.cli.new import new
@@ -49,6 +50,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "convert": convert,
     "new": new,
     "report": report,
+    "export": export,
     "compare": compare,
     "validate": validate,
 }

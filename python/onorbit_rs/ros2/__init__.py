@@ -2,10 +2,31 @@
 
 from __future__ import annotations
 
+import importlib
+from typing import TYPE_CHECKING
+
 from onorbit_rs.ros2.extra import require
 
-require("rosbags", "cyclonedds")
+if TYPE_CHECKING:
+    from onorbit_rs.ros2.export import export_bag, export_mcap
+    from onorbit_rs.ros2.node import Node
 
-from onorbit_rs.ros2.node import Node  # noqa: E402  # needs the packages above
+__all__ = ["Node", "export_bag", "export_mcap"]
 
-__all__ = ["Node"]
+_LAZY = {
+    "Node": ("node", ("cyclonedds", "rosbags")),
+    "export_bag": ("export", ("mcap", "rosbags")),
+    "export_mcap": ("export", ("mcap", "rosbags")),
+}
+"""Module of each name, which is imported on first access, and the packages that it requires."""
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> object:
+        """Return a name that is imported on first access; raises Ros2Error without the extra."""
+        if name not in _LAZY:
+            raise AttributeError(f"module 'onorbit_rs.ros2' has no attribute {name!r}")
+        module, packages = _LAZY[name]
+        require(*packages)
+        return getattr(importlib.import_module(f"onorbit_rs.ros2.{module}"), name)

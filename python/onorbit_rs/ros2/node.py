@@ -11,7 +11,7 @@ from onorbit_rs.ros2.inbox import Arrived, Entry, Inbox, add_run_topics, add_sys
 from onorbit_rs.ros2.pace import PACES, RealTime
 from onorbit_rs.ros2.participant import Participant, Writer
 from onorbit_rs.ros2.rows import Rows, rows_of_columns, rows_of_trace
-from onorbit_rs.ros2.topics import Topics, event_message, topics
+from onorbit_rs.ros2.topics import ERROR, EVENTS, EVENTS_TYPE, OK, WARN, Topics, event_message, topics
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.build_world import build_world
@@ -19,10 +19,6 @@ from onorbit_rs.scenario.build_world import build_world
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Simulation, Stepper, Trace, WorldTrace
 
-OK, WARN, ERROR = 0, 1, 2
-"""Levels of ``diagnostic_msgs/DiagnosticStatus``."""
-
-_EVENTS = "diagnostic_msgs/msg/DiagnosticArray"
 _IDLE_S = 1e-3
 """Wall-clock time between two looks at the topics while the simulation waits, s."""
 _BLOCK_S = 0.02
@@ -100,7 +96,7 @@ class Node:
         for latched in self.topics.latched:
             writer = self._participant.writer(latched.name, latched.kind, is_latched=True)
             writer.write(latched.data)
-        self._events: Writer = self._participant.writer("/events", _EVENTS)
+        self._events: Writer = self._participant.writer(EVENTS, EVENTS_TYPE)
         self._inbox = self._subscribed()
         self._participant.announce("onorbit")
 
@@ -127,9 +123,8 @@ class Node:
     @property
     def published(self) -> list[tuple[str, str]]:
         """Names and types of the topics that the node publishes."""
-        moving = [(topic.name, topic.kind) for topic in self.topics.series]
         latched = [(topic.name, topic.kind) for topic in self.topics.latched]
-        return [*dict.fromkeys(moving), *latched, ("/events", _EVENTS)]
+        return [*self.topics.names, *latched, (EVENTS, EVENTS_TYPE)]
 
     @property
     def subscribed(self) -> list[tuple[str, str]]:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from onorbit_rs._core import WorldTrace
 from onorbit_rs.common.rotations import local_orbital_axes, quaternion_from_matrix
 from onorbit_rs.output.columns import path_of
+from onorbit_rs.output.saved_world import SavedWorldTrace
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -53,6 +54,13 @@ class Rows:
         r, v = self["reference_position_eci"], self["reference_velocity_eci"]
         return quaternion_from_matrix(local_orbital_axes(r, v))
 
+    def between(self, start: float, end: float) -> Rows:
+        """Return the rows from ``start`` to before ``end``, s."""
+        rows = slice(*np.searchsorted(self.time, [start, end]))
+        return Rows(
+            *({name: held[rows] for name, held in part.items()} for part in (self.columns, self.wrenches))
+        )
+
     def __getitem__(self, name: str) -> Floats:
         """Return a column."""
         return self.columns[name]
@@ -67,12 +75,14 @@ class Rows:
 
 
 def rows_of_trace(
-    trace: Trace | WorldTrace, models: Mapping[str, Model], since: Mapping[str, int] | None = None
+    trace: Trace | WorldTrace | SavedWorldTrace,
+    models: Mapping[str, Model],
+    since: Mapping[str, int] | None = None,
 ) -> dict[str, Rows]:
     """Return the rows of each system of a trace, which may be that of one robot, from row ``since`` on."""
     found = {}
     for system in models:
-        own = trace[system] if isinstance(trace, WorldTrace) else trace
+        own: Any = trace[system] if isinstance(trace, WorldTrace | SavedWorldTrace) else trace
         rows = slice(0 if since is None else since[system], None)
         columns = {name: np.asarray(getattr(own, name))[rows] for name in COLUMNS if name in own.columns()}
         wrenches = {

@@ -29,11 +29,14 @@ from onorbit_rs.ros2.wrenches import wrench_topics
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Model
+    from onorbit_rs._core import EventRecord, Model
 
     Floats = NDArray[np.float64]
 
 TF = "tf2_msgs/msg/TFMessage"
+EVENTS, EVENTS_TYPE = "/events", "diagnostic_msgs/msg/DiagnosticArray"
+OK, WARN, ERROR = 0, 1, 2
+"""Levels of ``diagnostic_msgs/DiagnosticStatus``."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,11 @@ class Topics:
     latched: tuple[Latched, ...]
     prefixes: Mapping[str, str]
     """Prefix of the topics and frames of each system, such as ``chaser/``; empty for one robot."""
+
+    @property
+    def names(self) -> list[tuple[str, str]]:
+        """Names and types of the topics with a message per row; several series may share a topic."""
+        return list(dict.fromkeys((topic.name, topic.kind) for topic in self.series))
 
     def messages(self, rows: Mapping[str, Rows]) -> Iterator[tuple[Series, NDArray[np.uint8]]]:
         """Return the messages of each topic for the rows of each system."""
@@ -206,6 +214,18 @@ def description(prefix: str, model: Model) -> Latched:
     """Return the robot as URDF."""
     kind = "std_msgs/msg/String"
     return Latched(f"/{prefix}robot_description", kind, encode(message(kind, data=urdf_text(model))))
+
+
+def message_of_event(record: EventRecord) -> bytes:
+    """Return the message of a capture or a release, for ``/events``; numbers have all digits."""
+    by, of = record.systems
+    numbers = {
+        "impulse": record.impulse, "point": record.point,
+        "energy_lost": np.array(record.energy_lost), "momentum_error": record.momentum_error,
+    }  # fmt: skip
+    values = {"kind": record.kind, "systems": f"{by} {of}"}
+    values |= {name: " ".join(map(repr, array.ravel().tolist())) for name, array in numbers.items()}
+    return event_message(record.time, record.name, OK, f"{record.kind}: {by} and {of}", values)
 
 
 def event_message(time: float, name: str, level: int, text: str, values: Mapping[str, str]) -> bytes:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.coordinates import ANGULAR, LINEAR
 from onorbit_rs.ros2.messages import Marks, Template, message, vector
 from onorbit_rs.ros2.names import ros_names
 from onorbit_rs.ros2.series import Series
@@ -48,9 +49,9 @@ def _values(effect: str, link: tuple[int, Body], model: Model) -> Callable[[Rows
     def values(rows: Rows) -> dict[str, Floats]:
         """Return `f = Rᵀ f_W` and `t = Rᵀ t_W + c × f` from the wrench at the centre of mass c."""
         rot_wl = np.asarray(model.frame_pose(np.ascontiguousarray(rows["q"]), body.name))[:, :3, :3]
-        wrench = rows.wrenches[effect][:, 6 * index : 6 * index + 6]
-        force = np.einsum("tji,tj->ti", rot_wl, wrench[:, :3])
-        torque = np.einsum("tji,tj->ti", rot_wl, wrench[:, 3:]) + np.cross(com, force)
+        wrench = rows.wrenches[effect].reshape(len(rows), -1, 6)[:, index]
+        force = np.einsum("tji,tj->ti", rot_wl, wrench[:, LINEAR])
+        torque = np.einsum("tji,tj->ti", rot_wl, wrench[:, ANGULAR]) + np.cross(com, force)
         return {"force": force, "torque": torque}
 
     return values

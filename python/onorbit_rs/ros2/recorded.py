@@ -1,0 +1,89 @@
+"""The robots, rows and events of a run that has ended, from its folder, its results or its trace."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs._core import Model
+from onorbit_rs.exceptions import DtypeError, InputError
+from onorbit_rs.output.read import SavedRun
+from onorbit_rs.ros2.rows import Rows, rows_of_trace
+from onorbit_rs.scenario import WorldScenario
+from onorbit_rs.simulation.run import Run
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import EventRecord, Trace, WorldTrace
+
+    Source = str | os.PathLike[str] | Run | Trace | WorldTrace
+    Models = Model | Mapping[str, Model]
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What the topics of a run are made of."""
+
+    models: Mapping[str, Model]
+    rows: Mapping[str, Rows]
+    events: Sequence[EventRecord]
+
+
+def recorded(source: Source, models: Models | None = None) -> Recorded:
+    """Return robots, rows and events of a run.
+
+    Parameters
+    ----------
+    source : str, path, Run, Trace or WorldTrace
+        Folder of a run, its results, or a trace.
+    models : Model or mapping of str to Model, optional
+        Robot of a trace, or robots by the name of the system; only with a trace.
+
+    Raises
+    ------
+    InputError
+        If the models of a trace are missing or are not those of its systems.
+    DtypeError
+        If ``source`` is none of these.
+    OnOrbitError
+        If the folder or its robot cannot be read, or the robot was changed since the run.
+    """
+    if isinstance(source, (str, os.PathLike)):
+        source = _read(Path(source))
+    if isinstance(source, Run):
+        if models is not None:
+            raise InputError("a run knows its robots; omit models", name="models", got=models)
+        models = source.models if isinstance(source.scenario, WorldScenario) else source.model
+        source = source.trace
+    if not hasattr(source, "time"):
+        raise DtypeError(
+            f"cannot export {type(source).__name__}; give the folder of a run, a Run or a trace",
+            name="run", got=source, expected="a folder, Run, Trace or WorldTrace",
+        )  # fmt: skip
+    by_name = _by_name(source, models)
+    return Recorded(by_name, rows_of_trace(source, by_name), getattr(source, "events", ()))
+
+
+def _read(folder: Path) -> Run:
+    saved = SavedRun(folder)
+    summary, scenario = saved.summary(), saved.scenario()
+    trace: Any = saved.world_trace() if isinstance(scenario, WorldScenario) else saved.trace()
+    return Run(trace, summary, scenario, folder)
+
+
+def _by_name(trace: Trace | WorldTrace, models: Models | None) -> Mapping[str, Model]:
+    """Return the models of a trace by the name of the system."""
+    systems = list(getattr(trace, "names", ["robot"]))
+    if isinstance(models, Model) and len(systems) == 1:
+        return {systems[0]: models}
+    if isinstance(models, Mapping) and sorted(models) == sorted(systems):
+        return {name: models[name] for name in systems}
+    expected = "a Model" if len(systems) == 1 else f"a mapping with the systems {', '.join(systems)}"
+    raise InputError(
+        f"a trace does not contain its robots: models must be {expected}",
+        name="models",
+        got=models,
+        expected=expected,
+    )
