@@ -2,13 +2,13 @@
 
 use super::{Orbit, OrbitError, PathFrame, StateRows};
 
-/// Computes positions and velocities at many instants, axes of `I`.
+/// Computes positions and velocities of an orbit at many instants, in axes of `I`.
 ///
 /// `times` (T,) are in s, `positions` (T, 3) in m and `velocities` (T, 3) in m/s, row-major.
 ///
 /// # Errors
 /// [`OrbitError::WrongLength`] if an output does not hold 3 T numbers; otherwise the first error of
-/// [`Orbit::position_velocity`]. Rows before the error are written.
+/// [`Orbit::position_velocity`], after the rows before it were written.
 pub fn states(
     orbit: &dyn Orbit,
     times: &[f64],
@@ -18,13 +18,13 @@ pub fn states(
     orbit.fill(times, StateRows::new(times.len(), positions, velocities)?)
 }
 
-/// Computes the local orbital frames (Hill) at many instants.
+/// Computes the local orbital frames `L` (Hill) at many instants.
 ///
-/// `times` (T,) are in s; `rotations` receives `rot_il` (T, 3, 3), row-major, and `rates` (T, 3) the angular velocities
-/// of the frame in its own axes, rad/s.
+/// `times` (T,) are in s; `rotations` receives `rot_il` (T, 3, 3), row-major, and `rates` (T, 3) the angular
+/// velocities of the frame in its own axes, rad/s.
 ///
 /// # Errors
-/// [`OrbitError::WrongLength`]; otherwise the first error of [`Orbit::lvlh`].
+/// [`OrbitError::WrongLength`] for outputs of the wrong length; otherwise the first error of [`Orbit::lvlh`].
 pub fn lvlh_frames(
     orbit: &dyn Orbit,
     times: &[f64],
@@ -34,10 +34,12 @@ pub fn lvlh_frames(
     frames_at(times, rotations, rates, |t| orbit.lvlh(t).map(PathFrame::from))
 }
 
-/// Computes the frames [`Orbit::frame`] at many instants; arrays as in [`lvlh_frames`].
+/// Computes the frames attached to the orbit ([`Orbit::frame`]) at many instants; arrays as in
+/// [`lvlh_frames`].
 ///
 /// # Errors
-/// [`OrbitError::WrongLength`]; otherwise the first error of [`Orbit::frame`].
+/// [`OrbitError::WrongLength`] for outputs of the wrong length; otherwise the first error of
+/// [`Orbit::frame`].
 pub fn path_frames(
     orbit: &dyn Orbit,
     times: &[f64],
@@ -63,7 +65,7 @@ fn frames_at(
     let rows = rotations.chunks_exact_mut(9).zip(rates.chunks_exact_mut(3));
     for (&t, (rotation, rate)) in times.iter().zip(rows) {
         let frame = frame(t)?;
-        rotation.copy_from_slice(frame.rot_ip.transpose().as_slice()); // column-major, transposed
+        rotation.copy_from_slice(frame.rot_ip.transpose().as_slice()); // nalgebra is column-major
         rate.copy_from_slice(frame.rate_p.as_slice());
     }
     Ok(())

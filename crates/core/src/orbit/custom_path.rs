@@ -1,4 +1,4 @@
-//! Orbit through given points, which need not follow any law of motion.
+//! Orbit through given points, which may describe any motion.
 
 use nalgebra::{Vector3, Vector4};
 
@@ -6,18 +6,18 @@ use super::error::LARGEST;
 use super::{Orbit, OrbitError, OrbitState, PathError, PathFrame};
 use crate::spatial::{self, Quat, RotationSpline, Spline, exp_so3};
 
-/// Behaviour before the first point and after the last.
+/// Behaviour of a path before its first point and after its last point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ends {
     /// [`PathError::TimeOutOfPath`] is returned.
     #[default]
     Error,
-    /// The path continues along a straight line with the velocity and the angular velocity of the nearest end. Both
-    /// are continuous; the acceleration drops to zero.
+    /// The path continues along a straight line with the velocity and the angular velocity of the nearest
+    /// end. Both are continuous there, but the acceleration drops to zero.
     Coast,
 }
 
-/// Points of a path, one row per time; axes of `I`.
+/// Points of a path, with one row per time, in axes of `I`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathPoints {
     /// Times, increasing, s of simulation.
@@ -34,9 +34,9 @@ pub struct PathPoints {
 
 /// C² path that interpolates the given points.
 ///
-/// Positions alone are interpolated by a cubic spline of order 4, positions with velocities by a quintic spline of
-/// order 6 with a continuous third derivative, and positions with velocities and accelerations by quintic pieces of
-/// order 6. Attitudes are interpolated by a [`RotationSpline`] of order 4.
+/// Positions alone are interpolated by a cubic spline of order 4. Positions with velocities are interpolated
+/// by a quintic spline of order 6 with a continuous third derivative, and positions with velocities and
+/// accelerations by quintic pieces of order 6. Attitudes are interpolated by a [`RotationSpline`] of order 4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CustomPath {
     mu: Option<f64>,
@@ -49,7 +49,8 @@ pub struct CustomPath {
 const LARGEST_TURN: f64 = 2.0;
 
 impl CustomPath {
-    /// Builds a path around a planet of parameter `mu`, m³/s², or without a planet.
+    /// Creates a path around a planet with gravitational parameter `mu`, m³/s², or without a planet if `mu`
+    /// is `None`.
     ///
     /// # Errors
     /// [`PathError`] for invalid points; [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and
@@ -82,7 +83,7 @@ impl CustomPath {
         (times[0], times[times.len() - 1])
     }
 
-    /// Returns the behaviour outside the span.
+    /// Returns the behaviour before the first and after the last point.
     pub fn ends(&self) -> Ends {
         self.ends
     }
@@ -92,13 +93,13 @@ impl CustomPath {
         self.attitude.is_some()
     }
 
-    /// Returns the time covered by the path that is nearest to `t`, s, and the signed difference of `t` from that time,
-    /// s.
+    /// Returns the time within the span of the path that is nearest to `t`, s, and the difference of `t` from
+    /// that time, s.
     fn clamped(&self, t: f64) -> Result<(f64, f64), OrbitError> {
         super::error::finite("time", t)?;
         let (start, end) = self.span();
         let inside = t.clamp(start, end);
-        let rounding = 8.0 * f64::EPSILON * start.abs().max(end.abs()); // allows for the rounding of the times of a run
+        let rounding = 8.0 * f64::EPSILON * start.abs().max(end.abs()); // rounding error of the times of a run
         match self.ends {
             Ends::Error if (t - inside).abs() > rounding => {
                 Err(PathError::TimeOutOfPath { time: t, start, end }.into())
@@ -118,8 +119,8 @@ impl Orbit for CustomPath {
         "derivative of the path's spline"
     }
 
-    /// Returns the times of all points. A derivative of the acceleration is discontinuous there; where the path begins
-    /// or ceases to coast, so is the acceleration itself.
+    /// Returns the times of all points, where a derivative of the acceleration is discontinuous. At the first
+    /// and the last point of a path that coasts, the acceleration itself is discontinuous.
     fn event_times(&self) -> Vec<f64> {
         self.position.times().to_vec()
     }
@@ -144,7 +145,8 @@ impl Orbit for CustomPath {
         let (inside, beyond) = self.clamped(t)?;
         let (turn, rate, _) = attitude.sample(inside);
         let rot_ip = exp_so3(rate * beyond).product(turn).matrix();
-        // the rotation after the end is about the angular velocity, whose components in P therefore stay constant
+        // after the end, the rotation is about the constant angular velocity, so its components in P are
+        // constant
         let rate_p = rot_ip.transpose_mul(rate);
         Ok(PathFrame { rot_ip: rot_ip.to_nalgebra(), rate_p: rate_p.to_nalgebra() })
     }
@@ -186,12 +188,13 @@ impl PathPoints {
     }
 }
 
-/// Returns the first number of a row that is not finite or too large, or zero if all numbers are valid.
+/// Returns the first number of a row that is too large or not finite, or zero if all numbers are valid.
 fn worst(row: &[f64]) -> f64 {
     row.iter().copied().find(|x| !x.is_finite() || x.abs() > LARGEST).unwrap_or(0.0)
 }
 
-/// Checks that `column` has `n` valid rows; `worst` returns an invalid number of a row, or zero if the row is valid.
+/// Checks that `column` has `n` valid rows. `worst` returns an invalid number of a row, or zero if the row is
+/// valid.
 fn rows<T>(
     name: &'static str,
     n: usize,

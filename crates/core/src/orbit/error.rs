@@ -5,33 +5,33 @@ use super::sgp4::{ElementSetError, Sgp4Error};
 use crate::gravity::GravityError;
 use crate::number_text::{count, short, unlike};
 
-/// Errors of the `orbit` module, with the offending numbers.
+/// Errors of the `orbit` module; each holds the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OrbitError {
     /// The gravity field cannot be evaluated.
     #[error(transparent)]
     Gravity(#[from] GravityError),
-    /// Two orbits are around different planets.
+    /// The two orbits are around different planets.
     #[error(
-        "the orbit has mu {mu} m³/s² and its reference {expected} m³/s²; give both the same planet",
+        "mu of the orbit is {mu} m³/s², but that of its reference is {expected} m³/s²; both must orbit the same planet",
         mu = unlike(*mu, &[*expected]), expected = short(*expected)
     )]
     OtherPlanet {
         /// Gravitational parameter of the orbit, m³/s².
         mu: f64,
-        /// That of the reference, m³/s².
+        /// Gravitational parameter of the reference, m³/s².
         expected: f64,
     },
     /// An orbit has an epoch, but the reference has none.
     #[error(
-        "the epoch of the orbit is {epoch}, but time zero of its reference is not a date; give an earth with an epoch"
+        "the epoch of the orbit is {epoch}, but its reference orbit has no epoch; give an earth with an epoch"
     )]
     NoEpoch {
         /// Epoch of the orbit.
         epoch: String,
     },
-    /// Two orbits have different axes.
+    /// The axes of the two orbits differ, and no Earth with an epoch is given to convert them.
     #[error(
         "the orbit has {orbit} axes and its reference {reference} axes; give an earth with an epoch to convert them"
     )]
@@ -59,7 +59,7 @@ pub enum OrbitError {
         /// Accepted range.
         expected: &'static str,
     },
-    /// A number is so large that products of several would overflow.
+    /// A number is so large that products of several such numbers would overflow.
     #[error(
         "{name} is {value}; it must lie between -1e60 and 1e60 (in SI units)",
         value = short(*value)
@@ -70,7 +70,7 @@ pub enum OrbitError {
         /// Given value.
         value: f64,
     },
-    /// A quantity that must be positive is not.
+    /// A quantity that must be positive is zero or negative.
     #[error("{name} is {value}; it must be greater than zero", value = short(*value))]
     NotPositive {
         /// Name of the input.
@@ -78,7 +78,7 @@ pub enum OrbitError {
         /// Given value.
         value: f64,
     },
-    /// The eccentricity is below zero.
+    /// The eccentricity is negative.
     #[error("eccentricity is {value}; it must be zero or greater", value = short(*value))]
     NegativeEccentricity {
         /// Given value.
@@ -96,9 +96,9 @@ pub enum OrbitError {
         /// Eccentricity.
         eccentricity: f64,
     },
-    /// A parabola has no semi-major axis.
+    /// A semi-major axis is given for a parabola, which has none.
     #[error(
-        "semi-major axis is {semi_major_axis} m with eccentricity 1, but a parabola has none; give its \
+        "a semi-major axis of {semi_major_axis} m is given with eccentricity 1, but a parabola has none; give its \
          semi-latus rectum",
         semi_major_axis = short(*semi_major_axis)
     )]
@@ -106,9 +106,9 @@ pub enum OrbitError {
         /// Semi-major axis, m.
         semi_major_axis: f64,
     },
-    /// A parabola has no mean anomaly.
+    /// A mean anomaly is given for a parabola, which has none.
     #[error(
-        "mean anomaly {value} rad is given with eccentricity 1, but a parabola has none; give the true \
+        "a mean anomaly of {value} rad is given with eccentricity 1, but a parabola has none; give the true \
          anomaly or the time of periapsis",
         value = short(*value)
     )]
@@ -116,16 +116,16 @@ pub enum OrbitError {
         /// Given value, rad.
         value: f64,
     },
-    /// Secular rates and relative elements are defined only for ellipses.
+    /// The orbit is not an ellipse, but secular rates and relative elements are defined only for ellipses.
     #[error(
-        "eccentricity is {eccentricity}; it must be below 1: only ellipses are supported here",
+        "eccentricity is {eccentricity}; it must be below 1, because secular rates and relative elements require an ellipse",
         eccentricity = short(*eccentricity)
     )]
     NotClosed {
         /// Eccentricity.
         eccentricity: f64,
     },
-    /// The orbit of the chief is equatorial.
+    /// The orbit of the chief is equatorial, so its node and the relative elements are undefined.
     #[error(
         "the chief's inclination is {inclination} rad: an equatorial orbit has no node and no relative \
          elements; use local coordinates",
@@ -135,9 +135,9 @@ pub enum OrbitError {
         /// Inclination of the chief, rad.
         inclination: f64,
     },
-    /// No impulse reaches the origin in the given time.
+    /// No impulse leads to the origin in the given time.
     #[error(
-        "no impulse reaches the origin in {time} s at a mean motion of {mean_motion} rad/s: x or z returns \
+        "no impulse leads to the origin in {time} s at a mean motion of {mean_motion} rad/s: x or z returns \
          to its initial value for every velocity; choose a different time",
         time = short(*time), mean_motion = short(*mean_motion)
     )]
@@ -156,7 +156,7 @@ pub enum OrbitError {
         /// Given value, rad.
         value: f64,
     },
-    /// The true anomaly lies beyond the asymptote of an open orbit.
+    /// The true anomaly lies beyond the asymptote of a parabola or hyperbola.
     #[error(
         "true anomaly is {value} rad; at eccentricity {eccentricity} it must lie strictly within ±{limit} rad",
         value = unlike(*value, &[*limit, -*limit]), eccentricity = short(*eccentricity), limit = short(*limit)
@@ -199,7 +199,7 @@ pub enum OrbitError {
         /// Sine of the angle between position and velocity.
         sine: f64,
     },
-    /// The time is so far from the epoch that the phase is undetermined.
+    /// The time is so far from the epoch that the phase has lost its accuracy.
     #[error(
         "time is {time} s; it must be within {limit} s of the epoch, {epoch} s",
         time = short(*time), epoch = short(*epoch), limit = short(*limit)
@@ -233,10 +233,11 @@ pub enum OrbitError {
         time: f64,
         /// Distance from the planet's centre, m.
         distance: f64,
-        /// Smallest distance from the planet's centre, m: lowest ground, or the end of the field's domain.
+        /// Smallest accepted distance from the planet's centre, m: the lowest ground, or the limit of the
+        /// gravity field.
         minimum: f64,
     },
-    /// The orbit begins inside the planet.
+    /// The initial position of the orbit is inside the planet.
     #[error(
         "the orbit begins inside the planet, {distance} m from its centre; expected at least {minimum} m; \
          give position and velocity relative to the centre in m and m/s (are these kilometres, or an altitude?)",
@@ -245,12 +246,13 @@ pub enum OrbitError {
     BeginsBelowSurface {
         /// Distance from the planet's centre, m.
         distance: f64,
-        /// Smallest distance from the planet's centre, m: lowest ground, or the end of the field's domain.
+        /// Smallest accepted distance from the planet's centre, m: the lowest ground, or the limit of the
+        /// gravity field.
         minimum: f64,
     },
-    /// The time cannot be reached with the largest number of steps.
+    /// The requested time needs more integration steps than permitted.
     #[error(
-        "integration from {epoch} s reached the limit of {steps} steps at {time} s; give an initial state \
+        "the integration from {epoch} s reached the limit of {steps} steps at {time} s; give an initial state \
          nearer to the requested times",
         time = short(*time), epoch = short(*epoch)
     )]
@@ -262,7 +264,7 @@ pub enum OrbitError {
         /// Number of steps.
         steps: usize,
     },
-    /// The step size underflows.
+    /// The integration needs a smaller step than permitted.
     #[error(
         "the orbit cannot be integrated beyond t = {time} s: even with a step of {length} s, the integration error \
          exceeds the tolerance (is the field discontinuous there?)",
@@ -285,10 +287,10 @@ pub enum OrbitError {
     Path(#[from] PathError),
 }
 
-/// Largest magnitude of an input: products of five such numbers do not overflow.
+/// Largest accepted magnitude of an input; the product of five such numbers does not overflow.
 pub(crate) const LARGEST: f64 = 1e60;
 
-/// Returns `value` if it is finite and not too large.
+/// Returns `value`, or an error if it is too large or not finite.
 pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if !value.is_finite() {
         return Err(OrbitError::NotFinite { name, value });
@@ -299,13 +301,13 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> 
     Ok(value)
 }
 
-/// Returns `value` if it is finite and greater than zero.
+/// Returns `value`, or an error if it is not positive and finite.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)? > 0.0 { Ok(value) } else { Err(OrbitError::NotPositive { name, value }) }
 }
 
-/// Returns ` (it is …)` with the sine of an angle, in enough digits to distinguish it from `limit`; nothing if it is
-/// not finite.
+/// Returns ` (it is …)` with the sine of an angle, with enough digits to distinguish it from `limit`, or an
+/// empty text if the sine is not finite.
 fn actual_sine(sine: f64, limit: f64) -> String {
     if sine.is_finite() { format!(" (it is {})", unlike(sine, &[limit])) } else { String::new() }
 }

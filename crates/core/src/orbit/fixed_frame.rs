@@ -1,4 +1,4 @@
-//! Reference at rest in inertial axes.
+//! Reference orbit at rest in inertial axes.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -7,8 +7,8 @@ use super::{Orbit, OrbitError, OrbitState, PathFrame};
 
 /// Frame at rest in `I`, such as a laboratory or a frame far from all bodies.
 ///
-/// The frame is not in free fall: around a planet, gravity accelerates the robot relative to it, except in
-/// `carried` mode.
+/// The frame is not in free fall: around a planet, gravity accelerates the robot relative to the frame,
+/// except in `carried` mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedFrame {
     position: Vector3<f64>,
@@ -17,11 +17,12 @@ pub struct FixedFrame {
 }
 
 impl FixedFrame {
-    /// Returns the frame at `position` (m) with axes rotated by `attitude`, around a planet of parameter `mu`
-    /// (m³/s²), or without a planet.
+    /// Creates the frame at `position` (m), with axes rotated by `attitude`, around a planet with
+    /// gravitational parameter `mu` (m³/s²), or without a planet if `mu` is `None`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], and [`OrbitError::NotPositive`] for `mu`.
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for the position, and
+    /// [`OrbitError::NotPositive`] for `mu`.
     pub fn new(
         position: Vector3<f64>,
         attitude: UnitQuaternion<f64>,

@@ -22,7 +22,7 @@ pub struct Lvlh {
 }
 
 impl Lvlh {
-    /// Returns the frame for a state of the reference.
+    /// Computes the frame from a state of the reference orbit.
     ///
     /// `x̂ = r/|r|`, `ẑ = h/|h|`, `ŷ = ẑ × x̂`, with `h = r × v`;
     /// `ω = (r aₙ/h) x̂ + (h/r²) ẑ`, with `aₙ` the acceleration along `ẑ` (zero on a Kepler orbit).
@@ -59,7 +59,7 @@ pub struct Nadir {
 }
 
 impl Nadir {
-    /// Returns the frame for a state of the reference: the axes `(y, -z, -x)` of [`Lvlh`].
+    /// Computes the frame from a state of the reference orbit; its axes are `(y, -z, -x)` of [`Lvlh`].
     ///
     /// # Errors
     /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
@@ -79,7 +79,8 @@ impl From<&Lvlh> for Nadir {
     }
 }
 
-/// Frame attached to a reference, letter `P`: the attitude of a path, or its local orbital frame.
+/// Frame attached to a reference orbit, letter `P`: the attitude given for a path, or else the local orbital
+/// frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PathFrame {
     /// Rotation from `P` axes to `I` axes.
@@ -122,7 +123,7 @@ mod tests {
         assert_eq!(n.rot_in * Vector3::z(), -Vector3::x());
         assert_eq!(n.rot_in * Vector3::y(), -Vector3::z());
         assert_eq!(n.rot_in * Vector3::x(), Vector3::y());
-        // the angular velocity is that of one rotating triad
+        // both frames rotate as one rigid triad, so their angular velocities agree
         assert_eq!(n.rot_in * n.rate_n, l.rot_il * l.rate_l);
     }
 }

@@ -3,8 +3,8 @@
 use super::{Orbit, OrbitError, StateRows};
 use crate::spatial::{Real, Vec3};
 
-/// Fills `rows` with states computed by `kernel` on the SIMD lanes of `S`. Where `kernel` returns `None`, the instants
-/// are evaluated one by one.
+/// Fills `rows` with states computed by `kernel` on the SIMD lanes of `S`. If `kernel` returns `None`, its
+/// instants are evaluated individually.
 pub(super) fn fill_lanes<S: Real>(
     orbit: &impl Orbit,
     times: &[f64],
@@ -21,7 +21,7 @@ pub(super) fn fill_lanes<S: Real>(
                 let mut from = done;
                 while from < times.len() {
                     let count = S::LANES.min(times.len() - from);
-                    // lanes beyond the end repeat the last instant
+                    // lanes after the last instant repeat that instant
                     let t = S::from_lanes(|lane| times[from + lane.min(count - 1)]);
                     let Some((position, velocity)) = kernel(t) else { break };
                     rows.set_lanes(from, count, &position, &velocity);

@@ -1,7 +1,7 @@
 //! Reference orbits: the motion of the origin of W.
 //!
-//! [`Orbit`] is their interface; each kind is one file. All vectors have inertial axes `I` and are measured
-//! from the centre of the planet, in metres, seconds and radians.
+//! [`Orbit`] is their interface; each kind of orbit has its own file or folder. All vectors have inertial
+//! axes `I` and are measured from the centre of the planet. Units are metres, seconds and radians.
 
 mod arrays;
 mod custom_path;
@@ -32,7 +32,7 @@ pub use sgp4::{EarthModel, MeanElements, Sgp4};
 pub use state::OrbitState;
 pub use state_rows::StateRows;
 
-/// Gravitational parameter of the Earth, `3.986004418e14 m³/s²`, atmosphere included.
+/// Gravitational parameter of the Earth including its atmosphere, `3.986004418e14 m³/s²`.
 ///
 /// Source: IERS Conventions (2010), Technical Note 36, table 1.1 (TCG-compatible value).
 pub const MU_EARTH: f64 = 3.986_004_418e14;

@@ -3,7 +3,7 @@
 use crate::number_text::{count, short, unlike};
 use crate::spatial::SplineError;
 
-/// Errors of paths: invalid points, or a time at which the path is not defined.
+/// Errors of paths: invalid points, or a time outside the path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[allow(missing_docs)] // the fields are what the messages say
@@ -23,7 +23,7 @@ pub enum PathError {
         before = short(*before), time = unlike(*time, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, time: f64 },
-    #[error("accelerations are given without velocities; give both, or velocities alone, or neither")]
+    #[error("accelerations are given without velocities; give both, give only velocities, or give neither")]
     AccelerationsAlone,
     #[error(
         "attitudes[{index}] (x, y, z, w) has norm {norm}; it must be 1 within 1e-6; normalise it",

@@ -1,4 +1,4 @@
-//! Interface of a reference orbit.
+//! Interface of reference orbits.
 
 use super::{Axes, Lvlh, OrbitError, OrbitState, PathFrame, StateRows};
 use crate::earth::Epoch;
@@ -11,7 +11,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the gravitational parameter of the planet, m³/s²; `None` without a planet.
     fn mu(&self) -> Option<f64>;
 
-    /// Returns the gravity field if the orbit is free fall under this field alone; otherwise `None`.
+    /// Returns the gravity field if the orbit is in free fall in this field alone; otherwise `None`.
     fn gravity(&self) -> Option<&Arc<Gravity>> {
         None
     }
@@ -19,38 +19,39 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the state at `t` seconds of simulation, axes of `I`.
     ///
     /// # Errors
-    /// [`OrbitError`] if the orbit is not defined at `t`, or `t` is not finite.
+    /// [`OrbitError`] if `t` is not finite or the orbit is not defined at `t`.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
 
-    /// Returns the states at two instants, bit-identical to [`Orbit::state`], if the kind of orbit can compute both at
-    /// little more than the cost of one; otherwise `None`.
+    /// Returns the states at two instants, bit-identical to [`Orbit::state`]; `None` if the orbit has no
+    /// method that computes both in little more than the time of one.
     fn two_states(&self, _: [f64; 2]) -> Option<[OrbitState; 2]> {
         None
     }
 
-    /// Returns position and velocity, m and m/s, as [`Orbit::state`] does.
+    /// Returns the position, m, and velocity, m/s, at `t` without computing the acceleration.
     ///
     /// # Errors
-    /// The errors of [`Orbit::state`], except errors of the acceleration.
+    /// The errors of [`Orbit::state`], except those of the acceleration.
     fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         self.state(t).map(|state| (state.position, state.velocity))
     }
 
     /// Computes positions and velocities at many instants. Rows before the first error are written.
     ///
-    /// The states equal those of [`Orbit::position_velocity`] up to rounding: some kinds evaluate several
-    /// instants at once on SIMD lanes.
+    /// The states equal those of [`Orbit::position_velocity`] up to rounding, because some kinds of orbit
+    /// evaluate several instants at once on SIMD lanes.
     ///
     /// # Errors
-    /// The error of [`Orbit::position_velocity`] at the first instant that has one.
+    /// The error of [`Orbit::position_velocity`] at the first instant for which it returns one.
     fn fill(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         fill_each(self, times, rows)
     }
 
     /// Computes at most `most_steps` integration steps towards `times`. Returns true if no further step is
-    /// required.
+    /// needed.
     ///
-    /// Results do not depend on this call. Callers prepare in parts so that long integrations can be interrupted.
+    /// Results do not depend on this call. It lets callers divide a long integration into parts that can be
+    /// interrupted.
     fn prepare(&self, _times: &[f64], _most_steps: usize) -> bool {
         true
     }
@@ -60,7 +61,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         Axes::default()
     }
 
-    /// Returns the epoch at time zero, if the orbit defines one.
+    /// Returns the epoch that is time zero of the simulation, if the orbit defines one.
     fn epoch(&self) -> Option<Epoch> {
         None
     }
@@ -70,8 +71,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         "derivative of the position"
     }
 
-    /// Returns the time derivative of the position at `t`, m/s. Equals `state.velocity` unless the velocity reported by
-    /// the orbit model is not the derivative of the position (SGP4).
+    /// Returns the time derivative of the position at `t`, m/s. Equals `state.velocity` unless the velocity
+    /// reported by the orbit model is not the derivative of the position (SGP4).
     ///
     /// # Errors
     /// The errors of [`Orbit::state`].
@@ -79,13 +80,14 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         Ok(state.velocity)
     }
 
-    /// Returns the times at which the acceleration or one of its derivatives is discontinuous, s of simulation; the
-    /// integrator ends a step at each.
+    /// Returns the times, s of simulation, at which the acceleration or one of its derivatives is
+    /// discontinuous. The integrator of a run ends a step at each of these times.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Returns the frame attached to the reference: its given attitude, otherwise its local orbital frame.
+    /// Returns the frame attached to the reference: the attitude given for it, or else its local orbital
+    /// frame.
     ///
     /// # Errors
     /// The errors of [`Orbit::state`] and [`Orbit::lvlh`].
@@ -96,14 +98,14 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the local orbital frame (Hill, RSW) at `t` seconds of simulation.
     ///
     /// # Errors
-    /// The errors of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or moves along
-    /// its position vector.
+    /// The errors of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or
+    /// moves along its position vector.
     fn lvlh(&self, t: f64) -> Result<Lvlh, OrbitError> {
         Lvlh::of(&self.state(t)?)
     }
 }
 
-/// Fills the rows with one evaluation of the orbit per instant.
+/// Fills the rows by evaluating the orbit once per instant.
 pub(super) fn fill_each(
     orbit: &(impl Orbit + ?Sized),
     times: &[f64],

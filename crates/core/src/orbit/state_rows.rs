@@ -1,10 +1,10 @@
-//! Rows of position and velocity of one orbit at many instants.
+//! Output arrays for positions and velocities of one orbit at many instants.
 
 use super::OrbitError;
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
-/// Output arrays for positions and velocities, m and m/s, axes of `I`, with rows of three numbers.
+/// Output arrays for positions (m) and velocities (m/s), axes of `I`, with three numbers per row.
 #[derive(Debug)]
 pub struct StateRows<'a> {
     positions: &'a mut [f64],
@@ -12,10 +12,10 @@ pub struct StateRows<'a> {
 }
 
 impl<'a> StateRows<'a> {
-    /// Returns the rows over output arrays with `count` rows each.
+    /// Creates the rows from two output arrays with `count` rows each.
     ///
     /// # Errors
-    /// [`OrbitError::WrongLength`].
+    /// [`OrbitError::WrongLength`] if an array does not hold `3 count` numbers.
     pub fn new(
         count: usize,
         positions: &'a mut [f64],
@@ -29,7 +29,7 @@ impl<'a> StateRows<'a> {
         Ok(Self { positions, velocities })
     }
 
-    /// Writes row `index`.
+    /// Writes a position and a velocity to row `index`.
     ///
     /// # Errors
     /// [`OrbitError::WrongLength`] for a row beyond the last.

@@ -1,7 +1,8 @@
-//! Solvers of Kepler's equation for the three conics: the eccentric anomaly from the mean anomaly.
+//! Solvers of Kepler's equation for ellipse, parabola and hyperbola: the eccentric anomaly from the mean
+//! anomaly.
 //!
-//! `|1 - e|` is a separate input, and `E - sin E` is computed without cancellation, so that the relative
-//! accuracy holds in the limit `e → 1`, `M → 0`.
+//! `|1 - e|` is a separate input and `E - sin E` is computed without cancellation, which keeps the relative
+//! accuracy for `e → 1`, `M → 0`.
 
 use crate::spatial::Real;
 use std::f64::consts::PI;
@@ -13,10 +14,11 @@ pub(super) struct HalfAnomaly<S = f64> {
     pub(super) cos: S,
 }
 
-/// Sums `Σ (-s)ᵏ x²ᵏ⁺³/(2k+3)!` in nested form, `s = sign`: `x - sin x` for 1, `sinh x - x` for -1; `|x| < 1`.
+/// Returns `Σ (-s)ᵏ x²ᵏ⁺³/(2k+3)!` for `|x| < 1`, where `s` is `sign`: `x - sin x` for 1, `sinh x - x` for
+/// -1.
 #[inline(always)]
 fn cubic_tail<S: Real>(x: S, sign: f64) -> S {
-    // each factor is 1 - y/d times the following one
+    // each factor is 1 - y/d times the next factor
     let fold = |y: S, d: f64, tail: S| S::of(1.0) - y * S::of(1.0 / d) * tail;
     let y = S::of(sign) * x * x;
     let tail = fold(y, 210.0, fold(y, 272.0, S::of(1.0)));
@@ -30,8 +32,8 @@ fn x_minus_sin<S: Real>(x: S, sin: S) -> S {
     S::select(S::less(x.abs(), S::of(1.0)), cubic_tail(x, 1.0), x - sin)
 }
 
-/// Returns `∛x` to 1e-9 for `x > 0`, by Newton steps for `1/∛x` without division; the first guess takes a third of the
-/// exponent.
+/// Returns `∛x` with a relative error of 1e-9 for `x > 0`, by Newton steps for `1/∛x`, which need no
+/// division. The initial value is obtained by dividing the exponent by three.
 #[inline(always)]
 fn cube_root<S: Real>(x: S) -> S {
     const HIGH: u64 = 0x553e_f0ff; // 4/3 of the exponent bias, with the error balanced over three octaves
@@ -43,7 +45,7 @@ fn cube_root<S: Real>(x: S) -> S {
         },
     );
     for _ in 0..3 {
-        // y ← y (4 - x y³)/3: the error falls from 3 % to 2e-3, 1e-5 and 2e-10
+        // y ← y (4 - x y³)/3: the relative error falls from 3 % to 2e-3, 1e-5 and 2e-10
         let cube = inverse * inverse * inverse;
         inverse *= S::of(4.0 / 3.0) - x * cube * S::of(1.0 / 3.0);
     }
@@ -55,17 +57,18 @@ fn sinh_minus_x(x: f64, sinh: f64) -> f64 {
     if x.abs() < 1.0 { cubic_tail(x, -1.0) } else { sinh - x }
 }
 
-/// Returns `M = (1 - e) E + e (E - sin E)`, rad.
+/// Returns the mean anomaly `M = (1 - e) E + e (E - sin E)` of an ellipse, rad.
 pub(super) fn mean_from_eccentric(e: f64, one_minus_e: f64, eccentric: f64) -> f64 {
     one_minus_e * eccentric + e * x_minus_sin(eccentric, eccentric.sin())
 }
 
-/// Returns `M = (e - 1) H + e (sinh H - H)`.
+/// Returns the mean anomaly `M = (e - 1) H + e (sinh H - H)` of a hyperbola.
 pub(super) fn mean_from_hyperbolic(e: f64, e_minus_one: f64, hyperbolic: f64) -> f64 {
     e_minus_one * hyperbolic + e * sinh_minus_x(hyperbolic, hyperbolic.sinh())
 }
 
-/// Eccentricity below which [`solve_ellipse`] uses [`solve_nearly_circular`] instead of [`solve_any_ellipse`].
+/// Eccentricity below which [`solve_ellipse`] uses [`solve_nearly_circular`]; above it,
+/// [`solve_any_ellipse`].
 const NEARLY_CIRCULAR: f64 = 0.1;
 
 /// Solves `M = E - e sin E` for `M` in [-π, π] and `0 ≤ e < 1`.
@@ -87,11 +90,12 @@ pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnoma
     }
 }
 
-/// Solves Kepler's equation of a nearly circular orbit for `δ = E - M`, at half the cost of [`solve_any_ellipse`].
+/// Solves Kepler's equation of a nearly circular orbit for `δ = E - M`, in half the time of
+/// [`solve_any_ellipse`].
 ///
-/// Takes two steps with the reverted series of `f = δ - e sin(M + δ)`. The first, from `δ = 0` and of second order,
-/// gives `δ = x - x³/2` with `x = e sin M/(1 - e cos M)`; its error is below 1e-5 rad. The second is of third order and
-/// reduces the error to rounding.
+/// Takes two steps with the reverted series of `f = δ - e sin(M + δ)`. The first step starts at `δ = 0` and
+/// is of second order: it gives `δ = x - x³/2` with `x = e sin M/(1 - e cos M)` and an error below 1e-5 rad.
+/// The second step is of third order and reduces the error to rounding.
 ///
 /// Source of the series: Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, eq. 3.6.25.
 #[inline(always)]
@@ -111,10 +115,11 @@ fn solve_nearly_circular<S: Real>(e: S, mean: S) -> HalfAnomaly<S> {
     HalfAnomaly { sin, cos }
 }
 
-/// Returns sine and cosine of an angle increased by `x`, `|x| < 1/8`.
+/// Returns the sine and cosine of an angle after an increase by `x`, `|x| < 1/8`, from the sine and cosine
+/// before.
 #[inline(always)]
 fn turned<S: Real>((s, c): (S, S), x: S) -> (S, S) {
-    // nested series of sin x/x and cos x: each factor is 1 - z/a times the following one
+    // nested series of sin x/x and cos x: each factor is 1 - z/a times the next factor
     let fold = |z: S, a: f64, tail: S| (-z * tail).mul_add(S::of(1.0 / a), S::of(1.0));
     let (z, one) = (x * x, S::of(1.0));
     let sin = x * fold(z, 6.0, fold(z, 20.0, fold(z, 42.0, fold(z, 72.0, one))));
@@ -124,8 +129,8 @@ fn turned<S: Real>((s, c): (S, S), x: S) -> (S, S) {
 
 /// Solves Kepler's equation of any ellipse.
 ///
-/// A cubic equation gives a first approximation with an error below 1e-3 rad, which one correction of fifth order
-/// refines.
+/// The solution of a cubic equation, with an error below 1e-3 rad, is refined by one correction of fifth
+/// order.
 ///
 /// Source: Markley, Celestial Mechanics and Dynamical Astronomy 63, 1995, eqs. (5)-(24).
 #[inline(always)]
@@ -162,10 +167,12 @@ fn solve_any_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
 
 /// Solves `M = e sinh H - H` for any `M` and `e > 1`.
 ///
-/// Uses Newton's method from above: `e sinh H - H` is convex for `H > 0`, so the iterates decrease monotonically.
+/// Newton's method starts above the solution, from where it decreases monotonically, because `e sinh H - H`
+/// is convex for `H > 0`.
 pub(super) fn solve_hyperbola(e: f64, e_minus_one: f64, mean: f64) -> HalfAnomaly {
     let m = mean.abs();
-    // bounds of H: (e - 1) H + e H³/6 ≤ M, and sinh H = (M + H)/e with that bound inserted
+    // upper bounds of H: from (e - 1) H + e H³/6 ≤ M, and from sinh H = (M + H)/e with the first bound
+    // inserted
     let p = 2.0 * (2.0 * e_minus_one / e).sqrt();
     let cubic = p * ((3.0 * m / (e_minus_one * p)).asinh() / 3.0).sinh();
     let mut h = cubic.min(((m + cubic) / e).asinh());
@@ -192,7 +199,8 @@ pub(super) fn solve_parabola(b: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the residual divided by the effect of rounding `M` and `E`; values up to 8 are accepted.
+    /// Returns the residual divided by the effect of rounding errors of `M` and `E`; values up to 8 are
+    /// accepted.
     fn residual_in_roundings(e: f64, one_minus_e: f64, m: f64) -> f64 {
         let half = solve_ellipse(e, one_minus_e, m);
         let eccentric = 2.0 * half.sin.atan2(half.cos);
@@ -216,7 +224,7 @@ mod tests {
         }
         assert!(worst < 8.0, "{worst} roundings");
         for i in 0..=40 {
-            // both sides of the limit between the two solvers
+            // eccentricities on both sides of the limit between the two solvers
             let e = 0.105 * f64::from(i) / 40.0;
             for j in -400..=400 {
                 worst = worst.max(residual_in_roundings(e, 1.0 - e, PI * f64::from(j) / 400.0));
@@ -235,7 +243,7 @@ mod tests {
                 let half = solve_hyperbola(e, eme, m);
                 let h = 2.0 * half.sin.asinh();
                 let back = mean_from_hyperbolic(e, eme, h);
-                // a rounding error of H changes M by e cosh H · H, up to 50 roundings of M
+                // a rounding error of H changes M by e cosh H · H, which is up to 50 rounding errors of M
                 let scale = m + (eme + 2.0 * e * half.sin * half.sin) * h;
                 assert!((back - m).abs() < 8.0 * f64::EPSILON * scale, "e-1={eme} M={m}: {back}");
             }

@@ -1,4 +1,4 @@
-//! Motion in the orbital plane as a function of the time since a known phase.
+//! Motion in the orbital plane as a function of the time since an instant with a known phase.
 //!
 //! Perifocal axes: x towards the periapsis, y along the velocity at the periapsis.
 
@@ -10,7 +10,8 @@ use crate::orbit::OrbitError;
 use crate::orbit::error::positive;
 use crate::spatial::Real;
 
-/// Size and shape of a conic. Each field has full relative accuracy: `1 - e` is not computed from `e`.
+/// Size and shape of a conic. Each field has full relative accuracy; in particular, `1 - e` is not computed
+/// from `e`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Shape {
     /// Eccentricity `e`.
@@ -23,7 +24,7 @@ pub(super) struct Shape {
     pub(super) inverse_axis: Double,
 }
 
-/// `|1 - e|` below which the orbit is treated as a parabola; `f64` cannot resolve the difference.
+/// Largest `|1 - e|` at which the orbit is treated as a parabola.
 pub(super) const PARABOLIC: f64 = 1e-30;
 
 /// Position and velocity in perifocal axes, m and m/s.
@@ -35,7 +36,7 @@ pub(super) struct PerifocalState<S = f64> {
     pub(super) vy: S,
 }
 
-/// Ellipse with its semi-axes and the velocity scales `√(μ a)` and `√(μ p)`.
+/// Ellipse with its semi-axes `a` and `b` and the velocity scales `√(μ a)` and `√(μ p)`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ellipse<S> {
     pub(super) e: S,
@@ -67,7 +68,8 @@ impl<S: Real> Ellipse<S> {
     }
 }
 
-/// Period as the sum of three numbers, the first two of 26 bits: multiples up to 2²⁶ are exact.
+/// Period of revolution as a sum of three numbers. The first two have 26 bits, so that multiples up to 2²⁶
+/// are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Period {
     pub(super) seconds: f64,
@@ -78,7 +80,7 @@ pub(super) struct Period {
 /// Largest number of whole periods that are subtracted exactly.
 const MOST_PERIODS: f64 = 67_108_864.0;
 
-/// Longest time on an open orbit, s: twice the age of the universe.
+/// Longest time that can be evaluated on an open orbit, s: twice the age of the universe.
 const LONGEST_TIME: f64 = 1e18;
 
 impl Period {
@@ -91,7 +93,7 @@ impl Period {
         Self { seconds: period.hi, per_second: 1.0 / period.hi, pieces: [first, second, third] }
     }
 
-    /// Returns `dt` minus the nearest whole number of periods.
+    /// Returns `dt` less the nearest whole number of periods.
     #[inline(always)]
     fn reduce<S: Real>(&self, dt: S) -> S {
         // adding 1.5 × 2⁵² rounds to an integer without a library call
@@ -102,7 +104,7 @@ impl Period {
     }
 }
 
-/// Conic with the precomputed constants of its motion.
+/// Conic with the constants of the motion on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Conic {
     /// Ellipse, `e < 1`; the phase is the mean anomaly.
@@ -122,7 +124,7 @@ pub(super) enum Conic {
         /// Half the speed at periapsis, `√(μ/(2 q))`, m/s.
         speed: f64,
     },
-    /// Hyperbola, `e > 1`; the phase is the time since periapsis. `a` and `b` are positive.
+    /// Hyperbola, `e > 1`; the phase is the time since periapsis. The semi-axes `a` and `b` are positive.
     Hyperbola { a: f64, b: f64, n: f64, velocity_scale: [f64; 2] },
 }
 
@@ -150,7 +152,7 @@ impl Conic {
         }
     }
 
-    /// Returns the largest time from the epoch, s.
+    /// Returns the largest time from the epoch at which the state can be evaluated, s.
     pub(super) fn longest_time(&self) -> f64 {
         match self {
             Self::Ellipse { period, .. } => MOST_PERIODS * period.seconds,
@@ -158,8 +160,8 @@ impl Conic {
         }
     }
 
-    /// Returns the phase (mean anomaly of an ellipse, otherwise seconds since periapsis) `dt` s after
-    /// `phase`.
+    /// Returns the phase `dt` s after `phase`: the mean anomaly on an ellipse, otherwise seconds since
+    /// periapsis.
     pub(super) fn advance(&self, phase: f64, dt: f64) -> f64 {
         match self {
             Self::Ellipse { n, period, .. } => wrap(phase + n * period.reduce(dt)),
@@ -167,7 +169,7 @@ impl Conic {
         }
     }
 
-    /// Returns the perifocal states of an ellipse, `dt` s after `phase`; `None` for an open orbit.
+    /// Returns the state of an ellipse in perifocal axes, `dt` s after `phase`; `None` for an open orbit.
     #[inline(always)]
     pub(super) fn ellipse_state_at<S: Real>(
         &self,
@@ -187,7 +189,7 @@ impl Conic {
         Some(ellipse.at(wrap(S::of(phase) + S::of(*n) * period.reduce(dt))))
     }
 
-    /// Returns the perifocal state at a phase.
+    /// Returns the state in perifocal axes at a phase.
     pub(super) fn perifocal_state(&self, shape: &Shape, phase: f64) -> PerifocalState {
         let (e, q) = (shape.e, shape.periapsis);
         match *self {
@@ -227,7 +229,7 @@ pub(super) fn wrap<S: Real>(angle: S) -> S {
     S::select(S::less(angle, -pi), angle + turn, angle)
 }
 
-/// Subtracts the nearest whole number of turns from an angle of up to 1e15 rad.
+/// Subtracts the nearest whole number of turns from an angle with a magnitude up to 1e15 rad.
 pub(super) fn subtract_turns(angle: f64) -> f64 {
     let k = (angle / TAU).round();
     (-k).mul_add(double::TAU.lo, (-k).mul_add(TAU, angle))

@@ -1,12 +1,13 @@
 //! Double-double arithmetic, for constants that are computed once per orbit.
 //!
-//! A period with a relative error of one rounding shifts the orbit by 1e-7 m along track per day.
+//! If the period had only the accuracy of `f64`, its rounding error would shift the orbit by 1e-7 m along
+//! track per day.
 //!
 //! Source: Dekker, Numerische Mathematik 18, 1971; Hida, Li and Bailey, ARITH-15, 2001.
 
 use nalgebra::Vector3;
 
-/// Double-double number: an unevaluated sum `hi + lo` with `|lo| ≤ ulp(hi)/2`.
+/// Double-double number: the sum `hi + lo` of two numbers with `|lo| ≤ ulp(hi)/2`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Double {
     pub(super) hi: f64,

@@ -16,22 +16,22 @@ use crate::orbit::{MU_EARTH, OrbitError};
 pub enum Size {
     /// Semi-major axis `a`: positive for an ellipse, negative for a hyperbola.
     SemiMajorAxis(f64),
-    /// Semi-latus rectum `p = h²/μ`, for any conic; the only size of a parabola.
+    /// Semi-latus rectum `p = h²/μ`, defined for every conic and required for a parabola.
     SemiLatusRectum(f64),
 }
 
-/// Position on the conic.
+/// Position of the body on the conic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// Mean anomaly at the epoch, rad: `n (t - t_p)`, `n = √(μ/|a|³)`; undefined for a parabola.
+    /// Mean anomaly at the epoch, rad: `n (t - t_p)` with `n = √(μ/|a|³)`; undefined for a parabola.
     MeanAnomaly(f64),
-    /// True anomaly at the epoch, rad; between the asymptotes for an open orbit.
+    /// True anomaly at the epoch, rad; for an open orbit, within the asymptotes.
     TrueAnomaly(f64),
     /// Time of a periapsis passage, s of simulation; the epoch is not used.
     PeriapsisTime(f64),
 }
 
-/// Classical elements of an orbit, angles in radians with respect to the axes of `I`.
+/// Classical orbital elements; angles are in radians and refer to the axes of `I`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Elements {
     /// Size of the conic, m.
@@ -40,11 +40,11 @@ pub struct Elements {
     pub eccentricity: f64,
     /// Inclination, rad in [0, π].
     pub inclination: f64,
-    /// Right ascension of the ascending node, rad; from the x axis when equatorial.
+    /// Right ascension of the ascending node, rad; for an equatorial orbit, the node is on the x axis.
     pub raan: f64,
     /// Argument of periapsis from the ascending node, rad.
     pub argument_of_periapsis: f64,
-    /// Position on the conic.
+    /// Position of the body on the conic.
     pub phase: Phase,
     /// Gravitational parameter, m³/s².
     pub mu: f64,
@@ -53,7 +53,7 @@ pub struct Elements {
 }
 
 impl Elements {
-    /// Returns the elements of an orbit around the Earth with all angles and the epoch set to zero.
+    /// Creates the elements of an orbit around the Earth with all angles and the epoch equal to zero.
     pub fn new(size: Size, eccentricity: f64) -> Self {
         Self {
             size,
@@ -68,24 +68,24 @@ impl Elements {
     }
 }
 
-/// Distance from `e = 1` within which the size is given by `p` and the phase by the time of periapsis: `a`
-/// and `M` would lose `1/|1 - e|` of their digits.
+/// Distance from `e = 1` within which [`Kepler::elements`] states `p` and the time of periapsis, because `a`
+/// and `M` would lose digits by the factor `1/|1 - e|`.
 const NEAR_PARABOLIC: f64 = 1e-2;
 
-/// Largest eccentricity of a hyperbola: beyond it the orbit is a straight line to rounding, and the anomalies
-/// overflow.
+/// Largest eccentricity of a hyperbola. Beyond it the path differs from a straight line only by rounding, and
+/// the anomalies overflow.
 const LARGEST_ECCENTRICITY: f64 = 1e20;
 
-/// Largest anomaly on an ellipse, rad: the spacing of `f64` is 1/8 rad there.
+/// Largest accepted anomaly on an ellipse, rad; the spacing of `f64` is 1/8 rad there.
 const LARGEST_ANGLE: f64 = 1e15;
 
 impl Kepler {
-    /// Returns the orbit with these elements.
+    /// Creates the orbit with these elements.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], [`OrbitError::NotPositive`] for invalid numbers and sizes
-    /// beyond the range of `f64`; [`OrbitError::OutOfRange`] for anomalies on an ellipse beyond 1e15 rad and
-    /// eccentricities beyond 1e20;
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::NotPositive`] for invalid
+    /// numbers and for sizes beyond the range of `f64`; [`OrbitError::OutOfRange`] for anomalies on an
+    /// ellipse beyond 1e15 rad and eccentricities beyond 1e20;
     /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`], [`OrbitError::ParabolaHasNoAxis`],
     /// [`OrbitError::ParabolaHasNoMeanAnomaly`], [`OrbitError::Inclination`], [`OrbitError::BeyondAsymptote`]
     /// for inconsistent elements.
@@ -98,7 +98,7 @@ impl Kepler {
         if !(0.0..=PI).contains(&inclination) {
             return Err(OrbitError::Inclination { value: inclination });
         }
-        // P, Q: unit vectors to the periapsis, and along the velocity there
+        // P and Q: unit vectors towards the periapsis and along the velocity there
         let (si, ci) = inclination.sin_cos();
         let (so, co) = finite("raan", elements.raan)?.sin_cos();
         let (sw, cw) = finite("argument of periapsis", elements.argument_of_periapsis)?.sin_cos();
@@ -107,12 +107,12 @@ impl Kepler {
         Ok(Self { mu, epoch, phase, shape, conic, p_i, q_i })
     }
 
-    /// Returns the classical elements, from which [`Kepler::new`] rebuilds this orbit.
+    /// Returns the classical elements of this orbit, from which [`Kepler::new`] rebuilds the orbit.
     ///
-    /// Node and periapsis are in [0, 2π), the mean anomaly of an ellipse in [-π, π], which keeps its digits
-    /// near the periapsis. The periapsis of a circular orbit and the node of an equatorial one are determined
-    /// by rounding (x axis if exact); their sums with the phase are accurate. Near a parabola the size is the
-    /// semi-latus rectum and the phase the time of periapsis.
+    /// Node and periapsis are in [0, 2π). The mean anomaly of an ellipse is in [-π, π], which keeps its
+    /// digits near the periapsis. For a circular orbit the periapsis, and for an equatorial orbit the node,
+    /// are determined by rounding errors (the x axis if there are none), but their sums with the phase are
+    /// accurate. Near a parabola the size is the semi-latus rectum and the phase is the time of periapsis.
     pub fn elements(&self) -> Elements {
         let w_i = self.p_i.cross(&self.q_i);
         let tilt = w_i.x.hypot(w_i.y);
@@ -143,14 +143,14 @@ impl Kepler {
     }
 }
 
-/// Computes size and shape of a conic; returns an error if size and eccentricity contradict each other.
+/// Computes the size and shape of a conic; returns an error if size and eccentricity contradict each other.
 fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
     let e = finite("eccentricity", elements.eccentricity)?;
     if e < 0.0 {
         return Err(OrbitError::NegativeEccentricity { value: e });
     }
     if e > LARGEST_ECCENTRICITY {
-        let expected = "at most 1e20 (beyond, the path is a straight line to rounding)";
+        let expected = "at most 1e20 (beyond this value, the path is a straight line within rounding)";
         return Err(OrbitError::OutOfRange { name: "eccentricity", value: e, expected });
     }
     let (one, one_minus_e) = (Double::from(1.0), Double::from(1.0) - Double::from(e));
@@ -202,21 +202,21 @@ fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64)
     }
 }
 
-/// Returns an anomaly on an ellipse, or an error if it is so large that no digits would remain after whole turns are
-/// subtracted.
+/// Returns an anomaly on an ellipse, or an error if it is so large that no digits would remain after the
+/// subtraction of whole turns.
 fn angle(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)?.abs() > LARGEST_ANGLE {
         let expected =
-            "at most 1e15 rad (beyond, neighbouring numbers of double precision are more than 1/8 rad apart)";
+            "at most 1e15 rad (above it, adjacent floating-point numbers are more than 1/8 rad apart)";
         return Err(OrbitError::OutOfRange { name, value, expected });
     }
     Ok(value)
 }
 
-/// Returns the angle in [0, 2π), for an angle in [-π, π].
+/// Converts an angle in [-π, π] to [0, 2π).
 fn positive_turn(angle: f64) -> f64 {
     if angle >= 0.0 {
-        angle + 0.0 // turns -0 into 0
+        angle + 0.0 // converts -0 to 0
     } else if angle + TAU < TAU {
         angle + TAU
     } else {

@@ -1,4 +1,4 @@
-//! Orbit through a position with a velocity.
+//! Kepler orbit from a position and a velocity.
 
 use nalgebra::Vector3;
 
@@ -8,19 +8,20 @@ use super::{Kepler, anomaly};
 use crate::orbit::OrbitError;
 use crate::orbit::error::{finite, positive};
 
-/// Sine of the angle between position and velocity below which the orbital plane is undefined. On ellipses with `1 - e`
-/// above 1e-16 the sine never falls below this limit, because its minimum is `√(1 - e²)`. On a hyperbola it reaches the
-/// limit at a distance of 1e10 semi-minor axes.
+/// Sine of the angle between position and velocity below which the orbital plane is undefined. On ellipses
+/// with `1 - e` above 1e-16 the sine is never below this limit, because its minimum is `√(1 - e²)`. On a
+/// hyperbola the sine reaches the limit at a distance of 1e10 semi-minor axes.
 const SMALLEST_SINE: f64 = 1e-10;
 
 impl Kepler {
-    /// Returns the orbit with position `r` (m) and velocity `v` (m/s), axes of `I`, at time zero.
+    /// Creates the orbit with position `r` (m) and velocity `v` (m/s), axes of `I`, at time zero.
     ///
     /// Circular and equatorial orbits are not singular.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`], [`OrbitError::NotPositive`] for `mu` (m³/s²), and
-    /// [`OrbitError::Rectilinear`] if `r` and `v` are parallel to 1e-10 rad or one of them is zero.
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for invalid numbers,
+    /// [`OrbitError::NotPositive`] for `mu` (m³/s²), and [`OrbitError::Rectilinear`] if `r` or `v` is zero or
+    /// they are parallel within 1e-10 rad.
     ///
     /// Source: Battin, AIAA 1999, chapter 3.
     pub fn from_state(r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {
@@ -50,7 +51,7 @@ impl Kepler {
         let shape = Shape { e, one_minus_e, periapsis: p.hi / (1.0 + e), inverse_axis };
         let conic = Conic::new(&shape, mu)?;
 
-        // perifocal axes: the local axes rotated by -ν within the orbital plane
+        // perifocal axes: the radial and transverse axes rotated by -ν within the orbital plane
         let (cos, sin) = if e > 0.0 { (e_cos / e, e_sin / e) } else { (1.0, 0.0) };
         let x = r / radius.hi;
         let y = accurate_cross(&r, &v).normalize().cross(&x);
@@ -60,7 +61,7 @@ impl Kepler {
         let half = if e_cos >= 0.0 { (e_sin, e + e_cos) } else { (e - e_cos, e_sin) };
         let half = if e > 0.0 { half } else { (0.0, 1.0) };
         let phase = if let Conic::Hyperbola { n, .. } = conic {
-            // e sinh H = (r·v) √(1/(μ|a|)), also accurate along the asymptotes
+            // e sinh H = (r·v) √(1/(μ|a|)), which is also accurate near the asymptotes
             let e_sinh = (rv * (-inverse_axis / mu_d).sqrt()).hi;
             anomaly::mean_from_hyperbolic(e, -one_minus_e, (e_sinh / e).asinh()) / n
         } else {
@@ -70,9 +71,10 @@ impl Kepler {
     }
 }
 
-/// Returns the phase of a conic from `(sin, cos)` of half the true anomaly, up to a common factor.
+/// Returns the phase on a conic from `half`, the sine and cosine of half the true anomaly up to a common
+/// factor.
 ///
-/// Mean anomaly in [-π, π] for an ellipse, otherwise seconds since periapsis.
+/// The phase is the mean anomaly in [-π, π] on an ellipse, otherwise the time since periapsis, s.
 pub(super) fn phase_from_half_anomaly(shape: &Shape, conic: &Conic, half: (f64, f64)) -> f64 {
     let (sin, cos) = if half.1 < 0.0 { (-half.0, -half.1) } else { half };
     let (e, one_minus_e) = (shape.e, shape.one_minus_e);
@@ -95,7 +97,7 @@ pub(super) fn phase_from_half_anomaly(shape: &Shape, conic: &Conic, half: (f64, 
     }
 }
 
-/// Computes `a × b`, each component to one rounding (Kahan's difference of products).
+/// Computes `a × b` with one rounding error per component (Kahan's difference of products).
 fn accurate_cross(a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
     let det = |a: f64, b: f64, c: f64, d: f64| {
         let cd = c * d;

@@ -1,6 +1,6 @@
 //! Two-body motion on any conic: ellipse, parabola, hyperbola.
 //!
-//! `r̈ = -μ r/|r|³`, solved by Kepler's equation; [`Kepler::state`] uses no angles, so circular and equatorial
+//! `r̈ = -μ r/|r|³`, solved by Kepler's equation. [`Kepler::state`] uses no angles, so circular and equatorial
 //! orbits are not singular. Source: Battin, An Introduction to the Mathematics and Methods of Astrodynamics,
 //! AIAA 1999, chapters 3 and 4.
 
@@ -28,17 +28,18 @@ pub use secular::SecularJ2;
 /// Unperturbed orbit around a point mass.
 ///
 /// The phase of an ellipse is accurate over 2²⁶ revolutions, and the phase of an open orbit over 1e18 s.
-/// [`Orbit::state`] returns an error for times farther from the epoch, since seconds in `f64` no longer resolve metres
-/// there.
+/// [`Orbit::state`] returns an error for times farther from the epoch, because `f64` seconds then no longer
+/// resolve metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kepler {
     mu: f64,
     epoch: f64,
-    /// Mean anomaly (ellipse, rad) or time since periapsis (open orbits, s) at the epoch.
+    /// Mean anomaly at the epoch, rad, for an ellipse; time from periapsis to the epoch, s, for an open
+    /// orbit.
     phase: f64,
     shape: Shape,
     conic: Conic,
-    /// Perifocal axes in `I`: to the periapsis, and along the velocity there.
+    /// Perifocal axes in `I`: unit vectors towards the periapsis and along the velocity there.
     p_i: Vector3<f64>,
     q_i: Vector3<f64>,
 }
@@ -131,7 +132,8 @@ impl Kepler {
         OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) }
     }
 
-    /// Returns two perifocal states of an ellipse, at given times after the epoch, s; `None` for an open orbit.
+    /// Returns the states of an ellipse in perifocal axes at two times after the epoch, s; `None` for an open
+    /// orbit.
     fn two_perifocal_states(&self, [first, second]: [f64; 2]) -> Option<PerifocalState<Lanes4>> {
         Lanes4::enter(
             #[inline(always)]
@@ -142,8 +144,8 @@ impl Kepler {
         )
     }
 
-    /// Returns the perifocal state of an ellipse, `dt` s after the epoch; `None` for an open orbit or on a processor
-    /// without fused multiply-add.
+    /// Returns the state of an ellipse in perifocal axes, `dt` s after the epoch; `None` for an open orbit,
+    /// or on a processor without fused multiply-add.
     fn perifocal_state_fused(&self, dt: f64) -> Option<PerifocalState> {
         if InstructionSet::current() == InstructionSet::Baseline {
             return None;
@@ -155,7 +157,8 @@ impl Kepler {
         Some(PerifocalState { x: s.x.0, y: s.y.0, vx: s.vx.0, vy: s.vy.0 })
     }
 
-    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated one by one.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated
+    /// individually.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         let (p, q, longest) = (self.p_i.into(), self.q_i.into(), self.conic.longest_time());
         let (p, q) = (Vec3::<S>::of(&p), Vec3::<S>::of(&q));

@@ -1,4 +1,4 @@
-//! Kepler ellipse with the secular rates of J₂.
+//! Kepler ellipse with the secular rates caused by J₂.
 
 use super::Kepler;
 use super::conic::Conic;
@@ -6,13 +6,12 @@ use crate::orbit::error::{finite, positive};
 use crate::orbit::{Orbit, OrbitError, OrbitState};
 use nalgebra::{Rotation3, Unit, Vector3};
 
-/// Kepler ellipse with secular rates of first order in J₂; its elements are mean elements.
+/// Kepler ellipse with secular rates of first order in J₂; the elements are mean elements.
 ///
-/// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`,
-/// `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 - 3 sin²i)`. The given node and periapsis refer to the epoch, or to the time
-/// of periapsis if that is given. Velocity and acceleration are the time derivatives of the mean position, which
-/// differs from the osculating position by kilometres. They are therefore not the velocity and acceleration of a body
-/// in free fall.
+/// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`, `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2
+/// - 3 sin²i)`. The given node and periapsis refer to the epoch, or to the time of periapsis if that is given
+/// instead. Velocity and acceleration are the time derivatives of the mean position, which differs from the
+/// osculating position by kilometres; they are not those of a body in free fall.
 ///
 /// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th ed., eqs. 9-38, 9-40 and 9-41.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,19 +20,20 @@ pub struct SecularJ2 {
     /// `Ω̇` and `ω̇`, rad/s.
     node_rate: f64,
     periapsis_rate: f64,
-    /// `Ṁ/n`.
+    /// Rate of the mean anomaly relative to the mean motion, `Ṁ/n`.
     pace: f64,
     /// Unit vector along the angular momentum at the epoch.
     normal: Unit<Vector3<f64>>,
 }
 
 impl Kepler {
-    /// Returns this ellipse with the secular rates caused by the `j2` of a planet with axis z and reference radius
-    /// `radius`, m.
+    /// Returns this ellipse with the secular rates caused by the oblateness `j2` of a planet whose axis is z
+    /// and whose reference radius is `radius`, m.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], [`OrbitError::NotPositive`] for `radius`,
-    /// [`OrbitError::OutOfRange`] for an implausible `j2` or radius, [`OrbitError::NotClosed`] for an open orbit.
+    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::NotPositive`] for `radius`,
+    /// [`OrbitError::OutOfRange`] for an implausible `j2` or radius, and [`OrbitError::NotClosed`] for an
+    /// open orbit.
     pub fn with_secular_j2(self, j2: f64, radius: f64) -> Result<SecularJ2, OrbitError> {
         if finite("j2", j2)?.abs() > 0.1 {
             return Err(OrbitError::OutOfRange {
@@ -64,7 +64,7 @@ impl Kepler {
 }
 
 impl SecularJ2 {
-    /// Returns the rates of node and periapsis, rad/s.
+    /// Returns the rates of the node and of the argument of periapsis, rad/s.
     pub fn rates(&self) -> (f64, f64) {
         (self.node_rate, self.periapsis_rate)
     }

@@ -6,15 +6,17 @@ use crate::orbit::{OrbitError, OrbitState};
 use nalgebra::Vector3;
 use std::sync::{PoisonError, RwLock};
 
-/// Tolerance of the position within a step, relative to the distance.
+/// Tolerance of the position error within a step, relative to the distance from the planet's centre.
 const TOLERANCE: f64 = 1e-14;
 /// Lengths of the first and the smallest step, in units of `√(r³/μ)`.
 const FIRST: f64 = 0.1;
 const SHORTEST: f64 = 1e-9;
-/// Ratio of the next step to the longest permitted step, and smallest and largest ratio of successive steps.
+/// Ratio of the next step to the longest step that the tolerance permits; smallest and largest ratio of
+/// successive steps.
 const SAFETY: f64 = 0.9;
 const CHANGE: (f64, f64) = (0.25, 2.0);
-/// Largest number of steps on either side of the initial state. It covers years of a low orbit and takes 90 MB.
+/// Largest number of steps on either side of the initial state, which cover years of a low orbit and take 90
+/// MB.
 const MOST_STEPS: usize = 1 << 18;
 
 /// Integration steps of an orbit after and before the initial state.
@@ -27,13 +29,13 @@ pub(super) struct Arcs {
     initial: Start,
 }
 
-/// Integration steps in one direction.
+/// Integration steps in one direction of time.
 #[derive(Debug)]
 struct Half {
     steps: Vec<Step>,
-    /// Start of the next step, and its length, s.
+    /// Start and length, s, of the next step.
     next: (Start, f64),
-    /// Error that prevents a further step.
+    /// Error that makes further steps impossible.
     ended: Option<OrbitError>,
 }
 
@@ -49,7 +51,7 @@ impl Arcs {
         Ok(Self { mu, minimum, after: half(length), before: half(-length), initial })
     }
 
-    /// Returns the state at `t` after computing the missing steps.
+    /// Returns the state at `t`, s, after computing the missing steps.
     pub(super) fn state(
         &self,
         t: f64,
@@ -73,8 +75,8 @@ impl Arcs {
         }
     }
 
-    /// Computes at most `most_steps` steps in each direction towards `times`. Returns true if no further step is
-    /// required.
+    /// Computes at most `most_steps` steps in each direction towards `times`. Returns true if no further step
+    /// is needed.
     pub(super) fn prepare(
         &self,
         times: &[f64],
@@ -126,7 +128,7 @@ impl Arcs {
             }
         };
         loop {
-            // the length by which the rounded time advances
+            // use the length by which the rounded time actually advances
             length = (time + length) - time;
             if length.abs() <= shortest {
                 return Err(OrbitError::StepTooShort { time, length });
@@ -143,7 +145,7 @@ impl Arcs {
                     factor
                 }
                 Ok(None) => 0.5,
-                // the predicted positions may be outside the domain of the field
+                // positions predicted with too long a step may be outside the domain of the field
                 Err(error) if 0.25 * length.abs() <= shortest => return Err(error),
                 Err(_) => 0.25,
             };

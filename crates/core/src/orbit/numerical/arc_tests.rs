@@ -48,7 +48,7 @@ fn at(arcs: &Arcs, t: f64) -> OrbitState {
 #[test]
 fn a_day_and_ten_agree_with_extended_precision() {
     let arcs = start();
-    // measured: 4e-7 and 5e-6 m; the effect of rounding in the field grows as t^1.5
+    // measured differences: 4e-7 and 5e-6 m; the effect of rounding errors of the field grows as t^1.5
     for ((t, r, v), (dr, dv)) in END.into_iter().zip([(1e-6, 1e-9), (3e-5, 3e-8)]) {
         let s = at(&arcs, t);
         let (far, fast) = ((s.position - Vector3::from(r)).norm(), (s.velocity - Vector3::from(v)).norm());
@@ -63,7 +63,7 @@ fn a_day_and_ten_agree_with_extended_precision() {
 
 #[test]
 fn published_numbers_lie_where_their_tilted_pole_puts_them() {
-    // GMAT uses the pole of 2000 instead of z: the known difference after a day is 88 m
+    // GMAT uses the pole of 2000 instead of z, which causes a known difference of 88 m after a day
     let gmat = Vector3::new(-5_751_473.991_327_555, 4_721_214.035_135_832, 2_045_947.768_608_806);
     let away = (at(&start(), DAY).position - gmat).norm();
     assert!((80.0..95.0).contains(&away), "{away} m");

@@ -1,33 +1,35 @@
-//! Nodes and integration weights of a collocation step.
+//! Nodes and weights of a collocation step.
 //!
-//! The acceleration is interpolated at Lobatto nodes, which include both ends of the step, so that it is
-//! continuous across steps; velocity and position are its integrals. The Legendre basis avoids cancellation.
+//! The acceleration is interpolated at Lobatto nodes. These include both ends of the step, so the
+//! acceleration is continuous from step to step. Velocity and position are its integrals. The Legendre basis
+//! avoids cancellation.
 //!
-//! Source: Hairer, Lubich and Wanner, Geometric Numerical Integration, Springer 2006, section II.1.4 (Lobatto IIIA:
-//! symmetric, of order `2 S - 2` at the ends of steps).
+//! Source: Hairer, Lubich and Wanner, Geometric Numerical Integration, Springer 2006, section II.1.4 (Lobatto
+//! IIIA: symmetric, of order `2 S - 2` at the ends of steps).
 
 use nalgebra::Vector3;
 use std::sync::LazyLock;
 
-/// Number of nodes of a step.
+/// Number of nodes of a step, `S`.
 pub(super) const NODES: usize = 9;
 
-/// Vectors, one per node or per Legendre polynomial.
+/// One vector per node or per Legendre polynomial.
 pub(super) type Samples = [Vector3<f64>; NODES];
 
-/// Lobatto's rule on [-1, 1].
+/// Lobatto's quadrature rule on [-1, 1].
 pub(super) struct Rule {
     pub(super) nodes: [f64; NODES],
-    /// Double integral, up to node `i`, of the polynomial that is one at node `j` and zero at the others.
+    /// Double integral from -1 to node `i` of the polynomial that is one at node `j` and zero at the other
+    /// nodes.
     pub(super) twice: [[f64; NODES]; NODES],
-    /// Legendre coefficient `k` of the polynomial that is one at node `j` and zero at the others.
+    /// Legendre coefficient `k` of the polynomial that is one at node `j` and zero at the other nodes.
     pub(super) spectrum: [[f64; NODES]; NODES],
 }
 
-/// Quadrature rule of a step, computed on first use.
+/// Quadrature rule of all steps, computed on first use.
 pub(super) static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
 
-/// Legendre polynomials at a point, with their first and second integrals from -1.
+/// Values of the Legendre polynomials at a point, with their first and second integrals from -1.
 pub(super) struct Legendre {
     pub(super) value: [f64; NODES + 2],
     pub(super) once: [f64; NODES + 1],
@@ -61,7 +63,7 @@ const INVERSE_ODD: [f64; NODES + 1] = {
     inverse
 };
 
-/// Returns `P₀(x)` to `P_{NODES+1}(x)`: `(k + 1) Pₖ₊₁ = (2k + 1) x Pₖ - k Pₖ₋₁`.
+/// Returns `P₀(x)` to `P_{NODES+1}(x)` by the recursion `(k + 1) Pₖ₊₁ = (2k + 1) x Pₖ - k Pₖ₋₁`.
 #[inline(always)]
 fn legendre(x: f64) -> [f64; NODES + 2] {
     let mut p = [1.0; NODES + 2];
@@ -76,8 +78,8 @@ fn legendre(x: f64) -> [f64; NODES + 2] {
 impl Rule {
     fn new() -> Self {
         const LAST: usize = NODES - 1;
-        // inner nodes are the roots of P'ₗ, by Newton's method from Chebyshev nodes: (1 - x²) P' = l (Pₗ₋₁ -
-        // x Pₗ), P″ by Legendre's equation
+        // inner nodes are the roots of P'ₗ, found by Newton's method from Chebyshev nodes: (1 - x²) P' = l
+        // (Pₗ₋₁ - x Pₗ); P″ follows from Legendre's equation
         let nodes = std::array::from_fn(|i| {
             let mut x = -(std::f64::consts::PI * i as f64 / LAST as f64).cos();
             if i == 0 || i == LAST {
@@ -96,7 +98,7 @@ impl Rule {
             let p = legendre(x)[LAST];
             2.0 / ((LAST * NODES) as f64 * p * p)
         });
-        // cₖ = wⱼ Pₖ(xⱼ)/γₖ with γₖ = 2/(2k + 1), but 2/l for the last
+        // cₖ = wⱼ Pₖ(xⱼ)/γₖ with γₖ = 2/(2k + 1), except γ = 2/l for the last coefficient
         let at = nodes.map(Legendre::at);
         let spectrum = std::array::from_fn(|k| {
             let gamma = if k == LAST { 2.0 / LAST as f64 } else { 2.0 * INVERSE_ODD[k] };

@@ -14,10 +14,10 @@ use std::sync::Arc;
 
 /// Orbit integrated in a gravity field: `r̈ = g(t, r)`.
 ///
-/// The integrator is Lobatto collocation, of order 16 at the ends of steps. Steps are computed from `t₀` outward on
-/// request and stored. They do not depend on the requested times, so the state is a function of `t` alone. Position,
-/// velocity and acceleration are continuous; within a step the estimated relative error of the position is at most
-/// 1e-14.
+/// The integrator is Lobatto collocation, of order 16 at the ends of steps. Steps are computed on request,
+/// outward from `t₀`, and stored. They do not depend on the requested times, so the state is a function of
+/// `t` alone. Position, velocity and acceleration are continuous. Within a step the estimated relative error
+/// of the position is at most 1e-14.
 #[derive(Debug)]
 pub struct Numerical {
     gravity: Arc<Gravity>,
@@ -26,12 +26,12 @@ pub struct Numerical {
 }
 
 impl Numerical {
-    /// Returns the orbit through position `r` (m) with velocity `v` (m/s) at `t0` s of simulation, axes of
+    /// Creates the orbit through position `r` (m) with velocity `v` (m/s) at `t0` s of simulation, axes of
     /// `I`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`], [`OrbitError::BeginsBelowSurface`], and the errors of the
-    /// field.
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for the state,
+    /// [`OrbitError::BeginsBelowSurface`], and the errors of the field.
     pub fn new(r: Vector3<f64>, v: Vector3<f64>, t0: f64, gravity: Arc<Gravity>) -> Result<Self, OrbitError> {
         for (name, x) in [("position", &r), ("velocity", &v)] {
             x.iter().try_for_each(|&c| finite(name, c).map(drop))?;
@@ -47,7 +47,7 @@ impl Numerical {
         Ok(Self { gravity, axes: Axes::default(), arcs })
     }
 
-    /// Returns the same orbit with states and gravity interpreted in `axes`.
+    /// Returns the same orbit with its states and gravity interpreted in `axes`.
     #[must_use]
     pub fn with_axes(self, axes: Axes) -> Self {
         Self { axes, ..self }
@@ -87,9 +87,9 @@ impl Orbit for Numerical {
     }
 
     /// # Errors
-    /// [`OrbitError::BelowSurface`] from the time at which the orbit enters the planet, [`OrbitError::TooManySteps`]
-    /// too far from `t₀`, [`OrbitError::StepTooShort`] and [`OrbitError::NotFinite`] where the integration fails, and
-    /// the errors of the field.
+    /// [`OrbitError::BelowSurface`] after the time at which the orbit enters the planet,
+    /// [`OrbitError::TooManySteps`] too far from `t₀`, [`OrbitError::StepTooShort`] and
+    /// [`OrbitError::NotFinite`] where the integration fails, and the errors of the field.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         self.arcs.state(finite("time", t)?, |time, r| self.field(time, r))
     }

@@ -1,16 +1,16 @@
-//! Integration step and the motion within it.
+//! Integration step, and the motion during the step.
 
 use super::collocation::{Legendre, NODES, RULE, Rule, Samples, weighted};
 use crate::orbit::{OrbitError, OrbitState};
 use nalgebra::Vector3;
 
-/// Largest number of iterations of a step before its length is reduced.
+/// Largest number of iterations of a step; a step that needs more is repeated with a smaller length.
 const MOST_SWEEPS: usize = 16;
-/// The iteration has converged when the node positions change by less than this fraction of the distance.
+/// Change of the node positions, as a fraction of the distance, below which the iteration has converged.
 const SETTLED: f64 = 1e-15;
 
-/// State at the start of a step: s, m and m/s. Position and velocity are accumulated over the steps by compensated
-/// summation and stored as `[sum, rounding error]`.
+/// Time (s), position (m) and velocity (m/s) at the start of a step. Position and velocity are accumulated
+/// over the steps by compensated summation and stored as `[sum, rounding error]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
     pub(super) time: f64,
@@ -18,11 +18,11 @@ pub(super) struct Start {
     pub(super) velocity: [Vector3<f64>; 2],
 }
 
-/// Motion over one step; the acceleration is a polynomial in the Legendre basis.
+/// Motion during one step; the acceleration is a polynomial in the Legendre basis.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
     pub(super) start: Start,
-    /// Length, s; negative before `t₀`.
+    /// Length, s; negative for steps before `t₀`.
     pub(super) length: f64,
     spectrum: Samples,
 }
@@ -32,8 +32,9 @@ impl Start {
         Self { time, position: [position, Vector3::zeros()], velocity: [velocity, Vector3::zeros()] }
     }
 
-    /// Computes the step of `length` s from this state, and the estimated error of the positions within it, m. Returns
-    /// `None` if the iteration does not converge because the step is too long. `before` is the preceding step.
+    /// Computes the step of `length` s from this state and the estimated error, m, of positions within the
+    /// step. Returns `None` if the iteration does not converge because the step is too long. `before` is the
+    /// preceding step.
     pub(super) fn step(
         &self,
         length: f64,
@@ -55,7 +56,7 @@ impl Start {
         for _ in 0..MOST_SWEEPS {
             let mut moved: f64 = 0.0;
             for i in 1..NODES {
-                // rᵢ = r₀ + (xᵢ + 1) h/2 v₀ + (h/2)² Σ Aᵢⱼ aⱼ, with the newest aⱼ
+                // rᵢ = r₀ + (xᵢ + 1) h/2 v₀ + (h/2)² Σ Aᵢⱼ aⱼ, with the most recent aⱼ
                 let place = free[i] + weighted(&rule.twice[i], &a) * (half * half);
                 moved = moved.max((place - r[i]).amax());
                 r[i] = place;
@@ -76,7 +77,7 @@ fn spectrum(rule: &Rule, a: &Samples) -> Samples {
 }
 
 impl Step {
-    /// Returns the normalized time within the step, -1 to 1.
+    /// Returns the time `t` normalized to -1 at the start and 1 at the end of the step.
     fn place(&self, t: f64) -> f64 {
         2.0 * ((t - self.start.time) / self.length) - 1.0
     }
@@ -99,7 +100,8 @@ impl Step {
         }
     }
 
-    /// Returns the contribution of the last polynomial to the position, m, an estimate of the truncated terms.
+    /// Returns the contribution of the last polynomial to the position, m, which estimates the truncated
+    /// terms.
     fn truncation(&self) -> f64 {
         let half = 0.5 * self.length;
         self.spectrum[NODES - 1].norm() * half * half / ((NODES - 1) * (NODES - 1)) as f64
@@ -109,7 +111,7 @@ impl Step {
     pub(super) fn end(&self) -> Start {
         let (length, half) = (self.length, 0.5 * self.length);
         let ([r, r_lost], [v, v_lost]) = (self.start.position, self.start.velocity);
-        // ∫ a = 2 α₀ and ∫∫ a = 2 α₀ - ⅔ α₁: by Lobatto's rule, of order 2 S - 2
+        // ∫ a = 2 α₀ and ∫∫ a = 2 α₀ - ⅔ α₁ by Lobatto's rule, of order 2 S - 2
         let once = self.spectrum[0] * length;
         let twice = (self.spectrum[0] * 2.0 - self.spectrum[1] * (2.0 / 3.0)) * (half * half);
         Start {

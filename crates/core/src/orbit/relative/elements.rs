@@ -1,23 +1,24 @@
-//! Relative orbital elements of a deputy about a chief.
+//! Relative orbital elements of a deputy satellite with respect to a chief satellite.
 //!
 //! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`,
-//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`. These elements are regular for circular orbits and singular
-//! for an equatorial chief.
+//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`, where `d` denotes the deputy. These elements are
+//! regular for circular orbits and singular for an equatorial chief.
 //!
-//! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, thesis, TU Delft 2010.
+//! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, thesis, TU Delft
+//! 2010.
 
 use crate::orbit::kepler::{Elements, Kepler, Phase, Size};
 use crate::orbit::{Orbit, OrbitError};
 use nalgebra::{Vector3, Vector6};
 use std::f64::consts::{PI, TAU};
 
-/// `sin i` of the chief below which its node is treated as undefined.
+/// Sine of the chief's inclination below which its node is treated as undefined.
 const EQUATORIAL: f64 = 1e-6;
 
 /// Orbital elements of one satellite that are regular for circular orbits.
 struct Regular {
     a: f64,
-    /// `M + ω`, rad.
+    /// Mean argument of latitude, `M + ω`, rad.
     u: f64,
     e: [f64; 2],
     i: f64,
@@ -36,18 +37,19 @@ impl Regular {
         Ok(Self { a, u, e: [e * cos, e * sin], i: elements.inclination, node: elements.raan })
     }
 
-    /// Returns an error for an equatorial orbit.
+    /// Returns these elements, or an error for an equatorial orbit.
     fn inclined(self) -> Result<Self, OrbitError> {
         if self.i.sin() > EQUATORIAL { Ok(self) } else { Err(OrbitError::Equatorial { inclination: self.i }) }
     }
 }
 
-/// Returns `(δa, δλ, δex, δey, δix, δiy)` of a deputy at `deputy` about a chief at `chief`: positions (m) and
-/// velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad; multiplied by the chief's `a` they
-/// are lengths in m.
+/// Returns `(δa, δλ, δex, δey, δix, δiy)` of a deputy with respect to a chief. `deputy` and `chief` are
+/// positions (m) and velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad;
+/// multiplied by the chief's `a` they are lengths in m.
 ///
 /// # Errors
-/// [`OrbitError::NotClosed`], [`OrbitError::Equatorial`], and the errors of [`Kepler::from_state`].
+/// [`OrbitError::NotClosed`] for an open orbit, [`OrbitError::Equatorial`] for an equatorial chief, and the
+/// errors of [`Kepler::from_state`].
 pub fn relative_elements(
     chief: [&Vector3<f64>; 2],
     deputy: [&Vector3<f64>; 2],
@@ -57,13 +59,13 @@ pub fn relative_elements(
     let d = Regular::of(deputy[0], deputy[1], mu)?;
     let (sin, cos) = c.i.sin_cos();
     let node = nearest(d.node - c.node);
-    // δλ is small even if u and Ω each differ by a turn
+    // wrapped twice, because u and Ω may each differ by a whole turn while δλ is small
     let along = nearest(nearest(d.u - c.u) + node * cos);
     Ok(Vector6::new((d.a - c.a) / c.a, along, d.e[0] - c.e[0], d.e[1] - c.e[1], d.i - c.i, node * sin))
 }
 
-/// Returns position (m) and velocity (m/s) in `I` of a deputy with these relative elements: the inverse of
-/// [`relative_elements`].
+/// Returns the position (m) and velocity (m/s) in `I` of a deputy with these relative elements. This is the
+/// inverse of [`relative_elements`].
 ///
 /// # Errors
 /// The errors of [`relative_elements`], and of [`Kepler::new`] for elements that do not describe an ellipse.
@@ -92,10 +94,11 @@ pub fn deputy_state(
     Ok([r, v])
 }
 
-/// Computes [`relative_elements`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `out` is (B, 6).
+/// Computes [`relative_elements`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `out`
+/// is (B, 6).
 ///
 /// # Errors
-/// The errors of [`relative_elements`]; [`OrbitError::WrongLength`].
+/// The errors of [`relative_elements`], and [`OrbitError::WrongLength`] for arrays of the wrong length.
 pub fn relative_elements_rows(
     chief: [&[f64]; 2],
     deputy: [&[f64]; 2],
@@ -116,10 +119,11 @@ pub fn relative_elements_rows(
     Ok(())
 }
 
-/// Computes [`deputy_state`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `elements` is (B, 6).
+/// Computes [`deputy_state`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `elements`
+/// is (B, 6).
 ///
 /// # Errors
-/// The errors of [`deputy_state`]; [`OrbitError::WrongLength`].
+/// The errors of [`deputy_state`], and [`OrbitError::WrongLength`] for arrays of the wrong length.
 pub fn deputy_states(
     chief: [&[f64]; 2],
     elements: &[f64],
@@ -143,7 +147,7 @@ pub fn deputy_states(
     Ok(())
 }
 
-/// Wraps an angle to ±π.
+/// Wraps an angle to [-π, π].
 fn nearest(angle: f64) -> f64 {
     let turns = (angle / TAU).round();
     let angle = angle - turns * TAU;

@@ -4,15 +4,16 @@ use crate::orbit::OrbitError;
 use crate::orbit::error::{finite, positive};
 use nalgebra::{Matrix3, Matrix6, Vector3};
 
-/// Returns the transition matrix of relative position and velocity over `t` s, for a circular orbit of mean
+/// Returns the transition matrix of relative position and velocity over `t` s, for a circular orbit with mean
 /// motion `n`, rad/s.
 ///
-/// `ẍ = 3n² x + 2n ẏ`, `ÿ = -2n ẋ`, `z̈ = -n² z` in Hill axes `L` (x outward, y along track, z normal); velocities are
-/// relative to the rotating axes; rows and columns `(x, y, z, ẋ, ẏ, ż)`. The error is about `3/2 ρ²/R` per radian of
-/// orbit, with the distance `ρ` from the origin and the orbit radius `R`.
+/// `ẍ = 3n² x + 2n ẏ`, `ÿ = -2n ẋ`, `z̈ = -n² z` in Hill axes `L` (x outward, y along track, z normal).
+/// Velocities are relative to the rotating axes; rows and columns are ordered `(x, y, z, ẋ, ẏ, ż)`, in m and
+/// m/s. The position error is about `3/2 ρ²/R` per radian of orbit, with the distance `ρ` from the origin and
+/// the orbit radius `R`.
 ///
 /// # Errors
-/// [`OrbitError::NotFinite`], [`OrbitError::NotPositive`].
+/// [`OrbitError::NotFinite`] for `t` or `n`, and [`OrbitError::NotPositive`] for `n`.
 ///
 /// Source: Clohessy and Wiltshire, J. Aerospace Sciences 27(9), 1960.
 pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {
@@ -33,29 +34,29 @@ pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {
     Ok(transition)
 }
 
-/// Computes the transition matrices for many `times` (T,), s; `out` is (T, 6, 6), row-major.
+/// Computes the transition matrices over many `times` (T,), s; `out` is (T, 6, 6), row-major.
 ///
 /// # Errors
-/// The errors of [`hill_transition`], and [`OrbitError::WrongLength`].
+/// The errors of [`hill_transition`], and [`OrbitError::WrongLength`] if `out` has the wrong length.
 pub fn hill_transitions(n: f64, times: &[f64], out: &mut [f64]) -> Result<(), OrbitError> {
     super::check(&[("transitions", 36 * times.len(), out.len())])?;
     for (&t, to) in times.iter().zip(out.chunks_exact_mut(36)) {
-        to.copy_from_slice(hill_transition(n, t)?.transpose().as_slice()); // column-major, transposed
+        to.copy_from_slice(hill_transition(n, t)?.transpose().as_slice()); // nalgebra is column-major
     }
     Ok(())
 }
 
-/// Determinant of `n Φ_rv` below which no impulse reaches the origin at that time.
+/// Determinant of `n Φ_rv` below which no impulse leads to the origin in the given time.
 const SINGULAR: f64 = 1e-9;
 
-/// Returns the velocity at `r` (m, `L`) that reaches the origin in `t` s, m/s: the first impulse of a
-/// two-impulse rendezvous.
+/// Returns the velocity, m/s, with which a satellite at `r` (m, axes `L`) reaches the origin in `t` s. The
+/// change to this velocity is the first impulse of a two-impulse rendezvous.
 ///
-/// `v = -Φ_rv⁻¹ Φ_rr r`; the second impulse cancels the final velocity, which [`hill_transition`] gives.
+/// `v = -Φ_rv⁻¹ Φ_rr r`. The second impulse cancels the final velocity, which [`hill_transition`] gives.
 ///
 /// # Errors
-/// The errors of [`hill_transition`]; [`OrbitError::NoIntercept`] at times when part of the position does not depend
-/// on the velocity, such as z after half a period.
+/// The errors of [`hill_transition`], and [`OrbitError::NoIntercept`] at times when a component of the
+/// position does not depend on the velocity, such as z after half a period.
 pub fn intercept_velocity(n: f64, r: &Vector3<f64>, t: f64) -> Result<Vector3<f64>, OrbitError> {
     r.iter().try_for_each(|&x| finite("position", x).map(drop))?;
     let transition = hill_transition(n, t)?;

@@ -1,4 +1,4 @@
-//! Exact coordinates in local orbital frames.
+//! Positions and velocities in local orbital frames, without linearization.
 
 use crate::orbit::error::finite;
 use crate::orbit::{Lvlh, Nadir, Orbit, OrbitError, OrbitState};
@@ -15,7 +15,7 @@ pub enum LocalFrame {
 }
 
 impl LocalFrame {
-    /// All kinds with their names.
+    /// All kinds, each with its name.
     pub const ALL: [(&'static str, Self); 2] = [("lvlh", Self::Lvlh), ("nadir", Self::Nadir)];
 
     /// Returns the rotation from local axes to `I`, and the angular velocity of the frame in its own axes.
@@ -27,12 +27,13 @@ impl LocalFrame {
     }
 }
 
-/// Returns position and velocity relative to `reference`, in its rotating frame: m and m/s, local axes.
+/// Returns the position (m) and velocity (m/s) relative to `reference` in its rotating local frame.
 ///
-/// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`; `r` and `v` in `I`, `R` and `V` of the reference.
+/// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`, with `r` and `v` in `I`, and `R` and `V` of the
+/// reference.
 ///
 /// # Errors
-/// [`OrbitError::UndefinedFrame`].
+/// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
 pub fn to_local(
     reference: &OrbitState,
     frame: LocalFrame,
@@ -44,11 +45,11 @@ pub fn to_local(
     Ok([rho, rot_il.tr_mul(&(v - reference.velocity)) - rate_l.cross(&rho)])
 }
 
-/// Returns position and velocity in `I` from `rho` (m) and `rho_dot` (m/s) in the local frame, the inverse of
-/// [`to_local`].
+/// Returns the position and velocity in `I` from `rho` (m) and `rho_dot` (m/s) in the local frame. This is
+/// the inverse of [`to_local`].
 ///
 /// # Errors
-/// [`OrbitError::UndefinedFrame`].
+/// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
 pub fn from_local(
     reference: &OrbitState,
     frame: LocalFrame,
@@ -60,16 +61,16 @@ pub fn from_local(
     Ok([reference.position + rot_il * rho, velocity])
 }
 
-/// Function that converts states, [`to_local`] or [`from_local`].
+/// Function that converts a state: [`to_local`] or [`from_local`].
 type Convert =
     fn(&OrbitState, LocalFrame, &Vector3<f64>, &Vector3<f64>) -> Result<[Vector3<f64>; 2], OrbitError>;
 
-/// Computes [`to_local`] at each of `times` (T,), s: `given` and `out` are positions (m) and velocities (m/s), (T, 3)
-/// each.
+/// Computes [`to_local`] at each of `times` (T,), s: `given` and `out` are positions (m) and velocities
+/// (m/s), (T, 3) each.
 ///
 /// # Errors
-/// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::NotFinite`] for a given state that is not finite;
-/// [`OrbitError::WrongLength`].
+/// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::NotFinite`] for a given state that is not
+/// finite; [`OrbitError::WrongLength`] for arrays of the wrong length.
 pub fn to_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,
@@ -83,7 +84,7 @@ pub fn to_local_rows(
 /// Computes [`from_local`] at each of `times`; shapes as in [`to_local_rows`].
 ///
 /// # Errors
-/// As for [`to_local_rows`].
+/// The errors of [`to_local_rows`].
 pub fn from_local_rows(
     orbit: &dyn Orbit,
     frame: LocalFrame,

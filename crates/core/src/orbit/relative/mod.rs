@@ -1,4 +1,4 @@
-//! Relative motion of two satellites: linear motion, exact coordinates, relative elements, states in W.
+//! Relative motion of two satellites: linear motion, local coordinates, relative elements, and states in W.
 
 mod elements;
 mod hill;
@@ -13,7 +13,7 @@ pub use world::to_world;
 use super::OrbitError;
 use nalgebra::Vector3;
 
-/// Returns an error for arrays of the wrong length.
+/// Returns an error if an array has the wrong length.
 fn check(arrays: &[(&'static str, usize, usize)]) -> Result<(), OrbitError> {
     match arrays.iter().find(|(_, expected, got)| expected != got) {
         Some(&(name, expected, got)) => Err(OrbitError::WrongLength { name, expected, got }),
@@ -21,7 +21,7 @@ fn check(arrays: &[(&'static str, usize, usize)]) -> Result<(), OrbitError> {
     }
 }
 
-/// Returns vector `index` of an (N, 3) array.
+/// Returns row `index` of an (N, 3) array as a vector.
 fn row(rows: &[f64], index: usize) -> Vector3<f64> {
     Vector3::from_column_slice(&rows[3 * index..][..3])
 }

@@ -4,18 +4,21 @@ use crate::earth::Earth;
 use crate::orbit::{Orbit, OrbitError};
 use nalgebra::Vector3;
 
-/// Largest relative difference of the gravitational parameters of one planet; those of SGP4 and IERS differ by 1e-6.
+/// Largest relative difference between gravitational parameters of one planet; those of SGP4 and the IERS
+/// differ by 1e-6.
 const SAME_PLANET: f64 = 1e-5;
 
-/// Returns position and velocity of `orbit` in the frame W of `reference` at `t` s of simulation: `r - r_ref` in m and its
-/// derivative in m/s.
+/// Returns the position of `orbit` in the frame W of `reference` at `t` s of simulation, `r - r_ref` in m,
+/// and its time derivative in m/s.
 ///
-/// Time is that of the reference. An orbit with an epoch, such as that of an element set, is evaluated at the
-/// same instant; the epoch of a reference without one is that of `earth`. Axes other than those of the reference are
-/// converted with `earth`. The velocities are derivatives of the positions, also where the model reports others (SGP4).
+/// `t` is the simulation time of the reference. An orbit with an epoch, such as one of an element set, is
+/// evaluated at the same instant; if the reference has no epoch, the epoch of `earth` applies. If the axes of
+/// the two orbits differ, `earth` is used to convert them. The velocities are time derivatives of the
+/// positions, even if the orbit model reports different velocities (SGP4).
 ///
 /// # Errors
-/// Errors of the orbits, [`OrbitError::OtherPlanet`], [`OrbitError::NoEpoch`] and [`OrbitError::OtherAxes`].
+/// The errors of the orbits; [`OrbitError::OtherPlanet`], [`OrbitError::NoEpoch`] and
+/// [`OrbitError::OtherAxes`] for orbits that cannot be compared.
 pub fn to_world(
     reference: &dyn Orbit,
     orbit: &dyn Orbit,
@@ -48,7 +51,7 @@ pub fn to_world(
     Ok([own[0] - origin[0], own[1] - origin[1]])
 }
 
-/// Returns the position at `t`, s, and its derivative.
+/// Returns the position at `t`, s, and its time derivative.
 fn position_and_rate(orbit: &dyn Orbit, t: f64) -> Result<[Vector3<f64>; 2], OrbitError> {
     let state = orbit.state(t)?;
     Ok([state.position, orbit.rate_of_position(t, &state)?])

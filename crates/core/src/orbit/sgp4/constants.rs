@@ -3,7 +3,7 @@
 use crate::spatial::Real;
 use std::f64::consts::TAU;
 
-/// Earth model of an element set. Published sets are fitted with [`EarthModel::Wgs72`].
+/// Earth model of an element set. Published element sets are fitted with [`EarthModel::Wgs72`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum EarthModel {
     /// WGS-72 with the rounded constants of Spacetrack Report #3.
@@ -16,7 +16,7 @@ pub enum EarthModel {
 }
 
 impl EarthModel {
-    /// All models with their names.
+    /// All models, each with its name.
     pub const ALL: [(&'static str, Self); 3] =
         [("wgs72old", Self::Wgs72Old), ("wgs72", Self::Wgs72), ("wgs84", Self::Wgs84)];
 
@@ -29,7 +29,7 @@ impl EarthModel {
         }
     }
 
-    /// Returns the constants of the theory.
+    /// Returns the constants that the theory derives from the model.
     pub(super) fn earth(self) -> Earth {
         // kₑ = 60/√(aₑ³/μ)
         let ke = |a: f64| 60.0 / (a * a * a / (self.mu() / 1e9)).sqrt();
@@ -68,7 +68,7 @@ impl Earth {
     }
 }
 
-/// Mean elements at one instant, rad and rad/min.
+/// Mean elements at one instant; angles in rad, mean motion in rad/min.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mean<S = f64> {
     /// Brouwer's mean motion `n″`.
@@ -83,11 +83,12 @@ pub(super) struct Mean<S = f64> {
     pub(super) anomaly: S,
 }
 
-/// Returns `angle % 2π` with the sign of the angle, which Lyddane's variables require. Valid up to 2²⁶ turns.
+/// Returns the remainder of an angle divided by 2π, with the sign of the angle as Lyddane's variables
+/// require. Valid up to 2²⁶ turns.
 #[inline(always)]
 pub(super) fn wrap_angle<S: Real>(angle: S) -> S {
     const ROUND: f64 = 6_755_399_441_055_744.0; // adding 1.5 × 2⁵² rounds to an integer
-    // 2π as the sum of two numbers of at most 26 bits, whose multiples are exact
+    // 2π as a sum of two numbers of at most 26 bits, so that multiples of them are exact
     const HEAD: f64 = f64::from_bits(TAU.to_bits() & !((1 << 27) - 1));
     const TAIL: f64 = TAU - HEAD;
     let (zero, turn) = (S::of(0.0), S::of(TAU));

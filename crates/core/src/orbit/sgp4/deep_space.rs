@@ -1,4 +1,4 @@
-//! Perturbations of orbits with periods of 225 minutes and more: Sun, Moon and resonance.
+//! Perturbations of orbits with periods of 225 minutes or more: Sun, Moon and resonance.
 
 use super::constants::{Earth, Mean};
 use super::epoch::Epoch;
@@ -9,9 +9,10 @@ use std::f64::consts::{PI, TAU};
 
 /// Shortest period of deep-space orbits, min.
 const SHORTEST_PERIOD: f64 = 225.0;
-/// Inclination, rad, below which, as above π minus it, the drift of the node caused by Sun and Moon is neglected.
+/// Inclination, rad, below which the drift of the node caused by Sun and Moon is neglected; the same holds
+/// above π minus this value.
 const EQUATORIAL: f64 = 5.235_987_7e-2;
-/// Inclination, rad, below which Lyddane's variables replace node and perigee.
+/// Inclination, rad, below which Lyddane's variables are used instead of node and perigee.
 const LYDDANE: f64 = 0.2;
 
 /// Deep-space perturbations.
@@ -64,7 +65,7 @@ impl DeepSpace {
         }
     }
 
-    /// Adds the periodic perturbations of Sun and Moon.
+    /// Adds the periodic perturbations caused by Sun and Moon, `t` minutes after the epoch.
     pub(super) fn add_periodic(&self, t: f64, mean: &mut Mean) {
         let [sun, moon] = [&self.bodies[0], &self.bodies[1]].map(|body| body.waves(t));
         let [de, di, dl, gh, h]: Five = std::array::from_fn(|k| sun[k] + moon[k]);
@@ -77,7 +78,8 @@ impl DeepSpace {
             mean.node += node;
             mean.anomaly += dl;
         } else {
-            // Lyddane: α = sin i sin Ω, β = sin i cos Ω and l = M + ω + Ω cos i are regular at i = 0
+            // Lyddane's variables: α = sin i sin Ω, β = sin i cos Ω and l = M + ω + Ω cos i are regular at i
+            // = 0
             let (sin_node, cos_node) = mean.node.sin_cos();
             let alpha = sin * sin_node + (h * cos_node + di * cos * sin_node);
             let beta = sin * cos_node + (-h * sin_node + di * cos * cos_node);

@@ -1,4 +1,4 @@
-//! Mean elements of SGP4, independent of the format that they were read from.
+//! Mean elements of SGP4, independent of the format from which they were read.
 
 use super::epoch::Epoch;
 use super::error::ElementSetError;
@@ -9,14 +9,14 @@ pub(super) const REV_DAY: f64 = 1440.0 / TAU;
 
 /// Mean elements of one satellite at one epoch, in the units of SGP4.
 ///
-/// They are defined by SGP4 and must not be used with another theory.
+/// The elements are valid only with SGP4 and must not be used with another theory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeanElements {
     /// Catalogue number.
     pub satellite: u32,
     /// Epoch of the elements.
     pub epoch: Epoch,
-    /// `B*`, 1/Earth radii.
+    /// Drag term `B*`, 1/Earth radii.
     pub drag_term: f64,
     /// Inclination, rad.
     pub inclination: f64,
@@ -28,15 +28,17 @@ pub struct MeanElements {
     pub argument_of_perigee: f64,
     /// Mean anomaly, rad.
     pub mean_anomaly: f64,
-    /// Mean motion as defined by Kozai, rad/min.
+    /// Mean motion according to Kozai, rad/min.
     pub mean_motion: f64,
 }
 
 impl MeanElements {
-    /// Reads the entries of a CCSDS Orbit Mean-Elements Message; `entry` returns the text of a keyword.
+    /// Reads the entries of a CCSDS Orbit Mean-Elements Message (OMM); `entry` returns the text for a
+    /// keyword.
     ///
     /// # Errors
-    /// [`ElementSetError::Missing`], [`ElementSetError::Entry`] and [`ElementSetError::Range`].
+    /// [`ElementSetError::Missing`], [`ElementSetError::Entry`] and [`ElementSetError::Range`] for a missing
+    /// or invalid entry.
     ///
     /// Source: CCSDS 502.0-B-3, section 4.
     pub fn from_omm(entry: impl Fn(&str) -> Option<String>) -> Result<Self, ElementSetError> {
@@ -80,7 +82,7 @@ impl MeanElements {
         .checked()
     }
 
-    /// Returns the elements if each is within its accepted range.
+    /// Returns these elements, or an error if one is outside its accepted range.
     ///
     /// # Errors
     /// [`ElementSetError::Range`], with values in the units of published element sets.

@@ -1,8 +1,8 @@
-//! Epoch of an element set, UTC.
+//! UTC epoch of an element set.
 
 use std::f64::consts::{PI, TAU};
 
-/// A day and the seconds since its midnight, UTC without leap seconds, as in SGP4.
+/// A day and the seconds since its midnight, in UTC without leap seconds, as in SGP4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Epoch {
     /// Days since 2000-01-01.
@@ -12,7 +12,7 @@ pub struct Epoch {
 }
 
 impl Epoch {
-    /// Returns the epoch of a day of the year, which is 1.0 at midnight of 1 January.
+    /// Creates the epoch from a year and a day of the year, which is 1.0 at midnight of 1 January.
     pub(super) fn of_year(year: i64, day_of_year: f64) -> Self {
         let whole = day_of_year.floor();
         Self {
@@ -21,8 +21,8 @@ impl Epoch {
         }
     }
 
-    /// Parses `2024-01-31T12:34:56.789` or `2024-031T12:34:56.789`, with `T` or a blank and with or without a final `Z`;
-    /// returns `None` for other texts.
+    /// Parses `2024-01-31T12:34:56.789` or `2024-031T12:34:56.789`, with `T` or a space, with or without a
+    /// final `Z`. Returns `None` for any other text.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let (date, time) = text.trim().trim_end_matches('Z').split_once(['T', ' '])?;
         let mut time = time.split(':');
@@ -31,7 +31,7 @@ impl Epoch {
         let seconds: f64 =
             second.starts_with(|c: char| c.is_ascii_digit()).then(|| second.parse().ok())??;
         if date.find('-') != Some(4) {
-            return None; // a year has four digits
+            return None; // the year must have four digits
         }
         let parts = date.split('-').map(digits).collect::<Option<Vec<i64>>>()?;
         let day = match parts[..] {
@@ -47,8 +47,9 @@ impl Epoch {
         is_time.then(|| Self { day, seconds: (hour * 3600 + minute * 60) as f64 + seconds })
     }
 
-    /// Converts a Julian date in two parts, such as a midnight and a fraction of a day. Returns `None` if either is not
-    /// finite, the first is 1e7 days or more from the year 2000, or the second is 1e7 days or more.
+    /// Converts a Julian date given in two parts, such as a midnight and a fraction of a day. Returns `None`
+    /// if a part is not finite, if the first is 1e7 days or more from the year 2000, or if the second is 1e7
+    /// days or more.
     pub fn of_julian_date(whole: f64, part: f64) -> Option<Self> {
         const LONGEST: f64 = 1e7;
         let days = whole - 2_451_544.5;
@@ -60,14 +61,14 @@ impl Epoch {
         })
     }
 
-    /// Returns the Julian date as one number, accurate to 20 µs, as in the reference implementation; for orbits of two
-    /// weeks the effect on the Moon's perturbation is 4 mm.
+    /// Returns the Julian date as a single number, accurate to 20 µs, as in the reference implementation. For
+    /// orbits with periods of two weeks, the resulting error of the Moon's perturbation is 4 mm.
     pub(super) fn julian_day(&self) -> f64 {
         let (midnight, part) = self.julian_date();
         midnight + part
     }
 
-    /// Returns the Greenwich mean sidereal time of 1982, rad in [0, 2π), with UTC used as UT1.
+    /// Returns the Greenwich mean sidereal time of 1982, rad in [0, 2π), with UT1 replaced by UTC.
     ///
     /// Source: Aoki et al., Astronomy and Astrophysics 105, 1982, eq. 14.
     pub(super) fn sidereal_time(&self) -> f64 {
@@ -79,12 +80,12 @@ impl Epoch {
         (seconds * (PI / 180.0) / 240.0).rem_euclid(TAU)
     }
 
-    /// Returns the instant; leap seconds are counted from 1972 on.
+    /// Returns the epoch on the atomic time scale; leap seconds are counted from 1972 on.
     pub(super) fn instant(&self) -> crate::earth::Epoch {
         crate::earth::Epoch::of_utc(self.day, self.seconds)
     }
 
-    /// Returns the Julian date of the midnight before the epoch, and the fraction of the day.
+    /// Returns the Julian date of the midnight before the epoch and the fraction of the day since then.
     pub fn julian_date(&self) -> (f64, f64) {
         (2_451_544.5 + self.day as f64, self.seconds / 86_400.0)
     }
@@ -95,17 +96,17 @@ fn digits(text: &str) -> Option<i64> {
         .then(|| text.parse().ok())?
 }
 
-/// Returns days from 2000-01-01 in the Gregorian calendar. Years begin in March, so that leap days are at
-/// their end.
+/// Returns the number of days from 2000-01-01 to a Gregorian date. In the computation years begin in March,
+/// so that leap days are at the end of a year.
 fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
     let y = if month < 3 { year - 1 } else { year };
     let days_of_months = (153 * ((month + 9) % 12) + 2) / 5;
     365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + days_of_months + day - 730_426
 }
 
-/// Returns year, month and day of a day counted from 2000-01-01.
+/// Returns the year, month and day for a number of days since 2000-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
-    // a lower bound of the year, before and after 2000
+    // a lower bound of the year, for days before and after 2000
     let mut year = 2000 + days.div_euclid(if days < 0 { 365 } else { 366 });
     while days_since_2000(year + 1, 1, 1) <= days {
         year += 1;
@@ -115,7 +116,7 @@ fn civil(days: i64) -> (i64, i64, i64) {
 }
 
 impl std::fmt::Display for Epoch {
-    /// Writes ISO 8601 to the microsecond: `2000-06-27T18:50:19.733568Z`.
+    /// Writes the epoch as ISO 8601 to the microsecond: `2000-06-27T18:50:19.733568Z`.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let micros = (self.seconds * 1e6).round() as i64;
         let (year, month, day) = civil(self.day + micros.div_euclid(86_400_000_000));

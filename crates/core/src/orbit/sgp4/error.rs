@@ -3,7 +3,7 @@
 use crate::number_text::{count, short, unlike};
 use std::ops::RangeInclusive;
 
-/// An element set that cannot be read.
+/// Errors of element sets that cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ElementSetError {
@@ -52,7 +52,7 @@ pub enum ElementSetError {
         second: String,
     },
     /// An entry of a message is missing.
-    #[error("the OMM has no entry {key}, which SGP4 requires; add it")]
+    #[error("the OMM has no entry {key}, which SGP4 requires; add the entry")]
     Missing {
         /// Keyword of CCSDS 502.0-B.
         key: &'static str,

@@ -22,7 +22,8 @@ impl Harmonic {
     }
 }
 
-/// Returns the terms for orbits with one revolution per day: harmonics (2,2), (3,1) and (3,3).
+/// Returns the terms for orbits with one revolution per day, which are due to the harmonics (2,2), (3,1) and
+/// (3,3).
 pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let ((sin, cos), e2) = (i.sin_cos(), e * e);
     let (g200, g310) = (1.0 + e2 * (-2.5 + 0.8125 * e2), 1.0 + 2.0 * e2);
@@ -40,11 +41,12 @@ pub(super) fn day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     ]
 }
 
-/// Returns the terms for orbits with two revolutions per day: harmonics of order 2 and 4, degrees 2 to 5.
+/// Returns the terms for orbits with two revolutions per day, which are due to harmonics of orders 2 and 4
+/// and degrees 2 to 5.
 pub(super) fn half_day(n: f64, a: f64, e: f64, i: f64) -> Vec<Harmonic> {
     let (sin, cos) = i.sin_cos();
     let (e2, s2, c2) = (e * e, sin * sin, cos * cos);
-    // eccentricity functions, piecewise fits; the order of summation matters since terms nearly cancel
+    // eccentricity functions, fitted piecewise; the order of summation matters because terms nearly cancel
     let fit = |[c0, c1, c2, c3]: [f64; 4]| c0 + c1 * e + c2 * e2 + c3 * (e * e2);
     let pick = |is_low, low, high| fit(if is_low { low } else { high });
     let g201 = -0.306 - (e - 0.64) * 0.440;

@@ -1,4 +1,4 @@
-//! Perturbations by Sun and Moon, averaged over the satellite's revolution.
+//! Perturbations by Sun and Moon, averaged over a revolution of the satellite.
 //!
 //! Source: Hoots, Schumacher and Glover, J. Guidance, Control and Dynamics 27(2), 2004; coefficients as in
 //! Spacetrack Report #3, section 7, with its names `aₖ`, `xₖ`, `zₖⱼ`, `sₖ`.
@@ -6,13 +6,14 @@
 use super::constants::Mean;
 use std::f64::consts::TAU;
 
-/// Values for each of `e`, `i`, `l` (mean longitude), `g + h` (perigee and node) and `h` (node by sin i).
+/// One value for each of `e`, `i`, `l` (mean longitude), `g + h` (perigee plus node) and `h` (node, times sin
+/// i).
 pub(super) type Five = [f64; 5];
 
 /// Perturbing body on its apparent elliptic orbit around the Earth.
 #[derive(Clone, Debug)]
 pub(super) struct ThirdBody {
-    /// Secular rates, per minute.
+    /// Secular rates of the five quantities, per minute.
     pub(super) rates: Five,
     /// Amplitudes of `F₂`, `F₃` and `sin f`.
     waves: [[f64; 3]; 5],
@@ -23,7 +24,8 @@ pub(super) struct ThirdBody {
     anomaly: f64,
 }
 
-/// Orientation of a body's orbit: cosine and sine of its perigee `g`, inclination `i` and node `h`.
+/// Orientation of a third body's orbit: cosine and sine of its argument of perigee `g`, inclination `i` and
+/// node `h`.
 struct Ellipse {
     g: (f64, f64),
     i: (f64, f64),
@@ -38,7 +40,8 @@ struct Ellipse {
 const COS_OBLIQUITY: f64 = 0.917_448_67;
 const SIN_OBLIQUITY: f64 = 0.397_854_16;
 
-/// Returns the perturbations of the orbit `mean` by Sun and Moon; `day` is its epoch in days since 1900-01-00 12:00.
+/// Returns the perturbations of the orbit `mean` by Sun and Moon; `day` is the epoch in days since 1900-01-00
+/// 12:00.
 pub(super) fn sun_and_moon(day: f64, mean: &Mean) -> [ThirdBody; 2] {
     let sun = Ellipse {
         g: (0.194_590_5, -0.980_884_58),
@@ -49,7 +52,7 @@ pub(super) fn sun_and_moon(day: f64, mean: &Mean) -> [ThirdBody; 2] {
         anomaly: (6.256_583_7 + 0.017_201_977 * day) % TAU,
         c: 2.986_479_7e-6,
     };
-    // the Moon's orbit, inclined to the ecliptic, in equatorial axes
+    // orbit of the Moon, which is inclined to the ecliptic, in equatorial axes
     let node = (4.523_602_0 - 9.242_202_9e-4 * day) % TAU;
     let (sin_node, cos_node) = node.sin_cos();
     let cos_i = 0.913_751_64 - 0.035_680_96 * cos_node;
@@ -75,7 +78,7 @@ impl ThirdBody {
     fn new(body: &Ellipse, mean: &Mean) -> Self {
         let ((cg, sg), (ci, si)) = (body.g, body.i);
         let (sin_node, cos_node) = mean.node.sin_cos();
-        // node of the satellite relative to that of the body
+        // node of the satellite's orbit relative to the node of the third body's orbit
         let ch = body.h.0 * cos_node + body.h.1 * sin_node;
         let sh = sin_node * body.h.0 - cos_node * body.h.1;
         let ((sin_w, cos_w), (sin_i, cos_i)) = (mean.perigee.sin_cos(), mean.i.sin_cos());
@@ -131,7 +134,7 @@ impl ThirdBody {
         Self { rates, waves, eccentricity: eb, motion: n, anomaly: body.anomaly }
     }
 
-    /// Returns the periodic perturbations at `t` minutes.
+    /// Returns the periodic perturbations `t` minutes after the epoch.
     pub(super) fn waves(&self, t: f64) -> Five {
         // f = M + 2 e sin M,  F₂ = ½ sin²f - ¼,  F₃ = -½ sin f cos f
         let anomaly = self.anomaly + self.motion * t;

@@ -1,7 +1,7 @@
-//! Orbits of published element sets by SGP4 and SDP4, improved mode.
+//! Orbits of published element sets, computed by SGP4 and SDP4 in improved mode.
 //!
-//! Source of the theory: Hoots and Roehrich, Spacetrack Report #3, 1980, as revised by Vallado, Crawford, Hujsak
-//! and Kelso, Revisiting Spacetrack Report #3, AIAA 2006-6753.
+//! Source of the theory: Hoots and Roehrich, Spacetrack Report #3, 1980, as revised by Vallado, Crawford,
+//! Hujsak and Kelso, Revisiting Spacetrack Report #3, AIAA 2006-6753.
 
 mod constants;
 mod deep_space;
@@ -34,25 +34,25 @@ use propagate::Propagator;
 pub use theory::ExternalSgp4;
 use theory::{State, Theory};
 
-/// Largest time from the epoch, s: a hundred years; the elements lose their accuracy within weeks.
+/// Largest time from the epoch, s: a hundred years, although the elements lose their accuracy within weeks.
 const LONGEST_TIME: f64 = 100.0 * 365.25 * 86_400.0;
 
 /// Step of the finite differences for the acceleration, s.
 const STEP: f64 = 30.0;
 
-/// Weights of the central sixth-order second difference, times 180.
+/// Weights, multiplied by 180, of the central second difference of sixth order.
 const WEIGHTS: [f64; 4] = [-490.0, 270.0, -27.0, 2.0];
 
-/// Weights of the central sixth-order first difference, times 60.
+/// Weights, multiplied by 60, of the central first difference of sixth order.
 const SLOPE_WEIGHTS: [f64; 3] = [45.0, -9.0, 1.0];
 
-/// Orbit of an element set in TEME axes; simulation time zero is the epoch of the set.
+/// Orbit of an element set in TEME axes; simulation time zero is the epoch of the element set.
 ///
-/// Position and velocity are those of SGP4, as published. The velocity is not exactly the derivative of the
-/// position: for the published sets the difference is 2-9 cm/s on nearly circular orbits, 1.2 m/s at
+/// Position and velocity are those of SGP4, as published. The velocity is not exactly the time derivative of
+/// the position: for the published sets the difference is 2-9 cm/s on nearly circular orbits, 1.2 m/s at
 /// eccentricity 0.19, up to 7 m/s at 0.8, and 18 m/s in the last revolutions before decay. The acceleration
-/// is the second derivative of the *position*, by sixth-order central differences over ±90 s, accurate to
-/// 1e-7 m/s².
+/// is the second derivative of the position, by sixth-order central differences over ±90 s, accurate to 1e-7
+/// m/s².
 #[derive(Clone, Debug)]
 pub struct Sgp4 {
     elements: MeanElements,
@@ -62,13 +62,13 @@ pub struct Sgp4 {
 }
 
 impl Sgp4 {
-    /// Returns the orbit of an element set.
+    /// Creates the orbit of an element set.
     pub fn new(elements: MeanElements, model: EarthModel) -> Self {
         let propagator = Propagator::new(&elements, model);
         Self { elements, model, propagator, theory: Theory::Native }
     }
 
-    /// Returns the same orbit computed by the reference implementation, which is much slower.
+    /// Returns the same orbit, but computed by the reference implementation, which is much slower.
     pub fn with_external(self, code: Arc<dyn ExternalSgp4>) -> Self {
         Self { theory: Theory::External(code), ..self }
     }
@@ -87,7 +87,7 @@ impl Sgp4 {
         self.model
     }
 
-    /// Returns the period of the mean motion, s.
+    /// Returns the period that corresponds to the mean motion, s.
     pub fn period(&self) -> f64 {
         60.0 * TAU / self.elements.mean_motion
     }
@@ -105,7 +105,8 @@ impl Sgp4 {
         Ok((at.position * 1e3, at.velocity * 1e3))
     }
 
-    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated one by one.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated
+    /// individually.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         fill_lanes::<S>(
             self,
@@ -122,7 +123,7 @@ impl Sgp4 {
         )
     }
 
-    /// Returns the first derivative of the position by differences of step `h`, m/s.
+    /// Returns the first derivative of the position, m/s, by finite differences with step `h`, s.
     fn rate(&self, t: f64, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // ṙ ≈ Σ wₖ (r(t + k h) - r(t - k h))/(60 h)
         let mut sum = Vector3::zeros();
@@ -134,7 +135,7 @@ impl Sgp4 {
         Ok(sum / (60.0 * h))
     }
 
-    /// Returns the second derivative of the position by differences of step `h`, m/s².
+    /// Returns the second derivative of the position, m/s², by finite differences with step `h`, s.
     fn acceleration(&self, t: f64, r: &Vector3<f64>, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // r̈ ≈ Σ wₖ (r(t + k h) + r(t - k h))/(180 h²)
         let mut sum = r * WEIGHTS[0];
@@ -171,11 +172,11 @@ impl Orbit for Sgp4 {
     }
 
     /// # Errors
-    /// [`OrbitError::Sgp4`], [`OrbitError::NotFinite`], and [`OrbitError::TimeOutOfRange`] beyond a hundred years from
-    /// the epoch.
+    /// [`OrbitError::Sgp4`] where SGP4 has no state, [`OrbitError::NotFinite`], and
+    /// [`OrbitError::TimeOutOfRange`] for times more than a hundred years from the epoch.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         let (position, velocity) = self.above_surface(t)?;
-        // a step 16 times shorter, if the propagation fails within 90 s of `t`
+        // the step is 16 times shorter if the propagation fails within 90 s of `t`
         let acceleration = self
             .acceleration(t, &position, STEP)
             .or_else(|_| self.acceleration(t, &position, STEP / 16.0))?;

@@ -1,7 +1,8 @@
-//! Secular perturbations of the mean elements by the zonal harmonics and by drag.
+//! Secular perturbations of the mean elements by zonal harmonics and drag.
 //!
 //! Source: Spacetrack Report #3, section 6, with its symbols. Sums and products are evaluated in the order of
-//! the reference code: after thousands of revolutions the last digit of a rate amounts to centimetres.
+//! the reference code, because after thousands of revolutions the last digit of a rate amounts to
+//! centimetres.
 
 use super::constants::{Earth, Mean};
 use super::elements::MeanElements;
@@ -9,14 +10,14 @@ use crate::spatial::Real;
 
 /// Perigee height, km, below which the higher-order drag terms are omitted.
 const FINE_PERIGEE: f64 = 220.0;
-/// Eccentricity below which `C₃` and the periodic term of the drag in the anomaly are zero.
+/// Eccentricity below which `C₃` and the periodic drag term of the mean anomaly are set to zero.
 const NEARLY_CIRCULAR: f64 = 1e-4;
 
 /// Elements at the epoch and their rates.
 #[derive(Clone, Debug)]
 pub(super) struct NearEarth {
     pub(super) epoch: Mean,
-    /// `Ṁ`, `ω̇`, `Ω̇`, rad/min.
+    /// Rates `Ṁ`, `ω̇`, `Ω̇`, rad/min.
     pub(super) anomaly_rate: f64,
     pub(super) perigee_rate: f64,
     pub(super) node_rate: f64,
@@ -27,7 +28,7 @@ pub(super) struct NearEarth {
     fine: Option<Fine>,
 }
 
-/// Higher-order and periodic drag terms, omitted for low perigees and deep space.
+/// Higher-order and periodic drag terms, which are omitted for low perigees and in deep space.
 #[derive(Clone, Debug)]
 struct Fine {
     eta: f64,
@@ -41,14 +42,14 @@ struct Fine {
     sin0: f64,
 }
 
-/// Mean elements with secular perturbations at one time, and the drag terms that are applied later.
+/// Mean elements with secular perturbations at one instant, and drag terms that are applied later.
 pub(super) struct SecularElements<S = f64> {
     pub(super) mean: Mean<S>,
-    /// Factor by which drag multiplies `√a`.
+    /// Factor by which drag changes `√a`.
     pub(super) axis_factor: S,
     /// Decrease of the eccentricity.
     pub(super) eccentricity_loss: S,
-    /// Increase of the mean longitude divided by `n″₀`, min.
+    /// Increase of the mean longitude caused by drag, divided by `n″₀`, min.
     pub(super) longitude_gain: S,
 }
 
@@ -85,7 +86,7 @@ impl NearEarth {
         let pinv2 = 1.0 / (p * p);
         let (x3, x1) = (3.0 * c2 - 1.0, 1.0 - c2);
 
-        // density ~ ((q₀ - s)/(r - s))⁴, with s reduced for low perigees
+        // density ~ ((q₀ - s)/(r - s))⁴, where s is smaller for low perigees
         let height = (rp - 1.0) * earth.radius_km;
         let s_km = if height < 98.0 { 20.0 } else { (height - 78.0).min(78.0) };
         let s = s_km / earth.radius_km + 1.0;
@@ -151,7 +152,7 @@ impl NearEarth {
         Self { epoch, anomaly_rate, perigee_rate, node_rate, node_drag, b_star, c1, c4: cc4, fine }
     }
 
-    /// Returns the elements `t` minutes from the epoch.
+    /// Returns the elements `t` minutes after the epoch.
     #[inline(always)]
     pub(super) fn at<S: Real>(&self, t: S) -> SecularElements<S> {
         let (of, t2, epoch) = (S::of, t * t, &self.epoch);

@@ -5,14 +5,15 @@
 use super::constants::{Earth, Mean, wrap_angle};
 use crate::spatial::{Real, Vec3};
 
-/// Smallest `1 + cos i`, since a quotient of the report is singular at `i = π`.
+/// Smallest value used for `1 + cos i`, which is a divisor in the report and vanishes at `i = π`.
 const MIN_ONE_PLUS_COS: f64 = 1.5e-12;
-/// Settings for the solution of Kepler's equation: tolerance, rad, largest number of iterations, and largest step, rad.
+/// Parameters of the solver of Kepler's equation: tolerance, rad, largest number of iterations, and largest
+/// step, rad.
 const KEPLER: (f64, usize, f64) = (1e-12, 10, 0.95);
 
-/// Position and velocity of the satellite.
+/// Position and velocity of the satellite, TEME.
 pub(super) struct OsculatingState<S> {
-    /// Semi-latus rectum, Earth radii; if it is negative the other values are meaningless.
+    /// Semi-latus rectum, Earth radii. If it is negative, the other values have no meaning.
     pub(super) p: S,
     /// Distance from the Earth's centre, Earth radii.
     pub(super) distance: S,
@@ -22,8 +23,8 @@ pub(super) struct OsculatingState<S> {
     pub(super) velocity: Vec3<S>,
 }
 
-/// Returns the state for the mean elements `mean` with semi-major axis `a`, Earth radii, and sine and cosine
-/// of the inclination.
+/// Returns the state for the mean elements `mean`, the semi-major axis `a`, Earth radii, and the sine and
+/// cosine of the inclination.
 #[inline(always)]
 pub(super) fn osculating_state<S: Real>(
     mean: &Mean<S>,
@@ -82,15 +83,15 @@ pub(super) fn osculating_state<S: Real>(
     }
 }
 
-/// Returns sine and cosine of an angle increased by `d`.
+/// Returns the sine and cosine of an angle after an increase by `d`, rad, from the sine and cosine before.
 #[inline(always)]
 fn turned<S: Real>((sin, cos): (S, S), d: S) -> (S, S) {
     let (sin_d, cos_d) = d.sin_cos();
     (sin * cos_d + cos * sin_d, cos * cos_d - sin * sin_d)
 }
 
-/// Returns sine and cosine of `E + ω`, where `u = E + ω - axN sin(E + ω) + ayN cos(E + ω)`, by Newton's
-/// method.
+/// Returns the sine and cosine of `E + ω`, found by Newton's method from `u = E + ω - axN sin(E + ω) + ayN
+/// cos(E + ω)`.
 #[inline(always)]
 fn kepler<S: Real>(u: S, ax: S, ay: S) -> (S, S) {
     let (enough, steps, longest) = KEPLER;

@@ -1,4 +1,5 @@
-//! SGP4 and SDP4: applies the secular, then the periodic perturbations. No state is kept between calls.
+//! SGP4 and SDP4: application of the secular and then of the periodic perturbations. No state is kept between
+//! calls.
 
 use super::constants::{Earth, EarthModel, Mean, wrap_angle};
 use super::deep_space::DeepSpace;
@@ -11,7 +12,7 @@ use std::f64::consts::TAU;
 
 /// Smallest eccentricity passed to the periodic terms.
 const MIN_ECCENTRICITY: f64 = 1e-6;
-/// Range of mean eccentricities of the theory.
+/// Mean eccentricities for which the theory is defined.
 const ECCENTRICITIES: std::ops::Range<f64> = -0.001..1.0;
 
 /// Propagator of an element set, with precomputed constants.
@@ -41,7 +42,7 @@ impl Propagator {
         }
     }
 
-    /// Returns the state `time` seconds from the epoch, even if it is below the surface.
+    /// Returns the state `time` seconds after the epoch, even if it is below the surface.
     pub(super) fn at(&self, time: f64) -> Result<OsculatingState<f64>, Sgp4Error> {
         let t = time / 60.0;
         let SecularElements { mut mean, axis_factor, eccentricity_loss, longitude_gain } = self.near.at(t);
@@ -74,12 +75,14 @@ impl Propagator {
         Ok(state)
     }
 
-    /// Returns true if [`Propagator::at_lanes`] applies, that is, without perturbations by Sun and Moon.
+    /// Returns true if [`Propagator::at_lanes`] can be used, which requires an orbit without perturbations by
+    /// Sun and Moon.
     pub(super) fn has_lanes(&self) -> bool {
         self.deep.is_none()
     }
 
-    /// Returns the states at several times; `None` if one of them has no state or is below the surface.
+    /// Returns the states at several times, s after the epoch; `None` if at one of them there is no state or
+    /// it is below the surface.
     #[inline(always)]
     pub(super) fn at_lanes<S: Real>(&self, time: S) -> Option<OsculatingState<S>> {
         let SecularElements { mut mean, axis_factor, eccentricity_loss, longitude_gain } =
@@ -103,7 +106,7 @@ impl Propagator {
 
     /// Applies the secular effects of drag to `mean` and returns the resulting semi-major axis, Earth radii.
     ///
-    /// `a` is the semi-major axis before drag, which corresponds to `mean.n` on entry.
+    /// `a` is the semi-major axis before drag, which corresponds to the initial value of `mean.n`.
     #[inline(always)]
     fn secular<S: Real>(
         &self,

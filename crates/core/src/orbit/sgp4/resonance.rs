@@ -1,4 +1,5 @@
-//! Resonances with the rotation of the Earth, in which the effect of its longitude harmonics accumulates over months.
+//! Resonances with the rotation of the Earth, in which the effects of longitude harmonics accumulate over
+//! months.
 //!
 //! Source: Spacetrack Report #3, section 7; AIAA 2006-6753, appendix B.
 
@@ -18,7 +19,7 @@ const STEP: f64 = 720.0;
 pub(super) struct Resonance {
     kind: Kind,
     harmonics: Vec<Harmonic>,
-    /// `λ` at the epoch, rad, and `λ̇₀`, rad/min.
+    /// Resonant longitude `λ` at the epoch, rad, and its rate offset `λ̇₀`, rad/min.
     longitude: f64,
     drift: f64,
     n: f64,
@@ -26,7 +27,7 @@ pub(super) struct Resonance {
     perigee_rate: f64,
 }
 
-/// Period of the resonance.
+/// Period of the resonance, and definition of the resonant longitude with the sidereal time `θ`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// One day: `λ = M + Ω + ω - θ`.
@@ -35,7 +36,7 @@ enum Kind {
     HalfDay,
 }
 
-/// Secular rates of the angles, rad/min, caused by the Earth and by Sun and Moon.
+/// Secular rates of the angles, rad/min, caused by the Earth's oblateness and by Sun and Moon.
 pub(super) struct Rates {
     pub(super) anomaly: [f64; 2],
     pub(super) perigee: [f64; 2],
@@ -43,8 +44,8 @@ pub(super) struct Rates {
 }
 
 impl Resonance {
-    /// Returns the resonance of an orbit with a period near one day, or near half a day at eccentricities of 0.5 and
-    /// more; `None` for other orbits.
+    /// Returns the resonance of an orbit whose period is near one day, or near half a day at an eccentricity
+    /// of 0.5 or more; `None` for other orbits.
     pub(super) fn new(mean: &Mean, rates: &Rates, sidereal: f64, earth: &Earth) -> Option<Self> {
         let Mean { n, e, i, node, perigee, anomaly } = *mean;
         let a = (n / earth.ke).powf(2.0 / 3.0); // 1/a
@@ -64,10 +65,11 @@ impl Resonance {
         Some(Self { kind, harmonics, longitude: longitude % TAU, drift, n, perigee, perigee_rate })
     }
 
-    /// Sets the mean motion and mean anomaly in `mean` to their values `t` minutes after the epoch; `theta` is the
-    /// sidereal time then, rad.
+    /// Sets the mean motion and mean anomaly in `mean` to their values `t` minutes after the epoch, when the
+    /// sidereal time is `theta`, rad.
     ///
-    /// Each call integrates from the epoch in Euler-Maclaurin steps of 720 min, so that the result depends only on `t`.
+    /// Each call integrates from the epoch in Euler-Maclaurin steps of 720 min, so that the result depends
+    /// only on `t`.
     pub(super) fn apply(&self, t: f64, theta: f64, mean: &mut Mean) {
         let step = STEP.copysign(t);
         let (mut time, mut longitude, mut n) = (0.0, self.longitude, self.n);
@@ -87,7 +89,7 @@ impl Resonance {
         };
     }
 
-    /// Returns `λ̇`, `ṅ`, `n̈`.
+    /// Returns `λ̇`, `ṅ` and `n̈` at `time` minutes after the epoch.
     fn slopes(&self, time: f64, longitude: f64, n: f64) -> [f64; 3] {
         let (perigee, rate) = (self.perigee + self.perigee_rate * time, n + self.drift);
         // d sin(p ω + q λ - φ) and its derivative in λ are Im and q Re of d e⁻ⁱᵠ (eⁱʷ)ᵖ (eⁱˡ)ᵠ

@@ -1,19 +1,19 @@
-//! Choice between the SGP4 implementation of this crate and the reference implementation, which serves as a
-//! cross-check.
+//! Choice between the SGP4 of this crate and the reference implementation, which serves as an independent
+//! check.
 
 use super::error::Sgp4Error;
 use super::propagate::Propagator;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Interface of the reference implementation, initialised with an element set by the caller.
+/// Interface of the reference implementation, which the caller has initialised with an element set.
 pub trait ExternalSgp4: Send + Sync + std::fmt::Debug {
-    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, even if the satellite is below the
-    /// surface.
+    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, even if the satellite is
+    /// below the surface of the Earth.
     ///
     /// # Errors
-    /// The error code of the reference implementation, except for code 6 (decayed), for which the state is returned;
-    /// another code if the implementation returns no state.
+    /// The error code of the reference implementation. For code 6 (decayed), the state is returned instead; if
+    /// there is no state, the error is a code that the reference implementation does not use.
     fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8>;
 }
 
@@ -23,7 +23,7 @@ pub(super) enum Theory {
     External(Arc<dyn ExternalSgp4>),
 }
 
-/// State of the satellite, TEME; it may be below the surface.
+/// State of the satellite, TEME, which may be below the surface of the Earth.
 pub(super) struct State {
     /// Position, km.
     pub(super) position: Vector3<f64>,
@@ -34,7 +34,8 @@ pub(super) struct State {
 }
 
 impl Theory {
-    /// Returns the state at `time`, s after the epoch; `own` is this crate's SGP4 for the same set.
+    /// Returns the state `time` s after the epoch; `own` is the propagator of this crate for the same element
+    /// set.
     pub(super) fn at(&self, own: &Propagator, time: f64) -> Result<State, Sgp4Error> {
         match self {
             Self::Native => {

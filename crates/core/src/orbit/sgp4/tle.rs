@@ -1,10 +1,10 @@
-//! Parser of two-line element sets.
+//! Parser of two-line element sets (TLE).
 
 use super::elements::{MeanElements, REV_DAY};
 use super::epoch::Epoch;
 use super::error::ElementSetError;
 
-/// Columns between the fields, counted from 1, which must be blank.
+/// Columns between the fields, which must be blank, counted from 1.
 const GAPS: [&[usize]; 2] = [&[2, 9, 18, 33, 44, 53, 62, 64], &[2, 8, 17, 26, 34, 43, 52]];
 
 /// Line of a TLE, with 69 ASCII characters.
@@ -56,13 +56,13 @@ impl<'a> Line<'a> {
         ElementSetError::Column { line: self.number, column: first, got, expected }
     }
 
-    /// Checks the checksum: the sum of the digits, with 1 for each minus sign, modulo ten.
+    /// Verifies the checksum, which is the sum of the digits, with 1 for each minus sign, modulo ten.
     fn add_up(&self) -> Result<(), ElementSetError> {
         let worth = |c: u8| {
             if c == b'-' { 1 } else { u32::from(c.is_ascii_digit()) * u32::from(c.wrapping_sub(b'0')) }
         };
         let expected = (self.text.bytes().take(68).map(worth).sum::<u32>() % 10) as u8;
-        let got = self.columns(69, 69).parse().map_err(|_| self.wrong(69, 69, "a digit, the checksum"))?;
+        let got = self.columns(69, 69).parse().map_err(|_| self.wrong(69, 69, "the checksum digit"))?;
         if got == expected {
             Ok(())
         } else {
@@ -81,7 +81,7 @@ impl<'a> Line<'a> {
         number.ok_or_else(|| self.wrong(first, last, "a decimal number"))
     }
 
-    /// Parses digits after an implied decimal point.
+    /// Parses digits that follow an implied decimal point.
     fn fraction(&self, first: usize, last: usize) -> Result<f64, ElementSetError> {
         let text = self.columns(first, last);
         let number =
@@ -89,7 +89,7 @@ impl<'a> Line<'a> {
         number.ok_or_else(|| self.wrong(first, last, "only digits"))
     }
 
-    /// Parses a sign, five digits of a fraction and an exponent with its sign: ` 28098-4` is 0.28098e-4.
+    /// Parses a sign, a fraction of five digits, and an exponent with its sign: ` 28098-4` is 0.28098e-4.
     fn with_exponent(&self, first: usize) -> Result<f64, ElementSetError> {
         let wrong = || {
             self.wrong(
@@ -116,7 +116,7 @@ impl MeanElements {
     /// Parses the two lines of a TLE; trailing blanks are ignored.
     ///
     /// # Errors
-    /// [`ElementSetError`] with the line and the column.
+    /// [`ElementSetError`] with the number of the line and, for invalid characters, the column.
     ///
     /// Source: the column table of CelesTrak's "NORAD Two-Line Element Set Format".
     pub fn from_tle(line1: &str, line2: &str, check_checksum: bool) -> Result<Self, ElementSetError> {
@@ -133,9 +133,9 @@ impl MeanElements {
         if !(1.0..367.0).contains(&day) {
             return Err(one.wrong(21, 32, "a day of the year, 1 to 366"));
         }
-        // two-digit years: 1957 to 2056
+        // two-digit years stand for 1957 to 2056
         let epoch = Epoch::of_year(if year < 57 { 2000 + year } else { 1900 + year }, day);
-        one.decimal(34, 43)?; // SGP4 does not use the derivatives of the mean motion, but they must be valid
+        one.decimal(34, 43)?; // SGP4 ignores the derivatives of the mean motion, but they must be valid
         one.with_exponent(45)?;
         Self {
             satellite,
@@ -152,7 +152,8 @@ impl MeanElements {
     }
 }
 
-/// Parses the catalogue number: five digits, or a letter and four (Alpha-5: A is 10, I and O are not used).
+/// Parses the catalogue number: five digits, or a letter and four digits (Alpha-5: A is 10; I and O are not
+/// used).
 fn satellite_number(text: &str) -> Option<u32> {
     const LETTERS: &str = "ABCDEFGHJKLMNPQRSTUVWXYZ";
     let text = text.trim();
