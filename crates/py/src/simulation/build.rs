@@ -1,0 +1,120 @@
+//! Simulations from the arguments given in Python.
+
+use super::Any;
+use crate::earth::PyEarth;
+use crate::environment::{PyEffect, SurfaceAssignment, Target, effects};
+use crate::errors::{IntoPython, fields, raise};
+use crate::gravity::gravity_of;
+use crate::model::PyModel;
+use crate::orbit::PyOrbit;
+use crate::reference::Around;
+use crate::world::{PyWorld, RobotSettings, initial_state};
+use onorbit_core::environment::GravityMode;
+use onorbit_core::simulation::{Integrator, Simulation};
+use onorbit_core::world::System;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// Returns the simulation of a world with default settings of the integration. `given` says which of the arguments that
+/// belong to a robot have been given.
+pub(super) fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> PyResult<Simulation> {
+    if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        return Err(PyTypeError::new_err(format!(
+            "{name} belongs to the world or to its systems; give it to World or to System, not to Simulation"
+        )));
+    }
+    world.get().simulation(world.py())
+}
+
+/// Orbit, Earth, gravity mode and effects of a simulation as given in Python.
+type Surroundings<'a, 'py> =
+    (Option<&'a Bound<'py, PyOrbit>>, Option<&'a Bound<'py, PyEarth>>, &'a str, Option<Any<'a, 'py>>);
+
+/// Returns the simulation of a robot with default settings of the integration.
+pub(super) fn of_robot(
+    model: Any<'_, '_>,
+    (q, v): (Option<Any<'_, '_>>, Option<Any<'_, '_>>),
+    (orbit, earth, gravity_mode, environment): Surroundings<'_, '_>,
+    settings: &RobotSettings,
+) -> PyResult<Simulation> {
+    let py = model.py();
+    let Ok(model) = model.cast::<PyModel>() else {
+        return Err(PyTypeError::new_err("the first argument of Simulation must be a Model or a World"));
+    };
+    let (Some(q), Some(v)) = (q, v) else {
+        return Err(PyTypeError::new_err("a Simulation of a robot needs its initial q and v"));
+    };
+    let model = model.get();
+    let (q, v) = initial_state(py, &model.model, q, v)?;
+    let mut simulation = Simulation::new(Arc::clone(&model.model), q, v);
+    simulation.orbit = orbit.map(|orbit| Arc::clone(&orbit.get().orbit));
+    simulation.earth = earth.map(|earth| earth.get().in_axes_of(simulation.orbit.as_deref()));
+    simulation.gravity_mode = gravity_mode_named(py, gravity_mode)?;
+    set_environment(py, &mut simulation, &effects(environment)?, &[None])?;
+    let orbit = simulation.orbit.clone();
+    let around = Around { orbit: orbit.as_ref(), ..Around::default() };
+    settings.apply(py, model, &around, &mut simulation.systems[0])?;
+    Ok(simulation)
+}
+
+/// Sets the effects and the gravity field; orbit and Earth must have been set before. `surfaces` are those that were
+/// declared with each system.
+pub(crate) fn set_environment(
+    py: Python<'_>,
+    simulation: &mut Simulation,
+    environment: &[Bound<'_, PyEffect>],
+    surfaces: &[Option<&SurfaceAssignment>],
+) -> PyResult<()> {
+    let systems = simulation.systems.iter().zip(surfaces);
+    let targets: Vec<Target<'_>> = systems
+        .map(|(System { name, model, .. }, surfaces)| Target { name, model, surfaces: *surfaces })
+        .collect();
+    for (number, own) in surfaces.iter().enumerate() {
+        own.map_or(Ok(()), |own| own.on_robot(py, &targets, number).map(drop))?; // errors even without an effect
+    }
+    let on_systems = environment.iter().filter_map(|effect| effect.get().on(py, &targets).transpose());
+    simulation.effects = on_systems.collect::<PyResult<_>>()?;
+    let mu = simulation.orbit.as_ref().and_then(|orbit| orbit.mu());
+    let of_orbit = simulation.orbit.as_ref().and_then(|orbit| orbit.gravity());
+    let given = gravity_of(py, environment, mu, simulation.earth.as_ref())?;
+    if let (Some(orbit), Some(earth)) = (&simulation.orbit, &simulation.earth) {
+        earth.check_orbit(orbit.axes(), orbit.epoch()).map_err(|error| error.into_python(py))?;
+    }
+    let shared = given.map(|given| match of_orbit {
+        Some(of_orbit) => given.shared_with(of_orbit),
+        None => Ok(Arc::new(given)),
+    });
+    simulation.gravity = shared.transpose().map_err(|error| error.into_python(py))?;
+    Ok(())
+}
+
+pub(crate) fn gravity_mode_named(py: Python<'_>, name: &str) -> PyResult<GravityMode> {
+    match name {
+        "true" => Ok(GravityMode::True),
+        "carried" => Ok(GravityMode::Carried),
+        other => {
+            let message = format!("gravity_mode is '{other}'; it must be 'true' or 'carried'");
+            Err(raise(py, "InputError", &message, &fields!(py, "name": "gravity_mode", "got": other)))
+        }
+    }
+}
+
+pub(crate) fn integrator_named(py: Python<'_>, name: &str) -> PyResult<Integrator> {
+    match name {
+        "rk4" => Ok(Integrator::Rk4),
+        "semi_implicit_euler" => Ok(Integrator::SemiImplicitEuler),
+        "dormand_prince" => Ok(Integrator::DormandPrince),
+        other => {
+            let hint = if other.eq_ignore_ascii_case("euler") {
+                "; did you mean 'semi_implicit_euler'?"
+            } else {
+                ""
+            };
+            let message = format!(
+                "integrator is '{other}'; it must be 'rk4', 'semi_implicit_euler' or 'dormand_prince'{hint}"
+            );
+            Err(raise(py, "InputError", &message, &fields!(py, "name": "integrator", "got": other)))
+        }
+    }
+}
