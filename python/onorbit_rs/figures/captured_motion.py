@@ -18,6 +18,7 @@ from onorbit_rs.figures.style import (
     SMALL,
     XYZ_COLORS,
     hide_rounding,
+    legend_of_figure,
     new_figure,
     plot_lines,
     tidy,
@@ -67,10 +68,7 @@ def captured_motion(
         shown = _draw(axes, time, values, unit, limit)
         tidy(axes, label if number > 1 else "", f"{name} [{shown}]")
         mark_events(axes, of_systems(events, connection.systems), scale, has_names=number < 2)
-    figure.legend(
-        *panels[0, 0].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
-        ncols=5, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
-    )  # fmt: skip
+    legend_of_figure(figure, panels[0, 0])
     return figure
 
 

@@ -16,9 +16,9 @@ from onorbit_rs.figures.style import (
     PAGE,
     SMALL,
     clock,
-    legend_columns,
     legend_height,
     legend_name,
+    legend_of_figure,
     new_figure,
     others_of,
     thin,
@@ -73,11 +73,7 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
             _plot_bodies(axes, time, _size(rows, what), bodies, shown, rounding)
             name = f"{legend_name(effect.replace('_', ' '))}\n" if column == 0 else ""
             tidy(axes, label if is_last else "", f"{name}{what} [{unit}]")
-    handles, names = panels[0, 0].get_legend_handles_labels()
-    figure.legend(
-        handles, names, loc="outside upper left", frameon=False, fontsize=SMALL,
-        ncols=legend_columns(names, PAGE - 0.6), handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
-    )  # fmt: skip
+    names = legend_of_figure(figure, panels[0, 0])
     figure.set_figheight(0.5 + 1.35 * len(wrenches) + legend_height(names, PAGE - 0.6))
     return figure
 

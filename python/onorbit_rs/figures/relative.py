@@ -18,7 +18,7 @@ from onorbit_rs.figures.style import (
     LINE,
     OBTAINED,
     PAGE,
-    SMALL,
+    legend_of_figure,
     new_figure,
     tidy,
 )
@@ -66,10 +66,7 @@ def relative_motion(trace: Trace, targets: Sequence[Target] = ()) -> Figure:
             axes.plot(0.0, 0.0, "+", color=INK, markersize=7, label="reference")
         tidy(axes, f"along track [{unit}]", f"{name} [{unit}]")
         set_window(axes, factor * points, across)
-    figure.legend(
-        *panels[0].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
-        ncols=5, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
-    )  # fmt: skip
+    legend_of_figure(figure, panels[0])
     return figure
 
 

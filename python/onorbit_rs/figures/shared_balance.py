@@ -20,6 +20,7 @@ from onorbit_rs.figures.style import (
     SMALL,
     hide_rounding,
     legend_name,
+    legend_of_figure,
     new_figure,
     plot_largest,
     plot_lines,
@@ -66,7 +67,7 @@ def momentum_exchange(
             hide_rounding(axes, ROUNDING * max(factor, 1.0))
             tidy(axes, f"time [{clock}]" if row == 2 else "", f"{part} {axis} [{shown}]")
             mark_events(axes, of_systems(events, systems), scale, has_names=row == 0)
-    _legend(figure, panels[0, 0])
+    legend_of_figure(figure, panels[0, 0])
     return figure
 
 
@@ -83,7 +84,7 @@ def energy_exchange(trace: WorldTrace, systems: Sequence[str], events: Sequence[
     hide_rounding(left, ROUNDING * max(factor, 1.0))
     tidy(left, f"time [{clock}]", f"kinetic energy [{unit}]")
     mark_events(left, own, scale, has_names=True)
-    _legend(figure, left)
+    legend_of_figure(figure, left)
     _draw_losses(right, own[:MOST_EVENTS])
     return figure
 
@@ -123,11 +124,3 @@ def _draw_with_sum(axes: Axes, time: Floats, values: Floats, systems: Sequence[s
     plot_largest(axes, time, values, systems)
     plot_lines(axes, time, values.sum(axis=1)[:, None], ("sum",), (INK,))
     axes.lines[-1].set_linestyle((0, (3, 1.5)))
-
-
-def _legend(figure: Figure, axes: Axes) -> None:
-    """Place the legend of ``axes`` above the figure."""
-    figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
-        ncols=6, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
-    )  # fmt: skip

@@ -73,6 +73,16 @@ def legend_above(axes: Axes, width: float = COLUMN - 0.5) -> None:
     )  # fmt: skip
 
 
+def legend_of_figure(figure: Figure, axes: Axes) -> list[str]:
+    """Put the legend of axes above the whole figure, in as many columns as fit; return its names."""
+    handles, names = axes.get_legend_handles_labels()
+    figure.legend(
+        handles, names, loc="outside upper left", frameon=False, fontsize=SMALL,
+        ncols=legend_columns(names, PAGE - 0.6), handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
+    )  # fmt: skip
+    return names
+
+
 def legend_height(names: Sequence[str], width: float = COLUMN - 0.5) -> float:
     """Return the height, inches, of the legend that :func:`legend_above` draws for these names."""
     return 0.13 * -(-len(names) // legend_columns(names, width))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +13,7 @@ from onorbit_rs.common.coordinates import POSITION
 from onorbit_rs.common.decimate import evenly_spaced
 from onorbit_rs.common.display_units import with_prefix
 from onorbit_rs.common.group_momentum import shared_rows
+from onorbit_rs.common.pairs import pairs_of
 from onorbit_rs.common.rotations import local_orbital_axes
 from onorbit_rs.figures.event_marks import mark_events
 from onorbit_rs.figures.relative import MOST_ROWS, WORTH_A_PATH, set_window
@@ -22,9 +22,9 @@ from onorbit_rs.figures.style import (
     INK,
     LINE,
     PAGE,
-    SMALL,
     legend_above,
     legend_name,
+    legend_of_figure,
     new_figure,
     plot_largest,
     tidy,
@@ -40,9 +40,6 @@ if TYPE_CHECKING:
     from onorbit_rs.figures.world_subject import EventMark
 
     Floats = NDArray[np.float64]
-
-MOST_PAIRS = 6
-"""Largest number of pairs whose distances are drawn; above it, only distances to the first system are."""
 
 
 def formation_motion(trace: WorldTrace, events: Sequence[EventMark] = ()) -> Figure:
@@ -61,10 +58,7 @@ def formation_motion(trace: WorldTrace, events: Sequence[EventMark] = ()) -> Fig
         axes.plot(0.0, 0.0, "+", color=INK, markersize=7, linestyle="none", label="reference")
         tidy(axes, f"along track [{unit}]", f"{name} [{unit}]")
         set_window(axes, factor * points, across)
-    figure.legend(
-        *panels["plane"].get_legend_handles_labels(), loc="outside upper left", frameon=False, fontsize=SMALL,
-        ncols=7, handlelength=1.6, handletextpad=0.5, columnspacing=1.2,
-    )  # fmt: skip
+    legend_of_figure(figure, panels["plane"])
     time, apart = distances(trace)
     scale, clock = time_unit(time)
     values = np.stack(list(apart.values()), axis=1)
@@ -99,12 +93,9 @@ def distances(trace: WorldTrace) -> tuple[Floats, dict[str, Floats]]:
     """Return the times common to all systems, s, and the distances between the bases of each pair, m."""
     names = list(trace.names)
     rows = dict(zip(names, shared_rows([np.asarray(trace[name].time) for name in names]), strict=True))
-    pairs = list(combinations(names, 2))
-    if len(pairs) > MOST_PAIRS:
-        pairs = [(names[0], name) for name in names[1:]]
     place = {name: np.asarray(trace[name].q)[rows[name]][:, POSITION] for name in names}
     time = np.asarray(trace[names[0]].time)[rows[names[0]]]
-    return time, {f"{a} - {b}": np.linalg.norm(place[b] - place[a], axis=1) for a, b in pairs}
+    return time, {f"{a} - {b}": np.linalg.norm(place[b] - place[a], axis=1) for a, b in pairs_of(names)}
 
 
 def is_apart(trace: WorldTrace, models: Mapping[str, Model]) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +11,7 @@ from onorbit_rs._core import COLUMNS
 from onorbit_rs.common.coordinates import POSITION
 from onorbit_rs.common.frame_motion import MovingFrame, frame_motion
 from onorbit_rs.common.group_momentum import group_momentum, shared_rows
+from onorbit_rs.common.pairs import pairs_of
 from onorbit_rs.viewer.series import AXES, SUM, Series, fitted_unit
 
 if TYPE_CHECKING:
@@ -29,9 +29,6 @@ CONNECTIONS, MOMENTUM, ENERGY, PLACES = "Connections", "Momentum", "Energy", "Po
 
 SHARED = "plots/world/"
 """Beginning of the paths of plots of several systems; no system has this name."""
-
-MOST_PAIRS = 6
-"""Largest number of distances between any two systems; for more systems, those to the first are shown."""
 
 
 def world_series(world: WorldRows, *, is_live: bool = False) -> Iterator[tuple[TraceRows, Series]]:
@@ -105,9 +102,7 @@ def _distances(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
     """Yield the distances between the bases."""
     names = world.setting.names
     chosen = dict(zip(names, _shared(world, names), strict=True))
-    pairs = list(combinations(names, 2))
-    if len(pairs) > MOST_PAIRS:
-        pairs = [(names[0], name) for name in names[1:]]
+    pairs = pairs_of(names)
     place = {name: rows["q"][:, POSITION] for name, rows in chosen.items()}
     values = np.stack([np.linalg.norm(place[b] - place[a], axis=1) for a, b in pairs], axis=1)
     labels = tuple(f"{a} - {b}" for a, b in pairs)

@@ -1,0 +1,15 @@
+"""Pairs of systems whose distances are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+MOST_PAIRS = 6
+"""Largest number of pairs whose distances are shown; above it, only distances to the first system are."""
+
+
+def pairs_of(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the pairs of systems whose distances are shown."""
+    pairs = list(combinations(names, 2))
+    return pairs if len(pairs) <= MOST_PAIRS else [(names[0], name) for name in names[1:]]
