@@ -64,7 +64,7 @@ class Latch(Part):
     within: Envelope
     """Largest distance and angle."""
     slower_than: EnvelopeRates | None = None
-    """Largest speed and angular rate. Default: any."""
+    """Largest speed as observed in the capturing frame, and largest relative angular rate. Default: any."""
     held_for: Annotated[Time, NotNegative] = 0.0
     """Time for which the conditions must hold."""
 
