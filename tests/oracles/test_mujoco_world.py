@@ -10,6 +10,7 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.engines import Mujoco
 from onorbit_rs.exceptions import EngineError, ScenarioError
+from onorbit_rs.output.checks import advice
 
 mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
 
@@ -110,8 +111,8 @@ def test_the_certificate_measures_what_the_weld_costs() -> None:
 
 def test_a_weld_that_the_steps_resolve_closes_the_balance_of_the_energy() -> None:
     """Impulse and work of the welds are complete; only the quadrature over a short transient is not."""
-    engine = Mujoco({name: MODELS[name] for name in ("chaser", "target")}, time_step=STEP)
-    engine._model.eq_solref[:, 0] = 20.0 * STEP
+    models = {name: MODELS[name] for name in ("chaser", "target")}
+    engine = Mujoco(models, time_step=STEP, weld_time_constant=20.0 * STEP)
     trace = oo.Simulation(world(EVENTS), time_step=STEP, engine=engine).run(END)
     assert group_checks(trace)["energy_balance_error_rel"] < 1e-6
     assert group_checks(trace)["angular_momentum_drift_rel"] > 1e-4  # but the gap is larger
@@ -122,6 +123,13 @@ def test_a_weld_that_the_steps_resolve_closes_the_balance_of_the_energy() -> Non
         assert np.abs(change[name] - own.impulse[-1]).max() < 1e-10, name
     assert np.linalg.norm(change["target"][:3]) > 0.1
     assert np.abs(change["target"][:3] + change["chaser"][:3]).max() < 1e-12
+
+
+@pytest.mark.parametrize("value", [STEP, 0.0, -1.0, float("nan"), "soon"])
+def test_a_time_constant_that_mujoco_cannot_hold_is_refused(value: Any) -> None:
+    message = r"weld_time_constant is .* s; it must be finite and at least two time steps"
+    with pytest.raises(oo.exceptions.EngineError, match=message):
+        Mujoco(MODELS, time_step=STEP, weld_time_constant=value)
 
 
 def test_systems_that_are_not_connected_move_as_on_the_built_in_engine() -> None:
@@ -229,6 +237,23 @@ def test_a_scenario_with_an_arm_and_a_latch() -> None:
     assert 1e-9 < difference < 1e-3
 
 
+def test_the_advice_for_a_soft_connection_is_no_shorter_step() -> None:
+    soft = SCENARIO | {"simulation": SCENARIO["simulation"] | {"weld_time_constant": "0.1 s"}}
+    summaries = [oo.run(scenario, quiet=True).summary for scenario in (SCENARIO, soft)]
+    for summary in summaries:
+        assert not summary["certificate_passed"]
+        assert "weld_time_constant" in advice(summary) and "will not make them exact" in advice(summary)
+    balance = [
+        next(check["value"] for check in summary["certificate"] if "energy_balance" in check["name"])
+        for summary in summaries
+    ]
+    assert balance[1] < 0.1 * balance[0]
+    apart = SCENARIO | {"events": [], "simulation": SCENARIO["simulation"] | {"time_step": "50 ms"}}
+    assert "shorter than" in advice(
+        oo.run(apart, quiet=True).summary
+    )  # the drift of Runge and Kutta's method
+
+
 def test_compare_runs_a_world_on_the_other_engine() -> None:
     compared: Any = oo.compare(SCENARIO | {"engine": "native"}, tolerance=1e-3)
     assert not compared.agrees  # the impact of the capture, which MuJoCo spreads over several steps
@@ -255,11 +280,20 @@ KNOWING = {"chaser": SCENARIO["systems"]["chaser"] | {"knows": ["target"]}}
             SCENARIO | {"simulation": SCENARIO["simulation"] | {"integrator": "dormand_prince"}},
             r"simulation.integrator: .*does not support integrator dormand_prince",
         ),
+        (
+            SCENARIO
+            | {"engine": "native", "simulation": SCENARIO["simulation"] | {"weld_time_constant": "1 s"}},
+            r"simulation.weld_time_constant: .*belongs to engine: mujoco",
+        ),
+        (
+            SCENARIO | {"simulation": SCENARIO["simulation"] | {"weld_time_constant": "1 ms"}},
+            r"weld_time_constant is 0.001 s; it must be .* at least two time steps, 0.02 s",
+        ),
     ],
-    ids=["seat", "impulse", "knows", "integrator"],
+    ids=["seat", "impulse", "knows", "integrator", "native", "short"],
 )
 def test_scenarios_that_mujoco_cannot_run_are_located(scenario: dict[str, Any], message: str) -> None:
-    with pytest.raises(ScenarioError, match=message):
+    with pytest.raises((ScenarioError, EngineError), match=message):
         oo.run(scenario)
 
 

@@ -50,11 +50,16 @@ class Mujoco:
     enforce_limits : bool or list of str
         Whether rigid stops keep the joints within their position limits; for a world, the names of the
         systems with such stops.
+    weld_time_constant : float, optional
+        Time constant of the connections of a world (``solref`` of their welds), s, at least two time steps. A
+        longer one is resolved by more steps, which closes the balance of the energy, and opens a larger gap.
+        Default: two time steps.
 
     Raises
     ------
     EngineError
-        If MuJoCo is not installed, or the integrator is not available with MuJoCo.
+        If MuJoCo is not installed, the integrator is not available with MuJoCo, or the time constant is out
+        of range.
     ModelError
         If MuJoCo cannot represent the robot.
     """
@@ -66,6 +71,7 @@ class Mujoco:
         time_step: float = 1e-3,
         integrator: Literal["rk4", "semi_implicit_euler"] = "rk4",
         enforce_limits: bool | Collection[str] = False,
+        weld_time_constant: float | None = None,
     ) -> None:
         """Build MuJoCo's model of the robot or of the world."""
         if integrator not in ("rk4", "semi_implicit_euler"):
@@ -77,7 +83,9 @@ class Mujoco:
         self._is_euler = integrator == "semi_implicit_euler"
         models = dict(model) if isinstance(model, Mapping) else {"": model}
         stops = enforce_limits if isinstance(enforce_limits, Collection) else [*models] * enforce_limits
-        self._model = world_model(models, time_step=time_step, with_stops=stops)
+        self._model = world_model(
+            models, time_step=time_step, with_stops=stops, weld_time_constant=weld_time_constant
+        )
         self._data = self._mujoco.MjData(self._model)
         self._shares = shares(self._model, models)
         self._is_world = isinstance(model, Mapping)

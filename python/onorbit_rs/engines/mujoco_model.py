@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.numbers import finite_float
 from onorbit_rs.exceptions import EngineError, ModelError
 
 if TYPE_CHECKING:
@@ -59,7 +60,28 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
     return world_model({"": model}, time_step=time_step, with_stops=[""] if enforce_limits else [])
 
 
-def world_model(models: Mapping[str, Model], *, time_step: float, with_stops: Collection[str]) -> Any:
+def _time_constant(given: float | None, time_step: float) -> float:
+    """Return the time constant of welds, s; MuJoCo's constraints need at least two steps."""
+    shortest = 2.0 * time_step
+    if given is None:
+        return shortest
+    value = finite_float(given)
+    if value is None or value < shortest * (1.0 - 1e-9):
+        raise EngineError(
+            f"weld_time_constant is {given!r} s; it must be finite and at least two time steps, "
+            f"{shortest:g} s",
+            name="weld_time_constant", got=given, expected=f">= {shortest:g}",
+        )  # fmt: skip
+    return value
+
+
+def world_model(
+    models: Mapping[str, Model],
+    *,
+    time_step: float,
+    with_stops: Collection[str],
+    weld_time_constant: float | None = None,
+) -> Any:
     """Return one ``mujoco.MjModel`` of several systems; the names of their links and joints are paths.
 
     The model has one inactive weld for each possible connection: one fewer than the number of systems,
@@ -67,6 +89,7 @@ def world_model(models: Mapping[str, Model], *, time_step: float, with_stops: Co
     those of :func:`mujoco_model`.
     """
     mujoco = import_mujoco()
+    softness = _time_constant(weld_time_constant, time_step)
     spec = mujoco.MjSpec()
     spec.modelname = next(iter(models.values())).name
     spec.compiler.degree = spec.compiler.alignfree = spec.compiler.autolimits = False
@@ -85,7 +108,7 @@ def world_model(models: Mapping[str, Model], *, time_step: float, with_stops: Co
         weld = spec.add_equality()
         weld.type, weld.objtype = mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY
         weld.name1, weld.name2, weld.active = bases[0], bases[1], False  # replaced by each connection
-        weld.solref, weld.solimp = np.array([2.0 * time_step, 1.0]), np.array(HARDEST)
+        weld.solref, weld.solimp = np.array([softness, 1.0]), np.array(HARDEST)
     try:
         compiled = spec.compile()
     except ValueError as error:

@@ -78,12 +78,22 @@ def advice(summary: dict[str, Any]) -> str:
 
     A shorter step is suggested only if halving the step changes the motion, or if that was not evaluated.
     """
+    if summary.get("engine") == "mujoco" and any(
+        event["kind"] == "capture" for event in summary.get("events", ())
+    ):
+        return (
+            "the connections of the engine mujoco are soft, so a shorter time_step will not make them exact; "
+            "a longer weld_time_constant closes the balance of the energy, and the engine native has exact "
+            "connections"
+        )
     if summary.get("integrator") == "dormand_prince":
         return "try a smaller tolerance"
     step = summary.get("time_step_s")
     if not isinstance(step, (int, float)):
         return ""
-    ratios = [_gate_ratio(check) for check in checks(summary) if "step_doubling" in check.key]
+    parts = summary.get("systems", {"": summary}).values()
+    found = [check for part in parts for check in checks(part)]
+    ratios = [_gate_ratio(check) for check in found if "step_doubling" in check.key]
     if not ratios or max(ratios) >= SUSPECT:
         return f"try a time_step shorter than {step:g} s"
     return (

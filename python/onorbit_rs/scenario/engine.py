@@ -34,6 +34,11 @@ def check_engine(scenario: Scenario) -> None:
 def check_world_engine(scenario: WorldScenario) -> None:
     """Raise an error for events and systems that the engine does not support."""
     if scenario.engine == "native":
+        if scenario.simulation.weld_time_constant is not None:
+            message = (
+                "'weld_time_constant' belongs to engine: mujoco; the native engine has exact connections"
+            )
+            raise inconsistent(("simulation", "weld_time_constant"), message)
         return
     for index, event in enumerate(scenario.events):
         for key in ("seat", "impulse"):
@@ -53,16 +58,22 @@ def build_engine(scenario: Scenario, model: Model) -> engines.Mujoco | None:
 
 def build_world_engine(scenario: WorldScenario, models: dict[str, Model]) -> engines.Mujoco | None:
     """Return the physics engine of a run of several systems, or None for the native one."""
-    return _build(scenario, models, [name for name, one in scenario.systems.items() if one.enforce_limits])
+    stops = [name for name, one in scenario.systems.items() if one.enforce_limits]
+    return _build(scenario, models, stops, weld_time_constant=scenario.simulation.weld_time_constant)
 
 
 def _build(
-    scenario: Scenario | WorldScenario, model: Model | dict[str, Model], enforce_limits: bool | list[str]
+    scenario: Scenario | WorldScenario,
+    model: Model | dict[str, Model],
+    enforce_limits: bool | list[str],
+    *,
+    weld_time_constant: float | None = None,
 ) -> engines.Mujoco | None:
     if scenario.engine == "native":
         return None
     settings = scenario.simulation
     assert settings.integrator != "dormand_prince"  # check_engine raises an error for it
     return engines.Mujoco(
-        model, time_step=settings.time_step, integrator=settings.integrator, enforce_limits=enforce_limits
-    )
+        model, time_step=settings.time_step, integrator=settings.integrator, enforce_limits=enforce_limits,
+        weld_time_constant=weld_time_constant,
+    )  # fmt: skip

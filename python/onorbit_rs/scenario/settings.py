@@ -103,6 +103,15 @@ class SimulationSettings(ControlSettings, IntegrationSettings):
 class WorldSettings(IntegrationSettings):
     """Settings of a scenario with ``systems``."""
 
+    weld_time_constant: Annotated[Time, Positive] | None = None
+    """Time constant of the connections of ``engine: mujoco``. Default, and least: two time steps."""
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the settings as keyword arguments of :class:`onorbit_rs.Simulation`."""
+        values = super().arguments()
+        values.pop("weld_time_constant", None)
+        return values
+
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
         if key in ControlSettings.model_fields:

@@ -68,7 +68,7 @@ class WorldScenario(Document):
     def scenarios(self) -> dict[str, Scenario]:
         """Scenario of each system alone, with the orbit and environment of the world."""
         shared = {name: getattr(self, name) for name in Document.model_fields}
-        settings = self.simulation.model_dump()
+        settings = self.simulation.model_dump(exclude={"weld_time_constant"})
         events = [event.name for event in self.events]
         found = {}
         for name, system in self.systems.items():
