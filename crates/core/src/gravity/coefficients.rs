@@ -1,4 +1,4 @@
-//! Coefficients of a planet's field and their checks.
+//! Coefficients of a planet's gravity field, and their checks.
 
 use super::error::GravityError;
 use super::point_mass::is_earth;
@@ -8,14 +8,15 @@ use crate::number_text::short;
 /// Highest degree for which the recursion is stable; no published model exceeds it.
 const HIGHEST: usize = 2700;
 
-/// Largest plausible coefficients: of degree 2 and above, and (below) of degree 1. Saturn's `C̄20` is 0.0073; the
-/// coefficients of degree 1 give the offset `√3 C̄ R` of the centre of mass.
+/// Largest plausible coefficients: of degree 2 and above, and (below) of degree 1. For comparison, Saturn's
+/// `C̄20` is 0.0073. The coefficients of degree 1 give the offset `√3 C̄ R` of the centre of mass.
 const LARGEST: f64 = 1e-2;
 const LARGEST_FIRST: f64 = 1e-4;
 
 /// Fully normalised coefficients of a planet's field, of degree 1 and above.
 ///
-/// `U = (μ/r) [1 + Σ (R/r)ⁿ P̄nm(sin φ) (C̄nm cos mλ + S̄nm sin mλ)]`, in axes fixed in the planet.
+/// `U = (μ/r) [1 + Σ (R/r)ⁿ P̄nm(sin φ) (C̄nm cos mλ + S̄nm sin mλ)]` with latitude `φ` and longitude `λ` in
+/// axes fixed in the planet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coefficients {
     pub(super) model: String,
@@ -25,15 +26,15 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// Returns the coefficients of the square arrays `c` and `s` with the elements `c[n (degree + 1) + m]`; `mu` is in
-    /// m³/s², and `radius`, `R`, in m.
+    /// Creates the coefficients from square arrays `c` and `s`, in which the element of degree `n` and order
+    /// `m` is `c[n (degree + 1) + m]`; `mu` is in m³/s² and the reference radius `radius`, `R`, in m.
     ///
     /// `c[0]` is treated as 1 regardless of its value; entries with `m > n` and `s` of order 0 must be zero.
     ///
     /// # Errors
-    /// [`GravityError`] for a degree out of range, wrong lengths, non-finite numbers, terms that do not exist, `mu` and
-    /// `radius` that are not positive or whose units do not match, and implausible coefficients, such as those that
-    /// are not normalised.
+    /// [`GravityError`] for a degree out of range, wrong lengths, non-finite numbers, entries of terms that
+    /// do not exist, `mu` and `radius` that are not positive or have the wrong units, and implausible
+    /// coefficients, such as coefficients without normalisation.
     pub fn new(
         model: &str,
         mu: f64,
@@ -65,7 +66,7 @@ impl Coefficients {
         Self::checked(model.to_owned(), mu, radius, series)
     }
 
-    /// Returns the coefficients of a series, or an error if they are implausible.
+    /// Creates the coefficients from a series, or returns an error if they are implausible.
     pub(super) fn checked(
         model: String,
         mu: f64,
@@ -99,7 +100,7 @@ impl Coefficients {
         self.series.degree()
     }
 
-    /// Returns the series up to a degree and an order.
+    /// Returns the series up to the given degree and order.
     pub(super) fn truncated(&self, degree: usize, order: usize) -> Result<Series, GravityError> {
         if order > degree {
             return Err(GravityError::OrderAboveDegree { degree, order });
@@ -122,7 +123,7 @@ pub(super) fn check_degree(degree: usize) -> Result<usize, GravityError> {
     if (2..=HIGHEST).contains(&degree) { Ok(degree) } else { Err(GravityError::Degree { degree }) }
 }
 
-/// Rejects values that cannot belong to a planet in SI units.
+/// Returns an error for values that cannot belong to a planet in SI units.
 pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
     for (name, value) in [("mu", mu), ("radius", radius)] {
         if !(value.is_finite() && value > 0.0) {
@@ -145,7 +146,7 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
     Ok(())
 }
 
-/// Detects the Earth's `C20` without normalisation: -1.08e-3, √5 times the normalised value.
+/// Detects an unnormalised `C20` of the Earth: -1.08e-3, which is √5 times the normalised value.
 fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     let [c20, _] = series.get(2, 0);
     (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs())).then(|| {
@@ -156,13 +157,13 @@ fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     })
 }
 
-/// Detects coefficients without normalisation by their decay: sectoral coefficients (order equal to degree) decay with
-/// the factorial of the degree.
+/// Detects unnormalised coefficients by their decay: unnormalised sectoral coefficients (order equal to
+/// degree) decay with the factorial of the degree.
 ///
-/// The normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and similarly
-/// smaller than `Nn0`. Normalised coefficients of planets decay as about `n⁻²` (Kaula's rule) and are similar within a
-/// degree. The threshold is the geometric mean of both decays. The test requires degree 8 or more, and the decay must
-/// exceed the threshold both over degrees and over orders.
+/// The normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and is
+/// smaller than `Nn0` by a similar factor. Normalised coefficients of planets decay approximately as `n⁻²`
+/// (Kaula's rule) and are similar within a degree. The threshold is the geometric mean of the two decays. The
+/// test requires degree 8 or more; the decay must exceed the threshold both over degrees and over orders.
 fn unnormalised_decay(series: &Series) -> Option<String> {
     let high = series.degree().min(series.order()).min(16);
     let size = |n: usize, m: usize| -> f64 {

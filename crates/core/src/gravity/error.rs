@@ -27,8 +27,8 @@ pub enum GravityError {
     #[error("degree is {degree}; it must be from 2 to 2700")]
     Degree { degree: usize },
     #[error(
-        "no gravity model is named '{name}'; the choices are {known} (of order 0; in Python GravityField.zonal), \
-         and .gfc files",
+        "no gravity model is named '{name}'; expected {known} (in Python GravityField.zonal) \
+         or a .gfc file",
         known = known.join(", ")
     )]
     UnknownModel { name: String, known: Vec<&'static str> },
@@ -64,7 +64,7 @@ pub enum GravityError {
     Header { file: String, key: &'static str, got: String, expected: &'static str },
     #[error(
         "{file}:{line}: the row is '{got}'; expected 'gfc degree order C S' with finite C and S, and \
-         order ≤ degree ≤ {max_degree}, the max_degree of the header"
+         order ≤ degree ≤ {max_degree}, which is the max_degree of the header"
     )]
     Row { file: String, line: usize, got: String, max_degree: usize },
     #[error(
@@ -72,7 +72,7 @@ pub enum GravityError {
          download the file again, or add a line break if the row is complete"
     )]
     CutRow { file: String, line: usize, got: String },
-    #[error("{file}:{line}: degree {degree}, order {order} is given twice; remove one of the rows")]
+    #[error("{file}:{line}: degree {degree}, order {order} is given twice; remove one of the two rows")]
     Twice { file: String, line: usize, degree: usize, order: usize },
     #[error(
         "{file}:{line}: '{key}' makes the field vary with time; evaluate the model at your epoch and write it \
@@ -108,13 +108,13 @@ pub enum GravityError {
          the run's environment, which then uses that of the orbit"
     )]
     OtherGravity { what: &'static str },
-    #[error("the {name} is given twice as a third body; give it once")]
+    #[error("the {name} is given twice as a third body; name it only once")]
     BodyTwice { name: &'static str },
     #[error(transparent)]
     Earth(#[from] EarthError),
 }
 
-/// Returns the advice to request a degree below `degree`, or nothing if no such degree exists.
+/// Returns the advice to request a degree below `degree`, or an empty text if there is no such degree.
 fn lower_degree(degree: usize) -> String {
     if degree > 2 { format!(", or request a degree below {degree}") } else { String::new() }
 }

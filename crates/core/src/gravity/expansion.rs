@@ -5,13 +5,14 @@ use super::field::GravityField;
 use crate::spatial::{Mat3, Real, Sym3, Vec3};
 use std::sync::{Mutex, PoisonError};
 
-/// Distance over which a field is approximated as linear, m.
+/// Distance from the point of expansion within which a field is approximated as linear, m.
 ///
-/// The error `½ ∂²g d²` is at most 3.5e-12 m/s² and 7e-13 on average within 28 m, at altitudes from 150 km (EGM2008
-/// 36 × 36, measured in `tests/gravity_local_field.rs`): 1e-10 of the field without its point mass.
+/// The error `½ ∂²g d²` is at most 3.5e-12 m/s², and 7e-13 m/s² on average, within `d` = 28 m at altitudes
+/// from 150 km (EGM2008 36 × 36, measured in `tests/gravity_local_field.rs`). This is 1e-10 of the field
+/// without its point mass.
 const LINEAR_RADIUS: f64 = 40.0;
 
-/// Linear expansion `g(x) = g₀ + G₀ (x - x₀)`.
+/// Linear expansion `g(x) = g₀ + G₀ (x - x₀)` of a gravity field, with the gradient `G₀` at `x₀`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expansion {
     pub(super) at: Vec3<f64>,
@@ -37,13 +38,14 @@ impl Expansion {
         Sym3::of(&self.gradient) * d
     }
 
-    /// Returns true if the expansion is accurate at all these positions.
+    /// Returns true if all these positions are within [`LINEAR_RADIUS`] of the point of expansion.
     #[inline(always)]
     pub(super) fn covers<S: Real>(&self, positions: Vec3<S>) -> bool {
         is_near(Vec3::of(&self.at), positions)
     }
 
-    /// Returns the expansion in axes `A`, where `rot` converts `A` components to the axes of this expansion.
+    /// Returns the expansion in axes `A`, where `rot` converts components in `A` to components in the present
+    /// axes.
     pub(super) fn rotated_back(&self, rot: &Mat3<f64>) -> Self {
         Self {
             at: rot.transpose_mul(self.at),
@@ -60,7 +62,7 @@ pub(super) fn is_near<S: Real>(a: Vec3<S>, b: Vec3<S>) -> bool {
     !S::any(S::of(LINEAR_RADIUS * LINEAR_RADIUS).less(d.dot(d)))
 }
 
-/// Cache of the last four expansions, which depend on the position alone.
+/// Cache of the last four expansions. Each depends only on its position.
 #[derive(Debug, Default)]
 pub(super) struct ExpansionCache(Mutex<[Option<Expansion>; 4]>);
 
@@ -71,7 +73,7 @@ impl Clone for ExpansionCache {
 }
 
 impl ExpansionCache {
-    /// Returns the expansion about this position.
+    /// Returns the expansion of `field` about the position `at`, from the cache if possible.
     pub(super) fn about(&self, field: &GravityField, at: Vec3<f64>) -> Result<Expansion, GravityError> {
         // The lock is released while the field is evaluated, because runs may share it.
         let cached = || self.0.lock().unwrap_or_else(PoisonError::into_inner);

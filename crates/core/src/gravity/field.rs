@@ -1,4 +1,4 @@
-//! Gravity field of a planet without its point mass.
+//! Gravity field of a planet, excluding its point mass.
 
 use super::coefficients::{Coefficients, check_planet};
 use super::error::GravityError;
@@ -17,7 +17,8 @@ const BUNDLED: [(&str, &str); 2] =
 /// Largest size of a model file, bytes; a model to degree 2190 has 0.3 GB.
 const LARGEST_FILE: usize = 1 << 30;
 
-/// Gravity field of a planet without its point mass, in axes `F` fixed in the planet with z along the rotation axis.
+/// Gravity field of a planet, excluding its point mass, in axes `F` fixed in the planet with z along the
+/// rotation axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GravityField {
     name: String,
@@ -35,22 +36,22 @@ enum Kind {
 }
 
 impl GravityField {
-    /// Returns the zonal field of the Earth (EGM2008) up to `degree`, which is from 2 to 6.
+    /// Creates the zonal field of the Earth (EGM2008) up to `degree`, which is from 2 to 6.
     ///
     /// # Errors
-    /// [`GravityError::ZonalDegree`].
+    /// [`GravityError::ZonalDegree`] for any other degree.
     pub fn zonal(degree: usize) -> Result<Self, GravityError> {
         let count = degree.checked_sub(1).filter(|count| (1..=zonal::EARTH.len()).contains(count));
         let j = &zonal::EARTH[..count.ok_or(GravityError::ZonalDegree { degree })?];
         Self::zonals(3.986_004_415e14, 6_378_136.3, j)
     }
 
-    /// Returns the zonal field of a planet with `mu`, m³/s², reference radius `R`, m, and up to five `J2`, `J3`, … `J6`
-    /// (not normalised).
+    /// Creates the zonal field of a planet with gravitational parameter `mu`, m³/s², reference radius
+    /// `radius`, m, and unnormalised coefficients `j`: one to five of `J2`, `J3`, … `J6`.
     ///
     /// # Errors
-    /// [`GravityError`] for no or more than five coefficients, non-finite numbers, and `mu` and `radius` that are not
-    /// positive or whose units do not match.
+    /// [`GravityError`] for an empty `j` or more than five coefficients, non-finite numbers, and `mu` and
+    /// `radius` that are not positive or have the wrong units.
     pub fn zonals(mu: f64, radius: f64, j: &[f64]) -> Result<Self, GravityError> {
         let degree = j.len() + 1;
         if j.is_empty() || degree > zonal::HIGHEST {
@@ -66,12 +67,12 @@ impl GravityField {
         Ok(Self { name: "zonal".to_owned(), mu, radius, degree, order: 0, kind })
     }
 
-    /// Returns a bundled model, `egm2008` (tide-free) or `jgm3` (`C̄20` with the permanent tide); both extend to degree
-    /// and order 70.
+    /// Creates a field from a bundled model: `egm2008` (tide-free) or `jgm3` (`C̄20` with the permanent
+    /// tide). Both extend to degree and order 70.
     ///
     /// # Errors
-    /// [`GravityError::UnknownModel`], [`GravityError::Degree`], [`GravityError::BeyondModel`],
-    /// [`GravityError::OrderAboveDegree`].
+    /// [`GravityError::UnknownModel`] for another name; [`GravityError::Degree`],
+    /// [`GravityError::BeyondModel`] and [`GravityError::OrderAboveDegree`] for an invalid degree or order.
     pub fn bundled(name: &str, degree: usize, order: usize) -> Result<Self, GravityError> {
         let Some((name, text)) = BUNDLED.iter().find(|(known, _)| *known == name) else {
             let known = BUNDLED.iter().map(|(known, _)| *known).chain(["zonal"]).collect();
@@ -82,11 +83,12 @@ impl GravityField {
         Self::new(&coefficients, degree, order)
     }
 
-    /// Reads a model from a `.gfc` file; `degree` defaults to that of the file and `order` to `degree`.
+    /// Reads a model from a `.gfc` file. By default, `degree` is the degree of the file and `order` equals
+    /// `degree`.
     ///
     /// # Errors
-    /// [`GravityError`] for a file that is unreadable, truncated, not normalised or time-dependent, and the errors of
-    /// [`GravityField::new`].
+    /// [`GravityError`] for a file that is unreadable, truncated, not normalised or time-dependent, and the
+    /// errors of [`GravityField::new`].
     pub fn from_gfc(path: &Path, degree: Option<usize>, order: Option<usize>) -> Result<Self, GravityError> {
         let file = path.display().to_string();
         let text = read_text(path, LARGEST_FILE).map_err(|error| {
@@ -101,11 +103,12 @@ impl GravityField {
         Self::new(&coefficients, degree, order.unwrap_or(degree))
     }
 
-    /// Returns the field of a model up to `degree` and `order`; zonal fields up to degree 6 and without a
-    /// term of degree 1 use their closed form.
+    /// Creates the field of a model up to `degree` and `order`. Zonal fields up to degree 6 without a term of
+    /// degree 1 are evaluated in closed form.
     ///
     /// # Errors
-    /// [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`], [`GravityError::Degree`].
+    /// [`GravityError::BeyondModel`], [`GravityError::OrderAboveDegree`] and [`GravityError::Degree`] for an
+    /// invalid degree or order.
     pub fn new(coefficients: &Coefficients, degree: usize, order: usize) -> Result<Self, GravityError> {
         let series = coefficients.truncated(degree, order)?;
         let Coefficients { model, mu, radius, .. } = coefficients;
@@ -141,20 +144,21 @@ impl GravityField {
         self.degree
     }
 
-    /// Returns the highest order; with 0 the field is symmetric about z of `F`.
+    /// Returns the highest order; a field of order 0 is symmetric about the z axis of `F`.
     pub fn order(&self) -> usize {
         self.order
     }
 
-    /// Returns true for a field in closed form, which requires no grid of expansions.
+    /// Returns true if the field is evaluated in closed form and therefore needs no grid of expansions.
     pub(super) fn is_closed(&self) -> bool {
         matches!(self.kind, Kind::Zonal(_))
     }
 
-    /// Returns the acceleration at `r` from the planet's centre, m, axes of `F`, in m/s².
+    /// Returns the acceleration, m/s², at position `r` from the planet's centre, m; both in axes of `F`.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`] below 0.996 `R`, where series are not reliable; [`GravityError::NotFinite`].
+    /// [`GravityError::BelowSurface`] below 0.996 `R`, where series are not reliable;
+    /// [`GravityError::NotFinite`] for `r`.
     #[inline]
     pub fn acceleration(&self, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         self.check(r)?;
@@ -164,7 +168,8 @@ impl GravityField {
         })
     }
 
-    /// Returns the acceleration, m/s², and its gradient `∂g/∂r`, symmetric and with zero trace, 1/s².
+    /// Returns the acceleration, m/s², and its gradient `∂g/∂r`, 1/s², which is symmetric with zero trace;
+    /// axes of `F`.
     ///
     /// # Errors
     /// The errors of [`GravityField::acceleration`].
@@ -176,11 +181,12 @@ impl GravityField {
         })
     }
 
-    /// Computes the accelerations `(n, 3)`, m/s², at positions `(n, 3)`, m, axes of `F`.
+    /// Computes the accelerations `(n, 3)`, m/s², at positions `(n, 3)` from the planet's centre, m, axes of
+    /// `F`.
     ///
     /// # Errors
-    /// [`GravityError::WrongLength`]; otherwise the first error of [`GravityField::acceleration`], after the rows
-    /// before it were written.
+    /// [`GravityError::WrongLength`] for arrays of the wrong length; otherwise the first error of
+    /// [`GravityField::acceleration`], after the rows before it were written.
     pub fn accelerations(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
         self.at_each(positions, out, 3, |r, row| {
             row.copy_from_slice(self.acceleration(r)?.as_slice());
@@ -188,7 +194,8 @@ impl GravityField {
         })
     }
 
-    /// Computes the gradients `(n, 3, 3)`, 1/s², at positions `(n, 3)`, m, axes of `F`.
+    /// Computes the gradients `(n, 3, 3)`, 1/s², at positions `(n, 3)` from the planet's centre, m, axes of
+    /// `F`.
     ///
     /// # Errors
     /// The errors of [`GravityField::accelerations`].

@@ -1,13 +1,13 @@
-//! Reader of `.gfc`, the format of the International Centre for Global Earth Models.
+//! Reader of `.gfc` files, in the format of the International Centre for Global Earth Models (ICGEM).
 
 use super::coefficients::{Coefficients, check_degree};
 use super::error::GravityError;
 use super::series::Series;
 
-/// Reads the text of a `.gfc` file, up to `degree` if given; `file` is the name in messages.
+/// Reads the text of a `.gfc` file, up to `degree` if it is given; `file` is the name used in error messages.
 ///
 /// # Errors
-/// [`GravityError`] with file and line.
+/// [`GravityError`] with the file and the line.
 ///
 /// Source: Barthelmes and Förste, The ICGEM-format, GFZ Potsdam 2011.
 pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coefficients, GravityError> {
@@ -48,8 +48,8 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
         if n > degree {
             continue;
         }
-        // if the file ends with S, without an error column and a line end, its digits may be truncated; a truncated
-        // exponent is detected by the size of the number
+        // if the file ends with S, without an error column or a line end, the digits of S may be truncated; a
+        // truncated exponent is detected by the size of the number
         let may_be_cut = m > 0 && !words[4].contains(['e', 'E', 'd', 'D']);
         if is_cut && line == last && words.len() == 5 && may_be_cut {
             return Err(GravityError::CutRow { file: file.to_owned(), line, got: text.trim().to_owned() });
@@ -67,7 +67,7 @@ pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coef
             return Err(GravityError::Truncated { file: file.to_owned(), degree: n, order });
         }
     }
-    // U = (μ/r) [C00 + …]: C00 is part of μ, and the other coefficients are relative to it
+    // U = (μ/r) [C00 + …]: C00 is included in μ, and the other coefficients are divided by C00
     Coefficients::checked(header.model, header.mu * central, header.radius, series.divided_by(central))
 }
 
@@ -136,7 +136,7 @@ impl Header {
     }
 }
 
-/// Parses a degree or order.
+/// Parses a degree or an order.
 fn index_of(word: Option<&&str>) -> Option<usize> {
     word?.parse().ok()
 }
@@ -177,13 +177,13 @@ mod tests {
     #[test]
     fn broken_files_are_refused_with_the_line() {
         let cut = |count: usize| GOOD.lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
-        // a file in which rows are missing or the last row is truncated
+        // files in which rows are missing or the last row is truncated
         assert!(matches!(refused(&cut(18), None), GravityError::Truncated { degree: 3, order: 3, .. }));
         assert!(matches!(refused(&cut(11), None), GravityError::Truncated { degree: 2, order: 0, .. }));
         assert!(read("tiny.gfc", &cut(16), Some(2)).is_ok());
         let broken = GOOD.replace("7e-7 1.4e-6 0 0\n", "7e-7");
         assert!(matches!(refused(&broken, None), GravityError::Row { line: 19, .. }));
-        // a file truncated within its last number, which then has a different value
+        // files truncated within the last number, which then has a different value
         for cut in ["7e-7 0.0000014", "7e-7 0.00", "7e-7 1.4"] {
             let cut = refused(&GOOD.replace("7e-7 1.4e-6 0 0\n", cut), None);
             assert!(matches!(cut, GravityError::CutRow { line: 19, .. }), "{cut}");

@@ -1,4 +1,4 @@
-//! Spherical harmonics of any degree and order with their gradient, without singularities.
+//! Spherical harmonics of any degree and order, with their gradient, evaluated without singularities.
 
 use super::series::{Axis, Series};
 use crate::spatial::{Fused, InstructionSet, Real};
@@ -6,10 +6,11 @@ use nalgebra::{Matrix3, Vector3};
 
 /// Acceleration and gradient as eight series that are summed together: `gx gy gz Gzz Gxx Gxy Gxz Gyz`.
 ///
-/// Derivatives of solid harmonics are solid harmonics, so acceleration and gradient are sums of the
-/// same functions, with coefficients computed once. For a fixed order the functions are
-/// `Vnm = Vmm hnm`, `Wnm = Wmm hnm`: one recursion for `h` serves both, requires only its last two values and
-/// has no divisor that vanishes at a pole. `Gyy = -Gxx - Gzz`, since the trace is zero.
+/// Derivatives of solid harmonics are again solid harmonics, so acceleration and gradient are sums of the
+/// same functions, with coefficients that are computed once. For a fixed order `m` the functions are `Vnm =
+/// Vmm hnm` and `Wnm = Wmm hnm`. A single recursion for `hnm` serves both; it needs only its two preceding
+/// values and has no divisor that vanishes at a pole. `Gyy = -Gxx - Gzz`, because the trace of the gradient
+/// is zero.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Harmonics {
     mu: f64,
@@ -20,7 +21,7 @@ pub(super) struct Harmonics {
     terms: Vec<Term>,
 }
 
-/// A term of one degree and order.
+/// Term of one degree and order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Term {
     /// Recursion coefficients `a` and `b` of the next degree.
@@ -31,7 +32,8 @@ struct Term {
     s: [f64; 8],
 }
 
-/// Scale 2⁻⁹³⁰ that prevents overflow of `h` near the poles up to degree 2700 (Holmes and Featherstone, section 4).
+/// Scale factor 2⁻⁹³⁰, which prevents overflow of `hnm` near the poles up to degree 2700 (Holmes and
+/// Featherstone, section 4).
 const SCALE: f64 = f64::from_bits((1023 - 930) << 52);
 
 impl Harmonics {
@@ -57,13 +59,14 @@ impl Harmonics {
         Self { mu, radius, orders, terms }
     }
 
-    /// Returns the acceleration, m/s².
+    /// Returns the acceleration, m/s², at position `r` from the planet's centre, m, axes of `F`.
     pub(super) fn acceleration(&self, r: &Vector3<f64>) -> Vector3<f64> {
         let [x, y, z, _] = self.evaluate::<4>(r);
         Vector3::new(x, y, z) * (self.mu / (self.radius * self.radius))
     }
 
-    /// Returns the acceleration, m/s², and its gradient, 1/s².
+    /// Returns the acceleration, m/s², and its gradient, 1/s², at position `r` from the planet's centre, m,
+    /// axes of `F`.
     pub(super) fn gradient(&self, r: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let [x, y, z, zz, xx, xy, xz, yz] = self.evaluate::<8>(r);
         let scale = self.mu / (self.radius * self.radius);
@@ -116,7 +119,8 @@ impl Harmonics {
     }
 }
 
-/// Returns `anm = √((2n-1)(2n+1)/((n-m)(n+m)))`, `bnm = √((2n+1)(n+m-1)(n-m-1)/((n-m)(n+m)(2n-3)))`, for `n > m`.
+/// Returns `anm = √((2n-1)(2n+1)/((n-m)(n+m)))`, `bnm = √((2n+1)(n+m-1)(n-m-1)/((n-m)(n+m)(2n-3)))`, for `n >
+/// m`.
 fn recursion(n: usize, m: usize) -> [f64; 2] {
     let (n, m) = (n as f64, m as f64);
     let below = (n - m) * (n + m);

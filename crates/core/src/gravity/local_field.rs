@@ -1,11 +1,11 @@
-//! Gravity field around a robot, expanded once and evaluated at all bodies.
+//! Gravity field near a robot, expanded once per instant and evaluated at all bodies.
 
 use super::expansion::{Expansion, is_near};
 use super::sky::Sky;
 use super::{Gravity, GravityError};
 use crate::spatial::{Real, Sym3, Vec3};
 
-/// Instant and position at which the field is expanded.
+/// Instant and positions for which the field is expanded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldPoint {
     /// Instant, s of simulation.
@@ -14,34 +14,37 @@ pub(crate) struct FieldPoint {
     pub(crate) r_ref: Vec3<f64>,
     /// Centre of mass of the robot relative to the reference, m.
     pub(crate) com: Vec3<f64>,
-    /// Distance travelled through the field in the step being integrated, m.
+    /// Distance that the robot travels through the field during the step being integrated, m.
     pub(crate) travel: f64,
 }
 
-/// Gravity without the point mass around the bodies of a robot at one instant, axes of `I`.
+/// Gravity near a robot at one instant, excluding the planet's point mass, axes of `I`.
 ///
-/// Zonal fields in closed form are expanded about the robot; other fields about the nearest point of a grid fixed in
-/// the planet or, for steps longer than the grid spacing, also about the robot. The result depends on the instant and
-/// the step alone, so a run continued from a checkpoint has the same bits.
+/// Zonal fields in closed form are expanded about the robot. Other fields are expanded about the nearest
+/// point of a grid fixed in the planet or, if the step is longer than the grid spacing, about the robot. The
+/// result depends only on the instant and the step, so a run that resumes from a checkpoint has identical
+/// bits.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalField<'a> {
     gravity: &'a Gravity,
     time: f64,
     r_ref: Vec3<f64>,
     sky: &'a Sky,
-    /// Expansions about the robot and, for differences over larger distances, about the reference.
+    /// Expansion about the robot and, for differences over larger distances, a second one about the
+    /// reference.
     expansions: [Option<Expansion>; 2],
 }
 
 impl Gravity {
-    /// Returns the gravity without the planet's point mass around a robot; `sky` is the result of [`Gravity::sky`] at
-    /// the same instant.
+    /// Computes the gravity near a robot, excluding the planet's point mass; `sky` is the result of
+    /// [`Gravity::sky`] at the same instant.
     ///
-    /// `tide_only` is required for [`LocalField::difference`]. If the reference is near, the field is then expanded
-    /// about the midpoint between robot and reference, which makes the difference accurate to second order.
+    /// `tide_only` must be true if [`LocalField::difference`] will be called. If the reference is near, the
+    /// field is then expanded about the midpoint between robot and reference, which makes the difference
+    /// accurate to second order.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`], and other errors of the field.
+    /// [`GravityError::BelowSurface`] and the other errors of the field.
     pub(crate) fn local_field<'a>(
         &'a self,
         point: &FieldPoint,
@@ -63,10 +66,11 @@ impl Gravity {
 }
 
 impl LocalField<'_> {
-    /// Returns `g(r_ref + ρ)`, m/s²; `offset` is `ρ`, the position relative to the reference, one body per lane.
+    /// Returns `g(r_ref + ρ)`, m/s², where `offset` is the position `ρ` relative to the reference, m, with
+    /// one body per lane.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`], and errors of third bodies.
+    /// [`GravityError::BelowSurface`], and the errors of third bodies.
     #[inline(always)]
     pub(crate) fn acceleration<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
         let there = Vec3::of(&self.r_ref) + offset;
@@ -84,11 +88,11 @@ impl LocalField<'_> {
         Ok(field + third)
     }
 
-    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s². For bodies that the expansion covers, this is `G ρ`, with the gradient
-    /// `G` at the centre of the expansion.
+    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s². If the expansion covers the bodies, the result is `G ρ` with
+    /// the gradient `G` at the centre of the expansion.
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`], and errors of third bodies.
+    /// [`GravityError::BelowSurface`], and the errors of third bodies.
     #[inline(always)]
     pub(crate) fn difference<S: Real>(&self, offset: Vec3<S>) -> Result<Vec3<S>, GravityError> {
         let there = Vec3::of(&self.r_ref) + offset;
@@ -106,10 +110,10 @@ impl LocalField<'_> {
         Ok(field + third)
     }
 
-    /// Returns `∂g/∂r` at `r_ref + ρ`, 1/s².
+    /// Returns the gradient `∂g/∂r` at `r_ref + ρ`, 1/s².
     ///
     /// # Errors
-    /// [`GravityError::BelowSurface`], and errors of third bodies.
+    /// [`GravityError::BelowSurface`], and the errors of third bodies.
     #[inline(always)]
     pub(crate) fn gradient<S: Real>(&self, offset: Vec3<S>) -> Result<Sym3<S>, GravityError> {
         let there = Vec3::of(&self.r_ref) + offset;
@@ -127,10 +131,10 @@ impl LocalField<'_> {
         }
     }
 
-    /// Returns the expansion of the planet's field that covers all these positions.
+    /// Returns the expansion of the planet's field that covers all these positions, if there is one.
     #[inline(always)]
     fn expansion<S: Real>(&self, at: Vec3<S>) -> Option<&Expansion> {
-        // written out, because an iterator is not inlined
+        // no loop, because an iterator would not be inlined
         let [first, second] = &self.expansions;
         match first {
             Some(first) if first.covers(at) => Some(first),
@@ -138,7 +142,7 @@ impl LocalField<'_> {
         }
     }
 
-    /// Returns the planet's field at one position.
+    /// Evaluates the planet's field at one position.
     fn field(&self, at: Vec3<f64>) -> Result<Vec3<f64>, GravityError> {
         if let Some(near) = self.expansion(at) {
             return Ok(near.value_at(at));
@@ -148,7 +152,7 @@ impl LocalField<'_> {
         Ok(rot_fi.transpose_mul(field.acceleration(&(*rot_fi * at).to_nalgebra())?.into()))
     }
 
-    /// Returns the difference of the planet's field between one position and the reference.
+    /// Returns the planet's field at one position less the field at the reference.
     fn field_difference(&self, offset: Vec3<f64>) -> Result<Vec3<f64>, GravityError> {
         let there = self.r_ref + offset;
         match self.expansion(self.r_ref).filter(|near| near.covers(there)) {
@@ -180,7 +184,7 @@ impl LocalField<'_> {
 /// Number of lanes of the widest SIMD type.
 const MAX_LANES: usize = 8;
 
-/// Calls `find` for each position and gathers the results.
+/// Calls `find` for the position in each lane and gathers the results.
 #[inline(never)]
 fn each<S: Real, T: Copy + Default>(
     positions: Vec3<S>,

@@ -1,7 +1,7 @@
 //! Gravity of a planet and of third bodies.
 //!
-//! [`Gravity`] is the full field of a run: the point mass at the planet's centre and all perturbations. The robot and
-//! the reference orbit share it.
+//! [`Gravity`] is the full field of a run: the point mass at the planet's centre and all perturbations. It
+//! applies to both the robot and the reference orbit.
 
 mod coefficients;
 mod error;
@@ -35,9 +35,9 @@ use std::sync::Arc;
 
 /// Full gravity field of a run.
 ///
-/// `g(t, r) = -μ r/|r|³ + rot_if g_F(rot_fi r) + Σ [g_b(r - s_b) - g_b(-s_b)]`: the point mass, the perturbing field
-/// fixed in the rotating planet, and the gravity of every third body at `s_b` minus that at the planet's centre. More
-/// methods are in `local_field.rs`, `sky.rs` and `same_gravity.rs`.
+/// `g(t, r) = -μ r/|r|³ + rot_if g_F(rot_fi r) + Σ [g_b(r - s_b) - g_b(-s_b)]`: the point mass, the
+/// perturbing field `g_F` fixed in the rotating planet, and, for every third body at `s_b`, its gravity less
+/// its gravity at the planet's centre. More methods are in `local_field.rs`, `sky.rs` and `same_gravity.rs`.
 #[derive(Clone, Debug)]
 pub struct Gravity {
     mu: f64,
@@ -48,14 +48,15 @@ pub struct Gravity {
 }
 
 impl Gravity {
-    /// Returns the field of a point mass with `mu`, m³/s².
+    /// Creates the field of a point mass with gravitational parameter `mu`, m³/s².
     pub fn point_mass(mu: f64) -> Self {
         Self { mu, field: None, earth: None, third_bodies: Vec::new(), expansions: ExpansionCache::default() }
     }
 
-    /// Returns the field of a planet, including its point mass (the model's `mu`), that rotates like `earth`.
+    /// Creates the gravity of a planet that rotates like `earth`: its `field` plus the point mass with the
+    /// field's `mu`.
     ///
-    /// `earth` may be omitted for a field of order 0; its axis is then z of `I`.
+    /// `earth` may be omitted for a field of order 0, whose axis is then the z axis of `I`.
     ///
     /// # Errors
     /// [`GravityError::NeedsEarth`] for a field that is not symmetric about its axis.
@@ -66,18 +67,18 @@ impl Gravity {
         Ok(Self { field: Some(Arc::clone(&field)), earth, ..Self::point_mass(field.mu()) })
     }
 
-    /// Returns this gravity with an additional third body.
+    /// Returns this gravity plus that of a third body.
     #[must_use]
     pub fn and(mut self, body: Arc<dyn ThirdBody>) -> Self {
         self.third_bodies.push(body);
         self
     }
 
-    /// Returns this gravity with the Sun or the Moon.
+    /// Returns this gravity plus that of the Sun or the Moon.
     ///
     /// # Errors
-    /// [`GravityError::Earth`] without an epoch or if the position is not known at time zero,
-    /// [`GravityError::BodyTwice`].
+    /// [`GravityError::Earth`] without an epoch or if the position is not known at time zero;
+    /// [`GravityError::BodyTwice`] if the body is already included.
     pub fn with(self, body: Luminary, earth: &Arc<Earth>) -> Result<Self, GravityError> {
         let name = body.name();
         if self.third_bodies.iter().any(|known| known.name() == name) {
@@ -108,17 +109,17 @@ impl Gravity {
         &self.third_bodies
     }
 
-    /// Returns the epoch at time zero: that of the Earth with which the field rotates, or, without a field, that of Sun
-    /// and Moon.
+    /// Returns the epoch at time zero. It is the epoch of the Earth with which the field rotates or, if there
+    /// is no field, the epoch of the positions of Sun and Moon.
     pub fn epoch(&self) -> Option<Epoch> {
         self.earth.as_ref().and_then(|earth| earth.epoch())
     }
 
-    /// Checks that an orbit with this `mu`, m³/s², is around this planet. Published values for the same planet differ
-    /// by about 1e-6.
+    /// Checks that an orbit with gravitational parameter `mu`, m³/s², is around this planet. Published values
+    /// for one planet differ by a fraction of about 1e-6.
     ///
     /// # Errors
-    /// [`GravityError::OtherPlanet`] where they differ by more than 1e-5.
+    /// [`GravityError::OtherPlanet`] if the relative difference exceeds 1e-5.
     pub fn check_orbit(&self, mu: f64) -> Result<(), GravityError> {
         if (mu - self.mu).abs() <= 1e-5 * self.mu {
             return Ok(());
@@ -126,10 +127,11 @@ impl Gravity {
         Err(GravityError::OtherPlanet { field: self.mu, orbit: mu })
     }
 
-    /// Returns the acceleration at `r` from the planet's centre, m, axes of `I`, at `t` s of simulation, in m/s².
+    /// Returns the acceleration, m/s², at position `r` from the planet's centre, m, and `t` s of simulation;
+    /// axes of `I`.
     ///
     /// # Errors
-    /// [`GravityError`] below the surface of a planet with a field, and errors of third bodies.
+    /// [`GravityError`] below the surface of a planet with a field, and the errors of third bodies.
     #[inline]
     pub fn acceleration(&self, t: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         let mut g = point_mass(self.mu, r);
@@ -145,7 +147,8 @@ impl Gravity {
         Ok(g)
     }
 
-    /// Returns the gradient `∂g/∂r`, symmetric and with zero trace, axes of `I`, 1/s².
+    /// Returns the gradient `∂g/∂r`, 1/s², axes of `I`, which is symmetric with zero trace; arguments as for
+    /// [`Gravity::acceleration`].
     ///
     /// # Errors
     /// The errors of [`Gravity::acceleration`].
@@ -163,7 +166,7 @@ impl Gravity {
         Ok(tensor)
     }
 
-    /// Returns the rotation from `I` to the planet, if a field requires it.
+    /// Returns the rotation from `I` to axes fixed in the planet, if there is a field that needs it.
     #[inline]
     fn rot_fi(&self, t: f64) -> Option<Matrix3<f64>> {
         self.field.as_ref().and(self.earth.as_ref()).map(|earth| earth.rot_fi(t))

@@ -8,7 +8,7 @@ use super::error::GravityError;
 use super::third_body::ThirdBody;
 use crate::earth::Earth;
 
-/// Luminary: the Sun or the Moon.
+/// Body whose position [`Earth`] provides: the Sun or the Moon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Luminary {
     /// The Sun.
@@ -18,10 +18,10 @@ pub enum Luminary {
 }
 
 impl Luminary {
-    /// Both luminaries.
+    /// Sun and Moon.
     pub const ALL: [Self; 2] = [Self::Sun, Self::Moon];
 
-    /// Returns `sun` or `moon`.
+    /// Returns the lower-case name, `sun` or `moon`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Sun => "sun",
@@ -40,7 +40,7 @@ impl Luminary {
     }
 }
 
-/// Sun or Moon as a third body, with its position relative to an Earth.
+/// Sun or Moon as a third body, with its position relative to the Earth.
 #[derive(Clone, Debug)]
 pub struct Perturber {
     body: Luminary,
@@ -48,7 +48,7 @@ pub struct Perturber {
 }
 
 impl Perturber {
-    /// Returns the body with its position relative to `earth`.
+    /// Creates the third body, whose position relative to `earth` depends on the epoch.
     ///
     /// # Errors
     /// [`GravityError::Earth`] without an epoch or if the position is not known at time zero.

@@ -1,18 +1,19 @@
-//! Field of a point mass: acceleration, gradient, and tide between two positions.
+//! Field of a point mass: acceleration, gradient, and difference between two positions (tide).
 
 use crate::spatial::{Real, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// Returns the acceleration `g = -μ r / |r|³`, m/s², axes of `r`.
+/// Returns the acceleration `g = -μ r / |r|³`, m/s², at position `r`, m, in the axes of `r`.
 ///
-/// All code uses this function, so that the residual of a reference that obeys the point mass is exactly zero.
+/// All code uses this function, so that the residual acceleration of a reference in free fall is exactly
+/// zero.
 pub(crate) fn point_mass(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
     let r2 = r.norm_squared();
     // g = -μ r / |r|³
     r * (-mu / (r2 * r2.sqrt()))
 }
 
-/// Returns the gradient `∂g/∂r = μ/|r|³ (3 r̂ r̂ᵀ - 1)`, 1/s².
+/// Returns the gradient `∂g/∂r = μ/|r|³ (3 r̂ r̂ᵀ - 1)`, 1/s², at position `r`, m.
 pub(crate) fn point_mass_gradient(mu: f64, r: &Vector3<f64>) -> Matrix3<f64> {
     let r2 = r.norm_squared();
     (r * r.transpose() * (3.0 / r2) - Matrix3::identity()) * (mu / (r2 * r2.sqrt()))
@@ -20,7 +21,7 @@ pub(crate) fn point_mass_gradient(mu: f64, r: &Vector3<f64>) -> Matrix3<f64> {
 
 /// Returns the tide `g(r_ref + ρ) - g(r_ref)` of a point mass, m/s², and the distance `r = |r_ref + ρ|`, m.
 ///
-/// `r_ref` is the position of the reference, `offset` is `ρ`, m.
+/// `r_ref` is the position of the reference and `offset` is `ρ`, both in m.
 ///
 /// The tide has full relative accuracy for any `ρ`:
 ///
@@ -46,20 +47,22 @@ pub(crate) fn tide<S: Real>(mu: f64, r_ref: &Vec3<f64>, offset: Vec3<S>) -> (Vec
     ((offset - r_ref_s * f) * (s(-mu) * a * inverse), distance)
 }
 
-/// Returns true for the Earth's `μ`, m³/s², in any published version including a rounded 4e14; no other planet has a
-/// similar value.
+/// Returns true if `mu`, m³/s², is that of the Earth in any published version, including the rounded value
+/// 4e14. No other planet has a similar value.
 pub(crate) fn is_earth(mu: f64) -> bool {
     (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/visuals/earth_shape.py
 }
 
-/// Smallest accepted distance from a planet's centre, in equatorial radii; the Earth's poles are at 0.9966.
+/// Smallest accepted distance from a planet's centre, in equatorial radii; the poles of the Earth are at
+/// 0.9966.
 pub(crate) const SURFACE: f64 = 0.996;
 
 /// Returns the cube of the smallest possible radius of a planet with this `μ = G m`, m³.
 ///
-/// For the Earth, recognised by its `μ`, the radius is 6353 km, which is also the lower limit of gravity fields. The
-/// surface of other planets is unknown, but no planet is denser than osmium, `ρ = 22 600 kg/m³`: `R³ = 3 μ/(4π G ρ)`.
-/// Below the surface, the field of a point mass is not that of the planet and grows without bound.
+/// For the Earth, recognised by its `μ`, the radius is 6353 km, which is also the lower limit of gravity
+/// fields. The radii of other planets are unknown, but no planet is denser than osmium, `ρ = 22 600 kg/m³`,
+/// so `R³ = 3 μ/(4π G ρ)`. Below the surface, the field of a point mass grows without bound and differs from
+/// that of the planet.
 pub(crate) fn lowest_ground_cubed(mu: f64) -> f64 {
     const G_RHO: f64 = 6.674e-11 * 22_600.0;
     const EARTH: f64 = SURFACE * 6_378_137.0; // WGS84

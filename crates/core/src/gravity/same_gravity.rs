@@ -4,13 +4,13 @@ use super::{Gravity, GravityError, ThirdBody};
 use std::sync::Arc;
 
 impl Gravity {
-    /// Returns the gravity for a run that specifies this gravity and whose reference orbit obeys `reference`.
+    /// Returns the gravity of a run for which `self` is given and whose reference orbit obeys `reference`.
     ///
-    /// The result is `reference` itself if both are equal. A reference that obeys a point mass alone may differ; it is
-    /// then not in free fall.
+    /// If both are equal, the result is `reference`. If the reference obeys only a point mass, `self` may
+    /// differ from it; the reference is then not in free fall.
     ///
     /// # Errors
-    /// [`GravityError::OtherGravity`] where the reference obeys another field or other third bodies.
+    /// [`GravityError::OtherGravity`] if the reference obeys a different field or has different third bodies.
     pub fn shared_with(self, reference: &Arc<Self>) -> Result<Arc<Self>, GravityError> {
         match self.differs_from(reference) {
             None => Ok(Arc::clone(reference)),
@@ -19,7 +19,7 @@ impl Gravity {
         }
     }
 
-    /// Returns the name of the part that differs; `None` if both are equal.
+    /// Returns the name of the first part in which the two differ; `None` if they are equal.
     fn differs_from(&self, other: &Self) -> Option<&'static str> {
         let is_same = |(a, b): (&Arc<dyn ThirdBody>, &Arc<dyn ThirdBody>)| {
             a.name() == b.name() && a.mu() == b.mu() && a.position(0.0) == b.position(0.0)

@@ -2,15 +2,15 @@
 
 /// Fully normalised series `Σ (c V + s W)` over degrees `n` and orders `m ≤ n`.
 ///
-/// `V + i W = (R/r)ⁿ⁺¹ P̄nm(sin φ) exp(i m λ)`, lengths in units of `R`.
+/// `V + i W = (R/r)ⁿ⁺¹ P̄nm(sin φ) exp(i m λ)`, with lengths in units of `R`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Series {
     degree: usize,
-    /// `(c, s)` sorted by degree, then by order.
+    /// Coefficients `(c, s)`, sorted by degree, then by order.
     terms: Vec<[f64; 2]>,
 }
 
-/// Axis of a derivative.
+/// Axis along which a derivative is taken.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Axis {
     X,
@@ -19,7 +19,7 @@ pub(super) enum Axis {
 }
 
 impl Series {
-    /// Returns a series of zeros up to this degree.
+    /// Creates a series of zeros up to the given degree.
     pub(super) fn zeros(degree: usize) -> Self {
         Self { degree, terms: vec![[0.0; 2]; (degree + 1) * (degree + 2) / 2] }
     }
@@ -28,12 +28,12 @@ impl Series {
         self.degree
     }
 
-    /// Returns `(c, s)` of a term; zeros beyond the series.
+    /// Returns the coefficients `(c, s)` of a term, which are zero beyond the series.
     pub(super) fn get(&self, n: usize, m: usize) -> [f64; 2] {
         if n > self.degree || m > n { [0.0; 2] } else { self.terms[n * (n + 1) / 2 + m] }
     }
 
-    /// Returns a mutable reference to `(c, s)` of a term.
+    /// Returns a mutable reference to the coefficients `(c, s)` of a term.
     pub(super) fn at(&mut self, n: usize, m: usize) -> &mut [f64; 2] {
         &mut self.terms[n * (n + 1) / 2 + m]
     }
@@ -50,11 +50,11 @@ impl Series {
         all.filter(|&(n, m)| self.get(n, m) != [0.0; 2]).map(|(_, m)| m).max().unwrap_or(0)
     }
 
-    /// Returns the derivative along an axis, a series of one degree more.
+    /// Returns the derivative along an axis, which is a series with one degree more.
     ///
     /// With `Z = V + i W`: `∂z Znm = -(n-m+1) Zn+1,m`, `(∂x + i ∂y) Znm = -Zn+1,m+1`,
-    /// `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; in normalised form, the factors are square roots of rational
-    /// numbers.
+    /// `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; in normalised form, the factors are square roots of
+    /// rational numbers.
     ///
     /// Source: Cunningham, Celestial Mechanics 2, 207-216, 1970; Montenbruck and Gill, Satellite Orbits,
     /// Springer 2000, equation 3.33.

@@ -1,4 +1,4 @@
-//! Third-body field, and orientation of the planet, at one instant.
+//! Field of third bodies and orientation of the planet at one instant.
 
 use super::Gravity;
 use super::error::GravityError;
@@ -8,35 +8,37 @@ use super::point_mass::{point_mass_gradient, tide};
 use crate::spatial::{Mat3, Sym3, Vec3};
 use std::cell::OnceCell;
 
-/// Spacing of the grid, fixed in the planet, on which fields are expanded for short steps, m.
+/// Spacing, m, of the grid fixed in the planet on whose points fields are expanded for short steps.
 ///
-/// A robot in a low orbit passes a grid point about every fifth step of 1 ms. No position is farther than 28 m from a
-/// grid point, and the errors of the expansion average out between grid points, because `∇²g = 0`.
+/// A robot in a low orbit passes a grid point about every fifth step of 1 ms. No position is farther than 28
+/// m from a grid point. The errors of the expansions average out over the grid, because `∇²g = 0`.
 const GRID_SPACING: f64 = 32.0;
 
-/// Third-body field, and orientation of the planet, at one instant.
+/// Field of third bodies and orientation of the planet at one instant.
 #[derive(Clone, Debug)]
 pub(crate) struct Sky {
     pub(super) rot_fi: Mat3<f64>,
-    /// The first grid point used, and the expansion about it in axes of `I`; shared by the stages of a step.
+    /// First grid point used at this instant, and the expansion about it in axes of `I`, which the stages of
+    /// a step share.
     first: OnceCell<(Vec3<f64>, Expansion)>,
-    /// Third-body field about the reference; within 40 m it is linear to 1e-7 of the Moon's tide.
+    /// Expansion of the third-body field about the reference; within 40 m the field is linear to 1e-7 of the
+    /// Moon's tide.
     pub(super) third: Option<Expansion>,
 }
 
 impl Gravity {
-    /// Returns the orientation of the planet and the third-body field at `time`, with the reference at
-    /// `r_ref`.
+    /// Returns the orientation of the planet, and the expansion of the third-body field about the reference
+    /// position `r_ref`, m, at `time`, s.
     ///
     /// # Errors
-    /// Errors of third bodies.
+    /// The errors of third bodies.
     pub(crate) fn sky(&self, time: f64, r_ref: Vec3<f64>) -> Result<Sky, GravityError> {
         let rot_fi = self.rot_fi(time).map_or_else(Mat3::identity, Mat3::from);
         let third = (!self.third_bodies.is_empty()).then(|| self.third_bodies_about(time, r_ref));
         Ok(Sky { rot_fi, first: OnceCell::new(), third: third.transpose()? })
     }
 
-    /// Returns the expansion about `at` or about the nearest grid point, axes of `I`.
+    /// Returns the expansion of the planet's field about `at` or about the nearest grid point, axes of `I`.
     pub(super) fn expand_about(
         &self,
         field: &GravityField,
@@ -54,11 +56,11 @@ impl Gravity {
             return Ok(*expansion);
         }
         let expansion = self.expansions.about(field, point)?.rotated_back(&sky.rot_fi);
-        let _ = sky.first.set((point, expansion)); // only the first expansion is stored
+        let _ = sky.first.set((point, expansion)); // later expansions are not stored
         Ok(expansion)
     }
 
-    /// Returns the expansion of the third-body field about a position.
+    /// Returns the expansion of the third-body field about the position `at`.
     pub(super) fn third_bodies_about(&self, t: f64, at: Vec3<f64>) -> Result<Expansion, GravityError> {
         let mut about = Expansion { at, value: Vec3::zero(), gradient: Sym3::default() };
         for body in &self.third_bodies {
@@ -71,7 +73,7 @@ impl Gravity {
 
     /// Returns the difference of the third-body field between `from + offset` and `from`.
     ///
-    /// The field is relative to the planet's centre, which is in free fall; it is zero there.
+    /// The field is relative to the planet's centre, which is in free fall, so the field is zero there.
     pub(super) fn tide_of_third_bodies(
         &self,
         t: f64,

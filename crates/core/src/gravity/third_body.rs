@@ -3,9 +3,9 @@
 use super::error::GravityError;
 use nalgebra::Vector3;
 
-/// Distant body whose gravity acts on planet and robot, such as the Sun or the Moon.
+/// Distant body whose gravity acts on the planet and on robots, such as the Sun or the Moon.
 pub trait ThirdBody: Send + Sync + std::fmt::Debug {
-    /// Returns the name for messages.
+    /// Returns the name that messages use for the body.
     fn name(&self) -> &str;
 
     /// Returns the gravitational parameter, m³/s².
@@ -13,9 +13,10 @@ pub trait ThirdBody: Send + Sync + std::fmt::Debug {
 
     /// Returns the position at `t` s of simulation from the planet's centre, axes of `I`, m.
     ///
-    /// Implementations must be pure functions of `t`, take less than 100 ns and not allocate.
+    /// Implementations must be pure functions of `t`, must take less than 100 ns and must not allocate
+    /// memory.
     ///
     /// # Errors
-    /// [`GravityError`] where the position is not known.
+    /// [`GravityError`] if the position is not known at `t`.
     fn position(&self, t: f64) -> Result<Vector3<f64>, GravityError>;
 }

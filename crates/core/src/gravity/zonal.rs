@@ -2,10 +2,10 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Highest degree in closed form.
+/// Highest degree that is evaluated in closed form.
 pub(super) const HIGHEST: usize = 6;
 
-/// `J2` to `J6` of the Earth, not normalised: `Jn = -√(2n + 1) C̄n0`.
+/// Unnormalised coefficients `J2` to `J6` of the Earth: `Jn = -√(2n + 1) C̄n0`.
 ///
 /// Source: EGM2008 (tide-free), Pavlis et al., J. Geophysical Research 117, B04406, 2012.
 pub(super) const EARTH: [f64; 5] = [
@@ -16,18 +16,18 @@ pub(super) const EARTH: [f64; 5] = [
     5.406_665_762_838_132e-7,
 ];
 
-/// Part of a planet's field that is symmetric about the z axis of the planet: `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)`, `u =
-/// z/r`.
+/// Part of a planet's field that is symmetric about the planet's z axis: `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)` with
+/// `u = z/r`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zonal {
     pub(super) mu: f64,
     pub(super) radius: f64,
-    /// `J2` to `J6`.
+    /// Coefficients `J2` to `J6`, not normalised.
     pub(super) j: [f64; 5],
 }
 
 impl Zonal {
-    /// Returns `cn = Jn (R/r)ⁿ`, the direction `r̂`, `u` and `r`.
+    /// Returns `cn = Jn (R/r)ⁿ`, the direction `r̂`, `u = z/r`, and the distance `r`, m.
     #[inline]
     fn at(&self, r: &Vector3<f64>) -> ([f64; 5], Vector3<f64>, f64, f64) {
         let distance = r.norm();
@@ -40,7 +40,7 @@ impl Zonal {
         (c, r * inverse, r.z * inverse, distance)
     }
 
-    /// Returns `g = (μ/r²) Σ cn (P'n+1 r̂ - P'n ẑ)`, m/s².
+    /// Returns the acceleration `g = (μ/r²) Σ cn (P'n+1 r̂ - P'n ẑ)`, m/s².
     pub(super) fn acceleration(&self, r: &Vector3<f64>) -> Vector3<f64> {
         let (c, up, u, distance) = self.at(r);
         let p = first(u);
@@ -48,7 +48,8 @@ impl Zonal {
         (up * dot(&c, &p[1..]) - axial) * (self.mu / (distance * distance))
     }
 
-    /// Returns `g` and `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂ ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂ r̂ᵀ - P''n ẑ ẑᵀ]`, 1/s².
+    /// Returns `g`, m/s², and its gradient `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂ ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂
+    /// r̂ᵀ - P''n ẑ ẑᵀ]`, 1/s².
     pub(super) fn gradient(&self, r: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let (c, up, u, distance) = self.at(r);
         let (p, pp) = (first(u), second(u));
@@ -68,7 +69,7 @@ fn dot(a: &[f64; 5], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Returns `P'2` to `P'7`, derivatives of the Legendre polynomials.
+/// Returns `P'2(u)` to `P'7(u)`, first derivatives of the Legendre polynomials.
 fn first(u: f64) -> [f64; 6] {
     let v = u * u;
     [
@@ -81,7 +82,7 @@ fn first(u: f64) -> [f64; 6] {
     ]
 }
 
-/// Returns `P''2` to `P''8`, second derivatives of the Legendre polynomials.
+/// Returns `P''2(u)` to `P''8(u)`, second derivatives of the Legendre polynomials.
 fn second(u: f64) -> [f64; 7] {
     let v = u * u;
     [
