@@ -172,11 +172,11 @@ def write_nutation() -> None:
     )
     head = """//! Terms of the nutation of IAU 2000A; written by `tests/oracles/generate_earth_tables.py`.
 
-/// Lunisolar terms of at least 0.1 mas: multiples of `l, l', F, D, Ω`; `Δψ` by sine, sine × T and cosine,
-/// `Δε` by cosine, cosine × T and sine, µas.
+/// Lunisolar terms of at least 0.1 mas: multiples of `l, l', F, D, Ω`; amplitudes in µas of `Δψ` by sine,
+/// sine × T and cosine, and of `Δε` by cosine, cosine × T and sine.
 ///
 /// Source: Mathews, Herring and Buffett, J. Geophysical Research 107(B4), 2002; IERS Conventions (2010),
-/// tables 5.3a and 5.3b, as PyPI's skyfield carries them.
+/// tables 5.3a and 5.3b, from the Python package skyfield.
 """
     (HERE / "nutation_table.rs").write_text(
         f"{head}pub(super) const NUTATION: [([i8; 5], [f64; 6]); {kept.sum()}] = [\n{rows}];\n"
@@ -185,8 +185,8 @@ def write_nutation() -> None:
 
 HEAD = """//! Series of the {body}; written by `tests/oracles/generate_earth_tables.py`.
 //!
-//! Fitted to JPL's DE421 over 1900-2050; mean ecliptic and equinox of date; terms in the order of what they
-//! explain.
+//! Fitted to JPL's DE421 over 1900-2050, in the mean ecliptic and equinox of date. Terms are in the order of
+//! their contribution.
 
 use super::series::Series;
 """

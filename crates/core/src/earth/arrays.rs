@@ -1,4 +1,4 @@
-//! Methods of [`Earth`] for many instants, with row-major arrays.
+//! Methods of [`Earth`] that evaluate many instants, with row-major arrays.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,7 +10,7 @@ fn check_length(name: &'static str, got: usize, expected: usize) -> Result<(), E
     if got == expected { Ok(()) } else { Err(EarthError::WrongLength { name, expected, got }) }
 }
 
-/// Writes `at(index, time)` to row `index` of the result.
+/// Fills row `index` of the result with `at(index, time)`.
 fn fill_rows<const N: usize>(
     times: &[f64],
     rows: &mut [f64],
@@ -24,13 +24,13 @@ fn fill_rows<const N: usize>(
 }
 
 impl Earth {
-    /// Computes `rot_fi` (T, 3, 3), row-major, at `times` (T,), s.
+    /// Computes the rotations `rot_fi` (T, 3, 3), row-major, at `times` (T,), s of simulation.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`].
+    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.
     pub fn rotations(&self, times: &[f64], rotations: &mut [f64]) -> Result<(), EarthError> {
         fill_rows::<9>(times, rotations, |_, t| {
-            let transposed: Matrix3<f64> = self.checked_rotation(t)?.transpose(); // column major
+            let transposed: Matrix3<f64> = self.checked_rotation(t)?.transpose(); // nalgebra is column-major
             let mut row = [0.0; 9];
             row.copy_from_slice(transposed.as_slice());
             Ok(row)
@@ -40,41 +40,42 @@ impl Earth {
     /// Computes the angular velocities (T, 3) of `F` with respect to `I`, axes of `I`, rad/s.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`].
+    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.
     pub fn angular_velocities(&self, times: &[f64], rates: &mut [f64]) -> Result<(), EarthError> {
         fill_rows(times, rates, |_, t| self.covers(t).map(|()| self.angular_velocity(t).into()))
     }
 
-    /// Computes the positions of the Sun (T, 3), axes of `I`, m.
+    /// Computes the positions of the Sun (T, 3) from the Earth's centre, axes of `I`, m.
     ///
     /// # Errors
-    /// The errors of [`Earth::sun`], and [`EarthError::WrongLength`].
+    /// The errors of [`Earth::sun`], and [`EarthError::WrongLength`] for arrays of the wrong length.
     pub fn suns(&self, times: &[f64], positions: &mut [f64]) -> Result<(), EarthError> {
         fill_rows(times, positions, |_, t| Ok(self.sun(t)?.into()))
     }
 
-    /// Computes the positions of the Moon (T, 3), axes of `I`, m.
+    /// Computes the positions of the Moon (T, 3) from the Earth's centre, axes of `I`, m.
     ///
     /// # Errors
-    /// The errors of [`Earth::moon`], and [`EarthError::WrongLength`].
+    /// The errors of [`Earth::moon`], and [`EarthError::WrongLength`] for arrays of the wrong length.
     pub fn moons(&self, times: &[f64], positions: &mut [f64]) -> Result<(), EarthError> {
         fill_rows(times, positions, |_, t| Ok(self.moon(t)?.into()))
     }
 
-    /// Transforms positions (T, 3), m, from `I` to `F` axes.
+    /// Converts positions (T, 3), m, from axes of `I` to axes of `F`.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`].
+    /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.
     pub fn to_fixed(&self, times: &[f64], positions: &[f64], fixed: &mut [f64]) -> Result<(), EarthError> {
         check_length("the positions", positions.len(), 3 * times.len())?;
         fill_rows(times, fixed, |k, t| Ok((self.checked_rotation(t)? * row(positions, k)).into()))
     }
 
-    /// Computes rows of latitude (rad), longitude (rad) and altitude (m) on WGS84, (T, 3), from positions in `I`,
-    /// (T, 3), m.
+    /// Computes latitude (rad), longitude (rad) and altitude (m) on WGS84, (T, 3), from positions in axes of
+    /// `I`, (T, 3), m.
     ///
     /// # Errors
-    /// The errors of [`Earth::covers`] and [`Geodetic::of`], and [`EarthError::WrongLength`].
+    /// The errors of [`Earth::covers`] and [`Geodetic::of`], and [`EarthError::WrongLength`] for arrays of
+    /// the wrong length.
     pub fn geodetics(
         &self,
         times: &[f64],

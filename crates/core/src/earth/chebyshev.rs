@@ -4,15 +4,16 @@ use nalgebra::Vector3;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-/// Number of intervals that are allocated together.
+/// Number of intervals for which memory is allocated at once.
 const BLOCK: usize = 32;
 
 type Coefficients<const N: usize> = [Vector3<f64>; N];
 type Block<const N: usize> = Box<[OnceLock<Coefficients<N>>; BLOCK]>;
 
-/// A vector function of time as Chebyshev series of `N` coefficients on intervals, each computed on first use.
+/// Vector function of time as Chebyshev series with `N` coefficients on intervals, each computed on first
+/// use.
 ///
-/// A series depends on its interval alone, so results do not depend on earlier calls.
+/// The series of an interval depends only on the function, so results do not depend on earlier calls.
 #[derive(Clone, Debug)]
 pub(super) struct PiecewiseChebyshev<const N: usize> {
     start: f64,
@@ -21,17 +22,18 @@ pub(super) struct PiecewiseChebyshev<const N: usize> {
 }
 
 impl<const N: usize> PiecewiseChebyshev<N> {
-    /// Returns the interpolation on intervals of `length` from `start` to at least `end`, s.
+    /// Creates the interpolation on intervals of `length`, s, from `start` to at least `end`, s.
     pub(super) fn new(start: f64, end: f64, length: f64) -> Self {
         let blocks = ((end - start) / (length * BLOCK as f64)).ceil().max(1.0) as usize;
         Self { start, length, blocks: vec![OnceLock::new(); blocks].into() }
     }
 
-    /// Returns the series of the interval around `t` and the position of `t` in it, -1 to 1, clamped to the span.
+    /// Returns the series of the interval that contains `t`, and the position of `t` in the interval, -1 to
+    /// 1, clamped.
     fn series_at(&self, t: f64, function: impl Fn(f64) -> Vector3<f64>) -> (&Coefficients<N>, f64) {
         let position = (t - self.start) / self.length;
         let last = self.blocks.len() * BLOCK - 1;
-        let index = (position as usize).min(last); // negative values and NaN become 0
+        let index = (position as usize).min(last); // the conversion maps negative values and NaN to 0
         let block = self.blocks[index / BLOCK].get_or_init(|| Box::new([const { OnceLock::new() }; BLOCK]));
         let series = block[index % BLOCK].get_or_init(|| {
             let middle = self.start + (index as f64 + 0.5) * self.length;
@@ -40,10 +42,10 @@ impl<const N: usize> PiecewiseChebyshev<N> {
         (series, (2.0 * (position - index as f64) - 1.0).clamp(-1.0, 1.0))
     }
 
-    /// Returns the function at `t`.
+    /// Returns the value of the interpolated function at `t`, s.
     pub(super) fn value(&self, t: f64, function: impl Fn(f64) -> Vector3<f64>) -> Vector3<f64> {
         let (series, x) = self.series_at(t, function);
-        // Clenshaw: b_k = c_k + 2x b_{k+1} - b_{k+2},  f = c_0 + x b_1 - b_2
+        // Clenshaw's recursion: b_k = c_k + 2x b_{k+1} - b_{k+2},  f = c_0 + x b_1 - b_2
         let (mut b1, mut b2) = (Vector3::zeros(), Vector3::zeros());
         for c in series[1..].iter().rev() {
             (b1, b2) = ((c - b2) + b1 * (2.0 * x), b1);
@@ -51,7 +53,7 @@ impl<const N: usize> PiecewiseChebyshev<N> {
         series[0] + b1 * x - b2
     }
 
-    /// Returns the function at `t` and its derivative.
+    /// Returns the value of the interpolated function at `t`, s, and its time derivative.
     pub(super) fn with_rate(
         &self,
         t: f64,

@@ -9,32 +9,32 @@ pub(super) const DAY: f64 = 86_400.0;
 
 const DAY_NS: i64 = 86_400_000_000_000;
 
-/// Modified Julian date of 2000-01-01.
+/// Modified Julian date of 2000-01-01, days.
 const MJD_2000: i64 = 51_544;
 
-/// TT - TAI, s.
+/// Difference between Terrestrial Time and atomic time, TT - TAI, s.
 const TT_MINUS_TAI: f64 = 32.184;
 
 /// First year in which UTC has whole leap seconds.
 const UTC_YEAR: i32 = 1972;
 
-/// Years accepted: the span of the series of nutation, Sun and Moon.
+/// Accepted years, which are those of the series for nutation, Sun and Moon.
 const YEARS: std::ops::Range<i32> = 1900..2100;
 
-/// Epoch: time zero of a run, stored to the nanosecond; by default 2000-01-01T12:00:00 TAI.
+/// Epoch: the instant of simulation time zero, stored to the nanosecond; by default 2000-01-01T12:00:00 TAI.
 ///
-/// Simulation time counts seconds of TAI (and TT) from this instant.
+/// Simulation time counts the seconds of TAI (equal to those of TT) from this instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Epoch {
-    /// Nanoseconds of TAI from 2000-01-01T12:00:00 TAI.
+    /// Time since 2000-01-01T12:00:00 TAI, nanoseconds of TAI.
     tai: i64,
 }
 
 impl Epoch {
-    /// Parses a text such as `2024-03-01T12:00:00 UTC`: date, time and a time scale, which is UTC (or `Z`), TAI, TT or
-    /// TDB.
+    /// Parses a text such as `2024-03-01T12:00:00 UTC`, which consists of date, time and time scale. The time
+    /// scale is UTC (or `Z`), TAI, TT or TDB.
     ///
-    /// A leap second is second 60.
+    /// During a leap second, the seconds are 60.
     ///
     /// # Errors
     /// [`EarthError::Epoch`] for any other text and for years outside 1900 to 2099;
@@ -48,7 +48,7 @@ impl Epoch {
             return Err(EarthError::BeforeUtc { text: text.to_owned() });
         }
         let is_leap = second == 60;
-        let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // 255 is neither a month nor an hour
+        let byte = |x: u16| u8::try_from(x).unwrap_or(u8::MAX); // 255 is not valid in any field
         let (month, day, hour, minute) = (byte(month), byte(day), byte(hour), byte(minute));
         let second = if is_leap { 59 } else { byte(second) };
         if !YEARS.contains(&year) || hour > 23 || second > 59 {
@@ -71,56 +71,57 @@ impl Epoch {
         Self { tai: nanoseconds as i64 } // fits in i64, because years are limited
     }
 
-    /// Returns the epoch from UTC, given as days from 2000-01-01 and seconds since midnight; leap seconds are counted
-    /// from 1972 on.
+    /// Creates the epoch from UTC, given as days from 2000-01-01 and seconds since midnight. Leap seconds are
+    /// counted from 1972 on.
     pub(crate) fn of_utc(day: i64, seconds: f64) -> Self {
         let midnight = Instant::from_gregorian_utc_at_midnight(2000, 1, 1);
         Self::of(midnight + Unit::Day * day + Unit::Second * seconds)
     }
 
-    /// Returns the epoch of a modified Julian date of UTC.
+    /// Creates the epoch from a modified Julian date of UTC.
     pub(super) fn of_mjd_utc(mjd: f64) -> Self {
         Self::of_utc(mjd.floor() as i64 - MJD_2000, (mjd - mjd.floor()) * DAY)
     }
 
-    /// Returns the epoch `seconds` later.
+    /// Returns the epoch that is `seconds` later.
     pub(super) fn after(self, seconds: f64) -> Self {
         Self { tai: self.tai.saturating_add((seconds * 1e9).round() as i64) }
     }
 
-    /// Returns the seconds from `earlier` to this epoch.
+    /// Returns the time from `earlier` to this epoch, s.
     pub(crate) fn since(self, earlier: Self) -> f64 {
         (self.tai as i128 - earlier.tai as i128) as f64 * 1e-9
     }
 
-    /// Returns the days of TAI from 2000-01-01T12:00:00 TAI: whole days and fraction.
+    /// Returns the time from 2000-01-01T12:00:00 TAI as whole days and a fraction of a day, TAI.
     pub(super) fn tai_days(self) -> (f64, f64) {
         (self.tai.div_euclid(DAY_NS) as f64, self.tai.rem_euclid(DAY_NS) as f64 / DAY_NS as f64)
     }
 
-    /// Returns the seconds of TT from J2000.0 (2000-01-01T12:00:00 TT) to `t` s after this epoch.
+    /// Returns the time from J2000.0 (2000-01-01T12:00:00 TT) to `t` s after this epoch, s of TT.
     pub(super) fn seconds_tt(self, t: f64) -> f64 {
         self.tai as f64 * 1e-9 + TT_MINUS_TAI + t
     }
 
-    /// Returns the Julian centuries of TT from J2000.0 to `t` s after this epoch.
+    /// Returns the time from J2000.0 to `t` s after this epoch, Julian centuries of TT.
     pub(super) fn centuries(self, t: f64) -> f64 {
         self.seconds_tt(t) / (36_525.0 * DAY)
     }
 
-    /// Returns the time since another epoch, s.
+    /// Returns the time from `other` to this epoch, s.
     pub fn seconds_since(self, other: Self) -> f64 {
         self.tai.saturating_sub(other.tai) as f64 * 1e-9
     }
 
-    /// Returns UTC - TAI, s: a whole number, zero before 1972.
+    /// Returns UTC - TAI at this epoch, s, which is a whole number, and zero before 1972.
     pub fn utc_minus_tai(self) -> f64 {
         -f64::from(self.leap_seconds())
     }
 
-    /// Returns TAI - UTC, s.
+    /// Returns TAI - UTC at this epoch, s.
     fn leap_seconds(self) -> i32 {
-        // hifitime compares TAI seconds with UTC instants, so each leap second takes effect too early by TAI - UTC
+        // hifitime compares TAI seconds with UTC instants, so that a leap second takes effect too early by
+        // TAI - UTC
         let early = self.instant().leap_seconds_iers();
         (self.instant() - Unit::Second * i64::from(early)).leap_seconds_iers()
     }
@@ -130,13 +131,13 @@ impl Epoch {
         (1..self.after(1.0).leap_seconds()).contains(&self.leap_seconds())
     }
 
-    /// Returns the modified Julian date of UTC and the seconds since midnight.
+    /// Returns this epoch as the modified Julian date of UTC and the seconds since midnight.
     pub(super) fn utc(self) -> (i64, f64) {
         let since_midnight = self.tai + DAY_NS / 2 + (self.utc_minus_tai() as i64) * 1_000_000_000;
         (MJD_2000 + since_midnight.div_euclid(DAY_NS), since_midnight.rem_euclid(DAY_NS) as f64 * 1e-9)
     }
 
-    /// Returns the span of the series of nutation, Sun and Moon, 1900 to 2100, s after this epoch.
+    /// Returns the span of the series for nutation, Sun and Moon, 1900 to 2100, in s after this epoch.
     pub(super) fn series_span(self) -> (f64, f64) {
         let since = self.since(Self::default());
         (-36_525.0 * DAY - since, 36_525.0 * DAY - since)
@@ -148,7 +149,8 @@ impl Epoch {
 }
 
 impl std::fmt::Display for Epoch {
-    /// Writes a text such as `2024-03-01T12:00:00.000000 UTC`, to the microsecond; in TAI before 1972.
+    /// Writes a text such as `2024-03-01T12:00:00.000000 UTC`, to the microsecond. Epochs before 1972 are
+    /// written in TAI.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let rounded = Self { tai: self.tai.saturating_add(500) };
         let (leap, is_leap_second) = (rounded.leap_seconds(), rounded.is_leap_second());
@@ -164,7 +166,7 @@ fn noon_of_2000() -> Instant {
     Instant::from_gregorian_tai_at_noon(2000, 1, 1)
 }
 
-/// Splits a text into date with time, and time scale.
+/// Splits a text into date and time, and time scale.
 fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     let scales = [
         ("Z", TimeScale::UTC),
@@ -176,7 +178,7 @@ fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     scales.iter().find_map(|(name, scale)| Some((text.strip_suffix(name)?.trim_end(), *scale)))
 }
 
-/// Parses year, month, day, hour, minute and second of `2024-03-01T12:00:00`, and nanoseconds.
+/// Parses year, month, day, hour, minute, second and nanoseconds of a text such as `2024-03-01T12:00:00`.
 fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     let (whole, fraction) = text.split_once('.').unwrap_or((text, "0"));
     let (date, time) = whole.split_once(['T', ' '])?;
@@ -192,7 +194,7 @@ fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     Some((fields, nanoseconds))
 }
 
-/// Returns true if the text consists of 1 to `longest` digits.
+/// Returns true if the text consists of digits, at least 1 and at most `longest`.
 fn is_number(text: &str, longest: usize) -> bool {
     (1..=longest).contains(&text.len()) && text.bytes().all(|c| c.is_ascii_digit())
 }

@@ -16,7 +16,7 @@ pub enum EarthError {
         text: String,
     },
     /// An epoch in UTC is before 1972, when UTC adopted leap seconds.
-    #[error("epoch '{text}' is before 1972, when UTC adopted leap seconds; give it in TAI or TT")]
+    #[error("epoch '{text}' is before 1972, when UTC adopted leap seconds; give the epoch in TAI or TT")]
     BeforeUtc {
         /// Given value.
         text: String,
@@ -27,7 +27,7 @@ pub enum EarthError {
         /// Name of the quantity.
         what: &'static str,
     },
-    /// An instant is outside the span in which a quantity is known.
+    /// A time is outside the span in which a quantity is known.
     #[error(
         "{what} is available only from {from} to {to}, but is requested {time} s after the epoch {epoch}; \
          choose an epoch for which the whole run lies in this span",
@@ -36,7 +36,7 @@ pub enum EarthError {
     OutsideSpan {
         /// Name of the quantity.
         what: &'static str,
-        /// Instant, s of simulation.
+        /// Requested time, s of simulation.
         time: f64,
         /// Epoch of the run.
         epoch: String,

@@ -4,12 +4,12 @@ use nalgebra::Vector3;
 
 use super::error::EarthError;
 
-/// Oblate ellipsoid of revolution about the Earth's axis.
+/// Oblate ellipsoid of revolution with its axis along the Earth's axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// Radius of the equator, m.
     pub radius: f64,
-    /// Flattening.
+    /// Flattening `f`.
     pub flattening: f64,
 }
 
@@ -18,30 +18,31 @@ pub struct Ellipsoid {
 /// Source: NGA.STND.0036, version 1.0.0, 2014, table 3.1.
 pub const WGS84: Ellipsoid = Ellipsoid { radius: 6_378_137.0, flattening: 1.0 / 298.257_223_563 };
 
-/// Latitude, longitude and altitude on an ellipsoid.
+/// Geodetic latitude, longitude and altitude on an ellipsoid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geodetic {
     /// Angle between the ellipsoid's normal and the equatorial plane, positive in the north, rad.
     pub latitude: f64,
     /// Longitude east of the zero meridian, -π to π, rad; zero on the axis.
     pub longitude: f64,
-    /// Height along the normal, m.
+    /// Height above the ellipsoid along its normal, m.
     pub altitude: f64,
 }
 
-/// Smallest accepted distance from the centre, m: within `a e²` = 43 km, normals of the ellipsoid intersect and
-/// latitudes are not unique.
+/// Smallest accepted distance from the centre, m. Within `a e²` = 43 km of the centre, normals of the
+/// ellipsoid intersect, so latitudes are not unique.
 const NEAREST: f64 = 50e3;
 
 impl Geodetic {
-    /// Returns the geodetic coordinates of a position relative to the Earth's centre, in Earth-fixed axes, m.
+    /// Computes the geodetic coordinates of a position relative to the Earth's centre, in Earth-fixed axes,
+    /// m.
     ///
     /// # Errors
-    /// [`EarthError::NearCentre`] if the position is within 50 km of the centre, and [`EarthError::NotFinite`] if it is
-    /// infinite or NaN.
+    /// [`EarthError::NearCentre`] if the position is within 50 km of the centre, and
+    /// [`EarthError::NotFinite`] if it is infinite or NaN.
     ///
-    /// Source: Bowring, Survey Review 23(181), 1976; iterated until only rounding changes, so that the result is
-    /// accurate at every altitude.
+    /// Source: Bowring, Survey Review 23(181), 1976. The iteration continues until changes are rounding
+    /// errors, so the result is accurate at every altitude.
     pub fn of(position_f: &Vector3<f64>, ellipsoid: &Ellipsoid) -> Result<Self, EarthError> {
         let distance = position_f.norm();
         if !distance.is_finite() {
@@ -72,7 +73,7 @@ impl Geodetic {
         Ok(Self { latitude, longitude, altitude })
     }
 
-    /// Returns the position from the Earth's centre, Earth-fixed axes, m.
+    /// Returns the position from the Earth's centre, axes of `F`, m.
     pub fn position(&self, ellipsoid: &Ellipsoid) -> Vector3<f64> {
         let Ellipsoid { radius: a, flattening: f } = *ellipsoid;
         let e2 = f * (2.0 - f);
@@ -85,7 +86,7 @@ impl Geodetic {
     }
 }
 
-/// Returns sine and cosine of the angle with tangent `y/x`.
+/// Returns the sine and cosine of the angle with tangent `y/x`.
 fn unit(y: f64, x: f64) -> (f64, f64) {
     let r = (x * x + y * y).sqrt();
     (y / r, x / r)

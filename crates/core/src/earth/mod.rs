@@ -1,4 +1,4 @@
-//! Rotation of the Earth, time scales, and positions of Sun and Moon.
+//! Rotation of the Earth, time scales, and positions of the Sun and the Moon.
 //!
 //! `I` has inertial axes; `F` is fixed in the rotating Earth (ITRF, or a simple substitute for it).
 
@@ -34,9 +34,9 @@ pub use rotation::ROTATION_RATE;
 pub use spice::{SpiceKernel, SpiceSegment};
 use sun_moon::SunMoon;
 
-/// Model of the Earth in a run: rotation, Sun and Moon as pure functions of time.
+/// Model of the Earth in a run: rotation, and positions of the Sun and the Moon, as functions of time.
 ///
-/// `arrays.rs` holds the methods for many instants.
+/// The methods that evaluate many instants are in `arrays.rs`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Earth {
     rotation: Rotation,
@@ -52,17 +52,18 @@ enum Rotation {
 }
 
 impl Earth {
-    /// Returns an Earth that rotates uniformly about z of `I`: `angle`, rad, at time zero and `rate`, rad/s.
+    /// Creates an Earth that rotates uniformly about z of `I`: by `angle`, rad, at time zero, and with the
+    /// rate `rate`, rad/s.
     pub fn about_z(angle: f64, rate: f64) -> Self {
         Self { rotation: Rotation::AboutZ { angle, rate, inertial: None }, sun_moon: None }
     }
 
-    /// Returns the Earth of IAU 2006/2000A with time zero at `epoch`, in GCRF axes; its pole is accurate to 2 mas (6
-    /// cm).
+    /// Creates the Earth of IAU 2006/2000A in GCRF axes, with time zero at `epoch`. Its pole is accurate to 2
+    /// mas (6 cm on the ground).
     ///
     /// # Errors
-    /// [`EarthError::Parameter`] and [`EarthError::WrongLength`] for invalid parameters; [`EarthError::OutsideSpan`] if
-    /// their table does not contain the epoch.
+    /// [`EarthError::Parameter`] and [`EarthError::WrongLength`] for invalid parameters;
+    /// [`EarthError::OutsideSpan`] if the table of parameters does not contain the epoch.
     pub fn new(epoch: Epoch, parameters: &EarthParameters) -> Result<Self, EarthError> {
         let orientation = Orientation::new(epoch, Axes::Gcrf, parameters, epoch.series_span())?;
         let earth = Self {
@@ -73,9 +74,9 @@ impl Earth {
         Ok(earth)
     }
 
-    /// Returns the same Earth with time zero at `epoch`, and with the series for Sun and Moon in place of a kernel. An
-    /// Earth with uniform rotation then has GCRF axes; one with IAU 2006 accepts only its own epoch: its rotation is
-    /// not recomputed.
+    /// Returns the same Earth with time zero at `epoch`, without a kernel: the positions of Sun and Moon come
+    /// from series. An Earth with uniform rotation then has GCRF axes. An Earth of IAU 2006 accepts only the
+    /// epoch it was created with, because its rotation is not recomputed.
     pub fn with_epoch(mut self, epoch: Epoch) -> Self {
         if let Rotation::AboutZ { inertial, .. } = &mut self.rotation {
             *inertial = Some(Box::new(Orientation::of_axes(epoch, epoch.series_span())));
@@ -86,8 +87,8 @@ impl Earth {
     /// Returns the same Earth with the positions of Sun and Moon from a SPICE kernel.
     ///
     /// # Errors
-    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] if the epoch is outside the intervals of eight days that
-    /// the kernel covers.
+    /// [`EarthError::NeedsEpoch`] without an epoch; [`EarthError::OutsideSpan`] if the epoch is outside the
+    /// span of the kernel, which consists of whole intervals of eight days.
     pub fn with_kernel(self, kernel: SpiceKernel) -> Result<Self, EarthError> {
         let what = "the SPICE kernel of Sun and Moon";
         let epoch = self.epoch().ok_or(EarthError::NeedsEpoch { what })?;
@@ -96,7 +97,8 @@ impl Earth {
         Ok(Self { sun_moon: Some(sun_moon), ..self })
     }
 
-    /// Returns the same Earth with other inertial axes. A uniform rotation without an epoch fits any axes.
+    /// Returns the same Earth with other inertial axes. A uniform rotation without an epoch is compatible
+    /// with any axes and does not change.
     pub fn in_axes(&self, axes: Axes) -> Self {
         let rotation = match &self.rotation {
             Rotation::AboutZ { angle, rate, inertial } => {
@@ -108,7 +110,8 @@ impl Earth {
         Self { rotation, sun_moon: self.sun_moon.as_ref().map(SunMoon::with_empty_cache) }
     }
 
-    /// Returns the axes of `I`; `None` for a uniform rotation without an epoch, which fits any axes.
+    /// Returns the axes of `I`; `None` for a uniform rotation without an epoch, which is compatible with any
+    /// axes.
     pub fn axes(&self) -> Option<Axes> {
         match &self.rotation {
             Rotation::AboutZ { inertial, .. } => inertial.as_ref().map(|inertial| inertial.axes()),
@@ -121,11 +124,12 @@ impl Earth {
         self.sun_moon.as_ref().map(|sun_moon| sun_moon.epoch)
     }
 
-    /// Checks that the rotation of the Earth is known at `t` s of simulation; called once before a run.
+    /// Checks that the rotation of the Earth is known at `t` s of simulation. Runs call this method once,
+    /// before they start.
     ///
     /// # Errors
-    /// [`EarthError::NotFinite`]; with an epoch, [`EarthError::OutsideSpan`] outside the table of parameters or the
-    /// years 1900 to 2100.
+    /// [`EarthError::NotFinite`] for `t`; with an epoch, [`EarthError::OutsideSpan`] outside the table of
+    /// parameters or outside the years 1900 to 2100.
     pub fn covers(&self, t: f64) -> Result<(), EarthError> {
         if !t.is_finite() {
             return Err(EarthError::NotFinite { name: "time", value: t });
@@ -139,10 +143,11 @@ impl Earth {
         table.map_or(Ok(()), |span| check_span("the table of Earth-orientation parameters", t, epoch, span))
     }
 
-    /// Checks that an orbit in `axes` with time zero at `epoch` fits this Earth.
+    /// Checks that an orbit in `axes` with time zero at `epoch` is compatible with this Earth.
     ///
     /// # Errors
-    /// [`EarthError::OtherAxes`], and [`EarthError::OtherEpoch`] for epochs more than a millisecond apart.
+    /// [`EarthError::OtherAxes`] for different axes, and [`EarthError::OtherEpoch`] for epochs more than a
+    /// millisecond apart.
     pub fn check_orbit(&self, axes: Axes, epoch: Option<Epoch>) -> Result<(), EarthError> {
         if let Some(own) = self.axes().filter(|own| *own != axes) {
             return Err(EarthError::OtherAxes { orbit: axes.name(), run: own.name() });
@@ -155,10 +160,10 @@ impl Earth {
         }
     }
 
-    /// Returns the rotation from `I` to `F` components at `t` s of simulation.
+    /// Returns the rotation from components in `I` to components in `F` at `t` s of simulation.
     ///
-    /// Outside the span that the Earth [covers](Self::covers), the parameters and the pole at the nearest end of the
-    /// span are used.
+    /// Outside the span that the Earth [covers](Self::covers), the parameters and the pole are those at the
+    /// nearest end of the span.
     pub fn rot_fi(&self, t: f64) -> Matrix3<f64> {
         match &self.rotation {
             Rotation::AboutZ { angle, rate, .. } => rotation::r3(angle + rate * t),
@@ -174,18 +179,21 @@ impl Earth {
         }
     }
 
-    /// Returns the geometric position of the Sun from the Earth's centre, axes of `I`, m, without light time.
+    /// Returns the geometric position of the Sun from the Earth's centre, axes of `I`, m, without correction
+    /// for light time.
     ///
     /// Without a kernel, direction and distance are within 2″ and 4e-6 of JPL's DE421 from 1900 to 2050.
     ///
     /// # Errors
-    /// [`EarthError::NeedsEpoch`]; [`EarthError::OutsideSpan`] outside 1900 to 2100 or outside the kernel.
+    /// [`EarthError::NeedsEpoch`] without an epoch; [`EarthError::OutsideSpan`] outside 1900 to 2100 or
+    /// outside the kernel.
     pub fn sun(&self, t: f64) -> Result<Vector3<f64>, EarthError> {
         let sun_moon = self.sun_moon_at("the position of the Sun", t)?;
         Ok(sun_moon.sun(t, |t| self.rot_ig(t)))
     }
 
-    /// Returns the geometric position of the Moon from the Earth's centre, axes of `I`, m, without light time.
+    /// Returns the geometric position of the Moon from the Earth's centre, axes of `I`, m, without correction
+    /// for light time.
     ///
     /// Without a kernel, direction and distance are within 10″ and 3e-5 of JPL's DE421 from 1900 to 2050.
     ///
@@ -196,10 +204,11 @@ impl Earth {
         Ok(sun_moon.moon(t, |t| self.rot_ig(t)))
     }
 
-    /// Returns the modified Julian date of UTC and the seconds since midnight, with the leap seconds of the epoch.
+    /// Returns the modified Julian date of UTC and the seconds since midnight at `t` s of simulation; leap
+    /// seconds after the epoch are not counted.
     ///
     /// # Errors
-    /// [`EarthError::NeedsEpoch`].
+    /// [`EarthError::NeedsEpoch`] without an epoch.
     pub fn utc(&self, t: f64) -> Result<(i64, f64), EarthError> {
         self.sun_moon.as_ref().map(|sun_moon| sun_moon.utc(t)).ok_or(EarthError::NeedsEpoch { what: "UTC" })
     }
@@ -209,7 +218,7 @@ impl Earth {
         check_span(what, t, sun_moon.epoch, sun_moon.span).map(|()| sun_moon)
     }
 
-    /// Returns the rotation from GCRF to `I` components.
+    /// Returns the rotation from GCRF components to components in `I`.
     fn rot_ig(&self, t: f64) -> Matrix3<f64> {
         match &self.rotation {
             Rotation::AboutZ { inertial, .. } => {
@@ -220,7 +229,7 @@ impl Earth {
     }
 }
 
-/// Rejects an instant outside the span `from` to `to`, s of simulation, in which `what` is known.
+/// Returns an error unless `t` is between `from` and `to`, s of simulation, between which `what` is known.
 fn check_span(what: &'static str, t: f64, epoch: Epoch, (from, to): (f64, f64)) -> Result<(), EarthError> {
     if (from..=to).contains(&t) {
         return Ok(());

@@ -1,7 +1,7 @@
 //! Terms of the nutation of IAU 2000A; written by `tests/oracles/generate_earth_tables.py`.
 
-/// Lunisolar terms of at least 0.1 mas: multiples of `l, l', F, D, Ω`; `Δψ` by sine, sine × T and cosine,
-/// `Δε` by cosine, cosine × T and sine, µas.
+/// Lunisolar terms of at least 0.1 mas: multiples of `l, l', F, D, Ω`; amplitudes in µas of `Δψ` by sine,
+/// sine × T and cosine, and of `Δε` by cosine, cosine × T and sine.
 ///
 /// Source: Mathews, Herring and Buffett, J. Geophysical Research 107(B4), 2002; IERS Conventions (2010),
 /// tables 5.3a and 5.3b, from the Python package skyfield.

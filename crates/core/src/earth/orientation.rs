@@ -1,4 +1,4 @@
-//! Orientation of the Earth: Earth rotation angle, pole of date, polar motion.
+//! Orientation of the Earth: Earth rotation angle, celestial pole, polar motion.
 
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
@@ -11,22 +11,23 @@ use super::parameters::{EarthParameters, Parameters};
 use super::precession::{pole, polynomial};
 use super::rotation::{ROTATION_RATE, r3};
 
-/// Length of the Chebyshev intervals of the pole, s.
+/// Length of the intervals of the pole's Chebyshev series, s.
 const INTERVAL: f64 = 4.0 * DAY;
 
-/// Orientation of the Earth by IAU 2006 (precession) and 2000A (nutation).
+/// Orientation of the Earth according to IAU 2006 (precession) and 2000A (nutation).
 #[derive(Clone, Debug)]
 pub(super) struct Orientation {
     epoch: Epoch,
     axes: Axes,
-    /// Earth rotation angle at time zero for UT1 = TAI, rad.
+    /// Earth rotation angle at time zero if UT1 were equal to TAI, rad.
     angle: f64,
     parameters: Parameters,
     poles: PiecewiseChebyshev<10>,
 }
 
 impl Orientation {
-    /// Returns the orientation for a run that starts at `epoch` and evaluates the pole within `span`, s of simulation.
+    /// Creates the orientation for a run that starts at `epoch`. The pole is interpolated within `span`, s of
+    /// simulation.
     pub(super) fn new(
         epoch: Epoch,
         axes: Axes,
@@ -37,15 +38,15 @@ impl Orientation {
     }
 
     fn with(epoch: Epoch, axes: Axes, parameters: Parameters, span: (f64, f64)) -> Self {
-        // θ = 2π (0.779 057 273 264 0 + 1.002 737 811 911 354 48 Tu), Tu in days of UT1 from J2000.0
-        // (IERS Conventions 2010, eq. 5.15), without whole turns
+        // θ = 2π (0.779 057 273 264 0 + 1.002 737 811 911 354 48 Tu) less whole turns, with Tu in days of UT1
+        // from J2000.0 (IERS Conventions 2010, eq. 5.15)
         let (days, part) = epoch.tai_days();
         let turns = 0.779_057_273_264 + part + 0.002_737_811_911_354_48 * (days + part);
         let angle = turns.fract() * TAU;
         Self { epoch, axes, angle, parameters, poles: PiecewiseChebyshev::new(span.0, span.1, INTERVAL) }
     }
 
-    /// Returns an orientation with UT1 = UTC and no polar motion, which defines inertial axes only.
+    /// Creates an orientation with UT1 = UTC and no polar motion, which is used only to define inertial axes.
     pub(super) fn of_axes(epoch: Epoch, span: (f64, f64)) -> Self {
         let ut1_minus_tai = epoch.utc_minus_tai();
         let parameters = Parameters::Constant { ut1_minus_tai, polar_motion: [0.0; 2] };
@@ -65,21 +66,23 @@ impl Orientation {
         &self.parameters
     }
 
-    /// Returns `X, Y, s` at `t` from precession and nutation.
+    /// Returns the coordinates `X, Y` of the pole and the CIO locator `s` at `t`, from precession and
+    /// nutation, rad.
     fn pole_at(&self, t: f64) -> Vector3<f64> {
         pole(self.epoch.centuries(t))
     }
 
-    /// Returns the Earth rotation angle, rad, and its rate, rad/s.
+    /// Returns the Earth rotation angle `θ`, rad, and its rate, rad/s.
     fn rotation_angle(&self, t: f64) -> (f64, f64) {
         let (ut1_minus_tai, rate) = self.parameters.ut1_minus_tai(t);
         (self.angle + ROTATION_RATE * (t + ut1_minus_tai), ROTATION_RATE * (1.0 + rate))
     }
 
-    /// Returns the rotation from `I` to `F` components: `W R₃(θ - s) Mᵀ` from GCRF, `W R₃(θ₈₂)` from TEME.
+    /// Returns the rotation from components in `I` to components in `F`: `W R₃(θ - s) Mᵀ` from GCRF, `W
+    /// R₃(θ₈₂)` from TEME.
     ///
-    /// `W` is the polar motion; the rows of `R₃(-s) Mᵀ` are the celestial intermediate axes, with the pole `X, Y`;
-    /// `θ₈₂` is the mean sidereal time of 1982.
+    /// `W` is the polar motion. The rows of `R₃(-s) Mᵀ` are the celestial intermediate axes, with the pole
+    /// `X, Y`. `θ₈₂` is the mean sidereal time of 1982.
     ///
     /// Source: IERS Conventions (2010), eq. 5.1 and 5.10; Vallado and others, AIAA 2006-6753, for TEME.
     pub(super) fn rot_fi(&self, t: f64) -> Matrix3<f64> {
@@ -94,7 +97,8 @@ impl Orientation {
         }
     }
 
-    /// Returns the polar motion `R₁(-y_p) R₂(-x_p)` to second order in the angles; `s'` (0.05 mas) is neglected.
+    /// Returns the polar motion `W = R₁(-y_p) R₂(-x_p)` to second order in the angles; `s'` (0.05 mas) is
+    /// neglected.
     fn polar_motion(&self, t: f64) -> Matrix3<f64> {
         let [x, y] = self.parameters.polar_motion(t);
         let (cx, cy) = (1.0 - 0.5 * x * x, 1.0 - 0.5 * y * y);
@@ -105,7 +109,8 @@ impl Orientation {
     ///
     /// Source: Aoki and others, Astronomy and Astrophysics 105, 1982, eq. 14.
     fn sidereal_excess(&self, t: f64) -> f64 {
-        // θ₈₂ = 67 310.548 41 s + (876 600 h + 8 640 184.812 866 s) T + 0.093 104 s T² - 6.2e-6 s T³, T of UT1
+        // θ₈₂ = 67 310.548 41 s + (876 600 h + 8 640 184.812 866 s) T + 0.093 104 s T² - 6.2e-6 s T³ with T
+        // of UT1
         const TURNS: [f64; 4] = [
             67_310.548_41 / DAY - 0.779_057_273_264,
             8_640_184.812_866 / DAY - 0.002_737_811_911_354_48 * 36_525.0,
@@ -117,7 +122,7 @@ impl Orientation {
         polynomial(&TURNS, ut1 / 36_525.0) * TAU
     }
 
-    /// Returns the rotation from GCRF to `I` components.
+    /// Returns the rotation from GCRF components to components in `I`.
     pub(super) fn rot_ig(&self, t: f64) -> Matrix3<f64> {
         match self.axes {
             Axes::Gcrf => Matrix3::identity(),
@@ -129,10 +134,10 @@ impl Orientation {
         }
     }
 
-    /// Returns the angular velocity of the Earth in `I`, axes of `I`, rad/s.
+    /// Returns the angular velocity of the Earth relative to `I`, axes of `I`, rad/s.
     ///
-    /// `ω = θ̇ p + p × ṗ` with the pole `p`; the CIO does not rotate about `p`. The rate of polar motion, below
-    /// 1e-12 rad/s, is neglected.
+    /// `ω = θ̇ p + p × ṗ` with the pole `p`, about which the celestial intermediate origin does not rotate.
+    /// The rate of polar motion, below 1e-12 rad/s, is neglected.
     pub(super) fn angular_velocity(&self, t: f64) -> Vector3<f64> {
         let (_, rate) = self.rotation_angle(t);
         match self.axes {
@@ -150,12 +155,13 @@ impl Orientation {
 
 impl PartialEq for Orientation {
     fn eq(&self, other: &Self) -> bool {
-        // the other fields are determined by these
+        // the other fields follow from these
         (self.epoch, self.axes, &self.parameters) == (other.epoch, other.axes, &other.parameters)
     }
 }
 
-/// Returns the rotation from GCRF to the equator of the pole `X, Y`: `Mᵀ` of eq. 5.10 with `a = 1/(1 + Z)`.
+/// Returns the rotation from GCRF to the equator of the pole `X, Y`, which is `Mᵀ` of eq. 5.10 with `a = 1/(1
+/// + Z)`.
 fn equator(x: f64, y: f64) -> Matrix3<f64> {
     let z = (1.0 - x * x - y * y).sqrt();
     let a = 1.0 / (1.0 + z);

@@ -1,4 +1,4 @@
-//! Earth-orientation parameters, which are measured and supplied by the user.
+//! Earth-orientation parameters, which are measured and are supplied by the user.
 
 use super::epoch::Epoch;
 use super::error::EarthError;
@@ -9,11 +9,12 @@ use super::precession::ARC_SECOND;
 pub(super) enum Parameters {
     /// Constant UT1 - TAI, s, and polar motion `x_p, y_p`, rad.
     Constant { ut1_minus_tai: f64, polar_motion: [f64; 2] },
-    /// Rows, which are interpolated linearly; UT1 - TAI has no leap seconds.
+    /// Rows between which the parameters are interpolated linearly. UT1 - TAI is tabulated because it has no
+    /// leap seconds.
     Table(Box<[Row]>),
 }
 
-/// Row of a table at `time`, s of simulation.
+/// Row of a table for the instant `time`, s of simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     pub(super) time: f64,
@@ -31,7 +32,7 @@ pub enum EarthParameters {
         /// Polar motion `x_p, y_p`, rad.
         polar_motion: [f64; 2],
     },
-    /// Rows in order of time, which are interpolated linearly.
+    /// Rows in order of time, between which the parameters are interpolated linearly.
     Table(Vec<EarthParameterRow>),
 }
 
@@ -53,7 +54,7 @@ impl Default for EarthParameters {
 }
 
 impl EarthParameters {
-    /// Returns a table with rows of MJD (UTC), `x_p, y_p`, rad, and UT1 - UTC, s.
+    /// Creates a table from rows with the MJD (UTC), `x_p` and `y_p`, rad, and UT1 - UTC, s.
     pub fn from_rows(rows: &[[f64; 4]]) -> Self {
         let row = |&[mjd, x, y, ut1_minus_utc]: &[f64; 4]| EarthParameterRow {
             mjd,
@@ -64,11 +65,11 @@ impl EarthParameters {
     }
 }
 
-/// Largest polar motion accepted, rad; observed values are below 0.8″.
+/// Largest accepted polar motion, rad; observed values are below 0.8″.
 const FARTHEST_POLE: f64 = 5.0 * ARC_SECOND;
 
 impl Parameters {
-    /// Returns the parameters for a run that starts at `epoch`.
+    /// Prepares the parameters for a run that starts at `epoch`.
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {
@@ -102,7 +103,7 @@ impl Parameters {
         }
     }
 
-    /// Returns the span of the table, s of simulation.
+    /// Returns the span of the table, s of simulation; `None` for constant parameters.
     pub(super) fn span(&self) -> Option<(f64, f64)> {
         match self {
             Self::Constant { .. } => None,
@@ -110,7 +111,7 @@ impl Parameters {
         }
     }
 
-    /// Returns UT1 - TAI, s, and its rate.
+    /// Returns UT1 - TAI at `t`, s, and its rate, s/s.
     pub(super) fn ut1_minus_tai(&self, t: f64) -> (f64, f64) {
         match self {
             Self::Constant { ut1_minus_tai, .. } => (*ut1_minus_tai, 0.0),
@@ -122,7 +123,7 @@ impl Parameters {
         }
     }
 
-    /// Returns the polar motion `x_p, y_p`, rad.
+    /// Returns the polar motion `x_p, y_p` at `t`, rad.
     pub(super) fn polar_motion(&self, t: f64) -> [f64; 2] {
         match self {
             Self::Constant { polar_motion, .. } => *polar_motion,
@@ -134,16 +135,16 @@ impl Parameters {
     }
 }
 
-/// Returns the rows before and after `t`, and the position of `t` between them: 0 to 1, clamped.
+/// Returns the rows before and after `t`, and the position of `t` between the two: 0 to 1, clamped.
 fn around(rows: &[Row], t: f64) -> (&Row, &Row, f64) {
     let after = rows.partition_point(|row| row.time <= t).clamp(1, rows.len() - 1);
     let (a, b) = (&rows[after - 1], &rows[after]);
     (a, b, ((t - a.time) / (b.time - a.time)).clamp(0.0, 1.0))
 }
 
-/// Returns the largest accepted |UT1 - UTC|, s, which is the bound that leap seconds maintain.
+/// Returns the largest accepted |UT1 - UTC|, s, which is the bound that leap seconds guarantee.
 ///
-/// Before 1972, UT1 - TAI replaces UT1 - UTC; by 2035 the bound will be raised.
+/// Before 1972, the value is UT1 - TAI, which leap seconds do not limit; by 2035 the bound will be raised.
 ///
 /// Source: General Conference on Weights and Measures, 27th meeting (2022), resolution 4.
 fn largest_ut1(mjd: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Reader of files of Earth-orientation parameters.
+//! Reader of files with Earth-orientation parameters.
 
 use super::error::EarthError;
 use super::parameters::{EarthParameterRow, EarthParameters};
@@ -8,13 +8,13 @@ use super::precession::ARC_SECOND;
 const HEADER: [&str; 4] = ["mjd", "x_arcsec", "y_arcsec", "ut1_minus_utc_s"];
 
 impl EarthParameters {
-    /// Reads a table in the IERS format `finals2000A` or `eopc04`, or CSV with the header
+    /// Reads a table in the IERS format `finals2000A` or `eopc04`, or as CSV with the header
     /// `mjd,x_arcsec,y_arcsec,ut1_minus_utc_s`.
     ///
-    /// The table ends at the first row of `finals2000A` without polar motion or UT1.
+    /// A `finals2000A` table ends before the first row without polar motion or UT1.
     ///
     /// # Errors
-    /// [`EarthError::Table`] with the line.
+    /// [`EarthError::Table`] with the number of the line.
     pub fn read(text: &str) -> Result<Self, EarthError> {
         let is_data = |line: &&(usize, &str)| !line.1.trim().is_empty() && !line.1.starts_with('#');
         let lines: Vec<(usize, &str)> = text.lines().enumerate().collect();
@@ -51,7 +51,7 @@ impl EarthParameters {
     }
 }
 
-/// Result of parsing one row; `None` for a row without values.
+/// Result of parsing a row: `None` for a row without values.
 type ParsedRow = Result<Option<EarthParameterRow>, ()>;
 
 fn number(text: &str) -> Result<f64, ()> {
@@ -70,7 +70,8 @@ fn csv_row(line: &str) -> ParsedRow {
     }
 }
 
-/// Parses `finals2000A`, with MJD in columns 8-15, polar motion in 19-27 and 38-46, and UT1 - UTC in 59-68.
+/// Parses a row of `finals2000A`, with the MJD in columns 8-15, polar motion in 19-27 and 38-46, and UT1 -
+/// UTC in 59-68.
 fn finals_row(line: &str) -> ParsedRow {
     let part = |from: usize, to: usize| line.get(from - 1..to.min(line.len())).unwrap_or("");
     let (x, y, ut1) = (part(19, 27), part(38, 46), part(59, 68));
@@ -80,7 +81,8 @@ fn finals_row(line: &str) -> ParsedRow {
     row(part(8, 15), x, y, ut1)
 }
 
-/// Parses `eopc04`, whose columns are year, month, day, hour (in newer files), MJD, polar motion, UT1 - UTC and others.
+/// Parses a row of `eopc04`: year, month, day, hour (in newer files), MJD, polar motion, UT1 - UTC and
+/// further columns.
 fn c04_row(line: &str) -> ParsedRow {
     let parts: Vec<_> = line.split_whitespace().collect();
     let has_hour = parts.get(3).and_then(|hour| hour.parse::<f64>().ok()).is_some_and(|hour| hour < 24.0);

@@ -1,6 +1,6 @@
 //! Precession and nutation of the Earth's pole.
 //!
-//! Every angle is in rad, `T` in Julian centuries of TT from J2000.0 (2000-01-01T12:00:00 TT).
+//! Angles are in rad and `T` is in Julian centuries of TT from J2000.0 (2000-01-01T12:00:00 TT).
 
 use nalgebra::Vector3;
 
@@ -10,12 +10,12 @@ use super::rotation::{r1, r3};
 /// One arc second, rad.
 pub(super) const ARC_SECOND: f64 = std::f64::consts::PI / 648_000.0;
 
-/// Returns `c₀ + c₁ T + c₂ T² + …`.
+/// Returns the polynomial `c₀ + c₁ T + c₂ T² + …`.
 pub(super) fn polynomial(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// Returns the fundamental arguments of the motion of Moon and Sun: `l, l', F, D, Ω`.
+/// Returns the fundamental arguments `l, l', F, D, Ω` of the motion of Moon and Sun, rad.
 ///
 /// Source: Simon and others, Astronomy and Astrophysics 282, 1994; IERS Conventions (2010), eq. 5.43.
 pub(super) fn arguments(t: f64) -> [f64; 5] {
@@ -29,7 +29,8 @@ pub(super) fn arguments(t: f64) -> [f64; 5] {
     ARC_SECONDS.map(|c| (polynomial(&c, t) % 1_296_000.0) * ARC_SECOND)
 }
 
-/// Returns the Fukushima-Williams angles of mean ecliptic and equator of date, `γ̄, φ̄, ψ̄, ε_A`, with frame bias.
+/// Returns the Fukushima-Williams angles `γ̄, φ̄, ψ̄, ε_A` of the mean ecliptic and equator of date, with
+/// frame bias, rad.
 ///
 /// Source: Capitaine and others, Astronomy and Astrophysics 450, 2006, eq. 37-40 (IAU 2006).
 pub(super) fn precession(t: f64) -> [f64; 4] {
@@ -42,7 +43,8 @@ pub(super) fn precession(t: f64) -> [f64; 4] {
     ARC_SECONDS.map(|c| polynomial(&c, t) * ARC_SECOND)
 }
 
-/// Returns the nutation in longitude and obliquity, `Δψ, Δε`, from the lunisolar terms of at least 0.1 mas.
+/// Returns the nutation in longitude and obliquity, `Δψ, Δε`, rad, from the lunisolar terms of at least 0.1
+/// mas.
 fn nutation(t: f64, arguments: &[f64; 5]) -> [f64; 2] {
     let mut sum = [0.0; 2];
     for (multiples, c) in &NUTATION {
@@ -55,7 +57,7 @@ fn nutation(t: f64, arguments: &[f64; 5]) -> [f64; 2] {
     sum.map(|x| x * 1e-6 * ARC_SECOND)
 }
 
-/// Returns the coordinates of the celestial intermediate pole in GCRF and the CIO locator: `X, Y, s`.
+/// Returns the coordinates `X, Y` of the celestial intermediate pole in GCRF and the CIO locator `s`, rad.
 ///
 /// `X` and `Y` are the first two elements of the last row of `R₁(-ε_A - Δε) R₃(-ψ̄ - Δψ) R₁(φ̄) R₃(γ̄)`.
 ///

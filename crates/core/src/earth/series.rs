@@ -1,17 +1,19 @@
-//! Trigonometric series of a coordinate of Sun or Moon.
+//! Trigonometric series for a coordinate of the Sun or the Moon.
 
 use super::precession::polynomial;
 
-/// `Σ cᵢ Tⁱ + Σ (a sin θ + b cos θ)`; each `θ` is a sum of multiples of `l, l', F, D, Ω` and planetary longitudes.
+/// Series `Σ cᵢ Tⁱ + Σ (a sin θ + b cos θ)`, in which each `θ` is a sum of multiples of `l, l', F, D, Ω` and
+/// planetary longitudes.
 pub(super) struct Series {
     pub(super) polynomial: &'static [f64],
     pub(super) terms: &'static [([i8; 8], [f64; 2])],
 }
 
 impl Series {
-    /// Returns the sum at `t` centuries, in the unit of the coefficients; `arguments` are in rad.
+    /// Returns the sum at `t`, Julian centuries, in the unit of the coefficients; `arguments` are in rad.
     pub(super) fn sum(&self, t: f64, arguments: &[f64; 8]) -> f64 {
-        // terms with l' decrease with the eccentricity of the Earth's orbit (Meeus, Astronomical Algorithms, ch. 47)
+        // terms with l' decrease with the eccentricity of the Earth's orbit (Meeus, Astronomical Algorithms,
+        // ch. 47)
         let decay = 1.0 - 0.002_516 * t;
         let term = |(multiples, [a, b]): &([i8; 8], [f64; 2])| {
             let angle: f64 = multiples.iter().zip(arguments).map(|(k, x)| f64::from(*k) * x).sum();

@@ -1,16 +1,17 @@
-//! Positions of Sun and Moon from a SPICE kernel.
+//! Positions of the Sun and the Moon from a SPICE kernel.
 
 use nalgebra::Vector3;
 
 use super::error::EarthError;
 
-/// Largest coefficient accepted, km; far beyond the planets, and small enough that no series overflows.
+/// Largest accepted coefficient, km. It is far beyond the planets, but small enough that no series overflows.
 const FARTHEST_KM: f64 = 1e12;
 
-/// Positions of one body relative to another: Chebyshev series on intervals of equal length (types 2 and 3).
+/// Positions of one body relative to another, as Chebyshev series on intervals of equal length (types 2 and
+/// 3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpiceSegment {
-    /// Sign of the positions in the sum: 1, or -1 if they are subtracted.
+    /// Sign with which the positions enter the sum of segments: 1 or -1.
     pub sign: f64,
     /// Start of the first interval, s of TDB from J2000.0.
     pub start: f64,
@@ -22,9 +23,10 @@ pub struct SpiceSegment {
     pub coefficients: Vec<f64>,
 }
 
-/// Positions of Sun and Moon from the Earth's centre, GCRF axes, each the sum of segments.
+/// Positions of the Sun and the Moon from the Earth's centre, GCRF axes. Each is the sum of several segments.
 ///
-/// TT is used for TDB: they differ by less than 2 ms, during which the Moon moves by 2 m and the Sun by 60 m.
+/// TT is used in place of TDB. They differ by less than 2 ms, during which the Moon moves by 2 m and the Sun
+/// by 60 m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpiceKernel {
     sun: Vec<SpiceSegment>,
@@ -32,7 +34,7 @@ pub struct SpiceKernel {
 }
 
 impl SpiceKernel {
-    /// Returns the kernel with these chains of segments from the Earth to Sun and Moon.
+    /// Creates the kernel from the chains of segments that lead from the Earth to the Sun and to the Moon.
     ///
     /// # Errors
     /// [`EarthError::WrongLength`] for a segment without complete intervals, [`EarthError::NotFinite`], and
@@ -52,7 +54,7 @@ impl SpiceKernel {
         Ok(Self { sun, moon })
     }
 
-    /// Returns the span covered by all segments, s of TDB from J2000.0.
+    /// Returns the span that all segments cover, s of TDB from J2000.0.
     pub(super) fn span(&self) -> (f64, f64) {
         let all = || self.sun.iter().chain(&self.moon);
         let start = all().map(|segment| segment.start).fold(f64::NEG_INFINITY, f64::max);
@@ -99,7 +101,7 @@ impl SpiceSegment {
         let x = 2.0 * (position - interval as f64) - 1.0;
         let component = |axis: usize| {
             let from = (axis * self.intervals() + interval) * self.count;
-            // Clenshaw: b_k = c_k + 2x b_{k+1} - b_{k+2},  f = c_0 + x b_1 - b_2
+            // Clenshaw's recursion: b_k = c_k + 2x b_{k+1} - b_{k+2},  f = c_0 + x b_1 - b_2
             let series = &self.coefficients[from..from + self.count];
             let add = |(b1, b2): (f64, f64), c: &f64| (c + 2.0 * x * b1 - b2, b1);
             let (b1, b2) = series[1..].iter().rev().fold((0.0, 0.0), add);

@@ -1,4 +1,4 @@
-//! Positions of Sun and Moon during a run.
+//! Positions of the Sun and the Moon during a run.
 
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Arc;
@@ -8,19 +8,19 @@ use super::epoch::{DAY, Epoch};
 use super::spice::SpiceKernel;
 use super::sun_moon_series;
 
-/// Length of the Chebyshev intervals of the Sun, s; those of the Moon are half as long.
+/// Length of the intervals of the Sun's Chebyshev series, s; the intervals of the Moon are half as long.
 ///
 /// The interpolation error is below 1 cm for the Moon and 1 m for the Sun.
 const INTERVAL: f64 = 8.0 * DAY;
 
-/// Interpolated positions of Sun and Moon in the axes of `I`.
+/// Interpolated positions of the Sun and the Moon, axes of `I`.
 #[derive(Clone, Debug)]
 pub(super) struct SunMoon {
     pub(super) epoch: Epoch,
     /// Span in which the positions are known, s of simulation.
     pub(super) span: (f64, f64),
     kernel: Option<Arc<SpiceKernel>>,
-    /// Modified Julian date of UTC and seconds since midnight at the epoch.
+    /// Epoch as the modified Julian date of UTC and the seconds since midnight.
     utc: (i64, f64),
     sun: PiecewiseChebyshev<10>,
     moon: PiecewiseChebyshev<12>,
@@ -38,7 +38,7 @@ impl SunMoon {
         if let Some(kernel) = &kernel {
             let since = epoch.seconds_tt(0.0);
             let (from, to) = kernel.span();
-            // the span is a whole number of intervals, because none may extend beyond the kernel
+            // the span is a whole number of intervals, because no interval may extend beyond the kernel
             let (from, to) = ((from - since).max(span.0), (to - since).min(span.1));
             span = (from, from + ((to - from) / INTERVAL).floor().max(0.0) * INTERVAL);
         }
@@ -49,19 +49,20 @@ impl SunMoon {
         Self { epoch, span, kernel, utc: epoch.utc(), sun, moon }
     }
 
-    /// Returns a copy with an empty cache, for other axes.
+    /// Returns a copy with an empty cache, for use with other axes.
     pub(super) fn with_empty_cache(&self) -> Self {
         Self::new(self.epoch, self.kernel.clone())
     }
 
-    /// Returns the modified Julian date of UTC and the seconds since midnight at `t`.
+    /// Returns the modified Julian date of UTC and the seconds since midnight at `t` s of simulation.
     pub(super) fn utc(&self, t: f64) -> (i64, f64) {
         let seconds = self.utc.1 + t;
         let days = (seconds / DAY).floor();
         (self.utc.0 + days as i64, seconds - days * DAY)
     }
 
-    /// Returns the position of the Sun at `t`; `rot_ig` returns the rotation from GCRF to `I`.
+    /// Returns the position of the Sun at `t`, m, axes of `I`; `rot_ig` computes the rotation from GCRF to
+    /// `I`.
     pub(super) fn sun(&self, t: f64, rot_ig: impl Fn(f64) -> Matrix3<f64>) -> Vector3<f64> {
         self.sun.value(t, |t| {
             rot_ig(t)
@@ -72,7 +73,8 @@ impl SunMoon {
         })
     }
 
-    /// Returns the position of the Moon at `t`; `rot_ig` returns the rotation from GCRF to `I`.
+    /// Returns the position of the Moon at `t`, m, axes of `I`; `rot_ig` computes the rotation from GCRF to
+    /// `I`.
     pub(super) fn moon(&self, t: f64, rot_ig: impl Fn(f64) -> Matrix3<f64>) -> Vector3<f64> {
         self.moon.value(t, |t| {
             rot_ig(t)

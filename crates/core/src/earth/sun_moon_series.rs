@@ -1,4 +1,4 @@
-//! Positions of Sun and Moon from trigonometric series.
+//! Positions of the Sun and the Moon from trigonometric series.
 
 use nalgebra::Vector3;
 
@@ -6,7 +6,8 @@ use super::precession::{ARC_SECOND, arguments, precession};
 use super::rotation::{r1, r3};
 use super::{moon_table, sun_table};
 
-/// Returns the fundamental arguments and the mean longitudes of Venus, Mars and Jupiter, rad.
+/// Returns the fundamental arguments `l, l', F, D, Ω` and the mean longitudes of Venus, Mars and Jupiter,
+/// rad.
 ///
 /// Source: IERS Conventions (2010), eq. 5.43 and 5.44.
 fn all_arguments(t: f64) -> [f64; 8] {
@@ -17,7 +18,8 @@ fn all_arguments(t: f64) -> [f64; 8] {
     [l, l_sun, f, d, omega, venus, mars, jupiter]
 }
 
-/// Returns the geometric position of the Sun from the Earth's centre, GCRF axes, m, without light time or aberration.
+/// Returns the geometric position of the Sun from the Earth's centre, GCRF axes, m, without light time or
+/// aberration.
 ///
 /// `t` is in Julian centuries of TT from J2000.0.
 pub(super) fn sun(t: f64) -> Vector3<f64> {
@@ -27,7 +29,7 @@ pub(super) fn sun(t: f64) -> Vector3<f64> {
     from_ecliptic(t, x[2] - x[3] + x[4] + longitude * ARC_SECOND, latitude * ARC_SECOND, distance * 1e3)
 }
 
-/// Returns the geometric position of the Moon, in the axes and units of [`sun`].
+/// Returns the geometric position of the Moon; axes and units as for [`sun`].
 pub(super) fn moon(t: f64) -> Vector3<f64> {
     let x = all_arguments(t);
     let [longitude, latitude, distance] =
@@ -36,7 +38,8 @@ pub(super) fn moon(t: f64) -> Vector3<f64> {
     from_ecliptic(t, x[2] + x[4] + longitude * ARC_SECOND, latitude * ARC_SECOND, distance * 1e3)
 }
 
-/// Returns the GCRF position of a point given in the mean ecliptic and equinox of date.
+/// Converts a position given in the mean ecliptic and equinox of date to GCRF axes; angles are in rad, the
+/// distance is in m.
 fn from_ecliptic(t: f64, longitude: f64, latitude: f64, distance: f64) -> Vector3<f64> {
     let [gamma, phi, psi, _] = precession(t);
     let (s, c) = longitude.sin_cos();

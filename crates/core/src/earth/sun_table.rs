@@ -1,7 +1,7 @@
 //! Series of the Sun; written by `tests/oracles/generate_earth_tables.py`.
 //!
-//! Fitted to JPL's DE421 over 1900-2050; mean ecliptic and equinox of date; terms in the order of their
-//! contribution.
+//! Fitted to JPL's DE421 over 1900-2050, in the mean ecliptic and equinox of date. Terms are in the order of
+//! their contribution.
 
 use super::series::Series;
 
