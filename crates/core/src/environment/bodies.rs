@@ -14,20 +14,21 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Returns the states of the bodies of `systems`, each with its base first.
+    /// Stores the states of the bodies of `systems`; each system begins with its base.
     pub fn new(systems: &[Vec<BodyState>]) -> Self {
         Self::of(systems, 0..systems.len())
     }
 
-    /// Returns the states of the bodies of `systems`, each with its base first; `numbers` are their numbers in the world.
+    /// Stores the states of the bodies of `systems`, each beginning with its base; `numbers` are the systems'
+    /// numbers in the world.
     pub(crate) fn of(systems: &[Vec<BodyState>], numbers: impl Iterator<Item = usize>) -> Self {
         let layout = BlockLayout::of(numbers.zip(systems.iter().map(Vec::len)));
         let blocks = systems.iter().flat_map(|bodies| bodies.chunks(WIDTH)).map(BodyBlock::new).collect();
         Self { layout, blocks }
     }
 
-    /// Stores the motion of all bodies of the system at position `system` of the run; `motion(first)` returns the motion
-    /// of as many bodies as `S` has lanes, starting with body `first`.
+    /// Stores the motion of all bodies of the system at position `system` of the run. `motion(first)` returns
+    /// the motion of the bodies from body `first` on, one per lane of `S`.
     #[inline(always)]
     pub(crate) fn store_motion<S: Real>(
         &mut self,
@@ -51,17 +52,18 @@ impl Bodies {
         }
     }
 
-    /// Returns the number of bodies of all systems.
+    /// Returns the number of bodies of all systems together.
     pub fn len(&self) -> usize {
         self.layout.body_count()
     }
 
-    /// Returns true if there are no bodies.
+    /// Returns true if no system has a body.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the state of a body, if it exists. A plain number selects a body of the first system.
+    /// Returns the state of a body, or `None` if it does not exist. A plain number selects a body of the
+    /// first system.
     pub fn get(&self, body: impl Into<BodyIndex>) -> Option<BodyState> {
         let row = self.layout.row(body.into())?;
         let (block, i) = (&self.blocks[row / WIDTH], row % WIDTH);
@@ -79,17 +81,17 @@ impl Bodies {
         })
     }
 
-    /// Returns all bodies with their states, system by system, base first.
+    /// Returns all bodies with their states, system by system, each beginning with its base.
     pub fn iter(&self) -> impl Iterator<Item = (BodyIndex, BodyState)> {
         self.layout.bodies().filter_map(|index| self.get(index).map(|body| (index, body)))
     }
 
-    /// Returns the rows of each system of the run.
+    /// Returns, for each system of the run, the rows of its bodies.
     pub(super) fn systems(&self) -> &[SystemRows] {
         self.layout.systems()
     }
 
-    /// Returns the centre of mass of the base of a system in `W`, m; the origin if there is no base.
+    /// Returns the centre of mass of the base of a system in `W`, m, or the origin if the system has no body.
     pub(super) fn base_com(&self, system: &SystemRows) -> Vector3<f64> {
         let first = |block: &BodyBlock| block.motion.com.map(|column| column.get(0)).to_nalgebra();
         self.blocks.get(system.first / WIDTH).map_or_else(Vector3::zeros, first)

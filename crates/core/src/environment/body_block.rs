@@ -12,13 +12,14 @@ pub struct BodyState {
     pub mass: f64,
     /// Inertia about the centre of mass in body axes, kg m².
     pub inertia: Matrix3<f64>,
-    /// Centre of mass, m.
+    /// Centre of mass in `W`, m.
     pub com: Vector3<f64>,
-    /// Rotation from body axes (those of its [`Node`](crate::model::Node)) to `W`.
+    /// Rotation from body axes (the axes of its [`Node`](crate::model::Node)) to `W`.
     pub rot_wk: Matrix3<f64>,
-    /// Origin of the body axes, m.
+    /// Origin of the body axes in `W`, m.
     pub origin: Vector3<f64>,
-    /// Velocity of the centre of mass, m/s; zero unless an effect [reads velocities](super::Effect::reads_velocities).
+    /// Velocity of the centre of mass in `W`, m/s; zero unless an effect [reads
+    /// velocities](super::Effect::reads_velocities).
     pub velocity: Vector3<f64>,
     /// Angular velocity, `W` axes, rad/s; zero unless an effect reads velocities.
     pub angular_velocity: Vector3<f64>,
@@ -33,7 +34,7 @@ pub(crate) struct BodyMotion<T> {
     pub(crate) velocity: [Vec3<T>; 2],
 }
 
-/// States of eight bodies of one system; unused rows repeat the last body with zero mass.
+/// States of eight bodies of one system. Unused rows repeat the last body with zero mass.
 #[derive(Clone, Debug)]
 pub(super) struct BodyBlock {
     pub(super) mass: Column8,
@@ -44,7 +45,7 @@ pub(super) struct BodyBlock {
 }
 
 impl BodyBlock {
-    /// Returns a block of one to eight bodies.
+    /// Creates a block from one to eight bodies.
     pub(super) fn new(bodies: &[BodyState]) -> Self {
         let body = |i: usize| &bodies[i.min(bodies.len() - 1)];
         let vectors = |of: fn(&BodyState) -> &Vector3<f64>| Column8::vectors(|i| (*of(body(i))).into());
@@ -70,25 +71,25 @@ impl BodyBlock {
     }
 }
 
-/// Group of bodies of one system that fill the SIMD lanes; unused lanes repeat the last body with zero mass.
+/// Group of bodies of one system, one per SIMD lane. Unused lanes repeat the last body with zero mass.
 #[derive(Clone, Copy)]
 pub(super) struct LaneGroup<'a> {
     /// Body in the first lane.
     pub(super) first: BodyIndex,
     /// Row of the first body.
     pub(super) row: usize,
-    /// Number of bodies in use.
+    /// Number of lanes in use.
     pub(super) count: usize,
     pub(super) block: &'a BodyBlock,
 }
 
 impl LaneGroup<'_> {
-    /// Returns the body in lane `i`.
+    /// Returns the index of the body in lane `i`.
     pub(super) fn body(&self, i: usize) -> BodyIndex {
         BodyIndex { body: self.first.body + i, ..self.first }
     }
 
-    /// Returns the row of the first body within its block.
+    /// Returns the row, within its block, of the first body.
     #[inline(always)]
     pub(super) fn offset(&self) -> usize {
         self.row % WIDTH

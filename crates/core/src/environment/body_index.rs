@@ -3,17 +3,17 @@
 use super::soa::WIDTH;
 use std::fmt;
 
-/// Index of a body of one of the systems of a world.
+/// Index of a body in one of the systems of a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyIndex {
-    /// Number of the system in the world, from 0. A run of some of the systems keeps their numbers.
+    /// Number of the system in the world, from 0. In a run of some of the systems, they keep their numbers.
     pub system: usize,
     /// Index of the body in its system, base first.
     pub body: usize,
 }
 
 impl From<usize> for BodyIndex {
-    /// Returns the body with this index in the first system.
+    /// Creates the index of a body in the first system.
     fn from(body: usize) -> Self {
         Self { system: 0, body }
     }
@@ -28,7 +28,7 @@ impl fmt::Display for BodyIndex {
     }
 }
 
-/// Rows of all bodies in blocks of [`WIDTH`]; every system starts a new block.
+/// Rows of all bodies in blocks of [`WIDTH`] rows; every system starts a new block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct BlockLayout {
     systems: Vec<SystemRows>,
@@ -46,12 +46,13 @@ pub(super) struct SystemRows {
 }
 
 impl BlockLayout {
-    /// Returns the layout of the systems of a world, which have these numbers of bodies.
+    /// Computes the layout of systems with the given numbers of bodies.
     pub(super) fn new(counts: &[usize]) -> Self {
         Self::of(counts.iter().copied().enumerate())
     }
 
-    /// Returns the layout of some systems of a world, given by their numbers and their numbers of bodies.
+    /// Computes the layout of some systems of a world, given as pairs of the system's number and its number
+    /// of bodies.
     pub(super) fn of(systems: impl Iterator<Item = (usize, usize)>) -> Self {
         let mut next = 0;
         let place = |(number, count): (usize, usize)| {
@@ -75,13 +76,13 @@ impl BlockLayout {
         &self.systems
     }
 
-    /// Returns the row of a body, if it exists.
+    /// Returns the row of a body, or `None` if the body does not exist.
     pub(super) fn row(&self, BodyIndex { system, body }: BodyIndex) -> Option<usize> {
         let rows = self.systems.iter().find(|rows| rows.number == system)?;
         (body < rows.count).then(|| rows.first + body)
     }
 
-    /// Returns all bodies, system by system, base first.
+    /// Returns the indices of all bodies, system by system, each beginning with its base.
     pub(super) fn bodies(&self) -> impl Iterator<Item = BodyIndex> {
         let bodies = |rows: &SystemRows| {
             let system = rows.number;

@@ -1,4 +1,4 @@
-//! Effect that applies a wrench, fixed in a body, during an interval.
+//! Effect that applies a constant wrench, fixed in a body, during an interval.
 
 use nalgebra::Vector3;
 
@@ -11,10 +11,10 @@ use crate::model::Model;
 
 /// Constant force and torque in body axes, active from `start` until `end`.
 ///
-/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with `R` the rotation of the body,
-/// `o` its origin, `p` the point of application in body axes and `c` the centre of mass.
-/// The wrench is active in a step if the middle of the step lies in `[start, end)`. Both ends are events, so
-/// no step contains a switch.
+/// In `W` about the centre of mass: `F = R f`, `T = R τ + (o + R p - c) × F`, with the force `f` and torque
+/// `τ` in body axes, the rotation `R` of the body, its origin `o`, the point of application `p` in body axes,
+/// and the centre of mass `c`. The wrench is active in a step if the middle of the step is in `[start, end)`.
+/// Steps end at both times, so the wrench does not change during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BodyWrench {
     body: BodyIndex,
@@ -26,12 +26,13 @@ pub struct BodyWrench {
 }
 
 impl BodyWrench {
-    /// Returns a force (N) at the origin of `body` and a torque (N m), both in body axes and always active.
+    /// Creates a wrench that is always active: a force (N) at the origin of `body` and a torque (N m), both
+    /// in body axes.
     ///
     /// A plain number selects a body of the first system.
     ///
     /// # Errors
-    /// [`EnvironmentError::NotFinite`].
+    /// [`EnvironmentError::NotFinite`] for a force or torque that is not finite.
     pub fn new(
         body: impl Into<BodyIndex>,
         force: Vector3<f64>,
@@ -43,11 +44,12 @@ impl BodyWrench {
         Ok(Self { body: body.into(), force, torque, point: Vector3::zeros(), start, end })
     }
 
-    /// Returns a force (N) at the origin of a frame (index) and a torque (N m), both in frame axes and always active, on
-    /// the first system.
+    /// Creates a wrench on the first system that is always active: a force (N) at the origin of a frame
+    /// (index) and a torque (N m), both in frame axes.
     ///
     /// # Errors
-    /// [`EnvironmentError::NotFinite`], [`EnvironmentError::UnknownFrame`].
+    /// [`EnvironmentError::NotFinite`] for a force or torque that is not finite;
+    /// [`EnvironmentError::UnknownFrame`].
     pub fn on_frame(
         model: &Model,
         frame: usize,
@@ -60,16 +62,17 @@ impl BodyWrench {
         Self::new(frame.body, rot_kf * force, rot_kf * torque)?.at(frame.pos_kf.to_nalgebra())
     }
 
-    /// Returns the same wrench with its force applied at `point`, body axes, m.
+    /// Returns the same wrench with the force applied at `point`, body axes, m.
     ///
     /// # Errors
-    /// [`EnvironmentError::NotFinite`].
+    /// [`EnvironmentError::NotFinite`] for a point that is not finite.
     pub fn at(self, point: Vector3<f64>) -> Result<Self, EnvironmentError> {
         check_finite("point", &point)?;
         Ok(Self { point, ..self })
     }
 
-    /// Returns the same wrench, active from `start` until `end`, s of simulation; either may be infinite.
+    /// Returns the same wrench, active from `start` until `end`, s of simulation; either time may be
+    /// infinite.
     ///
     /// # Errors
     /// [`EnvironmentError::EmptyInterval`] unless `start < end`.
@@ -81,7 +84,7 @@ impl BodyWrench {
         }
     }
 
-    /// Returns the same wrench on the system with this number in the world.
+    /// Returns the same wrench, acting on the system with this number in the world.
     #[must_use]
     pub fn on_system(self, system: usize) -> Self {
         Self { body: BodyIndex { system, ..self.body }, ..self }
@@ -93,7 +96,7 @@ impl BodyWrench {
     }
 }
 
-/// Rejects a vector with a component that is not finite.
+/// Returns an error if a component of the vector is not finite.
 fn check_finite(name: &'static str, x: &Vector3<f64>) -> Result<(), EnvironmentError> {
     match x.iter().find(|c| !c.is_finite()) {
         Some(&value) => Err(EnvironmentError::NotFinite { name, value }),
@@ -119,7 +122,7 @@ impl Effect for BodyWrench {
     }
 
     /// # Errors
-    /// [`EnvironmentError::UnknownBody`].
+    /// [`EnvironmentError::UnknownBody`] if the body does not exist.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let count = scene.bodies.len();
         let unknown = EnvironmentError::UnknownBody { body: self.body, count };

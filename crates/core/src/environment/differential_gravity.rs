@@ -11,38 +11,40 @@ use super::wrenches::{WrenchLanes, Wrenches};
 use crate::gravity::{point_mass, tide};
 use crate::spatial::{Real, Vec3};
 
-/// Treatment of gravity relative to a reference orbit that is not in free fall (`gravity_mode` in YAML and Python).
+/// Treatment of gravity relative to a reference orbit that is not in free fall (`gravity_mode` in YAML and
+/// Python).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum GravityMode {
-    /// The robot obeys the gravity field and moves away from such a reference.
+    /// The robot falls in the modelled gravity, and so moves away from the reference.
     #[default]
     True,
-    /// The robot shares the non-gravitational acceleration of the reference: only the tidal part of gravity acts on it,
-    /// and the common acceleration caused by drag and radiation pressure is removed.
+    /// The robot moves along with the reference: only the tidal part of gravity acts on it, and the common
+    /// acceleration caused by drag and radiation pressure is removed.
     Carried,
 }
 
-/// Gravity of planet and third bodies on every body minus the acceleration of the origin of `W`.
+/// Gravity of the planet and of third bodies on every body, relative to the acceleration of the origin of
+/// `W`.
 ///
-/// `F_k = m_k [g(r_k) - r̈_ref]`, with the full field `g` and `r_k = r_ref + c_k`, where `c_k` is the centre of
-/// mass of body `k` in `W`. If the reference obeys `g`, or in [`GravityMode::Carried`], the force is
-/// the tide `m_k [g(r_k) - g(r_ref)]`, computed without cancellation. A body is a point mass here: the
+/// `F_k = m_k [g(r_k) - r̈_ref]`, with the full field `g` and `r_k = r_ref + c_k`, where `c_k` is the centre
+/// of mass of body `k` in `W`. If the reference obeys `g`, or in [`GravityMode::Carried`], the force is the
+/// tide `m_k [g(r_k) - g(r_ref)]`, computed without cancellation. Each body is treated as a point mass: the
 /// second-order force on an extended body is neglected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DifferentialGravity {
-    /// Treatment of the part of `r̈_ref` that is not gravity.
+    /// Treatment of the part of `r̈_ref` that is not due to gravity.
     pub gravity_mode: GravityMode,
 }
 
 const NAME: &str = "gravity";
 
 impl DifferentialGravity {
-    /// Returns `g(r_ref) - r̈_ref` at `t` s, m/s², `W` axes: the part of gravity that the reference does not follow.
+    /// Returns the residual acceleration `g(r_ref) - r̈_ref` at `t`, s, in m/s², `W` axes.
     ///
-    /// Exactly zero for a reference in free fall; `None` without a planet.
+    /// The result is exactly zero for a reference in free fall, and `None` without a planet.
     ///
     /// # Errors
-    /// [`EnvironmentError::Gravity`] where the field is not defined at the reference.
+    /// [`EnvironmentError::Gravity`] if the field is not defined at the reference.
     pub fn residual(t: f64, reference: &Reference<'_>) -> Result<Option<Vector3<f64>>, EnvironmentError> {
         let Some(gravity) = reference.gravity else { return Ok(None) };
         if reference.in_free_fall {
@@ -71,8 +73,8 @@ impl Effect for DifferentialGravity {
     }
 
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] where the reference or a body is below
-    /// the lowest possible ground of a planet with that `μ`, and [`EnvironmentError::Gravity`].
+    /// [`EnvironmentError::NoPlanet`]; [`EnvironmentError::InsidePlanet`] if the reference or a body is below
+    /// the lowest possible ground of the planet; [`EnvironmentError::Gravity`].
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }
@@ -82,7 +84,7 @@ impl DifferentialGravity {
     fn add<S: Real>(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         let planet = scene.planet(NAME)?;
         let state = planet.reference;
-        // only the tide g(r) - g(r_ref): the reference obeys g, or its residual is omitted
+        // use only the tide g(r) - g(r_ref), because the reference obeys g or its residual is omitted
         let tide_only = planet.in_free_fall || self.gravity_mode == GravityMode::Carried;
         let point_mass_residual = if tide_only {
             Vector3::zeros()
@@ -103,8 +105,8 @@ impl DifferentialGravity {
                     Some(field) => field.acceleration(com)?,
                     None => Vec3::zero(),
                 };
-                // F = m [(g0(r) - g0(r_ref)) + (g0(r_ref) - r̈_ref) + gp],  g = g0 + gp
-                // with g0 the point mass, gp field and third bodies; tide_only: gp(r) - gp(r_ref), no residual
+                // F = m [(g0(r) - g0(r_ref)) + (g0(r_ref) - r̈_ref) + gp] with g = g0 + gp, the point mass
+                // g0, and the field and third bodies gp; with tide_only, gp(r) - gp(r_ref) and no residual
                 let force = (tide + Vec3::of(&point_mass_residual) + perturbation) * group.masses();
                 Ok(WrenchLanes { force, torque: Vec3::zero() })
             },

@@ -15,36 +15,36 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Effect that applies drag forces and torques to every body with a surface.
 ///
-/// The force on a face of area `A` and outward normal `n` is `F = -½ ρ C_D A (n·u)₊ u` at its centroid `c`, that on a
-/// cannonball `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the velocity of this point
-/// relative to an atmosphere that rotates with the Earth, assumed uniform over a face, cylinder or sphere.
-/// Parts do not shadow each other.
+/// The force on a face with area `A` and outward normal `n` is `F = -½ ρ C_D A (n·u)₊ u` at the centroid `c`.
+/// The force on a cannonball is `F = -½ ρ C_D A |u| u` at the centre of mass. `u = v + ω × c - ω⊕ × r` is the
+/// velocity of this point relative to an atmosphere that rotates with the Earth; it is assumed to be uniform
+/// over a face, cylinder or sphere. Parts do not shadow each other.
 ///
-/// The density is computed at the last multiple of 1/8 s and the point of a grid of 128 m that is nearest to the base
-/// of each system, and extrapolated with the scale height up to 160 m from there; the relative error is at most 1e-4
-/// where the model is smooth. For bodies farther away the model is evaluated at the body. The grid point depends on
-/// position and time alone.
+/// The density is computed at the last multiple of 1/8 s, at the point of a grid of 128 m that is nearest to
+/// the base of each system, and is extrapolated with the scale height up to 160 m from that point. The
+/// relative error is at most 1e-4 where the model is smooth. For bodies farther away, the model is evaluated
+/// at the body. The grid point depends only on position and time.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.
 #[derive(Debug)]
 pub struct Drag {
     atmosphere: Arc<dyn Atmosphere>,
     surfaces: Surfaces,
-    /// Last evaluated local atmosphere of each system, a pure function of its time and centre.
+    /// Most recent local atmosphere of each system, which depends only on its time and centre.
     cached: Mutex<Vec<Option<LocalAtmosphere>>>,
 }
 
 const NAME: &str = "drag";
 
 impl Drag {
-    /// Returns the effect for an atmosphere and the surfaces of the bodies.
+    /// Creates the effect from an atmosphere and the surfaces of the bodies.
     pub fn new(atmosphere: Arc<dyn Atmosphere>, surfaces: Surfaces) -> Self {
         let cached = Mutex::new(vec![None; surfaces.system_count()]);
         Self { atmosphere, surfaces, cached }
     }
 
-    /// Returns the atmosphere about the grid point nearest to `r`, or about `r` at the edge of a model; `r` is the
-    /// position of the base of the system with this number.
+    /// Returns the local atmosphere about the grid point nearest to `r`, or about `r` itself if the model is
+    /// not defined at the grid point. `r` is the position of the base of the system with this number.
     fn local(
         &self,
         system: usize,
@@ -114,7 +114,7 @@ impl Drag {
                     let r = Vec3::<S>::of(&r_ref) + group.coms();
                     let counts = |i: usize| i < group.count && self.surfaces.covers(group.body(i));
                     let density = local.densities(r, counts, model)?;
-                    // relative to the atmosphere:  v = ṙ - ω⊕ × r of the centre of mass,  w = ω - ω⊕
+                    // velocities relative to the atmosphere: v = ṙ - ω⊕ × r of the centre of mass, w = ω - ω⊕
                     let [linear, angular] = group.velocities();
                     let (v, w) = (Vec3::<S>::of(&v_ref) + linear - earth_rate.cross(r), angular - earth_rate);
                     let rot_wk = group.rot_wk::<S>();

@@ -29,10 +29,11 @@ use super::wrenches::Wrenches;
 /// }
 /// ```
 pub trait Effect: Send + Sync + std::fmt::Debug {
-    /// Returns the short name for messages and recorded columns.
+    /// Returns the short name used in messages and for recorded columns.
     fn name(&self) -> &str;
 
-    /// Returns the instants at which the effect is discontinuous, s of simulation; the integrator ends a step at each.
+    /// Returns the times, s of simulation, at which the effect is discontinuous. The integrator ends a step
+    /// at each of them.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()
     }
@@ -42,32 +43,33 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         false
     }
 
-    /// Returns true if the effect depends on velocities; if no effect does, the scene does not compute them.
+    /// Returns true if the effect depends on velocities. If no effect does, the scene contains no velocities.
     fn reads_velocities(&self) -> bool {
         true
     }
 
     /// Returns true if the motion of the reference orbit already includes this effect.
     ///
-    /// [`GravityMode::Carried`](super::GravityMode::Carried) assumes so, and removes its common acceleration.
+    /// If so, [`GravityMode::Carried`](super::GravityMode::Carried) removes the common acceleration caused by
+    /// the effect.
     fn acts_on_reference(&self) -> bool {
         false
     }
 
-    /// Returns true if the effect may act on bodies of the system with this number in the world. A run of other systems
-    /// does not evaluate it and ignores its instants.
+    /// Returns true if the effect may act on bodies of the system with this number in the world. In a run
+    /// without any such system, the effect is not evaluated and its event times are ignored.
     fn acts_on(&self, _system: usize) -> bool {
         true
     }
 
-    /// Returns true if at most one effect with this name may act on `body`; a second one is rejected.
+    /// Returns true if at most one effect with this name may act on `body`; a second effect is then rejected.
     fn counts_once_on(&self, _body: BodyIndex) -> bool {
         false
     }
 
-    /// Adds the wrench of this effect on each body to `wrenches`. Must not allocate.
+    /// Adds the wrench of this effect on each body to `wrenches`. Implementations must not allocate memory.
     ///
     /// # Errors
-    /// [`EnvironmentError`] where the effect is not defined in this scene.
+    /// [`EnvironmentError`] if the effect is not defined in this scene.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError>;
 }

@@ -11,7 +11,7 @@ use crate::number_text::{short, unlike};
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EnvironmentError {
-    /// The gravity of planet and third bodies is not defined.
+    /// The gravity of the planet and third bodies cannot be evaluated.
     #[error(transparent)]
     Gravity(#[from] GravityError),
     /// An effect that requires a planet is used without a planet.
@@ -74,15 +74,15 @@ pub enum EnvironmentError {
     /// A wrench acts on a frame that does not exist.
     #[error("the wrench acts on frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
     UnknownFrame {
-        /// Given index of the frame.
+        /// Index of the given frame.
         frame: usize,
         /// Number of frames.
         count: usize,
     },
-    /// The density of the atmosphere is not defined.
+    /// The density of the atmosphere cannot be evaluated.
     #[error(transparent)]
     Atmosphere(#[from] AtmosphereError),
-    /// A surface is not valid.
+    /// A surface is invalid.
     #[error(transparent)]
     Surface(#[from] SurfaceError),
     /// The position of the Sun or the time is unknown.

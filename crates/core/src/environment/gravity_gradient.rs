@@ -10,10 +10,10 @@ use crate::spatial::{Real, Sym3, Vec3};
 
 /// Effect that applies the gravity-gradient torque to each body, about its centre of mass.
 ///
-/// `T_i = -ε_ijk (I G)_jk`, with the gradient `G` of the full field at the body, 1/s², and the inertia `I` about the
-/// centre of mass, kg m²; for a point mass `T = (3μ/r³) r̂ × I r̂`, with `r` from the planet's centre to the
-/// centre of mass of the body. All quantities are in `W` axes. [`super::DifferentialGravity`] computes the
-/// force on the body; the motion of an articulated robot requires both.
+/// `T_i = -ε_ijk (I G)_jk`, with the gradient `G` of the full field at the body, 1/s², and the inertia `I`
+/// about the centre of mass, kg m². For a point mass this is `T = (3μ/r³) r̂ × I r̂`, with `r` from the
+/// planet's centre to the centre of mass of the body. All quantities are in `W` axes. The motion of an
+/// articulated robot also requires the force on each body, which [`super::DifferentialGravity`] computes.
 ///
 /// Source: Hughes, Spacecraft Attitude Dynamics, Wiley 1986, section 8.1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -65,7 +65,7 @@ impl GravityGradient {
                 let (rot_wk, inertia) = (group.rot_wk(), group.inertias());
                 let torque_k = match field {
                     Some(field) => {
-                        // G = (3μ/r³) r̂ r̂ᵀ + Gp;  the term -(μ/r³) 1 gives no torque
+                        // G = (3μ/r³) r̂ r̂ᵀ + Gp; the term -(μ/r³) 1 causes no torque and is omitted
                         let g = field.gradient(com)?.add_outer(up, three_mu_over_r3);
                         torque(&g.rotate(&rot_wk.transpose()), &inertia)
                     }
@@ -81,7 +81,8 @@ impl GravityGradient {
     }
 }
 
-/// Returns the torque of a field with gradient `G` about the centre of mass, N m; all in the same axes.
+/// Returns the torque, N m, of a field with gradient `G` about the centre of mass; all quantities in the same
+/// axes.
 ///
 /// `T_i = ∫ ε_ijk x_j G_kl x_l dm = -ε_ijk (I G)_jk`, since `∫ x xᵀ dm = ½ tr(I) 1 - I` and `G` is symmetric:
 /// `T = Σ e_k × I G e_k`.

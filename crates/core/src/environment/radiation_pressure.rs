@@ -11,16 +11,18 @@ use super::wrenches::Wrenches;
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
-/// Effect that applies the force and torque of sunlight to every body with a surface, with the shadow of the Earth.
+/// Effect that applies the force and torque of sunlight to every body with a surface, including the shadow of
+/// the Earth.
 ///
-/// The force on a face of area `A` and outward normal `n` is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` at
-/// its centroid where `cos θ = n·ŝ > 0`, that on a cannonball `F = -P C_R A ŝ` at the centre of mass. `ŝ` points to the
-/// Sun; `P = ν (Φ/c) (1 au/d)²` with the distance `d` of the Sun and the fraction `ν` of the solar disc not occulted by
-/// the Earth. Parts do not shadow each other; light from the Earth is neglected.
+/// The force on a face with area `A` and outward normal `n` is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ +
+/// ρd/3) n]` at the centroid if `cos θ = n·ŝ > 0`. The force on a cannonball is `F = -P C_R A ŝ` at the
+/// centre of mass. `ŝ` points to the Sun. `P = ν (Φ/c) (1 au/d)²` with the flux `Φ` at 1 au, the distance `d`
+/// of the Sun, and the fraction `ν` of the solar disc that the Earth does not occult. Parts do not shadow
+/// each other. Light reflected by the Earth is neglected.
 ///
-/// The shadow is evaluated at every stage of a step; no step ends at its edge. A penumbra (about 8 s in a low orbit) is
-/// smooth enough for steps of 1 s. Long fixed steps resolve its edge to a fraction of a step; adaptive steps
-/// become shorter there.
+/// The shadow is evaluated at every stage of a step; steps do not end at its edge. A penumbra, which takes
+/// about 8 s in a low orbit, is smooth enough for steps of 1 s. Longer fixed steps resolve the penumbra only
+/// coarsely; adaptive steps become shorter there.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.4.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,19 +37,21 @@ const NAME: &str = "radiation pressure";
 /// Mean solar flux at 1 au, W/m². Source: Kopp and Lean, Geophysical Research Letters 38, 2011 (1360.8).
 pub const SOLAR_FLUX: f64 = 1361.0;
 
-/// Equatorial radius of the Earth, which casts the shadow, m. Source: WGS84.
+/// Equatorial radius of the Earth, which is used for the shadow, m. Source: WGS84.
 pub const SHADOW_RADIUS: f64 = 6_378_137.0;
 
-/// Distance from the base up to which the light is assumed uniform, m.
+/// Distance from the base within which the light is assumed to be uniform, m.
 ///
-/// Over this distance, in a low orbit with a penumbra 60 km wide, `ν` changes by 1/600 and the direction by 7e-10 rad.
+/// Within this distance, in a low orbit with a penumbra 60 km wide, `ν` changes by 1/600 and the direction of
+/// light by 7e-10 rad.
 const UNIFORM_RADIUS: f64 = 100.0;
 
 const ASTRONOMICAL_UNIT: f64 = 149_597_870_700.0;
 const SPEED_OF_LIGHT: f64 = 299_792_458.0;
 
 impl RadiationPressure {
-    /// Returns the pressure of [`SOLAR_FLUX`] on these surfaces, with the shadow of an Earth of [`SHADOW_RADIUS`].
+    /// Creates the effect for these surfaces, with the flux [`SOLAR_FLUX`] and the shadow of an Earth with
+    /// [`SHADOW_RADIUS`].
     pub fn new(surfaces: Surfaces) -> Self {
         Self { surfaces, flux: SOLAR_FLUX, earth_radius: Some(SHADOW_RADIUS) }
     }
@@ -55,13 +59,13 @@ impl RadiationPressure {
     /// Checks a flux, W/m², and a radius of the Earth, m.
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] where one is negative or not finite, or the radius below 100 km.
+    /// [`SurfaceError::Value`] if a value is negative or not finite, or if the radius is below 100 km.
     pub fn check(flux: f64, earth_radius: f64) -> Result<(), SurfaceError> {
         not_negative("flux", flux).and(planet_radius(earth_radius)).map(drop)
     }
 
-    /// Returns direction and pressure of the light at `r` with the Sun at `sun`, both from the Earth's
-    /// centre, m.
+    /// Returns the direction and pressure of the light at `r`, with the Sun at `sun`; both positions are from
+    /// the Earth's centre, m.
     fn light(&self, r: &Vector3<f64>, sun: &Vector3<f64>) -> Light<f64> {
         let to_sun = sun - r;
         let distance = to_sun.norm();
@@ -74,25 +78,26 @@ impl RadiationPressure {
         }
     }
 
-    /// Returns the same effect with another flux at 1 au, W/m².
+    /// Returns the same effect with a different flux at 1 au, W/m².
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] where it is negative or not finite.
+    /// [`SurfaceError::Value`] if `flux` is negative or not finite.
     pub fn with_flux(self, flux: f64) -> Result<Self, SurfaceError> {
         Ok(Self { flux: not_negative("flux", flux)?, ..self })
     }
 
-    /// Returns the same effect with the shadow of an Earth of this radius, m; `None` disables the shadow.
+    /// Returns the same effect with the shadow of an Earth of the given radius, m; `None` disables the
+    /// shadow.
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] where it is below 100 km or not finite.
+    /// [`SurfaceError::Value`] if the radius is below 100 km or not finite.
     pub fn with_shadow(self, earth_radius: Option<f64>) -> Result<Self, SurfaceError> {
         let earth_radius = earth_radius.map(planet_radius).transpose()?;
         Ok(Self { earth_radius, ..self })
     }
 }
 
-/// Unit vector to the Sun and radiation pressure, N/m².
+/// Unit vector to the Sun, and radiation pressure, N/m².
 #[derive(Clone, Copy)]
 struct Light<S> {
     to_sun: Vec3<S>,
@@ -107,7 +112,7 @@ impl<S: Real> Light<S> {
     }
 }
 
-/// Returns `radius` if it is a plausible radius of a planet, m.
+/// Returns `radius`, m, or an error if it is not plausible for a planet.
 fn planet_radius(radius: f64) -> Result<f64, SurfaceError> {
     if radius.is_finite() && radius >= 1e5 {
         return Ok(radius);

@@ -18,13 +18,15 @@ use std::cell::OnceCell;
 pub struct Reference<'a> {
     /// State of the reference, axes of `I`; the origin of `W` is at its position.
     pub state: &'a OrbitState,
-    /// Gravity that acts on robot and reference; `None` without a planet.
+    /// Gravity that acts on the robots and the reference; `None` without a planet.
     pub gravity: Option<&'a Gravity>,
-    /// True if the reference obeys exactly this gravity, so that only differences of gravity act in `W`.
+    /// True if the reference is in free fall in exactly this gravity, so that only differences of gravity act
+    /// in `W`.
     pub in_free_fall: bool,
 }
 
-/// Quantities that depend on the instant and the reference alone, computed on first use and shared by stages and steps.
+/// Quantities that depend only on the instant and the reference. They are computed on first use and shared by
+/// stages and steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ephemeris {
     sky: OnceCell<Sky>,
@@ -32,7 +34,7 @@ pub(crate) struct Ephemeris {
 }
 
 impl Ephemeris {
-    /// Clears all values before the next instant or reference.
+    /// Clears all values, which is required before the instant or the reference changes.
     pub(crate) fn clear(&mut self) {
         self.sky.take();
         self.sun.take();
@@ -42,7 +44,7 @@ impl Ephemeris {
 /// State of robots, reference orbit and Earth at one instant.
 #[derive(Clone, Debug)]
 pub struct Scene<'a> {
-    /// Step being integrated, s; its middle decides which wrenches are active.
+    /// Start and end of the step being integrated, s; its middle determines which wrenches are active.
     pub interval: (f64, f64),
     /// Instant of this evaluation, s of simulation.
     pub time: f64,
@@ -53,15 +55,15 @@ pub struct Scene<'a> {
     /// States of the bodies at this instant.
     pub bodies: &'a Bodies,
     ephemeris: &'a Ephemeris,
-    /// Local gravity fields shared by the effects: one for accelerations, and one for differences from the
-    /// reference.
+    /// Local gravity fields shared by the effects: the first for accelerations, the second for differences
+    /// from the reference.
     local_fields: [OnceCell<LocalField<'a>>; 2],
 }
 
 impl Scene<'_> {
-    /// Calls `evaluate` with the scene of the bodies at `time` in a step over `interval`, s.
+    /// Calls `evaluate` with the scene of the bodies at `time`, s, within a step over `interval`, s.
     ///
-    /// A run evaluates its effects in this way at every stage of a step.
+    /// Runs evaluate their effects in this way at every stage of a step.
     pub fn with<R>(
         interval: (f64, f64),
         time: f64,
@@ -76,7 +78,8 @@ impl Scene<'_> {
 }
 
 impl<'a> Scene<'a> {
-    /// Returns a scene without orbit and Earth; `ephemeris` belongs to `time` and to the reference set later.
+    /// Creates a scene without orbit and Earth; `ephemeris` must belong to `time` and to the reference that
+    /// is set later.
     pub(crate) fn new(interval: (f64, f64), time: f64, bodies: &'a Bodies, ephemeris: &'a Ephemeris) -> Self {
         let local_fields = Default::default();
         Self { interval, time, reference: None, earth: None, bodies, ephemeris, local_fields }
@@ -87,11 +90,12 @@ impl<'a> Scene<'a> {
         0.5 * (self.interval.0 + self.interval.1)
     }
 
-    /// Adds the wrenches that `wrench_of` returns for each group of bodies, one body per lane of `S`, to
-    /// `wrenches`.
+    /// Adds to `wrenches` the wrenches that `wrench_of` returns for each group of bodies, one body per lane
+    /// of `S`.
     ///
     /// # Errors
-    /// [`EnvironmentError::WrongLength`] if bodies and wrenches do not match; errors of `wrench_of`.
+    /// [`EnvironmentError::WrongLength`] if `wrenches` belongs to different bodies; the errors of
+    /// `wrench_of`.
     #[inline(always)]
     pub(super) fn add_lanes<S: Real>(
         &self,
@@ -101,7 +105,7 @@ impl<'a> Scene<'a> {
         self.add_lanes_to(self.bodies.systems(), wrenches, wrench_of)
     }
 
-    /// Adds wrenches to the bodies of some systems, as [`Scene::add_lanes`] does to all.
+    /// Adds wrenches to the bodies of some systems, as [`Scene::add_lanes`] does for all systems.
     #[inline(always)]
     pub(super) fn add_lanes_to<S: Real>(
         &self,
@@ -135,7 +139,7 @@ impl<'a> Scene<'a> {
         Ok((*reference, self.earth.ok_or(EnvironmentError::NoEarth { effect })?))
     }
 
-    /// Returns the planet of the reference orbit; the reference must be above ground.
+    /// Returns the planet of the reference orbit, or an error if the reference is below ground.
     pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'a>, EnvironmentError> {
         let found = self.reference.and_then(|reference| Some((reference, reference.gravity?)));
         let (Reference { state, in_free_fall, .. }, gravity) =
@@ -146,9 +150,11 @@ impl<'a> Scene<'a> {
         Ok(planet)
     }
 
-    /// Returns the gravity around the robot without the planet's point mass; `None` if it is a point mass only.
+    /// Returns the gravity near the robot, excluding the planet's point mass; `None` if there is only the
+    /// point mass.
     ///
-    /// `tide_only` selects the expansion that also provides the difference from the reference, which is the tide.
+    /// With `tide_only`, the result also provides the difference from the gravity at the reference, which is
+    /// the tide.
     pub(super) fn local_field(
         &self,
         planet: &Planet<'a>,
@@ -174,7 +180,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Returns the value of the cell and fills an empty cell with the result of `compute`.
+/// Returns the value of the cell. An empty cell is filled with the result of `compute` first.
 fn get_or_try_init<T, E>(cell: &OnceCell<T>, compute: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
     match cell.get() {
         Some(value) => Ok(value),
@@ -193,7 +199,7 @@ pub(super) struct Planet<'a> {
 }
 
 impl Planet<'_> {
-    /// Rejects bodies below ground; `distance` is measured from the planet's centre, m.
+    /// Returns an error if a body is below ground; `distance` is from the planet's centre, m.
     #[inline(always)]
     pub(super) fn check_group_above_ground<S: Real>(
         &self,
@@ -208,7 +214,7 @@ impl Planet<'_> {
         Ok(())
     }
 
-    /// Rejects a `distance` from the planet's centre, m, that is certainly below ground.
+    /// Returns an error if a point at `distance` from the planet's centre, m, is certainly below ground.
     pub(super) fn check_above_ground(&self, what: ScenePoint, distance: f64) -> Result<(), EnvironmentError> {
         if distance * distance * distance >= self.minimum_cubed {
             return Ok(());

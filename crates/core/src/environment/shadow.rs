@@ -6,12 +6,13 @@ use std::f64::consts::PI;
 /// Radius of the Sun, m. Source: IAU 2015 Resolution B3, nominal solar radius.
 const SUN_RADIUS: f64 = 6.957e8;
 
-/// Returns the fraction `ν` of the solar disc, 0 to 1, not occulted by the Earth as seen from `r`.
+/// Returns the fraction `ν` of the solar disc, from 0 to 1, that the Earth does not occult as seen from `r`.
 ///
-/// `r` and `sun` are positions from the Earth's centre, m, and `radius` is the radius of the Earth, m. With the
-/// apparent radii `a` of the Sun and `b` of the Earth and their angular separation `c`: `ν = 1` where `c ≥ a + b`,
-/// `ν = 0` where `c ≤ b - a` (umbra), `ν = 1 - b²/a²` where `c ≤ a - b` (annular), else `ν = 1 - A/(π a²)` with the
-/// overlap `A` of two flat discs, which is within 2e-3 of rays traced to a sphere. `ν = 0` inside the Earth.
+/// `r` and `sun` are positions from the Earth's centre, m, and `radius` is the radius of the Earth, m. With
+/// the apparent radii `a` of the Sun and `b` of the Earth and their angular separation `c`: `ν = 1` if `c ≥ a
+/// + b`, `ν = 0` if `c ≤ b - a` (umbra), `ν = 1 - b²/a²` if `c ≤ a - b` (annular eclipse), otherwise `ν = 1 -
+/// A/(π a²)` with the overlap `A` of two flat discs. The result is within 2e-3 of ray tracing to a sphere. `ν
+/// = 0` inside the Earth.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.4.2.
 pub fn sunlit(r: &Vector3<f64>, sun: &Vector3<f64>, radius: f64) -> f64 {
@@ -20,7 +21,7 @@ pub fn sunlit(r: &Vector3<f64>, sun: &Vector3<f64>, radius: f64) -> f64 {
     if height <= radius {
         return 0.0;
     }
-    // Outside the penumbral cone (slope (R☉ + R)/|sun|) by a margin, no angles are needed.
+    // Far enough outside the penumbral cone (slope (R☉ + R)/|sun|), no angles have to be computed.
     let behind = -r.dot(&to_sun) / distance;
     let cone = 1.001 * radius + 1.01 * (SUN_RADIUS + radius) / (distance - behind) * behind.max(0.0);
     if behind < -0.1 * height || height * height - behind * behind > cone * cone {
@@ -40,7 +41,8 @@ pub fn sunlit(r: &Vector3<f64>, sun: &Vector3<f64>, radius: f64) -> f64 {
     }
 }
 
-/// Returns the common area of two discs with intersecting rims; radii `a` and `b`, centres `c` apart.
+/// Returns the common area of two discs of radii `a` and `b` whose rims intersect; `c` is the distance of
+/// their centres.
 fn overlap(a: f64, b: f64, c: f64) -> f64 {
     // A = a² acos(x/a) + b² acos((c - x)/b) - c y,  x = (c² + a² - b²)/2c,  y = √(a² - x²)
     let x = (c * c + a * a - b * b) / (2.0 * c);

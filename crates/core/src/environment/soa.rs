@@ -2,7 +2,7 @@
 
 use crate::spatial::{Lanes8, Real, Vec3};
 
-/// Number of rows of a column: the number of lanes of the widest SIMD type.
+/// Number of rows of a column, which is the number of lanes of the widest SIMD type.
 pub(crate) const WIDTH: usize = Lanes8::LANES;
 
 /// Column with one number for each of eight bodies.
@@ -11,12 +11,12 @@ pub(crate) const WIDTH: usize = Lanes8::LANES;
 pub(crate) struct Column8([f64; WIDTH]);
 
 impl Column8 {
-    /// Returns the column with `f(i)` in row `i`.
+    /// Creates the column with `f(i)` in row `i`.
     pub(super) fn of(f: impl Fn(usize) -> f64) -> Self {
         Self(std::array::from_fn(f))
     }
 
-    /// Returns three columns with the components of `f(i)` in row `i`.
+    /// Creates three columns with the components of `f(i)` in row `i`.
     pub(super) fn vectors(f: impl Fn(usize) -> Vec3<f64>) -> Vec3<Self> {
         Vec3 { x: Self::of(|i| f(i).x), y: Self::of(|i| f(i).y), z: Self::of(|i| f(i).z) }
     }
@@ -32,7 +32,7 @@ impl Column8 {
         (pair(0) + pair(1)) + (pair(2) + pair(3))
     }
 
-    /// Returns the numbers of consecutive rows, one per lane of `S`, starting at row `offset`.
+    /// Loads the numbers of consecutive rows, one per lane of `S`, starting at row `offset`.
     #[inline(always)]
     pub(super) fn load<S: Real>(&self, offset: usize) -> S {
         let numbers = &self.0[offset..][..S::LANES];
@@ -56,8 +56,8 @@ pub(super) fn store<S: Real>(columns: &mut Vec3<Column8>, offset: usize, lanes: 
     columns.z.store(offset, lanes.z);
 }
 
-/// Compiles a kernel for several lane counts and runs it with the best one for `count` bodies on this
-/// processor.
+/// Compiles a kernel for several numbers of lanes, and runs the version that is best for `count` bodies on
+/// this processor.
 macro_rules! on_lanes {
     ($count:expr, $lanes:ident => $kernel:expr) => {{
         use $crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8};

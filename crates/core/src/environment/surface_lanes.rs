@@ -1,4 +1,4 @@
-//! Adds wrenches to the bodies that have surfaces, one body per lane.
+//! Addition of wrenches to the bodies that have surfaces, one body per lane.
 
 use super::body_block::LaneGroup;
 use super::body_index::SystemRows;
@@ -14,10 +14,12 @@ impl Surfaces {
         scene.bodies.systems().iter().filter(|rows| self.covers_system(rows.number))
     }
 
-    /// Adds the wrenches that `wrench_of` returns for the surfaces of each group of bodies of a system to `wrenches`.
+    /// Adds to `wrenches` the wrenches that `wrench_of` returns for the surfaces of each group of bodies of a
+    /// system.
     ///
     /// # Errors
-    /// [`EnvironmentError::WrongLength`] if bodies and wrenches do not match; errors of `wrench_of`.
+    /// [`EnvironmentError::WrongLength`] if `wrenches` belongs to different bodies; the errors of
+    /// `wrench_of`.
     #[inline(always)]
     pub(super) fn add_lanes<'a, S: Real>(
         &self,

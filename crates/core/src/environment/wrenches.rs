@@ -8,7 +8,7 @@ use crate::spatial::{Mat3, Real, Vec3};
 use nalgebra::Vector3;
 use std::ops::{Add, Mul};
 
-/// Force through the centre of mass of a body and torque about it.
+/// Force through the centre of mass of a body, and torque about the centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wrench {
     /// Force, `W` axes, N.
@@ -24,7 +24,8 @@ pub struct Wrenches {
     blocks: Vec<WrenchLanes<Column8>>,
 }
 
-/// Forces through the centres of mass of several bodies and torques about them.
+/// Forces through the centres of mass of several bodies, and torques about the centres of mass, one body per
+/// lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WrenchLanes<T> {
     pub(crate) force: Vec3<T>,
@@ -32,12 +33,12 @@ pub(crate) struct WrenchLanes<T> {
 }
 
 impl Wrenches {
-    /// Returns zero wrenches on systems with these numbers of bodies.
+    /// Creates zero wrenches for systems with these numbers of bodies.
     pub fn new(counts: &[usize]) -> Self {
         Self::with(BlockLayout::new(counts))
     }
 
-    /// Returns zero wrenches on these bodies.
+    /// Creates zero wrenches for these bodies.
     pub(crate) fn on(bodies: &Bodies) -> Self {
         Self::with(bodies.layout.clone())
     }
@@ -46,12 +47,12 @@ impl Wrenches {
         Self { blocks: vec![WrenchLanes::default(); layout.block_count()], layout }
     }
 
-    /// Returns the number of bodies of all systems.
+    /// Returns the number of bodies of all systems together.
     pub fn len(&self) -> usize {
         self.layout.body_count()
     }
 
-    /// Returns true if there are no bodies.
+    /// Returns true if no system has a body.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -61,7 +62,8 @@ impl Wrenches {
         self.blocks.fill(WrenchLanes::default());
     }
 
-    /// Returns the wrench on a body, if the body exists. A plain number selects a body of the first system.
+    /// Returns the wrench on a body, or `None` if the body does not exist. A plain number selects a body of
+    /// the first system.
     pub fn get(&self, body: impl Into<BodyIndex>) -> Option<Wrench> {
         let row = self.layout.row(body.into())?;
         let (block, i) = (&self.blocks[row / WIDTH], row % WIDTH);
@@ -69,21 +71,22 @@ impl Wrenches {
         Some(Wrench { force: vector(&block.force), torque: vector(&block.torque) })
     }
 
-    /// Returns the wrenches of all bodies, system by system, base first.
+    /// Returns the wrenches on all bodies, system by system, each beginning with its base.
     pub fn iter(&self) -> impl Iterator<Item = Wrench> {
         self.layout.bodies().filter_map(|body| self.get(body))
     }
 
-    /// Returns the wrenches on the bodies of the system at position `system` of the run, base first.
+    /// Returns the wrenches on the bodies of the system at position `system` of the run, beginning with its
+    /// base.
     pub(crate) fn of_system(&self, system: usize) -> impl Iterator<Item = Wrench> {
         let SystemRows { number, count, .. } = self.layout.systems()[system];
         (0..count).filter_map(move |body| self.get(BodyIndex { system: number, body }))
     }
 
-    /// Adds a wrench to the wrench on a body. A plain number selects a body of the first system.
+    /// Adds `wrench` to the present wrench on a body. A plain number selects a body of the first system.
     ///
     /// # Errors
-    /// [`EnvironmentError::UnknownBody`].
+    /// [`EnvironmentError::UnknownBody`] if the body does not exist.
     pub fn add(&mut self, body: impl Into<BodyIndex>, wrench: Wrench) -> Result<(), EnvironmentError> {
         let body = body.into();
         let unknown = EnvironmentError::UnknownBody { body, count: self.len() };
@@ -93,7 +96,7 @@ impl Wrenches {
         Ok(())
     }
 
-    /// Adds wrenches to those on consecutive bodies, one per lane of `S`, starting at row `row`.
+    /// Adds `wrenches` to those on consecutive bodies, one per lane of `S`, starting at row `row`.
     #[inline(always)]
     pub(super) fn add_lanes<S: Real>(&mut self, row: usize, wrenches: WrenchLanes<S>) {
         let (to, offset) = (&mut self.blocks[row / WIDTH], row % WIDTH);
@@ -102,8 +105,8 @@ impl Wrenches {
         store(&mut to.torque, offset, sum.torque);
     }
 
-    /// Returns the wrenches on consecutive bodies of the system at position `system` of the run, one per lane of `S`,
-    /// starting with body `first`.
+    /// Returns the wrenches on consecutive bodies of the system at position `system` of the run, one per lane
+    /// of `S`, starting with body `first`.
     #[inline(always)]
     pub(crate) fn lanes<S: Real>(&self, system: usize, first: usize) -> WrenchLanes<S> {
         let row = self.layout.systems()[system].first + first;
@@ -127,7 +130,8 @@ impl<S: Real> WrenchLanes<S> {
         Self { force: Vec3::zero(), torque: Vec3::zero() }
     }
 
-    /// Returns the wrenches in other axes: `R f`, `R τ` with the rotation matrix `rot`.
+    /// Returns the wrenches in other axes: the forces `R f` and torques `R τ` with the rotation matrix `rot`,
+    /// `R`.
     #[inline(always)]
     pub(crate) fn rotated(self, rot: &Mat3<S>) -> Self {
         Self { force: *rot * self.force, torque: *rot * self.torque }

@@ -11,10 +11,10 @@ pub struct ConstantAtmosphere {
 }
 
 impl ConstantAtmosphere {
-    /// Returns an atmosphere with this density, kg/m³.
+    /// Creates an atmosphere with the given density, kg/m³.
     ///
     /// # Errors
-    /// [`AtmosphereError::Value`] if it is negative or not finite.
+    /// [`AtmosphereError::Value`] if `density` is negative or not finite.
     pub fn new(density: f64) -> Result<Self, AtmosphereError> {
         if density.is_finite() && density >= 0.0 {
             return Ok(Self { density });

@@ -9,7 +9,7 @@ use crate::number_text::{short, unlike};
 pub enum AtmosphereError {
     /// A position is inside the Earth.
     #[error(
-        "altitude is {altitude} m, which is below the surface; it must be at least 0 m",
+        "altitude is {altitude} m, which is below the surface; expected at least 0 m",
         altitude = short(*altitude)
     )]
     BelowSurface {
@@ -44,7 +44,7 @@ pub enum AtmosphereError {
     },
     /// Layers are not in ascending order.
     #[error(
-        "layer {index} begins at {altitude} m; it must begin above layer {before}, which begins at \
+        "layer {index} begins at {altitude} m; the layers must ascend, but layer {before} begins at \
          {previous} m",
         before = index - 1, altitude = unlike(*altitude, &[*previous]), previous = short(*previous)
     )]
@@ -57,7 +57,7 @@ pub enum AtmosphereError {
         previous: f64,
     },
     /// The list of layers is empty.
-    #[error("the exponential atmosphere has no layers; give at least one")]
+    #[error("the exponential atmosphere has no layers; give at least one layer")]
     NoLayers,
     /// A table of space weather lacks a value that the run requires.
     #[error(

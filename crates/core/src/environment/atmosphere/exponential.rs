@@ -17,19 +17,19 @@ pub struct Layer {
 
 /// Exponential atmosphere, `ρ = ρ₀ exp(-(h - h₀)/H)` in each layer; `h` is the geodetic altitude.
 ///
-/// The first layer extends below its base, the last one to infinity. The density may be discontinuous between layers,
-/// by up to 3 % in Vallado's table.
+/// The first layer also applies below its base, and the last layer extends to infinity. The density may be
+/// discontinuous between layers, by up to 3 % in Vallado's table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExponentialAtmosphere {
     layers: Vec<Layer>,
 }
 
 impl ExponentialAtmosphere {
-    /// Returns the atmosphere with these layers, the lowest first.
+    /// Creates the atmosphere from layers in ascending order.
     ///
     /// # Errors
-    /// [`AtmosphereError::NoLayers`], [`AtmosphereError::LayerOrder`], and [`AtmosphereError::Value`] for a density
-    /// or scale height that is not positive.
+    /// [`AtmosphereError::NoLayers`], [`AtmosphereError::LayerOrder`], and [`AtmosphereError::Value`] for a
+    /// density or scale height that is not positive.
     pub fn new(layers: Vec<Layer>) -> Result<Self, AtmosphereError> {
         if layers.is_empty() {
             return Err(AtmosphereError::NoLayers);
@@ -46,7 +46,7 @@ impl ExponentialAtmosphere {
         Ok(Self { layers })
     }
 
-    /// Returns the tabulated atmosphere for moderate solar activity, from 0 to above 1000 km.
+    /// Creates the tabulated atmosphere for moderate solar activity, from 0 to above 1000 km.
     ///
     /// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th edition, 2013, table 8-4 (U.S.
     /// Standard Atmosphere to 25 km, CIRA-72 above).

@@ -7,11 +7,12 @@ use crate::earth::Earth;
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::f64::consts::PI;
 
-/// Harris-Priester atmosphere: density between a night profile `ρm` and a day profile `ρM` for mean solar activity.
+/// Harris-Priester atmosphere for mean solar activity, with a density between a night profile `ρm` and a day
+/// profile `ρM`.
 ///
-/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)`, with the angle `ψ` between the position and the bulge, which is `lag` east of the
-/// Sun. The model is defined from 100 to 1000 km of geodetic altitude; the profiles are exponential between the
-/// tabulated altitudes.
+/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)`, where `ψ` is the angle between the position and the apex of the density
+/// bulge, which lies `lag` east of the Sun. The model is defined from 100 to 1000 km of geodetic altitude.
+/// Between the tabulated altitudes, the profiles are exponential.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.2 and table 3.8.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +22,8 @@ pub struct HarrisPriester {
 }
 
 impl HarrisPriester {
-    /// Returns the model with exponent `n`, from 2 (low inclinations) to 6 (polar orbits), and `lag`, rad, about 30°.
+    /// Creates the model with exponent `n`, from 2 (low inclinations) to 6 (polar orbits), and `lag`, rad,
+    /// usually about 30°.
     ///
     /// # Errors
     /// [`AtmosphereError::Value`] for an exponent outside 2 to 6 or a lag outside ±π.
@@ -37,18 +39,18 @@ impl HarrisPriester {
         Ok(Self { exponent, lag })
     }
 
-    /// Returns the direction of the bulge in axes of `I`: the direction of the Sun, rotated by the lag about the
-    /// Earth's axis.
+    /// Returns the direction of the bulge in axes of `I`: the direction of the Sun, rotated by the lag about
+    /// the Earth's axis.
     fn bulge(&self, earth: &Earth, time: f64) -> Result<Vector3<f64>, AtmosphereError> {
         let sun = earth.sun(time)?.normalize();
         let axis = Unit::try_new(earth.angular_velocity(time), 0.0).unwrap_or_else(Vector3::z_axis);
         Ok(Rotation3::from_axis_angle(&axis, self.lag) * sun)
     }
 
-    /// Returns the density, kg/m³, at a geodetic altitude, m, and an angle `ψ` from the bulge.
+    /// Returns the density, kg/m³, at a geodetic altitude, m, and at an angle `ψ` from the apex of the bulge.
     ///
     /// # Errors
-    /// [`AtmosphereError::OutsideLayers`].
+    /// [`AtmosphereError::OutsideLayers`] below 100 km and above 1000 km.
     pub fn at(&self, altitude: f64, cos_psi: f64) -> Result<f64, AtmosphereError> {
         let km = altitude * 1e-3;
         let [lowest, highest] = [TABLE[0][0], TABLE[TABLE.len() - 1][0]];
@@ -69,7 +71,7 @@ impl HarrisPriester {
 }
 
 impl Default for HarrisPriester {
-    /// Returns the model with an exponent of 4 and a lag of 30°.
+    /// Creates the model with an exponent of 4 and a lag of 30°.
     fn default() -> Self {
         Self { exponent: 4.0, lag: std::f64::consts::FRAC_PI_6 }
     }

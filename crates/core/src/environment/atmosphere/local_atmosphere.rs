@@ -1,4 +1,4 @@
-//! Exponential density around a robot, obtained from two evaluations of the model.
+//! Local exponential model of the density near a robot, fitted to two evaluations of an atmosphere model.
 
 use super::error::AtmosphereError;
 use super::model::Atmosphere;
@@ -7,20 +7,22 @@ use crate::earth::Earth;
 use crate::spatial::{Lanes8, Real, Vec3};
 use nalgebra::Vector3;
 
-/// Distance from the centre of a local atmosphere up to which its density is used, m.
+/// Distance from the centre of a local atmosphere within which its density is used, m.
 ///
-/// The horizontal scale length of the density is at least a third of the Earth's radius in every model, so the relative
-/// error is at most 8e-5, or 1e-4 with the vertical change of the scale height. Where the layers of a table are
-/// discontinuous, the jump is displaced by at most this distance.
+/// The horizontal scale length of the density is at least a third of the Earth's radius in every model, so
+/// the relative error is at most 8e-5, or 1e-4 including the vertical change of the scale height. Where the
+/// layers of a table are discontinuous, the jump is displaced by at most this distance.
 const VALID_RADIUS: f64 = 160.0;
 
-/// Spacing of the grid of centres, m and s: robots close to each other and successive steps share a centre.
+/// Spacing of the grid of centres, in m and s: robots close to each other, and successive steps, share a
+/// centre.
 const GRID: (f64, f64) = (128.0, 0.125);
 
-/// Altitude difference over which the scale height is computed, m.
+/// Altitude difference from which the scale height is computed, m.
 const RISE: f64 = 100.0;
 
-/// Density around a point `r₀`: `ρ(r) = ρ₀ exp(-κ û·(r - r₀))` with the vertical `û`.
+/// Density near a point `r₀`: `ρ(r) = ρ₀ exp(-κ û·(r - r₀))` with the inverse scale height `κ` and the
+/// vertical `û`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalAtmosphere {
     time: f64,
@@ -29,15 +31,16 @@ pub struct LocalAtmosphere {
     density: f64,
     /// Inverse of the scale height, 1/m.
     decay: f64,
-    /// Angular velocity of the Earth, axes of `I`, rad/s; it changes by 1e-7 per day, relative.
+    /// Angular velocity of the Earth, axes of `I`, rad/s; its relative change is 1e-7 per day.
     pub(in crate::environment) earth_rate: Vector3<f64>,
 }
 
 impl LocalAtmosphere {
-    /// Returns the density around `centre`, axes of `I`, m.
+    /// Computes the local atmosphere about `centre`, axes of `I`, m.
     ///
     /// # Errors
-    /// Errors of the model at the centre, or both 100 m above and 100 m below it.
+    /// The errors of the model at the centre, and those of the model 100 m above the centre if it also fails
+    /// 100 m below.
     pub fn new(
         atmosphere: &dyn Atmosphere,
         earth: &Earth,
@@ -46,7 +49,7 @@ impl LocalAtmosphere {
     ) -> Result<Self, AtmosphereError> {
         let point = AtmospherePoint::new(earth, time, centre)?;
         let density = atmosphere.density(&point)?;
-        // κ = ln(ρ/ρ⁺)/Δh;  Δh < 0 at the upper end of a model
+        // κ = ln(ρ/ρ⁺)/Δh, with Δh < 0 at the upper limit of a model
         let slope = |rise: f64| Ok((density / atmosphere.density(&point.raised(rise))?).ln() / rise);
         let decay = if density > 0.0 { slope(RISE).or_else(|_: AtmosphereError| slope(-RISE))? } else { 0.0 };
         let earth_rate = earth.angular_velocity(time);
@@ -55,8 +58,8 @@ impl LocalAtmosphere {
 
     /// Returns the density, kg/m³, at positions `r`, axes of `I`, m.
     ///
-    /// At positions more than 160 m from the centre, `model` is evaluated instead, except in lanes for which `counts`
-    /// returns false.
+    /// At positions more than 160 m from the centre, `model` is evaluated instead, except in lanes for which
+    /// `counts` returns false, whose densities are not used.
     #[inline(always)]
     pub(in crate::environment) fn densities<S: Real, E>(
         &self,
@@ -94,7 +97,8 @@ impl LocalAtmosphere {
         self.time == time && self.centre == *centre
     }
 
-    /// Returns the last grid time up to `time`, s, and the grid point nearest to `r`, m, which is at most 111 m away.
+    /// Returns the latest grid time that is not after `time`, s, and the grid point nearest to `r`, m, at
+    /// most 111 m away.
     pub(in crate::environment) fn grid_point(time: f64, r: &Vector3<f64>) -> (f64, Vector3<f64>) {
         let (spacing, tick) = GRID;
         ((time / tick).floor() * tick, r.map(|x| (x / spacing).round() * spacing))

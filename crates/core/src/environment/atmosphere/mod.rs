@@ -1,6 +1,6 @@
 //! Density of the atmosphere.
 //!
-//! [`Atmosphere`] is the trait of all models; a new model requires a new file and a line in this module.
+//! [`Atmosphere`] is the trait of all models. To add a model, add a file and a line in this module.
 
 mod constant;
 mod error;

@@ -7,20 +7,21 @@ use nalgebra::Vector3;
 
 /// Model of the density of the atmosphere.
 pub trait Atmosphere: Send + Sync + std::fmt::Debug {
-    /// Returns the short name for messages.
+    /// Returns the short name that messages use for the model.
     fn name(&self) -> &'static str;
 
-    /// Returns the density, kg/m³, at a point outside the Earth. Must be a pure function of the point.
+    /// Returns the density, kg/m³, at a point outside the Earth. Implementations must be pure functions of
+    /// the point.
     ///
     /// # Errors
-    /// [`AtmosphereError`] where the model is not defined at this point.
+    /// [`AtmosphereError`] if the model is not defined at this point.
     fn density(&self, point: &AtmospherePoint<'_>) -> Result<f64, AtmosphereError>;
 }
 
-/// Computes the density, kg/m³, at altitudes, m, latitudes and longitudes, rad, and times, s of simulation.
+/// Computes the densities, kg/m³, at altitudes, m, latitudes and longitudes, rad, and times, s of simulation.
 ///
 /// # Errors
-/// The error of the first point that has one.
+/// The error of the first point at which the model is not defined.
 pub fn densities_over(
     atmosphere: &dyn Atmosphere,
     earth: &Earth,
@@ -35,10 +36,10 @@ pub fn densities_over(
     Ok(())
 }
 
-/// Computes the density, kg/m³, at positions `(n, 3)` from the Earth's centre, axes of `I`, m.
+/// Computes the densities, kg/m³, at positions `(n, 3)` from the Earth's centre, axes of `I`, m.
 ///
 /// # Errors
-/// The error of the first point that has one.
+/// The error of the first point at which the model is not defined.
 pub fn densities_at(
     atmosphere: &dyn Atmosphere,
     earth: &Earth,

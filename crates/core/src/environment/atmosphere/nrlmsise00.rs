@@ -7,11 +7,12 @@ use super::space_indices::{MagneticActivity, SpaceIndices};
 use super::space_weather::SpaceWeather;
 use nrlmsise00::{Input, MagneticActivity as Magnetic, Model};
 
-/// NRLMSISE-00 atmosphere: total density including anomalous oxygen, for the given space weather. It requires an epoch.
+/// NRLMSISE-00 atmosphere: total density including anomalous oxygen, for given space weather. The model
+/// requires an epoch.
 ///
-/// The model is defined from the surface upwards and fitted up to 1000 km; above, the profiles of helium and hydrogen
-/// continue. The crate `nrlmsise00` evaluates it in double precision. Daily indices from a table change at midnight
-/// UTC.
+/// The model is defined from the surface upwards and is fitted to data up to 1000 km; above that altitude,
+/// the profiles of helium and hydrogen continue. The crate `nrlmsise00` evaluates the model in double
+/// precision. Daily indices from a table change at midnight UTC.
 ///
 /// Source: Picone, Hedin, Drob and Aikin, J. Geophysical Research 107(A12), 2002.
 #[derive(Debug)]
@@ -21,7 +22,7 @@ pub struct Nrlmsise00 {
 }
 
 impl Nrlmsise00 {
-    /// Returns the model for this space weather.
+    /// Creates the model for the given space weather.
     pub fn new(weather: SpaceWeather) -> Self {
         Self { model: Box::new(Model::new()), weather }
     }

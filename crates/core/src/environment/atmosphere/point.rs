@@ -1,11 +1,11 @@
-//! Position and instant at which an atmosphere is evaluated.
+//! Position and instant at which an atmosphere model is evaluated.
 
 use super::error::AtmosphereError;
 use crate::earth::{Earth, Geodetic, WGS84};
 use nalgebra::Vector3;
 use std::f64::consts::FRAC_PI_2;
 
-/// A point outside the Earth at one instant.
+/// Point outside the Earth at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct AtmospherePoint<'a> {
     /// Rotation of the Earth.
@@ -16,25 +16,27 @@ pub struct AtmospherePoint<'a> {
     pub geodetic: Geodetic,
     /// Position from the Earth's centre, axes of `I`, m.
     pub position: Vector3<f64>,
-    /// Unit normal of the ellipsoid, outward, axes of `I`.
+    /// Upward unit normal of the ellipsoid, axes of `I`.
     pub up: Vector3<f64>,
 }
 
 impl<'a> AtmospherePoint<'a> {
-    /// Returns the point at `position`, axes of `I`, m.
+    /// Computes the point at `position` from the Earth's centre, axes of `I`, m.
     ///
     /// # Errors
-    /// [`AtmosphereError::BelowSurface`], [`AtmosphereError::Earth`].
+    /// [`AtmosphereError::BelowSurface`] for a position inside the Earth; [`AtmosphereError::Earth`] if the
+    /// coordinates or the rotation of the Earth are undefined.
     pub fn new(earth: &'a Earth, time: f64, position: &Vector3<f64>) -> Result<Self, AtmosphereError> {
         let rot_fi = earth.rot_fi(time);
         let geodetic = Geodetic::of(&(rot_fi * position), &WGS84)?;
         Self { earth, time, geodetic, position: *position, up: rot_fi.tr_mul(&up(&geodetic)) }.above_surface()
     }
 
-    /// Returns the point at these coordinates.
+    /// Computes the point with geodetic coordinates.
     ///
     /// # Errors
-    /// [`AtmosphereError::BelowSurface`]; [`AtmosphereError::Value`] for a latitude outside ±π/2.
+    /// [`AtmosphereError::BelowSurface`] for a negative altitude; [`AtmosphereError::Value`] for a latitude
+    /// outside ±π/2.
     pub fn at(earth: &'a Earth, time: f64, geodetic: Geodetic) -> Result<Self, AtmosphereError> {
         let value = geodetic.latitude;
         if !(-FRAC_PI_2..=FRAC_PI_2).contains(&value) {
@@ -46,7 +48,7 @@ impl<'a> AtmospherePoint<'a> {
         Self { earth, time, geodetic, position, up }.above_surface()
     }
 
-    /// Returns the point `height` metres above this one.
+    /// Returns the point `height` m above this point.
     pub(super) fn raised(&self, height: f64) -> Self {
         let geodetic = Geodetic { altitude: self.geodetic.altitude + height, ..self.geodetic };
         Self { geodetic, position: self.position + self.up * height, ..*self }

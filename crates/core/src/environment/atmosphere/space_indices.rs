@@ -1,18 +1,18 @@
-//! Solar and geomagnetic indices of one instant.
+//! Solar and geomagnetic indices at one instant.
 
 use super::error::AtmosphereError;
 
 /// Geomagnetic activity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MagneticActivity {
-    /// Mean `Ap` of the day.
+    /// Mean of the index `Ap` over the day.
     Daily(f64),
-    /// History: `Ap` of the day; `ap` of the current three hours and of those 3, 6 and 9 h earlier; means of
-    /// 12 to 33 h and of 36 to 57 h earlier.
+    /// Recent history: `Ap` of the day; `ap` of the current three hours and of those 3, 6 and 9 h earlier;
+    /// the means of `ap` from 12 to 33 h and from 36 to 57 h earlier.
     History([f64; 7]),
 }
 
-/// Solar and geomagnetic indices of one instant.
+/// Solar and geomagnetic indices at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpaceIndices {
     /// Solar flux at 10.7 cm of the previous day, 1e-22 W/(m² Hz).
@@ -24,10 +24,11 @@ pub struct SpaceIndices {
 }
 
 impl SpaceIndices {
-    /// Returns these indices after a check of their ranges.
+    /// Creates the indices after a check of their ranges.
     ///
     /// # Errors
-    /// [`AtmosphereError::Value`] unless each flux is above 0 and below 999.9 and each index from 0 to 400.
+    /// [`AtmosphereError::Value`] unless each flux is above 0 and below 999.9 and each index is from 0 to
+    /// 400.
     pub fn new(f107: f64, f107a: f64, activity: MagneticActivity) -> Result<Self, AtmosphereError> {
         for (name, value) in [("f107", f107), ("f107a", f107a)] {
             if !is_flux(value) {
@@ -48,12 +49,12 @@ impl SpaceIndices {
 pub(super) const FLUX: &str = "a flux above 0 and below 999.9 (which marks a gap), 1e-22 W/(m² Hz)";
 pub(super) const ACTIVITY: &str = "an index from 0 to 400 (Ap, not Kp)";
 
-/// Returns true for a possible flux; observed daily values stay below 500, and 999.9 marks a gap in tables.
+/// Returns true for a plausible flux; observed daily values are below 500, and 999.9 marks a gap in tables.
 pub(super) fn is_flux(value: f64) -> bool {
     value > 0.0 && value < 999.9
 }
 
-/// Returns true for a possible `ap` or `Ap`.
+/// Returns true for a plausible `ap` or `Ap`.
 pub(super) fn is_activity(value: f64) -> bool {
     (0.0..=400.0).contains(&value)
 }

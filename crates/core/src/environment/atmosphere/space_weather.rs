@@ -6,8 +6,8 @@ use super::space_weather_table::SpaceWeatherTable;
 /// Solar and geomagnetic indices during a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpaceWeather {
-    /// Constant indices.
+    /// Indices that are constant during the run.
     Constant(SpaceIndices),
-    /// Indices of each day.
+    /// Indices from a table with one row per day.
     Table(SpaceWeatherTable),
 }

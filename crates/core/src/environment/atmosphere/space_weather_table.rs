@@ -5,7 +5,7 @@ use super::space_indices::{
     ACTIVITY, FLUX as FLUX_RANGE, MagneticActivity, SpaceIndices, is_activity, is_flux,
 };
 
-/// Columns of a day under CelesTrak's names; the eight three-hourly `AP` come last.
+/// Names of the columns, as in CelesTrak's files; the eight three-hourly `AP` are last.
 const COLUMNS: [&str; 11] =
     ["F10.7_OBS", "F10.7_OBS_CENTER81", "AP_AVG", "AP1", "AP2", "AP3", "AP4", "AP5", "AP6", "AP7", "AP8"];
 const FLUX: usize = 0;
@@ -13,7 +13,7 @@ const MEAN_FLUX: usize = 1;
 const DAILY: usize = 2;
 const THREE_HOURS: usize = 3;
 
-/// One day: a number per column; `None` marks a gap.
+/// Values of one day, one per column; `None` marks a gap.
 type Day = [Option<f64>; COLUMNS.len()];
 
 /// Observed solar flux and geomagnetic activity of consecutive days.
@@ -23,18 +23,18 @@ pub struct SpaceWeatherTable {
     first: i64,
     days: Vec<Day>,
     has_history: bool,
-    /// Name in messages.
+    /// Name of the table in messages.
     name: String,
 }
 
 impl SpaceWeatherTable {
-    /// Reads CSV text with a header line that names `DATE` (`2024-03-01`), `F10.7_OBS`, `F10.7_OBS_CENTER81`,
-    /// `AP_AVG` and, for the three-hourly history, `AP1` to `AP8`; other columns are ignored.
-    /// CelesTrak's `SW-All.csv` has this form. Rows are consecutive days. An empty field is a gap; a run that needs
-    /// its value raises an error.
+    /// Reads CSV text. The header line contains `DATE` (`2024-03-01`), `F10.7_OBS`, `F10.7_OBS_CENTER81`,
+    /// `AP_AVG` and, for the three-hourly history, `AP1` to `AP8`; other columns are ignored. CelesTrak's
+    /// `SW-All.csv` has this form. Rows are consecutive days. An empty field is a gap, which is an error only
+    /// if a run needs the value.
     ///
     /// # Errors
-    /// [`AtmosphereError::Table`] with the line.
+    /// [`AtmosphereError::Table`] with the number of the line.
     pub fn from_csv(text: &str) -> Result<Self, AtmosphereError> {
         let wrong = |line: usize, problem: String| AtmosphereError::Table { line: line + 1, problem };
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
@@ -57,7 +57,7 @@ impl SpaceWeatherTable {
                 return Err(wrong(
                     line,
                     format!(
-                        "the row has {has} fields, but the header has {needed}; add the missing ones, or download the \
+                        "the row has {has} fields, but the header has {needed}; add the missing fields, or download the \
                          file again if it is truncated"
                     ),
                 ));
@@ -94,24 +94,25 @@ impl SpaceWeatherTable {
         Ok(Self { first, days, has_history, name: "the table".to_owned() })
     }
 
-    /// Returns the same table without the three-hourly history: only daily means are used.
+    /// Returns the same table without the three-hourly history, so that only daily means are used.
     pub fn daily(self) -> Self {
         Self { has_history: false, ..self }
     }
 
-    /// Returns the same table under this name in messages, such as that of its file.
+    /// Returns the same table with the name that messages use for it, such as the name of its file.
     pub fn named(self, name: impl Into<String>) -> Self {
         Self { name: name.into(), ..self }
     }
 
-    /// Returns the indices at `seconds` of the UTC day with this modified Julian date.
+    /// Returns the indices `seconds` after the start of the UTC day with the modified Julian date `day`.
     ///
     /// # Errors
-    /// [`AtmosphereError::OutsideTable`] and [`AtmosphereError::MissingSpaceWeather`].
+    /// [`AtmosphereError::OutsideTable`] for a day that is not in the table;
+    /// [`AtmosphereError::MissingSpaceWeather`] for a gap.
     pub fn at(&self, day: i64, seconds: f64) -> Result<SpaceIndices, AtmosphereError> {
         let daily = self.number(day, DAILY)?;
         let activity = if self.has_history {
-            // intervals of three hours, counted back from the current one
+            // intervals of three hours are counted back from the current interval
             let now = 8 * day + ((seconds / 10_800.0).floor() as i64).clamp(0, 7);
             let back = |k: i64| {
                 let interval = now - k;
@@ -125,7 +126,7 @@ impl SpaceWeatherTable {
         SpaceIndices::new(self.number(day - 1, FLUX)?, self.number(day, MEAN_FLUX)?, activity)
     }
 
-    /// Returns the value of a column on a day.
+    /// Returns the value of a column on a day, which must not be a gap.
     fn number(&self, day: i64, column: usize) -> Result<f64, AtmosphereError> {
         let row = usize::try_from(day - self.first).ok().and_then(|k| self.days.get(k));
         let outside = || AtmosphereError::OutsideTable {
@@ -143,10 +144,10 @@ impl SpaceWeatherTable {
     }
 }
 
-/// Modified Julian date of 1 March 2000. In years that start in March, the leap day is the last day.
+/// Modified Julian date of 1 March 2000. In years that begin in March, the leap day is the last day.
 const MARCH_2000: i64 = 51_604;
 
-/// Returns year, month and day of a modified Julian date (Gregorian).
+/// Returns the year, month and day (Gregorian) of a modified Julian date.
 fn calendar(day: i64) -> (i64, i64, i64) {
     let since = day - MARCH_2000;
     let (cycle, in_cycle) = (since.div_euclid(146_097), since.rem_euclid(146_097));
@@ -156,7 +157,7 @@ fn calendar(day: i64) -> (i64, i64, i64) {
     let in_four = in_century - four * 1461;
     let year = (in_four / 365).min(3);
     let in_year = in_four - year * 365;
-    let month = (5 * in_year + 2) / 153; // from March
+    let month = (5 * in_year + 2) / 153; // month counted from March
     let day = in_year - (153 * month + 2) / 5 + 1;
     let year = 2000 + 400 * cycle + 100 * century + 4 * four + year;
     if month < 10 { (year, month + 3, day) } else { (year + 1, month - 9, day) }
@@ -188,7 +189,7 @@ fn date_of(day: i64) -> String {
     format!("{year:04}-{month:02}-{day:02}")
 }
 
-/// Returns the day of the year, from 1, of a modified Julian date.
+/// Returns the day of the year, counted from 1, of a modified Julian date.
 pub(super) fn day_of_year(day: i64) -> i32 {
     let (year, ..) = calendar(day);
     (day - modified_julian_date(year, 1, 1) + 1) as i32 // at most 366

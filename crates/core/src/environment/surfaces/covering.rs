@@ -18,8 +18,8 @@ pub struct Covering {
 }
 
 impl Covering {
-    /// Returns the faces of the shapes of every body of a system, given by its number and its model; bodies without
-    /// shapes have no surface.
+    /// Derives the surface of every body of a system from its shapes. `number` and `model` are those of the
+    /// system. Bodies without shapes have no surface.
     ///
     /// # Errors
     /// The errors of [`Surface::from_shapes`].
@@ -39,20 +39,22 @@ impl Covering {
     }
 }
 
-/// Surfaces on the bodies of all systems: at most one per body; drag and light do not act on the others.
+/// Surfaces on the bodies of all systems, at most one per body. Drag and light do not act on bodies without a
+/// surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfaces {
     layout: BlockLayout,
-    /// True for each row with a surface.
+    /// True for each row whose body has a surface.
     is_covered: Vec<bool>,
     blocks: Vec<SurfaceBlock>,
 }
 
 impl Surfaces {
-    /// Returns these coverings on systems with these numbers of bodies.
+    /// Creates the surfaces from coverings of systems that have these numbers of bodies.
     ///
     /// # Errors
-    /// [`SurfaceError::NoSurfaces`], [`SurfaceError::UnknownBody`], [`SurfaceError::Twice`].
+    /// [`SurfaceError::NoSurfaces`] for an empty list, [`SurfaceError::UnknownBody`], and
+    /// [`SurfaceError::Twice`] for two surfaces on one body.
     pub fn new(coverings: Vec<Covering>, counts: &[usize]) -> Result<Self, SurfaceError> {
         if coverings.is_empty() {
             return Err(SurfaceError::NoSurfaces);
@@ -70,10 +72,10 @@ impl Surfaces {
         Ok(Self { layout, is_covered, blocks: surfaces.chunks(WIDTH).map(SurfaceBlock::new).collect() })
     }
 
-    /// Returns the faces of the shapes of every body of one robot; bodies without shapes have no surface.
+    /// Derives the surface of every body of one robot from its shapes. Bodies without shapes have no surface.
     ///
     /// # Errors
-    /// The errors of [`Surface::from_shapes`]; [`SurfaceError::NoShape`] where no body has a shape.
+    /// The errors of [`Surface::from_shapes`], and [`SurfaceError::NoShape`] if no body has a shape.
     pub fn from_shapes(model: &Model, drag_coefficient: f64, optics: Optics) -> Result<Self, SurfaceError> {
         let coverings = Covering::from_shapes(0, model, drag_coefficient, optics)?;
         if coverings.is_empty() {
@@ -82,7 +84,7 @@ impl Surfaces {
         Self::new(coverings, &[model.nodes().len()])
     }
 
-    /// Returns the names of the bodies of a system, given by its number and its model, that have mass but no surface.
+    /// Returns the names of the bodies of a system, given by number and model, that have mass but no surface.
     pub fn uncovered<'a>(&self, system: usize, model: &'a Model) -> Vec<&'a str> {
         let is_uncovered =
             |body: &usize| model.nodes()[*body].mass > 0.0 && !self.covers(BodyIndex { system, body: *body });
@@ -90,7 +92,7 @@ impl Surfaces {
         names.map(|body| model.body_frame(body).name.as_str()).collect()
     }
 
-    /// Returns the number of systems of the world.
+    /// Returns the number of systems in the world.
     pub(in crate::environment) fn system_count(&self) -> usize {
         self.layout.systems().len()
     }
@@ -106,7 +108,8 @@ impl Surfaces {
         self.layout.row(body).is_some_and(|row| self.is_covered[row])
     }
 
-    /// Returns the surfaces of the block of eight bodies that holds `body`; `None` if they have none.
+    /// Returns the surfaces of the block of eight bodies that contains `body`; `None` if none of them has a
+    /// surface.
     #[inline(always)]
     pub(in crate::environment) fn block(&self, body: BodyIndex) -> Option<&SurfaceBlock> {
         self.blocks.get(self.layout.row(body)? / WIDTH).filter(|block| !block.is_empty())

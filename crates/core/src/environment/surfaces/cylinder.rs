@@ -1,4 +1,4 @@
-//! Curved side of a cylinder in a stream of air or light.
+//! Drag and radiation pressure on the curved side of a cylinder.
 
 use super::optics::Optics;
 use super::sums::{DragSums, PressureSums};
@@ -6,7 +6,7 @@ use crate::environment::soa::Column8;
 use crate::spatial::{Real, Vec3};
 use std::f64::consts::PI;
 
-/// Curved side of a cylinder; axes of the body, positions from its centre of mass.
+/// Curved side of a cylinder, in body axes with positions from the centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Cylinder<T> {
     /// Radius, m.
@@ -20,7 +20,7 @@ pub(super) struct Cylinder<T> {
 }
 
 impl Cylinder<f64> {
-    /// Gathers one cylinder of each of eight bodies.
+    /// Gathers the cylinders of eight bodies, one per body.
     pub(super) fn block(cylinders: impl Fn(usize) -> Self) -> Cylinder<Column8> {
         Cylinder {
             radius: Column8::of(|i| cylinders(i).radius),
@@ -41,7 +41,7 @@ impl Cylinder<Column8> {
 }
 
 impl<S: Real> Cylinder<S> {
-    /// Adds the integral of the drag of a face over the side that faces the stream.
+    /// Adds the integral of the drag on a face over the side that faces the stream.
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         let (axis, area) = (self.axis, S::of(2.0) * self.radius * self.length);
@@ -50,15 +50,15 @@ impl<S: Real> Cylinder<S> {
         let across = u - axis * along;
         // F = -½ ρ C_D a u,  a = ∫ (n·u)₊ dA = 2 r L |u⊥|
         sums.add(across.norm() * area, self.centre);
-        // the centroid of the exposed area is offset from the axis by π/4 r û⊥: (π/4 r u⊥) × (-2 r L u), u⊥ × u =
-        // -(a·u) a × u
+        // the centroid of the exposed area is offset from the axis by π/4 r û⊥; (π/4 r u⊥) × (-2 r L u) is
+        // evaluated with u⊥ × u = -(a·u) a × u
         sums.torque += axis.cross(u) * (along * S::of(PI / 4.0) * self.radius * area);
     }
 
-    /// Adds the integral of the pressure on a face over the illuminated half.
+    /// Adds the integral of the radiation pressure on a face over the illuminated half.
     ///
-    /// `n = cos φ ŝ⊥ + sin φ a × ŝ⊥`, `n·ŝ = σ cos φ`, `dA = r L dφ`, `|φ| < π/2`, where `a` is the axis, `s⊥` the part
-    /// of `ŝ` normal to it, and `σ = |s⊥|`.
+    /// `n = cos φ ŝ⊥ + sin φ a × ŝ⊥`, `n·ŝ = σ cos φ`, `dA = r L dφ`, `|φ| < π/2`, where `a` is the axis,
+    /// `s⊥` the part of `ŝ` normal to the axis, and `σ = |s⊥|`.
     #[inline(always)]
     pub(super) fn add_pressure(&self, to_sun: Vec3<S>, optics: &Optics<S>, sums: &mut PressureSums<S>) {
         let (s, Optics { specular, diffuse }) = (S::of, *optics);

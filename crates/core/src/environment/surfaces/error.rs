@@ -35,9 +35,9 @@ pub enum SurfaceError {
     effect"
     )]
     NoSurfaces,
-    /// The list of plates is empty.
+    /// The list of plates of a body is empty.
     #[error(
-        "no plates are given, so the effect would exert no force; give at least one or remove the body \
+        "no plates are given, so the effect would exert no force; give at least one plate or remove the body \
     from the surfaces"
     )]
     NoPlates,
@@ -81,8 +81,8 @@ pub enum SurfaceError {
         /// Path of the file.
         filename: String,
     },
-    /// A body has two surfaces.
-    #[error("{body} has two surfaces; give each body at most one")]
+    /// A body has more than one surface.
+    #[error("{body} has two surfaces; give each body at most one surface")]
     Twice {
         /// The body.
         body: BodyIndex,

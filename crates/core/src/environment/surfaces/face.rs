@@ -1,11 +1,11 @@
-//! Flat face in a stream of air or light.
+//! Drag and radiation pressure on a flat face.
 
 use super::optics::Optics;
 use super::sums::{DragSums, PressureSums};
 use crate::environment::soa::Column8;
 use crate::spatial::{Real, Vec3};
 
-/// Flat face, exposed on the side of its normal; axes of the body, positions from its centre of mass.
+/// Flat face whose outer side is exposed, in body axes with positions from the centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Face<T> {
     /// Area, m².
@@ -14,17 +14,17 @@ pub(super) struct Face<T> {
     normal: Vec3<T>,
     /// Centroid, m.
     centroid: Vec3<T>,
-    /// `c × n`, m.
+    /// Moment of the normal, `c × n` with the centroid `c`, m.
     moment: Vec3<T>,
 }
 
 impl Face<f64> {
-    /// Returns a face with this area, m², outward unit normal, and centroid, m.
+    /// Creates a face from its area, m², outward unit normal, and centroid, m.
     pub(super) fn new(area: f64, normal: Vec3<f64>, centroid: Vec3<f64>) -> Self {
         Self { area, normal, centroid, moment: centroid.cross(normal) }
     }
 
-    /// Gathers one face of each of eight bodies.
+    /// Gathers the faces of eight bodies, one per body.
     pub(super) fn block(faces: impl Fn(usize) -> Self) -> Face<Column8> {
         Face {
             area: Column8::of(|i| faces(i).area),
@@ -45,10 +45,11 @@ impl Face<Column8> {
 }
 
 impl<S: Real> Face<S> {
-    /// Adds the term `a = A (n·u)₊` of the face to the drag sums.
+    /// Adds the term `a = A (n·u)₊` of the face to the sums for drag.
     ///
-    /// The drag of a face at its centroid `c`, where `u = v + w × c`, is `F = -½ ρ C_D A (n·u)₊ u = -½ ρ C_D a u`.
-    /// [`DragSums::wrench`] computes `-Σ a u`, `SurfaceBlock::drag` multiplies by `½ C_D`, and `Drag` by `ρ`.
+    /// The drag of a face at its centroid `c`, where `u = v + w × c`, is `F = -½ ρ C_D A (n·u)₊ u = -½ ρ C_D
+    /// a u`. [`DragSums::wrench`] computes `-Σ a u`, `SurfaceBlock::drag` multiplies by `½ C_D`, and `Drag`
+    /// by `ρ`.
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         // n·u = n·(v + w × c) = n·v + (c × n)·w
@@ -57,10 +58,11 @@ impl<S: Real> Face<S> {
         sums.add(positive(normal_speed) * self.area, self.centroid);
     }
 
-    /// Adds the force terms of the face along `-ŝ` and `-n` to the pressure sums.
+    /// Adds the force terms of the face along `-ŝ` and `-n` to the sums for radiation pressure.
     ///
-    /// The pressure on a face at its centroid is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]`, where
-    /// `cos θ = (n·ŝ)₊`. [`PressureSums::wrench`] computes it for `P = 1`, and `RadiationPressure` multiplies by `P`.
+    /// The force on a face at its centroid is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]`, where
+    /// `cos θ = (n·ŝ)₊`. [`PressureSums::wrench`] computes the force for `P = 1`; `RadiationPressure`
+    /// multiplies it by `P`.
     #[inline(always)]
     pub(super) fn add_pressure(&self, to_sun: Vec3<S>, optics: &Optics<S>, sums: &mut PressureSums<S>) {
         let cosine = positive(self.normal.dot(to_sun));
@@ -72,7 +74,7 @@ impl<S: Real> Face<S> {
     }
 }
 
-/// Returns `x₊ = max(x, 0)`.
+/// Returns the positive part `x₊ = max(x, 0)`.
 #[inline(always)]
 fn positive<S: Real>(x: S) -> S {
     S::select(S::of(0.0).less(x), x, S::of(0.0))

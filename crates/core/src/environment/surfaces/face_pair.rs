@@ -1,13 +1,14 @@
-//! Pair of opposite faces in a stream of air or light.
+//! Drag and radiation pressure on a pair of opposite flat faces.
 
 use super::optics::Optics;
 use super::sums::{DragSums, PressureSums};
 use crate::environment::soa::Column8;
 use crate::spatial::{Real, Vec3};
 
-/// Opposite faces of a box, or the ends of a cylinder; axes of the body, positions from its centre of mass.
+/// Two opposite faces of a box, or the two ends of a cylinder, in body axes with positions from the centre of
+/// mass.
 ///
-/// A stream hits exactly one of the two faces, because `n·u` is constant along `n`: `n·(w × n) = 0`.
+/// A stream strikes exactly one of the two faces, because `n·u` is equal at both: `n·(w × n) = 0`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct FacePair<T> {
     /// Area of each face, m².
@@ -18,17 +19,18 @@ pub(super) struct FacePair<T> {
     normal: Vec3<T>,
     /// Midpoint of the two faces, m.
     centre: Vec3<T>,
-    /// `c × n`, the same for both faces, m.
+    /// Moment of the normal, `c × n` with the centroid `c` of either face, m.
     moment: Vec3<T>,
 }
 
 impl FacePair<f64> {
-    /// Returns two faces of this area, m², `distance` apart, m, along a unit normal and symmetric about `centre`, m.
+    /// Creates two faces with this area, m², at a `distance` from each other, m, along a unit normal and
+    /// symmetric about `centre`, m.
     pub(super) fn new(area: f64, distance: f64, normal: Vec3<f64>, centre: Vec3<f64>) -> Self {
         Self { area, half: 0.5 * distance, normal, centre, moment: centre.cross(normal) }
     }
 
-    /// Gathers one pair of each of eight bodies.
+    /// Gathers the face pairs of eight bodies, one per body.
     pub(super) fn block(pairs: impl Fn(usize) -> Self) -> FacePair<Column8> {
         FacePair {
             area: Column8::of(|i| pairs(i).area),
@@ -50,14 +52,15 @@ impl FacePair<Column8> {
 }
 
 impl<S: Real> FacePair<S> {
-    /// Returns `x` for the face on the side of the normal if `speed >= 0`, else `-x` for the opposite face.
+    /// Returns `x` if `speed >= 0`, so that the face on the side of the normal is exposed, and `-x`
+    /// otherwise.
     #[inline(always)]
     fn facing(speed: S, x: S) -> S {
         S::select(speed.less(S::of(0.0)), -x, x)
     }
 
-    /// Adds the term `a = A |n·u|` of the face that faces the stream to the drag sums; the drag at its
-    /// centroid is `F = -½ ρ C_D a u`.
+    /// Adds the term `a = A |n·u|` of the exposed face to the sums for drag. The drag at the centroid of the
+    /// face is `F = -½ ρ C_D a u`.
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         // n·u = n·v + (c × n)·w
@@ -67,8 +70,8 @@ impl<S: Real> FacePair<S> {
         sums.add(normal_speed.abs() * self.area, centroid);
     }
 
-    /// Adds the force of radiation pressure `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` on the face
-    /// towards the Sun.
+    /// Adds the force of radiation pressure, `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]`, on the
+    /// face that is turned towards the Sun.
     #[inline(always)]
     pub(super) fn add_pressure(&self, to_sun: Vec3<S>, optics: &Optics<S>, sums: &mut PressureSums<S>) {
         let along = self.normal.dot(to_sun);

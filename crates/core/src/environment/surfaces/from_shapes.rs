@@ -11,7 +11,8 @@ use crate::model::{Frame, Geometry, Model, Visual};
 use crate::spatial::{Mat3, Vec3};
 use std::f64::consts::PI;
 
-/// Returns the surface parts of all shapes fixed to a body, positions from its centre of mass.
+/// Returns the surface parts of all shapes fixed to a body, in body axes with positions from the centre of
+/// mass.
 pub(super) fn parts_of_body(model: &Model, body: usize, optics: &Optics) -> Result<Parts, SurfaceError> {
     let mut parts = Parts::default();
     for (frame, visual) in model.visuals() {
@@ -24,7 +25,8 @@ pub(super) fn parts_of_body(model: &Model, body: usize, optics: &Optics) -> Resu
     Ok(parts)
 }
 
-/// Pose of a shape: rotation from shape axes to body axes, origin from the centre of mass of the body.
+/// Pose of a shape: rotation from shape axes to body axes, and origin relative to the centre of mass of the
+/// body.
 struct ShapePose {
     rot: Mat3<f64>,
     pos: Vec3<f64>,
@@ -77,7 +79,7 @@ impl ShapePose {
         Ok(())
     }
 
-    /// Adds the two faces normal to axis `k`, `distance` apart.
+    /// Adds the two faces normal to axis `k`, at a `distance` from each other, m.
     fn add_face_pair(&self, k: usize, area: f64, distance: f64, parts: &mut Parts) {
         parts.face_pairs.push(FacePair::new(area, distance, self.axis(k), self.pos));
     }
@@ -86,12 +88,14 @@ impl ShapePose {
         Cylinder { radius, length, axis: self.axis(2), centre: self.pos }
     }
 
-    /// Adds a hemisphere about `height` on z as faces: exact along z, within 2 % from other directions.
+    /// Adds a hemisphere, centred at `height` on the z axis, as faces. The areas are exact along z, and
+    /// within 2 % in other directions.
     fn add_dome(&self, radius: f64, height: f64, end: f64, parts: &mut Parts) {
         const RINGS: usize = 4;
         const SECTORS: usize = 12;
         for ring in 0..RINGS {
-            // patch between latitudes b and c: projection on the equator ½ r² Δλ (cos² b - cos² c)
+            // patch between the latitudes b and c: projection on the equatorial plane ½ r² Δλ (cos² b - cos²
+            // c)
             let latitude = |ring: usize| ring as f64 / RINGS as f64 * 0.5 * PI;
             let (b, c, sector) = (latitude(ring), latitude(ring + 1), 2.0 * PI / SECTORS as f64);
             let projection = 0.5 * (b.cos().powi(2) - c.cos().powi(2));

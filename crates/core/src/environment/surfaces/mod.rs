@@ -1,6 +1,6 @@
-//! Surfaces of bodies, exposed to the atmosphere and to sunlight.
+//! Surfaces of bodies, which are exposed to the atmosphere and to sunlight.
 //!
-//! Parts do not shadow each other: faces that overlap along the stream all contribute.
+//! Parts do not shadow each other: faces that overlap in the direction of the stream all contribute.
 
 mod covering;
 mod cylinder;

@@ -4,7 +4,8 @@ use super::error::{SurfaceError, not_negative};
 use crate::environment::soa::Column8;
 use crate::spatial::Real;
 
-/// Optical coefficients of a surface: fractions of the light that it reflects; the remainder is absorbed.
+/// Optical coefficients of a surface: the fractions of the light that are reflected. The remainder is
+/// absorbed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Optics<T = f64> {
     pub(super) specular: T,
@@ -12,11 +13,12 @@ pub struct Optics<T = f64> {
 }
 
 impl Optics {
-    /// Returns the coefficients for the fractions `specular` (mirror) and `diffuse` (Lambert's law), each 0
-    /// to 1.
+    /// Creates the coefficients from the fractions `specular` (mirror) and `diffuse` (Lambert's law), each
+    /// from 0 to 1.
     ///
     /// # Errors
-    /// [`SurfaceError::Value`] and [`SurfaceError::Reflection`].
+    /// [`SurfaceError::Value`] for a fraction outside 0 to 1, and [`SurfaceError::Reflection`] for a sum
+    /// above 1.
     pub fn new(specular: f64, diffuse: f64) -> Result<Self, SurfaceError> {
         not_negative("specular", specular)?;
         not_negative("diffuse", diffuse)?;
@@ -31,7 +33,8 @@ impl Optics {
         Optics { specular: Column8::of(|i| optics(i).specular), diffuse: Column8::of(|i| optics(i).diffuse) }
     }
 
-    /// Returns `C_R` of a sphere: specular reflection does not change the force, diffuse reflection adds 4/9.
+    /// Returns the coefficient `C_R` of a sphere: specular reflection does not change the force, diffuse
+    /// reflection adds 4/9.
     pub(super) fn of_sphere(&self) -> f64 {
         1.0 + 4.0 / 9.0 * self.diffuse
     }
@@ -45,13 +48,14 @@ impl Optics<Column8> {
 }
 
 impl<S: Real> Optics<S> {
-    /// Returns `1 - ρs`, the factor of the force along the light, to which specular reflection does not contribute.
+    /// Returns the factor `1 - ρs` of the force along the light, to which specular reflection does not
+    /// contribute.
     #[inline(always)]
     pub(super) fn along_light(&self) -> S {
         S::of(1.0) - self.specular
     }
 
-    /// Returns `2 (ρs cos θ + ρd/3)`, the factor of the force against the normal.
+    /// Returns the factor `2 (ρs cos θ + ρd/3)` of the force against the normal.
     #[inline(always)]
     pub(super) fn along_normal(&self, cosine: S) -> S {
         cosine.mul_add(S::of(2.0) * self.specular, S::of(2.0 / 3.0) * self.diffuse)

@@ -5,7 +5,7 @@ use super::face::Face;
 use super::face_pair::FacePair;
 use super::sphere::Sphere;
 
-/// Parts of the surface of one body, in body axes with positions from its centre of mass.
+/// Parts of the surface of one body, in body axes with positions from the centre of mass.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Parts {
     pub(super) faces: Vec<Face<f64>>,

@@ -1,22 +1,22 @@
-//! Sphere in a stream of air or light.
+//! Drag and radiation pressure on a sphere.
 
 use super::sums::{DragSums, PressureSums};
 use crate::environment::soa::Column8;
 use crate::spatial::{Real, Vec3};
 
-/// Complete sphere; axes of the body, positions from its centre of mass.
+/// Complete sphere, in body axes with positions from the centre of mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sphere<T> {
     /// Area of the cross-section, m².
     pub(super) area: T,
     /// Centre, m.
     pub(super) centre: Vec3<T>,
-    /// `C_R`: 1 for complete absorption or specular reflection, 13/9 for diffuse reflection.
+    /// Reflectivity `C_R`: 1 for complete absorption or specular reflection, 13/9 for diffuse reflection.
     pub(super) reflectivity: T,
 }
 
 impl Sphere<f64> {
-    /// Gathers one sphere of each of eight bodies.
+    /// Gathers the spheres of eight bodies, one per body.
     pub(super) fn block(spheres: impl Fn(usize) -> Self) -> Sphere<Column8> {
         Sphere {
             area: Column8::of(|i| spheres(i).area),

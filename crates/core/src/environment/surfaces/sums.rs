@@ -1,9 +1,9 @@
-//! Sums over the parts of a surface and the resulting wrenches.
+//! Sums over the parts of a surface, and the wrenches that result from them.
 
 use crate::environment::wrenches::WrenchLanes;
 use crate::spatial::{Real, Sym3, Vec3};
 
-/// Drag sums over the parts: the force on a part at `c` is `-½ ρ C_D a u` with `u = v + w × c`; `a` in m³/s.
+/// Sums for drag: the force on a part at `c` is `-½ ρ C_D a u` with `u = v + w × c`, where `a` is in m³/s.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DragSums<S> {
     /// Sum `Σ a`, m³/s.
@@ -23,7 +23,7 @@ impl<S: Real> DragSums<S> {
         Self { sum: o, first: Vec3::zero(), second: Sym3::diagonal(o), torque: Vec3::zero() }
     }
 
-    /// Adds the term `a` of a part at `c`.
+    /// Adds the term `a` of a part at the position `c`.
     #[inline(always)]
     pub(super) fn add(&mut self, a: S, c: Vec3<S>) {
         let moment = c * a;
@@ -32,8 +32,9 @@ impl<S: Real> DragSums<S> {
         self.second = self.second.add_parallel(c, moment);
     }
 
-    /// Returns the wrench for `½ ρ C_D = 1`: `F = -Σ a (v + w × c)`, `T = T₀ - Σ a c × (v + w × c)`, with `T₀` the
-    /// field `torque`; `v` and `w` are the linear and angular velocity relative to the air.
+    /// Returns the wrench for `½ ρ C_D = 1`: `F = -Σ a (v + w × c)`, `T = T₀ - Σ a c × (v + w × c)`, where
+    /// `T₀` is the field `torque`, and `v` and `w` are the linear and angular velocity relative to the
+    /// atmosphere.
     #[inline(always)]
     pub(super) fn wrench(&self, v: Vec3<S>, w: Vec3<S>) -> WrenchLanes<S> {
         // Σ a c × (w × c) = Σ a [(c·c) w - (c·w) c]
@@ -46,8 +47,8 @@ impl<S: Real> DragSums<S> {
     }
 }
 
-/// Radiation-pressure sums over the parts: the force on a part at `c` is `-a ŝ` along the light and `-b n`
-/// against its normal.
+/// Sums for radiation pressure: the force on a part at `c` is `-a ŝ` along the light and `-b n` against the
+/// normal.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressureSums<S> {
     /// Sum `Σ a`, m².
@@ -56,7 +57,8 @@ pub(super) struct PressureSums<S> {
     first: Vec3<S>,
     /// Force against the normals for a pressure of 1, m².
     pub(super) force: Vec3<S>,
-    /// Torque of the forces against the normals and of forces that do not act at `c`, for a pressure of 1, m³.
+    /// Torque of the forces against the normals and of forces that do not act at `c`, for a pressure of 1,
+    /// m³.
     pub(super) torque: Vec3<S>,
 }
 
@@ -67,14 +69,14 @@ impl<S: Real> PressureSums<S> {
         Self { sum: S::of(0.0), first: none, force: none, torque: none }
     }
 
-    /// Adds the force `-a ŝ` at `c`.
+    /// Adds the force `-a ŝ` at the position `c`.
     #[inline(always)]
     pub(super) fn push_along_light(&mut self, a: S, c: Vec3<S>) {
         self.sum += a;
         self.first = c.scale_add(a, self.first);
     }
 
-    /// Adds the force `-b n` at `c`; `moment` is `c × n`.
+    /// Adds the force `-b n` at the position `c`; `moment` is `c × n`.
     #[inline(always)]
     pub(super) fn push_against_normal(&mut self, b: S, normal: Vec3<S>, moment: Vec3<S>) {
         self.force = normal.scale_add(-b, self.force);

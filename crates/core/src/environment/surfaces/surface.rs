@@ -20,7 +20,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Returns a cannonball: a surface whose area, m², and coefficients are the same in all directions.
+    /// Creates a cannonball: a surface with the same area, m², and coefficients in all directions.
     ///
     /// # Errors
     /// [`SurfaceError::Value`] for a negative or non-finite value, and for a reflectivity above 2.
@@ -37,10 +37,11 @@ impl Surface {
         Ok(Self { parts, drag_coefficient, optics: Optics::default() })
     }
 
-    /// Returns the faces of all shapes fixed to a body: boxes, cylinders, capsules and spheres.
+    /// Derives the surface of a body from its shapes: boxes, cylinders, capsules and spheres.
     ///
     /// # Errors
-    /// [`SurfaceError::UnknownBody`], [`SurfaceError::NoShape`], [`SurfaceError::Mesh`], [`SurfaceError::Value`].
+    /// [`SurfaceError::UnknownBody`], [`SurfaceError::NoShape`] for a body without shapes,
+    /// [`SurfaceError::Mesh`] for a mesh, and [`SurfaceError::Value`] for an invalid coefficient or size.
     pub fn from_shapes(
         model: &Model,
         body: usize,
@@ -56,8 +57,8 @@ impl Surface {
         Ok(Self { parts, drag_coefficient, optics })
     }
 
-    /// Returns flat plates with these areas, m², outward normals of any length, and centroids, m. Normals and centroids
-    /// are given in `frame`.
+    /// Creates a surface from flat plates with areas, m², outward normals of any length, and centroids, m.
+    /// Normals and centroids are given in the axes of `frame`.
     ///
     /// # Errors
     /// [`SurfaceError::UnknownBody`], [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`],

@@ -12,7 +12,7 @@ use crate::environment::soa::{Column8, WIDTH};
 use crate::environment::wrenches::WrenchLanes;
 use crate::spatial::{Real, Vec3};
 
-/// Block of the surfaces of eight bodies.
+/// Surfaces of eight bodies.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::environment) struct SurfaceBlock {
     is_empty: bool,
@@ -25,7 +25,7 @@ pub(in crate::environment) struct SurfaceBlock {
 }
 
 impl SurfaceBlock {
-    /// Returns the block of at most eight surfaces.
+    /// Creates the block from at most eight surfaces.
     pub(super) fn new(surfaces: &[Option<Surface>]) -> Self {
         let surface = |i: usize| surfaces.get(i).and_then(Option::as_ref);
         Self {
@@ -43,14 +43,16 @@ impl SurfaceBlock {
         }
     }
 
-    /// Returns true if no body has a surface.
+    /// Returns true if none of the bodies has a surface.
     pub(in crate::environment) fn is_empty(&self) -> bool {
         self.is_empty
     }
 
-    /// Returns the drag wrenches for a density of 1 on consecutive bodies, one per lane of `S`, in body axes.
+    /// Returns the drag wrenches at a density of 1 kg/m³ on consecutive bodies, one per lane of `S`, in body
+    /// axes.
     ///
-    /// `v` is the velocity of the centre of mass and `w` the angular velocity, relative to the atmosphere, body axes.
+    /// `v` is the velocity of the centre of mass and `w` the angular velocity, both relative to the
+    /// atmosphere, in body axes.
     #[inline(always)]
     pub(in crate::environment) fn drag<S: Real>(
         &self,
@@ -67,7 +69,7 @@ impl SurfaceBlock {
         sums.wrench(v, w) * (S::of(0.5) * self.drag_coefficient.load(offset))
     }
 
-    /// Returns the wrenches of light from the direction `to_sun` for a pressure of 1, in body axes.
+    /// Returns the wrenches of light from the direction `to_sun` at a pressure of 1 N/m², in body axes.
     #[inline(always)]
     pub(in crate::environment) fn pressure<S: Real>(&self, offset: usize, to_sun: Vec3<S>) -> WrenchLanes<S> {
         let (mut sums, optics) = (PressureSums::zero(), self.optics.load(offset));
@@ -85,8 +87,8 @@ impl SurfaceBlock {
     }
 }
 
-/// Parts of one kind: row `k` contains the `k`-th part of each body, or a part of size zero for a body with
-/// fewer.
+/// Parts of one kind. Row `k` contains the `k`-th part of each body, or a part of size zero if the body has
+/// fewer parts.
 #[derive(Clone, Debug, PartialEq)]
 struct PartTable<R> {
     rows: Vec<R>,
@@ -108,7 +110,8 @@ impl<R> PartTable<R> {
         Self { rows: (0..most).map(|k| row(&|body| part(body, k))).collect(), counts }
     }
 
-    /// Returns the rows in which any of the bodies in the lanes of `S`, starting with body `offset`, has a part.
+    /// Returns the rows that contain a part of any of the bodies in the lanes of `S`, starting with body
+    /// `offset`.
     #[inline(always)]
     fn rows<S: Real>(&self, offset: usize) -> std::slice::Iter<'_, R> {
         if S::LANES == WIDTH {
