@@ -1,4 +1,4 @@
-"""SHA-256 of every trace column of the bundled scenarios with one robot, on the baseline instruction set.
+"""SHA-256 of every trace column of the bundled scenarios, on the baseline instruction set.
 
 ``python tests/recorded_bits.py`` prints them as JSON; with ``--record`` it replaces the recorded ones.
 Refactoring must not change them. They are recorded again only in a separate commit, which changes no code and
@@ -18,7 +18,7 @@ from typing import Any
 
 RECORDED = Path(__file__).parent / "fixtures" / "recorded_bits.json"
 MOST_STEPS = 500
-"""Steps of each scenario; all bundled ones together take about two seconds."""
+"""Steps of each scenario with one robot; those with several systems run to their ends, through all events."""
 
 
 def in_baseline() -> dict[str, dict[str, str]]:
@@ -38,10 +38,11 @@ def digests() -> dict[str, dict[str, str]]:
     The engine takes sine, cosine and their like from the C library, whose last bits differ between versions
     and processors: digests can be compared only where those of ``libm`` agree.
     """
-    from bundled import ONE_ROBOT
+    from bundled import ONE_ROBOT, WORLDS
 
     warnings.simplefilter("ignore")
-    return {"libm": {"functions": _libm()}} | {name: _of_scenario(name) for name in ONE_ROBOT}
+    robots = {name: _of_scenario(name) for name in ONE_ROBOT}
+    return {"libm": {"functions": _libm()}} | robots | {name: _of_world(name) for name in WORLDS}
 
 
 def _of_scenario(name: str) -> dict[str, str]:
@@ -58,6 +59,18 @@ def _of_scenario(name: str) -> dict[str, str]:
     built = build(load(data))
     trace = built.simulation.run(settings["duration"])
     return {column: _digest(values) for column, values in sorted(arrays_of(trace).items())}
+
+
+def _of_world(name: str) -> dict[str, str]:
+    from onorbit_rs.output.world import world_arrays
+    from onorbit_rs.scenario import WorldScenario, load
+    from onorbit_rs.scenario.build_world import build_world
+
+    scenario = load(name)
+    assert isinstance(scenario, WorldScenario)
+    trace: Any = build_world(scenario).simulation.run(scenario.simulation.duration)
+    assert len(trace.events) == len(scenario.events)
+    return {column: _digest(values) for column, values in sorted(world_arrays(trace).items())}
 
 
 def _libm() -> str:
