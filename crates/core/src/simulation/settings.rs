@@ -41,7 +41,7 @@ pub struct Simulation {
     pub tolerance: f64,
     /// Distance of the base from the reference orbit, m, beyond which integration continues about a local reference
     /// orbit in free fall. The reference orbit is kept in `Carried` mode, without gravity, with an external engine,
-    /// and if a control or `reference` depends on the position in W.
+    /// by systems that may interact with others, and if a control or `reference` depends on the position in W.
     pub rereference_beyond: f64,
     /// If true, the wrench of every effect on every body is recorded.
     pub record_wrenches: bool,

@@ -86,53 +86,21 @@ impl Shared {
         // the rows of one system do not contain the accelerations that torques on the rest of its tree cause
         let rows_suffice = has_every_step && (events.list.is_empty() || !is_native);
         let rereference_beyond = self.local_reference_distance(&systems);
-        let Self { integrator, tolerance, time_step, .. } = *self;
-        let horizon = duration.unwrap_or(LONGEST_INTERVAL * time_step);
-        let controlled = systems.iter().filter(|system| !system.controls.is_empty());
-        let periods = controlled.map(|system| system.control_period.unwrap_or(time_step));
-        let control_period = periods.reduce(f64::min).unwrap_or(0.0);
-        let step_settings =
-            StepSettings { integrator, tolerance, time_step, control_period, duration: horizon };
-
+        let step_settings = self.step_settings(duration, &systems);
         let layout = Layout::new(systems.iter().map(|system| (&*system.name, &*system.model)));
         let named = systems.iter().map(|system| (&*system.name, &*system.model));
         let connections = Connections::new(named, !events.list.is_empty())?;
-        let numbers_of = |x: &[f64]| x.iter().map(|x| S::of(*x)).collect::<Vec<S>>();
-        let starts: Vec<_> =
-            systems.iter().map(|system| (numbers_of(&system.q), numbers_of(&system.v))).collect();
-        let local = |system: usize| numbers.iter().position(|number| *number == system);
-        let moving = systems.iter().flat_map(|system| system.moving_frames());
-        let place = |moving: &MovingFrame| {
-            Some((FrameIndex { system: local(moving.system)?, frame: moving.frame }, moving.clone()))
-        };
-        let moving_frames = moving.filter_map(place).collect();
+        let starts: Vec<_> = systems.iter().map(|system| [&system.q, &system.v].map(|x| lift(x))).collect();
+        let moving_frames = moving_frames_of(numbers, &systems);
         let (mut trees, mut members, mut models) = (Vec::new(), Vec::new(), Vec::new());
         for (number, system) in systems.into_iter().enumerate() {
-            let System { model, controls, tool, reference, stops, knows, .. } = system;
-            let knows: Vec<usize> = knows.iter().filter_map(|system| local(*system)).collect();
-            let model: &'a Model = model;
-            let stops = stops.filter(|_| is_native); // an external engine has its own
-            trees.push(Tree::new(Cow::Borrowed(model), stops));
-            let options = self.record_options(model, controls, *tool, reference.is_some());
-            let recorder = Recorder::new(rows, (number, model), options, controls, rows_suffice)?;
-            let tracked = (*tool, reference.as_ref());
-            let mut controllers = Controllers::new(controls, tracked, model, time_step, !knows.is_empty())?;
-            if !is_native {
-                controllers.set.assume_creeping_friction();
-            }
-            members.push(RunSystem {
-                controllers,
-                recorder,
-                held: None,
-                is_due: false,
-                knows,
-                known_members: Vec::new(),
-                settled: None,
-            });
+            let (model, tree, run) = self.run_system((number, numbers), system, (rows, rows_suffice))?;
             models.push(model);
+            trees.push(tree);
+            members.push(run);
         }
         let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(numbers, &models));
-        let mut state = State::at(&mut equations.trees, starts);
+        let mut state = State::at(&mut equations.trees, starts.into_iter().map(<(Vec<S>, Vec<S>)>::from));
         if is_native {
             follow_centers(&equations.trees, &mut state.trees);
         }
@@ -173,6 +141,40 @@ impl Shared {
         };
         run.find_latches();
         Ok(run)
+    }
+
+    /// Returns the model, the tree, and the controllers and the recorder of system `number` of the group with `numbers`,
+    /// which records about `rows` rows.
+    fn run_system<'a, S: Scalar>(
+        &self,
+        (number, numbers): (usize, &[usize]),
+        system: &'a mut System,
+        (rows, rows_suffice): (usize, bool),
+    ) -> Result<(&'a Model, Tree<'a, S>, RunSystem<'a, S>), SimulationError> {
+        let System { model, controls, tool, reference, stops, knows, .. } = system;
+        let model: &'a Model = model;
+        let stops = stops.filter(|_| !self.has_engine); // an external engine has its own
+        let knows: Vec<usize> = knows.iter().filter_map(|&system| local(numbers, system)).collect();
+        let options = self.record_options(model, controls, *tool, reference.is_some());
+        let recorder = Recorder::new(rows, (number, model), options, controls, rows_suffice)?;
+        let tracked = (*tool, reference.as_ref());
+        let mut controllers = Controllers::new(controls, tracked, model, self.time_step, !knows.is_empty())?;
+        if self.has_engine {
+            controllers.set.assume_creeping_friction();
+        }
+        let (known_members, held, settled) = (Vec::new(), None, None);
+        let run = RunSystem { controllers, recorder, held, is_due: false, knows, known_members, settled };
+        Ok((model, Tree::new(Cow::Borrowed(model), stops), run))
+    }
+
+    /// Returns the settings of the integrator for systems that are integrated together.
+    fn step_settings(&self, duration: Option<f64>, systems: &[&mut System]) -> StepSettings {
+        let Self { integrator, tolerance, time_step, .. } = *self;
+        let controlled = systems.iter().filter(|system| !system.controls.is_empty());
+        let periods = controlled.map(|system| system.control_period.unwrap_or(time_step));
+        let control_period = periods.reduce(f64::min).unwrap_or(0.0);
+        let duration = duration.unwrap_or(LONGEST_INTERVAL * time_step);
+        StepSettings { integrator, tolerance, time_step, control_period, duration }
     }
 
     /// Returns the loads of the environment on the bodies of systems with these numbers and models.
@@ -269,13 +271,32 @@ fn tracks_world(system: &System) -> bool {
             .any(|Control { law, .. }| law.joint_reference().is_none() && law.external().is_none())
 }
 
+/// Returns the number in a group of a system of the world; `None` if it belongs to another group.
+fn local(numbers: &[usize], system: usize) -> Option<usize> {
+    numbers.iter().position(|number| *number == system)
+}
+
+fn lift<S: Scalar>(x: &[f64]) -> Vec<S> {
+    x.iter().map(|x| S::of(*x)).collect()
+}
+
+/// Returns the frames in which references of a group are given, with the numbers of their systems in the group.
+fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameIndex, MovingFrame)> {
+    let moving = systems.iter().flat_map(|system| system.moving_frames());
+    let place = |moving: &MovingFrame| {
+        let system = local(numbers, moving.system)?;
+        Some((FrameIndex { system, frame: moving.frame }, moving.clone()))
+    };
+    moving.filter_map(place).collect()
+}
+
 /// Returns the events of the systems with these numbers, in which systems and events have the numbers of the group.
 fn events_of(numbers: &[usize], events: &[Event]) -> Events {
-    let local = |system: usize| numbers.iter().position(|number| *number == system);
-    let is_own = |event: &usize| systems_of(events, *event).iter().all(|system| local(*system).is_some());
+    let is_own =
+        |event: &usize| systems_of(events, *event).iter().all(|&system| local(numbers, system).is_some());
     let own: Vec<usize> = (0..events.len()).filter(is_own).collect();
     let event_number = |event: usize| own.iter().position(|number| *number == event).unwrap_or(0);
-    let place = |place: FrameIndex| FrameIndex { system: local(place.system).unwrap_or(0), ..place };
+    let place = |place: FrameIndex| FrameIndex { system: local(numbers, place.system).unwrap_or(0), ..place };
     let renumbered = |number: &usize| {
         let mut event = events[*number].clone();
         if let When::After { event: other, .. } = &mut event.when {

@@ -1,4 +1,4 @@
-//! Takes steps that end early when a joint stops, starts to slip or reaches a limit.
+//! Takes steps that end early when a joint stops, starts to slip or reaches a limit, or a latch opens or closes.
 
 use super::margins::ModesOfStep;
 use crate::simulation::equations::EquationsOfMotion;
@@ -18,7 +18,7 @@ const STILL: f64 = 1e-9;
 /// Resolution of the instant of an event, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
 
-/// Integrates the equations of motion and locates the changes of the joints' modes within a step.
+/// Integrates the equations of motion and locates the changes of modes, of joints and of latches, within a step.
 pub(crate) struct StepMethod<S> {
     pub(crate) integration: Integration<S>,
     start: State<S>,
@@ -184,8 +184,8 @@ impl<S: Real> StepMethod<S> {
         self.margin(equations, state, (whole.0, end))
     }
 
-    /// Returns the relative margin to the next change of a joint's mode; negative if a mode should already have
-    /// changed.
+    /// Returns the relative margin to the next change of a mode, of a joint or of a latch; negative if a mode should
+    /// already have changed.
     fn margin(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
