@@ -83,7 +83,7 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
             raise inconsistent(
                 (*at, "reference"),
                 f"{reference.kind} moves a tool, but {kind} controls joints; use a joint reference "
-                "(joint_hold, joint_waypoints, joint_ramps, joint_sampled), or the controller "
+                "(joint_hold, joint_waypoints, joint_ramps, joint_sampled, bag), or the controller "
                 "computed_torque",
             )
         if reference is None and getattr(law, "interface", None) == "effort":

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from onorbit_rs.scenario.part import of_kind
+from onorbit_rs.scenario.reference.bag import BagReference
 from onorbit_rs.scenario.reference.circle import CircleReference, ScrewReference
 from onorbit_rs.scenario.reference.hold import HoldReference
 from onorbit_rs.scenario.reference.joint_hold import JointHoldReference
@@ -21,6 +22,7 @@ from onorbit_rs.scenario.reference.waypoints import WaypointsReference
 
 __all__ = [
     "AnyReference",
+    "BagReference",
     "HoldReference",
     "JointHoldReference",
     "JointRampsReference",
@@ -43,5 +45,6 @@ AnyReference = (
     | JointWaypointsReference
     | JointRampsReference
     | JointSampledReference
+    | BagReference
 )
 Reference = Annotated[AnyReference, Field(discriminator="kind"), of_kind(AnyReference)]

@@ -1,0 +1,132 @@
+"""Reads motions of joints from bags of ROS: MCAP and SQLite of ROS 2, bags of ROS 1."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from onorbit_rs.common.input_files import check_regular
+from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.exceptions import OnOrbitError, ReadError
+from onorbit_rs.ros2.extra import require
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+STATES, TRAJECTORY = "sensor_msgs/msg/JointState", "trajectory_msgs/msg/JointTrajectory"
+SUFFIXES = (".mcap", ".db3", ".bag")
+
+
+class Sample(NamedTuple):
+    """Positions of joints at a time."""
+
+    time: int
+    """Time, ns: since the first message, or since the start of a trajectory."""
+    names: tuple[str, ...]
+    positions: Floats
+    """Positions (n,), rad or m."""
+    rates: Floats
+    """Rates (n,), rad/s or m/s; (0,) if they are not recorded."""
+
+
+def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
+    """Return the motion of joints on a topic of a bag, and the name of the topic.
+
+    Parameters
+    ----------
+    path : path
+        MCAP file, SQLite file or folder of rosbag2, or bag of ROS 1.
+    topic : str or None
+        Name of the topic; default: the only topic with motions of joints.
+
+    Raises
+    ------
+    NotFoundError, ReadError
+        If there is no such file, it is not a bag or is damaged, or has no such topic.
+    Ros2Error
+        If rosbags is not installed.
+    """
+    require("rosbags")
+    if not (path.is_dir() and (path / "metadata.yaml").is_file()):
+        check_regular(path, "bag")
+        if path.suffix not in SUFFIXES:
+            raise _error(path, f"give a file that ends in {', '.join(SUFFIXES)}, or the folder of a rosbag2")
+    with _opened(path) as reader:
+        of_joints = {each.topic: each for each in reader.connections if each.msgtype in (STATES, TRAJECTORY)}
+        chosen = of_joints[_choice(path, topic, list(of_joints), sorted(reader.topics))]
+        wanted = [each for each in reader.connections if each.topic == chosen.topic]
+        contents = [
+            (time, reader.deserialize(raw, connection.msgtype))
+            for connection, time, raw in reader.messages(wanted)
+        ]
+    if chosen.msgtype == STATES:
+        return chosen.topic, _samples_of_states(contents)
+    if len(contents) != 1:
+        message = f"topic {chosen.topic} has {len(contents)} trajectories; a reference requires exactly one"
+        raise _error(path, message)
+    return chosen.topic, _samples_of_trajectory(contents[0][1])
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[Any]:
+    """Open a bag; the many errors that a damaged file raises become a :class:`ReadError`."""
+    from rosbags.highlevel import AnyReader
+    from rosbags.typesys import Stores, get_typestore
+
+    try:
+        with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_JAZZY)) as reader:
+            yield reader
+    except OnOrbitError:
+        raise
+    except Exception as error:  # of struct, zstd, sqlite3 and others, besides those of rosbags
+        raise _error(path, f"it is not a bag, or it is damaged or truncated ({error})") from error
+
+
+def _choice(path: Path, topic: str | None, of_joints: list[str], topics: list[str]) -> str:
+    """Return the topic to read."""
+    known = ", ".join(of_joints)
+    if not of_joints:
+        held = ", ".join(topics) or "none"
+        raise _error(path, f"it has no topic with JointState or JointTrajectory messages; its topics: {held}")
+    if topic is None:
+        if len(of_joints) > 1:
+            raise _error(path, f"it has several topics with motions of joints; give one as 'topic': {known}")
+        return of_joints[0]
+    if topic not in of_joints:
+        if topic in topics:
+            raise _error(path, f"topic {topic} has no motions of joints; those with such messages: {known}")
+        raise _error(path, f"it has no topic {topic!r}{did_you_mean(topic, of_joints)}")
+    return topic
+
+
+def _samples_of_states(contents: list[tuple[int, Any]]) -> list[Sample]:
+    """Return the samples of JointState messages, with times since the first."""
+    stamps = [_nanoseconds(content.header.stamp) for _, content in contents]
+    if not any(stamps):  # not set: the times of recording
+        stamps = [time for time, _ in contents]
+    return [
+        Sample(stamp - stamps[0], tuple(content.name), content.position, content.velocity)
+        for stamp, (_, content) in zip(stamps, contents, strict=True)
+    ]
+
+
+def _samples_of_trajectory(content: Any) -> list[Sample]:
+    names = tuple(content.joint_names)
+    return [
+        Sample(_nanoseconds(point.time_from_start), names, point.positions, point.velocities)
+        for point in content.points
+    ]
+
+
+def _nanoseconds(time: Any) -> int:
+    return int(time.sec) * 1_000_000_000 + int(time.nanosec)
+
+
+def _error(path: Path, why: str) -> ReadError:
+    return ReadError(f"{path} cannot be used: {why}", path=str(path), kind="bag")

@@ -1,0 +1,126 @@
+"""Joint reference from a bag of ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from onorbit_rs import _core
+from onorbit_rs.common.suggestions import did_you_mean, nearest
+from onorbit_rs.exceptions import FrameError, ReadError
+from onorbit_rs.scenario.bag_samples import Sample, read_samples
+from onorbit_rs.scenario.fields import FilePath, Time
+from onorbit_rs.scenario.part import Part
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs.scenario.reference.start import Start
+
+    Floats = NDArray[np.float64]
+
+
+class BagReference(Part):
+    """Recorded motion from a bag of ROS 1 or ROS 2; joints without a recording are held."""
+
+    kind: Literal["bag"] = "bag"
+    file: FilePath
+    """MCAP file, SQLite file or folder of rosbag2, or bag of ROS 1, relative to the scenario."""
+    topic: str | None = None
+    """Topic of JointState messages, or of one JointTrajectory; default: the only one in the bag."""
+    joints: dict[str, str] | None = None
+    """Joint of the robot for each joint of the bag to follow; default: all, by their own names."""
+    start: Time = 0.0
+    """Time at which the recording starts; the first message is at this time."""
+
+    def build(self, at: Start) -> _core.JointSampled:
+        """Return the reference of the engine, for the joints of the group."""
+        path = at.folder / self.file
+        topic, samples = read_samples(path, self.topic)
+        try:
+            followed = self._followed(samples, at)
+            chosen = _distinct(_with(samples, list(followed)))
+        except _BadRecordingError as error:
+            message = f"{path}: topic {topic}: {error}"
+            raise ReadError(message, path=str(path), kind="bag") from None
+        time = self.start + 1e-9 * np.array([sample.time for sample in chosen], dtype=np.float64)
+        positions = np.tile(at.of_group(at.joint_positions), (len(chosen), 1))
+        rates = np.zeros_like(positions) if all(len(sample.rates) for sample in chosen) else None
+        for name, joint in followed.items():
+            column, places = at.group.index(joint), [sample.names.index(name) for sample in chosen]
+            positions[:, column] = [row.positions[k] for row, k in zip(chosen, places, strict=True)]
+            if rates is not None:
+                rates[:, column] = [row.rates[k] for row, k in zip(chosen, places, strict=True)]
+        return _core.JointSampled(time, positions, rates=rates)
+
+    def _followed(self, samples: Sequence[Sample], at: Start) -> Mapping[str, str]:
+        """Return the joint of the group for each joint of the bag that the reference follows."""
+        recorded = list(dict.fromkeys(name for sample in samples for name in sample.names))
+        robot = list(at.model.joint_names)
+        for name in self.joints or ():
+            if name not in recorded:
+                raise _BadRecordingError(f"no joint is named {name!r}{did_you_mean(name, recorded)}")
+        wanted = self.joints or {name: name for name in recorded}
+        for joint in wanted.values():
+            if joint not in robot:
+                raise FrameError(
+                    f"the robot has no joint {joint!r}{did_you_mean(joint, robot)} ('joints' maps the joints "
+                    "of the bag to those of the robot)",
+                    name=joint, kind="joint", known=robot, suggestion=nearest(joint, robot),
+                )  # fmt: skip
+        found = {name: joint for name, joint in wanted.items() if joint in at.group}
+        if not found:
+            group, names = ", ".join(at.group), ", ".join(wanted.values()) or "none"
+            raise _BadRecordingError(
+                f"it has no joint that is controlled: it has {names}, controlled are {group}"
+            )
+        return found
+
+
+class _BadRecordingError(ValueError):
+    """A recording that cannot be a reference."""
+
+
+def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
+    """Return the samples that have the joints; raise an error for one that has only some of them."""
+    found = []
+    for number, sample in enumerate(samples, 1):
+        missing = [name for name in names if name not in sample.names]
+        if not missing:
+            _check_lengths(number, sample)
+            found.append(sample)
+        elif len(missing) < len(names):
+            raise _BadRecordingError(f"message {number} lacks {', '.join(missing)}")
+    return found
+
+
+def _check_lengths(number: int, sample: Sample) -> None:
+    """Raise an error if a message has another number of values than of names."""
+    joints = len(sample.names)
+    if len(sample.positions) != joints or len(sample.rates) not in (0, joints):
+        raise _BadRecordingError(
+            f"message {number} has {joints} names, {len(sample.positions)} positions and {len(sample.rates)} "
+            "velocities; a position is required for each name"
+        )
+
+
+def _distinct(samples: list[Sample]) -> list[Sample]:
+    """Return samples with increasing times; the last counts of those at the same time and positions."""
+    found: list[Sample] = []
+    for number, sample in enumerate(samples, 1):
+        if found and sample.time <= found[-1].time:
+            is_same = sample.time == found[-1].time and np.array_equal(sample.positions, found[-1].positions)
+            if not is_same:
+                raise _BadRecordingError(
+                    f"times must increase, but message {number} is at {1e-9 * sample.time:.9g} s, after "
+                    f"{1e-9 * found[-1].time:.9g} s"
+                )
+            found.pop()
+        found.append(sample)
+    if len(found) < 2:
+        raise _BadRecordingError(
+            f"it has {len(found)} message; a motion requires two or more" if found else "it has no messages"
+        )
+    return found
