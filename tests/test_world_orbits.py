@@ -120,7 +120,7 @@ def test_axes_are_converted_with_the_earth() -> None:
 
 
 def test_orbits_around_other_planets_are_refused() -> None:
-    with pytest.raises(OrbitError, match=r"mu 4.28e13"):
+    with pytest.raises(OrbitError, match=r"mu of the orbit is 4.28e13"):
         to_world(REFERENCE, oo.Kepler(semi_major_axis=6878e3, mu=4.28e13))
 
 
@@ -192,7 +192,7 @@ INVALID = {
     ),
     "kind": ("true_anomaly: 0.01 deg}", "kind: fixed_frame}", r":7: systems.deputy.orbit.*fixed_frame"),
     "key": ("true_anomaly", "true_anomly", r":7: systems.deputy.orbit.true_anomly: .*'true_anomaly'"),
-    "planet": ("0.01 deg}", "0.01 deg, mu: 4.28e13}", r":7: systems.deputy.orbit: the orbit has mu"),
+    "planet": ("0.01 deg}", "0.01 deg, mu: 4.28e13}", r":7: systems.deputy.orbit: mu of the orbit is"),
 }
 
 

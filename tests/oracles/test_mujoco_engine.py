@@ -271,7 +271,7 @@ def test_an_unknown_engine_is_rejected() -> None:
 def test_without_mujoco_the_error_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(
-        EngineError, match=r"engine: the engine 'mujoco' needs MuJoCo.*pip install 'onorbit-rs\[mujoco\]'"
+        EngineError, match=r"engine: the engine 'mujoco' requires MuJoCo.*pip install 'onorbit-rs\[mujoco\]'"
     ):
         oo.run(scenario("humanoid_reach", duration=0.01) | {"engine": "mujoco"})
 
