@@ -1,23 +1,25 @@
-//! Formatting of numbers in messages: the shortest text with a few digits, without rounding noise.
+//! Formatting of numbers in messages: short texts without rounding noise.
 
 /// Number of significant digits in a message; the integer part is always printed in full.
 const DIGITS: usize = 6;
-/// Magnitude from which numbers are printed with an exponent, since the integer part is too long to read.
+/// Magnitude from which numbers are printed with an exponent, because the integer part would be too long to
+/// read.
 const LARGE: f64 = 1e9;
-/// Magnitude below which numbers are printed with an exponent, since there are too many leading zeros.
+/// Magnitude below which numbers are printed with an exponent, because there would be too many leading zeros.
 const SMALL: f64 = 1e-4;
 
-/// Returns a number with at most six significant digits: `1.4`, `700000`, `1e-300`.
+/// Formats a number with at most six significant digits: `1.4`, `700000`, `1e-300`.
 ///
-/// An integer part is printed in full below 1e9: metres from the centre of the Earth have seven digits.
+/// Below 1e9 the integer part is printed in full, because metres from the centre of the Earth have seven
+/// digits.
 #[must_use]
 pub fn short(value: f64) -> String {
     rounded(value, DIGITS)
 }
 
-/// Returns a number with enough digits to distinguish it from other numbers in the same message.
+/// Formats a number with enough digits to distinguish it from other numbers in the same message.
 ///
-/// For example `1.000002` beside 1, which would both be printed as 1 with six digits.
+/// An example is `1.000002` beside 1: with six digits, both would be printed as 1.
 #[must_use]
 pub fn unlike(value: f64, others: &[f64]) -> String {
     let told_apart = |digits: &usize| {
@@ -27,19 +29,19 @@ pub fn unlike(value: f64, others: &[f64]) -> String {
     rounded(value, (DIGITS..17).find(told_apart).unwrap_or(17))
 }
 
-/// Returns several numbers as a list: `[1, 2.5, 3]`.
+/// Formats several numbers as a list: `[1, 2.5, 3]`.
 #[must_use]
 pub fn list(values: &[f64]) -> String {
     format!("[{}]", values.iter().map(|&value| short(value)).collect::<Vec<_>>().join(", "))
 }
 
-/// Returns a count with its noun: `1 number`, `2 numbers`.
+/// Formats a count with its noun: `1 number`, `2 numbers`.
 #[must_use]
 pub fn count(number: usize, one: &str) -> String {
     format!("{number} {one}{}", if number == 1 { "" } else { "s" })
 }
 
-/// Returns a number with `digits` significant digits, without trailing zeros.
+/// Formats a number with `digits` significant digits, without trailing zeros.
 fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

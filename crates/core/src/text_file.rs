@@ -1,11 +1,11 @@
-//! Reader of text files named by the user: regular files up to a size limit.
+//! Reader of text files named by the user, which must be regular files within a size limit.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 use thiserror::Error;
 
-/// Error of a text file that cannot be read.
+/// Reason why a text file cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[allow(missing_docs)] // the messages explain the fields
 pub enum TextFileError {
@@ -23,7 +23,7 @@ pub enum TextFileError {
     Unreadable { reason: String },
 }
 
-/// Returns the text of a UTF-8 file of at most `limit` bytes.
+/// Reads a UTF-8 file of at most `limit` bytes.
 ///
 /// # Errors
 /// The errors of [`read_bytes`], and [`TextFileError::NotUtf8`].
@@ -32,14 +32,15 @@ pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
     text.map_err(|error| TextFileError::NotUtf8 { at: error.utf8_error().valid_up_to() })
 }
 
-/// Returns the bytes of a file of at most `limit` bytes.
+/// Reads a file of at most `limit` bytes.
 ///
 /// # Errors
-/// [`TextFileError`]. Devices and pipes are rejected, since reading them may not terminate.
+/// [`TextFileError`] if the file cannot be read. Devices and pipes are rejected, because reading them may
+/// never end.
 pub fn read_bytes(path: &Path, limit: usize) -> Result<Vec<u8>, TextFileError> {
     let refuse = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => TextFileError::NotFound,
-        kind => TextFileError::Unreadable { reason: kind.to_string() }, // the system's words differ
+        kind => TextFileError::Unreadable { reason: kind.to_string() }, // messages differ between platforms
     };
     let kind = std::fs::metadata(path).map_err(refuse)?.file_type();
     if kind.is_dir() {

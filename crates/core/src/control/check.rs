@@ -4,13 +4,13 @@ use super::control::{Begin, Control};
 use super::error::ControlError;
 use crate::model::Model;
 
-/// Checks that each control applies to the robot, and that no two of them conflict.
+/// Checks that each control applies to the robot and that no two controls conflict.
 ///
 /// # Errors
-/// [`ControlError`] for names that occur twice; groups that are empty, repeat a joint or overlap while both controls
-/// are active; gains, goals or references that are invalid or do not fit a group; goals without a reference; time
-/// windows that are empty; controls that start after one that does not exist or never ends; controls of which only
-/// some compensate the environment.
+/// [`ControlError`] for names that occur twice; groups that are empty, repeat a joint or overlap while both
+/// controls are active; gains, goals or references that are invalid or do not fit a group; goals without a
+/// reference; time windows that are empty; controls that start after a control that does not exist or never
+/// ends; and controls of which only some compensate the environment.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
     for (i, control) in controls.iter().enumerate() {
         if controls[..i].iter().any(|other| other.name == control.name) {
@@ -99,7 +99,7 @@ fn check_pair(i: usize, k: usize, controls: &[Control], model: &Model) -> Result
     {
         return Err(ControlError::MixedCompensation { first: a.name.clone(), second: b.name.clone() });
     }
-    // times at which a control starts after another one, or is stopped by it, are known only during the run
+    // if a control starts after another one or is stopped by one, the time is known only during the run
     let has_successor = |index| controls.iter().any(|other| other.begin == Begin::After(index));
     if let (Begin::At(start_a), Begin::At(start_b)) = (a.begin, b.begin) {
         let time = start_a.max(start_b).max(0.0);
@@ -110,7 +110,7 @@ fn check_pair(i: usize, k: usize, controls: &[Control], model: &Model) -> Result
     Ok(())
 }
 
-/// Checks that two controls that are active at `time`, s, have no joint in common.
+/// Checks that two controls have no joint in common if both are active at `time`, s.
 pub(super) fn check_disjoint(a: &Control, b: &Control, model: &Model, time: f64) -> Result<(), ControlError> {
     match a.joints.iter().find(|joint| b.joints.contains(joint)) {
         Some(&joint) => Err(ControlError::Overlap {

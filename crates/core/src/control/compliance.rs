@@ -1,4 +1,4 @@
-//! Compliance: a virtual spring and damper between the tool and its reference.
+//! Compliance control: a virtual spring and damper between the tool and its reference.
 
 use super::computed_torque::gain;
 use super::control_law::{ControlLaw, EffortInput, EffortWork};
@@ -7,26 +7,28 @@ use super::gains::{check_matrix, check_numbers};
 use crate::model::Model;
 use crate::spatial::Motion;
 
-/// Cartesian impedance control without inertia shaping: `τ = Jgᵀ (K e + D ė) − k N q̇`.
+/// Cartesian impedance control without inertia shaping: `τ = Jgᵀ (K e + D ė) − k N q̇`, with the pose error
+/// `e` of the frame and the null-space projector `N` of `Jg`.
 ///
-/// In free fall there is no gravity load to compensate. Friction is not compensated: the tool stays off its
-/// goal where the spring torque is below the static friction of the joints. The law is passive: the power of
-/// the joint torques is `τᵀ q̇`, so that with the kinetic energy `T`, the spring energy `U = ½ eᵀ K e`, zero momentum
-/// (`ẋ = Jg q̇`), no friction and a reference at rest `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. For a reference
-/// relative to the base, `ẋ = J q̇` for any momentum, and the same holds. A robot that drifts past a reference fixed in
-/// W is pulled by the spring and may gain energy. The rotational spring has an energy if its stiffness is the same
-/// about all axes, or if the error is small.
+/// In free fall there is no gravity load to compensate. Friction is not compensated: the tool remains at a
+/// distance from its goal at which the spring torque is below the static friction of the joints. The law is
+/// passive: the power of the joint torques is `τᵀ q̇`, so that with the kinetic energy `T`, the spring energy
+/// `U = ½ eᵀ K e`, zero momentum (`ẋ = Jg q̇`), no friction and a reference at rest `d/dt (T + U) = −ẋᵀ D ẋ −
+/// k |N q̇|² ≤ 0`. For a reference relative to the base, `ẋ = J q̇` for any momentum, and the law is passive
+/// as well. If the robot drifts past a reference fixed in W, the spring pulls the robot, which may gain
+/// energy. The rotational spring has an energy if its stiffness is the same about all axes, or if the error
+/// is small.
 ///
 /// Source: Hogan, J. Dyn. Sys. Meas. Control 107(1), 1985.
 #[derive(Clone, Debug)]
 pub struct Compliance {
-    /// Index of the frame on which the spring acts.
+    /// Index of the frame to which the spring is attached.
     pub frame: usize,
     /// Stiffness `K` of the spring, row major `(6, 6)`, N/m and N m/rad.
     pub stiffness: [f64; 36],
     /// Damping `D`, row major `(6, 6)`, N s/m and N m s/rad.
     pub damping: [f64; 36],
-    /// Damping `k` of joint motion that does not move the tool, N m s/rad.
+    /// Damping `k` of joint motion that does not move the frame, N m s/rad.
     pub null_space_damping: f64,
 }
 
@@ -34,8 +36,8 @@ impl Compliance {
     /// Checks the gains.
     ///
     /// # Errors
-    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, and for negative
-    /// damping.
+    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, and for
+    /// negative damping.
     pub fn check(&self) -> Result<(), ControlError> {
         check_matrix("stiffness", &self.stiffness)?;
         check_matrix("damping", &self.damping)?;

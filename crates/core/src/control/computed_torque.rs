@@ -1,8 +1,8 @@
-//! Task-space computed torque for an arm on a free base: Eq. (6)-(8) of the OnOrbitROS paper (cited in full in
-//! `docs/concepts/control.md`).
+//! Task-space computed torque for an arm on a free-floating base: Eq. (6)-(8) of the OnOrbitROS paper (cited
+//! in full in `docs/concepts/control.md`).
 //!
-//! [`computed_torque`] serves a law on all joints, and rollouts. For groups of joints `controller_set/torques.rs`
-//! evaluates the same law with `hybrid_dynamics.rs`.
+//! [`computed_torque`] is used for laws on all joints and in rollouts. For groups of joints,
+//! `controller_set/torques.rs` evaluates the same law with `hybrid_dynamics.rs`.
 
 use super::control_law::{ControlLaw, JointCommand, TaskDamping};
 use super::error::ControlError;
@@ -18,12 +18,12 @@ use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 /// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + f`,
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
 ///
-/// with the exact drift `d` of [`FreeFloating`], the attitude error by the logarithm on SO(3), `N` the
-/// null-space projector of `Jg`, `Q*` the joint torques of the external wrenches, and `f` the damping `b q̇`
-/// of the joints. The joint drives compensate Coulomb friction, from the desired acceleration `q̈`
-/// ([`ComputedTorqueWork::desired_accelerations`]). Near a singularity the damped `Jg⁺` reproduces some
-/// directions only in part; `κ`, the mean of `Kd`'s diagonal, damps the suppressed part `D q̇`, where
-/// `D = (J₀⁺ − Jg⁺) Jg` and `J₀⁺` is the undamped inverse; `N = 1 − J₀⁺ Jg`.
+/// with the exact drift `d` of [`FreeFloating`], the attitude error by the logarithm on SO(3), the null-space
+/// projector `N = 1 − J₀⁺ Jg`, the joint torques `Q*` of the external wrenches, and the damping torque `f = b
+/// q̇` of the joints. Near a singularity the damped inverse `Jg⁺` reproduces some directions only partly. The
+/// suppressed part of the joint rates is `D q̇` with `D = (J₀⁺ − Jg⁺) Jg` and the undamped inverse `J₀⁺`; it
+/// is damped by `κ`, the mean of the diagonal of `Kd`. The joint drives compensate Coulomb friction on the
+/// basis of the desired acceleration `q̈` ([`ComputedTorqueWork::desired_accelerations`]).
 #[derive(Clone, Debug)]
 pub struct ComputedTorque {
     /// Index of the tracked frame.
@@ -32,20 +32,20 @@ pub struct ComputedTorque {
     pub kp: [f64; 36],
     /// Gain `Kd` of the velocity error, row major `(6, 6)`, 1/s.
     pub kd: [f64; 36],
-    /// Limit `λ₀`: the pseudo-inverse of `Jg` is damped while `tr[(Jg Jgᵀ)⁻¹]^(-1/2)`, a lower bound of the smallest
-    /// singular value, is below it.
+    /// Threshold `λ₀`: the pseudo-inverse of `Jg` is damped while `tr[(Jg Jgᵀ)⁻¹]^(-1/2)`, a lower bound of
+    /// the smallest singular value, is below `λ₀`.
     pub damping: f64,
-    /// Damping `k` of self-motion, 1/s.
+    /// Damping `k` of joint motion that does not move the frame, 1/s.
     pub null_space_damping: f64,
-    /// True if the external wrenches are compensated.
+    /// True if the law compensates the external wrenches.
     pub compensate_environment: bool,
-    /// True if damping and Coulomb friction of the joints are compensated: the damping at control ticks,
-    /// Coulomb friction by the joint drives at every instant.
+    /// True if damping and Coulomb friction of the joints are compensated: damping at control ticks, Coulomb
+    /// friction by the joint drives at every instant.
     pub compensate_friction: bool,
 }
 
 impl ComputedTorque {
-    /// Returns a law with scalar gains `kp` (1/s²) and `kd` (1/s), `λ₀ = 0.05` and no null-space damping.
+    /// Creates a law with the scalar gains `kp` (1/s²) and `kd` (1/s), `λ₀ = 0.05` and no null-space damping.
     pub fn new(frame: usize, kp: f64, kd: f64) -> Self {
         Self {
             frame,
@@ -58,25 +58,25 @@ impl ComputedTorque {
         }
     }
 
-    /// Returns the `(6, 6)` gain with this diagonal.
+    /// Returns the `(6, 6)` gain with these diagonal entries.
     pub fn diagonal(entries: [f64; 6]) -> [f64; 36] {
         let mut out = [0.0; 36];
         entries.iter().enumerate().for_each(|(i, x)| out[7 * i] = *x);
         out
     }
 
-    /// Returns `κ`, the mean of `Kd`'s diagonal, 1/s.
+    /// Returns the damping `κ` of suppressed joint rates, the mean of the diagonal of `Kd`, 1/s.
     pub(super) fn damping_rate(&self) -> f64 {
         (0..6).map(|i| self.kd[7 * i]).sum::<f64>() / 6.0
     }
 
-    /// Returns the smallest positive entry of `Kp`'s diagonal, 1/s²; 0 if there is none.
+    /// Returns the smallest positive diagonal entry of `Kp`, 1/s², or 0 if there is none.
     pub(super) fn least_stiffness(&self) -> f64 {
         let least = (0..6).map(|i| self.kp[7 * i]).filter(|kp| *kp > 0.0).fold(f64::INFINITY, f64::min);
         if least.is_finite() { least } else { 0.0 }
     }
 
-    /// Returns `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`.
+    /// Returns the commanded acceleration `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`.
     #[inline(always)]
     pub(super) fn reference_acceleration<S: Real>(
         &self,
@@ -90,8 +90,8 @@ impl ComputedTorque {
     /// Checks that the law applies to a robot.
     ///
     /// # Errors
-    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, negative damping, or
-    /// a frame that does not exist or that fewer than six joints move.
+    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, for
+    /// negative damping, and for a frame that does not exist or that is moved by fewer than six joints.
     pub fn check(&self, model: &Model) -> Result<(), ControlError> {
         check_matrix("kp", &self.kp)?;
         check_matrix("kd", &self.kd)?;
@@ -151,23 +151,23 @@ impl ControlLaw for ComputedTorque {
     }
 }
 
-/// Position error, rad (m), for which a joint at rest is not moved: a joint drive that reacted to smaller
+/// Position error, rad (m), below which a joint at rest is not moved. A joint drive that reacted to smaller
 /// errors would chatter at the goal.
 const AT_GOAL: f64 = 2e-8;
 
-/// Returns the acceleration that a law with the gain `kp` (1/s²) commands, or zero if an error of [`AT_GOAL`]
-/// would command as much.
+/// Returns the acceleration commanded by a law with the gain `kp` (1/s²), or zero if it is no larger than the
+/// acceleration for an error of [`AT_GOAL`].
 pub(super) fn zero_within_goal_error(acceleration: f64, kp: f64) -> f64 {
     if acceleration.abs() <= kp * AT_GOAL { 0.0 } else { acceleration }
 }
 
-/// Returns the frame of an index, or an error if it does not exist.
+/// Returns the frame with this index, or an error if there is none.
 pub(super) fn check_frame(model: &Model, frame: usize) -> Result<&Frame, ControlError> {
     let count = model.frames().len();
     model.frames().get(frame).ok_or(ControlError::NoSuchFrame { frame, count })
 }
 
-/// Returns the joints between a frame and the base, from the frame on.
+/// Returns the joints on the path from a frame to the base, starting at the frame.
 pub(super) fn joints_between(model: &Model, frame: usize) -> impl Iterator<Item = usize> {
     let body = model.frames()[frame].body;
     let path = std::iter::successors(Some(body), |&k| (k > 0).then(|| model.nodes()[k].parent));
@@ -177,7 +177,7 @@ pub(super) fn joints_between(model: &Model, frame: usize) -> impl Iterator<Item 
 /// Workspace of [`computed_torque`], allocated once.
 #[derive(Clone, Debug)]
 pub struct ComputedTorqueWork<S> {
-    /// Reduced model at the last call.
+    /// Reduced model computed in the last call.
     pub reduced: FreeFloating<S>,
     inverse: PseudoInverse<S>,
     acceleration: Vec<S>,
@@ -198,8 +198,9 @@ impl<S: Real> ComputedTorqueWork<S> {
         }
     }
 
-    /// Writes the accelerations of the last call, rad/s² (m/s²), for the compensation of Coulomb friction:
-    /// `None` if `law` does not compensate it, zero for joints that may stay at rest.
+    /// Writes the joint accelerations of the last call, rad/s² (m/s²), which the compensation of Coulomb
+    /// friction uses. They are `None` if `law` does not compensate friction, and zero for joints that may
+    /// stay at rest.
     pub fn desired_accelerations(&self, law: &ComputedTorque, asked: &mut [Option<f64>]) {
         let stiffness = law.least_stiffness();
         for (to, from) in asked.iter_mut().zip(&self.acceleration) {
@@ -214,11 +215,12 @@ pub fn task_error<S: Real>(rot_wf: &Mat3<S>, pos_w: Vec3<S>, desired: &TaskSampl
     Motion::new(desired.pos_w - pos_w, log_rotation(&(desired.rot_wd * rot_wf.transpose())))
 }
 
-/// Computes the joint torques, `(n,)`, N m, that track the `desired` pose and motion, without the
-/// compensation of Coulomb friction.
+/// Computes the joint torques, `(n,)`, N m, that track the `desired` pose and motion. The compensation of
+/// Coulomb friction is not included.
 ///
-/// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and the external wrenches to
-/// compensate in `data`. With `is_relative`, `desired` and the tracked motion are relative to the base.
+/// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and, in `data`, the external
+/// wrenches that are to be compensated. With `is_relative`, `desired` and the tracked motion are relative to
+/// the base.
 pub fn computed_torque<S: Real>(
     law: &ComputedTorque,
     model: &Model,

@@ -1,27 +1,27 @@
-//! Control: a control law on a group of joints during an interval of time.
+//! Control: a control law for a group of joints during an interval of time.
 
 use super::control_law::Interface;
 use super::goal::Goal;
 use super::law::Law;
 use crate::model::Model;
 
-/// One control of a run: a law, the joints it drives, and when it is active.
+/// Control law of a run, together with the joints it drives and the time during which it is active.
 ///
-/// Joints that no active control drives have no motor torque, unless a stepper's caller commands one.
+/// Joints without an active control have no motor torque, unless the caller of a stepper commands one.
 pub struct Control {
-    /// Name in results, trace columns and messages.
+    /// Name used in results, trace columns and messages.
     pub name: String,
     /// Indices of the driven joints; no other control may drive them at the same time.
     pub joints: Vec<usize>,
-    /// The law with its reference.
+    /// Control law with its reference.
     pub law: Law,
     /// Start condition.
     pub begin: Begin,
-    /// End time, s; infinite if only a successor or the end of the run stops the control.
+    /// End time, s. If it is infinite, the control ends with the run or when a successor stops it.
     pub end: f64,
     /// Tolerances of the tracking error, if the control has a goal.
     pub goal: Option<Goal>,
-    /// True if the reference is shifted to begin at the pose or the joint positions at the start of the
+    /// True if the reference is shifted to begin at the pose, or at the joint positions, at the start of the
     /// control.
     pub starts_at_present: bool,
     /// True if the trace has a `tracking` column with the error of this control. If false, a tracked frame
@@ -41,7 +41,7 @@ pub enum Begin {
 }
 
 impl Control {
-    /// Returns a control of a group of joints for the whole run, without a goal.
+    /// Creates a control of a group of joints for the whole run, without a goal.
     pub fn new(name: &str, joints: Vec<usize>, law: Law) -> Self {
         Self {
             name: name.to_owned(),
@@ -55,15 +55,16 @@ impl Control {
         }
     }
 
-    /// Returns a control of all joints for the whole run. A frame that it tracks is the tool of the run.
+    /// Creates a control of all joints for the whole run. If its law tracks a frame, that frame is the tool
+    /// of the run.
     pub fn on_all_joints(model: &Model, law: Law) -> Self {
         let joints = (0..model.joint_count()).collect();
         Self { has_column: false, ..Self::new("control", joints, law) }
     }
 
-    /// Returns the length of the tracking error: 6 for a frame (m, rad), one per joint, or 0 without a reference or if
-    /// the reference commands efforts. The error of a law that follows commands from outside is zero while no positions are
-    /// commanded.
+    /// Returns the length of the tracking error: 6 for a frame (m, rad), one per joint, or 0 without a
+    /// reference or if the reference commands efforts. For a law that follows external commands, the error is
+    /// zero while no positions are commanded.
     pub fn width(&self) -> usize {
         match (self.law.task(), self.law.joint_reference()) {
             (Some(_), _) => 6,
@@ -73,13 +74,14 @@ impl Control {
         }
     }
 
-    /// Returns the time after the start of the control at which the reference comes to rest, s; 0 without a reference.
+    /// Returns the time from the start of the control until its reference comes to rest, s; 0 without a
+    /// reference.
     pub(super) fn duration(&self) -> f64 {
         let task = self.law.task().map(|(_, reference)| reference.duration());
         task.or_else(|| self.law.joint_reference().map(|path| path.duration())).unwrap_or(0.0)
     }
 
-    /// Returns the start and end times after time zero that are known before the run, s.
+    /// Returns those start and end times, s, that are known before the run and are after time zero.
     pub fn switch_times(&self) -> impl Iterator<Item = f64> {
         let start = if let Begin::At(start) = self.begin { start } else { 0.0 };
         [start, self.end].into_iter().filter(|t| t.is_finite() && *t > 0.0)

@@ -8,24 +8,24 @@ use crate::reference::JointSample;
 use crate::spatial::Motion;
 use serde::{Deserialize, Serialize};
 
-/// Interface of a control law on a group of joints. Each law implements it in its own file; the defaults are
-/// those of a law that commands efforts and compensates nothing.
+/// Interface of a control law for a group of joints. Each law implements the interface in a separate file.
+/// The default methods are those of a law that commands efforts and compensates nothing.
 pub(super) trait ControlLaw {
-    /// Checks that the law applies to a group of joints; `control` is its name in messages.
+    /// Checks that the law applies to a group of joints; `control` is the name of the control in messages.
     fn check_group(&self, control: &str, joints: &[usize], model: &Model) -> Result<(), ControlError>;
 
-    /// Returns the kind of command that the law gives its joints.
+    /// Returns the kind of command that the law gives to its joints.
     fn joint_command(&self) -> JointCommand {
         JointCommand::Effort
     }
 
-    /// Returns the quantity of the joints that the joint reference commands.
+    /// Returns the joint quantity that the joint reference commands.
     fn interface(&self) -> Interface {
         Interface::Position
     }
 
-    /// Returns true if the law uses the tracking error of its control, as laws do that command accelerations or move a
-    /// frame by efforts.
+    /// Returns true if the law uses the tracking error of its control. Laws do so if they command
+    /// accelerations or move a frame by efforts.
     fn uses_error(&self) -> bool {
         self.joint_command() != JointCommand::Effort || self.needs_jacobian()
     }
@@ -35,7 +35,7 @@ pub(super) trait ControlLaw {
         false
     }
 
-    /// Returns true if the law compensates the wrenches of the environment; `None` if it has no such option.
+    /// Returns true if the law compensates environmental wrenches; `None` if it has no such option.
     fn compensates_environment(&self) -> Option<bool> {
         None
     }
@@ -45,8 +45,8 @@ pub(super) trait ControlLaw {
         false
     }
 
-    /// Computes the efforts of the group, `(k,)`, N m (N). A law that commands accelerations does not change
-    /// `tau`.
+    /// Computes the efforts of the `k` joints of the group, `(k,)`, N m (N). A law that commands
+    /// accelerations does not change `tau`.
     fn efforts(
         &mut self,
         _input: &EffortInput<'_>,
@@ -56,19 +56,20 @@ pub(super) trait ControlLaw {
         Ok(())
     }
 
-    /// Returns the acceleration of the joint at `place` in the group, for [`JointCommand::Acceleration`].
+    /// Returns the acceleration, rad/s² (m/s²), of the joint at `place` in the group, for
+    /// [`JointCommand::Acceleration`].
     fn joint_acceleration(&self, _place: usize, _error: f64, _rate: f64, _desired: &JointSample) -> f64 {
         0.0
     }
 
-    /// Returns the effort that is added to the torque of the joint at `place` in the group, N m (N), for
+    /// Returns the effort, N m (N), that is added to the torque of the joint at `place` in the group, for
     /// [`JointCommand::Acceleration`].
     fn feedforward(&self, _place: usize) -> Option<f64> {
         None
     }
 
-    /// Returns the acceleration of the tracked frame, for [`JointCommand::Task`], from its pose error, its velocity
-    /// error and the desired acceleration.
+    /// Returns the acceleration of the tracked frame, for [`JointCommand::Task`], from its pose error, its
+    /// velocity error and the desired acceleration.
     fn task_acceleration(
         &self,
         _error: Motion<f64>,
@@ -78,13 +79,14 @@ pub(super) trait ControlLaw {
         desired
     }
 
-    /// Returns the damping of the solution for the joints, for [`JointCommand::Task`].
+    /// Returns the damping used when the tasks are solved for joint accelerations, for
+    /// [`JointCommand::Task`].
     fn task_damping(&self) -> TaskDamping {
         TaskDamping::default()
     }
 
-    /// Returns the desired acceleration for the friction compensation of the joint at `place` in the group:
-    /// zero if a joint at rest may stay there.
+    /// Returns the desired acceleration on which the friction compensation of the joint at `place` in the
+    /// group is based. Zero means that the joint may stay at rest.
     fn desired_acceleration(&self, _place: usize, acceleration: f64) -> f64 {
         acceleration
     }
@@ -94,7 +96,7 @@ pub(super) trait ControlLaw {
         Ok(())
     }
 
-    /// Returns the state of a user's controller for a checkpoint.
+    /// Returns the state of a user-defined controller for a checkpoint.
     fn save(&self) -> Result<Vec<u8>, ControlError> {
         Ok(Vec::new())
     }
@@ -105,39 +107,39 @@ pub(super) trait ControlLaw {
     }
 }
 
-/// Command of a joint.
+/// Kind of command that a joint receives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum JointCommand {
-    /// The effort is given.
+    /// The effort is given by a law or by the caller of a stepper.
     Effort,
     /// Friction holds the joint at rest.
     Held,
-    /// The acceleration is given.
+    /// A law gives the acceleration.
     Acceleration,
-    /// The tasks determine the acceleration.
+    /// The acceleration follows from the tasks.
     Task,
 }
 
-/// Quantity that a joint reference commands, as the interfaces of ROS Control.
+/// Quantity that a joint reference commands, named as the interfaces of ROS Control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interface {
     /// Joint positions: `e = qd − q`, `ė = q̇d − q̇`.
     #[default]
     Position,
-    /// Joint rates: `e = q̇d − q̇`, `ė` is the backward difference of `e` since the last control tick.
+    /// Joint rates: `e = q̇d − q̇`; `ė` is the backward difference of `e` since the last control tick.
     Velocity,
-    /// Efforts, N m (N): the positions of the reference are read as efforts.
+    /// Efforts, N m (N): the values of the reference are efforts instead of positions.
     Effort,
 }
 
-/// Damping of the joint accelerations that realise a task.
+/// Damping of the joint accelerations that produce a task acceleration.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TaskDamping {
-    /// Limit `λ₀` of `tr[(J Jᵀ)⁻¹]^(-1/2)` below which the pseudo-inverse of the Jacobian `J` is damped.
+    /// Threshold `λ₀` of `tr[(J Jᵀ)⁻¹]^(-1/2)` below which the pseudo-inverse of the Jacobian `J` is damped.
     pub(super) pseudo_inverse: f64,
-    /// Damping `k` of the self-motion, 1/s.
+    /// Damping `k` of joint motion that does not affect the task, 1/s.
     pub(super) null_space: f64,
-    /// Damping `κ` of the joint rates `D q̇` that the damping of the pseudo-inverse suppresses, 1/s.
+    /// Damping `κ` of the joint rates `D q̇` that the damped pseudo-inverse suppresses, 1/s.
     pub(super) suppressed: f64,
 }
 
@@ -151,15 +153,15 @@ pub(super) struct EffortInput<'a> {
     pub(super) elapsed: f64,
     /// Desired motion of the joints of the group.
     pub(super) desired: &'a JointSample,
-    /// Tracking error of the control, `(width,)`, and velocity error of its frame, m/s and rad/s.
+    /// Tracking error of the control, `(width,)`, and velocity error of its tracked frame, m/s and rad/s.
     pub(super) error: (&'a [f64], Motion<f64>),
-    /// Generalized Jacobian of the tracked frame, the columns of the group, `(6, k)`.
+    /// Generalized Jacobian of the tracked frame, restricted to the columns of the group, `(6, k)`.
     pub(super) jacobian: &'a [f64],
-    /// Rates of the joints of the group, `(k,)`, rad/s (m/s).
+    /// Rates of the `k` joints of the group, `(k,)`, rad/s (m/s).
     pub(super) rates: &'a [f64],
 }
 
-/// Memory and workspace of the laws that command efforts.
+/// State and workspace of the laws that command efforts.
 pub(super) struct EffortWork<'a> {
     pub(super) pid: &'a mut PidMemory,
     pub(super) inverse: &'a mut PseudoInverse<f64>,
@@ -167,11 +169,11 @@ pub(super) struct EffortWork<'a> {
     pub(super) scratch: &'a mut [f64],
 }
 
-/// State of PID controllers between control ticks, per joint.
+/// State of PID controllers between control ticks, for each joint.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct PidMemory {
     /// Effort of the integral term, N m (N).
     pub(super) integral: Vec<f64>,
-    /// Error at the last tick; `None` before the first.
+    /// Error at the last tick; `None` before the first tick.
     pub(super) previous: Vec<Option<f64>>,
 }

@@ -19,47 +19,49 @@ pub(super) enum Phase {
     Over,
 }
 
-/// The part of a control's state that a checkpoint stores.
+/// Part of the state of a control that a checkpoint stores.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ControlMemory {
     pub(super) phase: Phase,
-    /// Time of the start, s.
+    /// Time at which the control started, s.
     pub(super) start: f64,
     pub(super) outcome: Outcome,
-    /// True if the control holds the pose or the joint positions at which its goal was missed.
+    /// True if the control holds the pose or the joint positions of the instant at which its goal was missed.
     is_held: bool,
-    /// True if the reference is shifted to begin at the configuration at the start of the control.
+    /// True if the reference is shifted to begin at the pose or the joint positions at the start of the
+    /// control.
     is_shifted: bool,
-    /// Shift of the reference, or held configuration: a pose (rotation, position) or joint positions.
+    /// Shift of the reference, or configuration that is held: a pose (rotation, position) or joint positions.
     anchor: Vec<f64>,
     pub(super) pid: PidMemory,
     /// Time of the last control tick, s.
     pub(super) last_tick: Option<f64>,
-    /// State saved by a user's controller.
+    /// State that a user-defined controller has saved.
     pub(super) user: Vec<u8>,
-    /// State of a law that follows commands from outside of the run.
+    /// State of a law that follows external commands.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) external: Option<ExternalMemory>,
 }
 
-/// State of a control, with its desired motion and its error at the last instant evaluated.
+/// State of a control, including its desired motion and its error at the instant that was evaluated last.
 #[derive(Debug)]
 pub(super) struct ControlState {
     pub(super) memory: ControlMemory,
-    /// True if the error is used at every control tick.
+    /// True if the error is needed at every control tick.
     pub(super) needs_error: bool,
-    /// Constant reference at the origin of the frame in which the task's reference is given; `None` without a task.
+    /// Reference that is constant at the origin of the frame in which the task reference is given; `None`
+    /// without a task.
     frame: Option<TaskReference>,
     pub(super) desired: JointSample,
     pub(super) desired_pose: Option<TaskSample<f64>>,
-    /// Pose of the tracked frame, relative to the base if its reference is, otherwise in W.
+    /// Pose of the tracked frame: relative to the base if the reference is, otherwise in W.
     pub(super) pose: (Mat3<f64>, Vec3<f64>),
-    /// Tracking error, desired minus actual, `(width,)`.
+    /// Tracking error, desired less actual, `(width,)`.
     pub(super) error: Vec<f64>,
 }
 
 impl ControlState {
-    /// Returns the state of a control before its start; `needs_error` is true if its law uses the error.
+    /// Creates the state of a control before its start; `needs_error` must be true if its law uses the error.
     pub(super) fn new(control: &Control, needs_error: bool) -> Self {
         let k = control.joints.len();
         let task = control.law.task();
@@ -102,7 +104,8 @@ impl ControlState {
         self.memory.phase == Phase::Waiting
     }
 
-    /// Starts the control at `t`; `q` contains all joint positions, and `pose` is current.
+    /// Starts the control at `t`, s. `q` contains all joint positions; the pose of the tracked frame must be
+    /// up to date.
     pub(super) fn start(&mut self, control: &Control, t: f64, q: &[f64]) -> Result<(), ReferenceError> {
         let memory = &mut self.memory;
         (memory.phase, memory.start, memory.is_shifted) = (Phase::Running, t, control.starts_at_present);
@@ -110,7 +113,8 @@ impl ControlState {
             return Ok(());
         }
         if let (Some(frame), Some((_, reference))) = (&self.frame, control.law.task()) {
-            // from the first pose of the path to that of the tracked frame, in the frame of the reference
+            // shift from the first pose of the path to the pose of the tracked frame, in the frame of the
+            // reference
             let (frame, first, (rot, pos)) = (frame.sample(t, t)?, reference.path.sample(0.0), self.pose);
             let turn = first.rot_wd.transpose() * frame.rot_wd.transpose() * rot;
             self.set_anchor_pose(turn, frame.rot_wd.transpose_mul(pos - frame.pos_w) - first.pos_w);
@@ -124,7 +128,7 @@ impl ControlState {
         Ok(())
     }
 
-    /// Replaces the reference by the current pose or joint positions after the goal was missed.
+    /// Replaces the reference by the present pose or joint positions after the goal was missed.
     pub(super) fn hold(&mut self, control: &Control, q: &[f64]) {
         self.memory.is_held = true;
         match control.law.task() {
@@ -143,8 +147,8 @@ impl ControlState {
         (Mat3::from_columns(at(0), at(1), at(2)), at(3))
     }
 
-    /// Evaluates the desired motion at `t` and the tracking error of the frame or the joints of the control.
-    /// `q` and `rates` contain the values of all joints.
+    /// Evaluates the desired motion at `t`, s, and the tracking error of the frame or of the joints of the
+    /// control. `q` and `rates` contain the positions and rates of all joints.
     pub(super) fn evaluate(
         &mut self,
         control: &Control,
@@ -179,7 +183,8 @@ impl ControlState {
         Ok(())
     }
 
-    /// Sets the desired positions and rates to the current ones; `q` and `rates` contain the values of all joints.
+    /// Sets the desired positions and rates to the present ones; `q` and `rates` contain the positions and
+    /// rates of all joints.
     pub(super) fn take_joints(&mut self, control: &Control, q: &[f64], rates: &[f64]) {
         for (place, &j) in control.joints.iter().enumerate() {
             (self.desired.q[place], self.desired.v[place]) = (q[j], rates[j]);
@@ -217,7 +222,8 @@ impl ControlState {
         }
     }
 
-    /// Returns the outcome of the goal at `t`, `clock` s after the start of the control.
+    /// Returns the outcome of the goal at `t`, s, where `clock` is the time since the start of the control,
+    /// s.
     pub(super) fn judge(&self, goal: &Goal, control: &Control, t: f64, clock: f64) -> Outcome {
         if self.frame.is_none() {
             return goal.judge(t, clock, control.duration(), &self.error);

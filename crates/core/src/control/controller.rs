@@ -5,7 +5,7 @@ use super::error::ControlError;
 use super::observation::Observation;
 use crate::model::Model;
 
-/// A controller implemented by the user.
+/// Controller implemented by the user.
 ///
 /// ```
 /// use onorbit_core::control::{ControlError, Controller, Observation};
@@ -29,13 +29,13 @@ pub trait Controller: Send {
         Ok(())
     }
 
-    /// Writes the torques of the joints, N m (N); they are held until the next call.
+    /// Writes the joint torques, N m (N), which are held until the next call.
     ///
     /// # Errors
-    /// [`ControlError`], which ends the run.
+    /// [`ControlError`] if the torques cannot be computed; the error ends the run.
     fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError>;
 
-    /// Returns the state between calls for a checkpoint; by default the controller has none.
+    /// Returns the state that the controller keeps between calls, for a checkpoint. By default there is none.
     ///
     /// # Errors
     /// [`ControlError`] if the state cannot be written.
@@ -43,7 +43,7 @@ pub trait Controller: Send {
         Ok(Vec::new())
     }
 
-    /// Restores the state that [`Controller::save`] returned.
+    /// Restores a state that [`Controller::save`] returned.
     ///
     /// # Errors
     /// [`ControlError`] if the state does not belong to this controller.

@@ -5,7 +5,7 @@ use crate::number_text::{count, short, unlike};
 use crate::reference::ReferenceError;
 use thiserror::Error;
 
-/// Errors of controls that are invalid, or that occur during a run.
+/// Errors of invalid controls, and errors that occur in controls during a run.
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ControlError {
@@ -37,7 +37,7 @@ pub enum ControlError {
         time = short(*time), value = short(*value)
     )]
     Overflow { joint: usize, time: f64, value: f64 },
-    #[error("control '{control}' drives no joint; name at least one")]
+    #[error("control '{control}' drives no joint; name at least one joint")]
     EmptyGroup { control: String },
     #[error("control '{control}' drives joint {joint}, but the robot has joints 0 to {last}", last = count.saturating_sub(1))]
     NoSuchJoint { control: String, joint: usize, count: usize },
@@ -55,17 +55,17 @@ pub enum ControlError {
     RepeatedName { name: String },
     #[error(
         "control '{control}' starts after '{after}', which is neither a control nor an event of this run; give the \
-         name of one"
+         name of a control or an event"
     )]
     NoSuchControl { control: String, after: String },
     #[error(
-        "control '{control}' follows itself through 'after', so it can never start; remove an 'after' from this \
+        "control '{control}' follows itself through 'after', so it can never start; remove one 'after' from this \
          chain"
     )]
     AfterItself { control: String },
     #[error(
-        "control '{control}' starts after '{after}', which has neither a goal nor an end; give it one \
-    of them"
+        "control '{control}' starts after '{after}', which has neither a goal nor an end; give '{after}' \
+    a goal or an end"
     )]
     NeverEnds { control: String, after: String },
     #[error(
@@ -96,12 +96,12 @@ pub enum ControlError {
     MixedCompensation { first: String, second: String },
     #[error(
         "the checkpoint has {got} controls, but the simulation has {expected}: it belongs to a different \
-         scenario; resume with the original one"
+         scenario; resume with the original scenario"
     )]
     OtherControls { got: usize, expected: usize },
     #[error(
         "the checkpoint has no state for control '{control}': it belongs to a different scenario; resume \
-         with the original one"
+         with the original scenario"
     )]
     OtherMemory { control: String },
     #[error("timeout is {value} s; it must be positive and finite", value = short(*value))]

@@ -1,24 +1,24 @@
-//! Gains of control laws and their checks.
+//! Gains of control laws, and their checks.
 
 use super::error::ControlError;
 
-/// Parameter of the joints of a group: one number for all joints, or one for each.
+/// Parameter of the joints of a group: one number for all joints, or one number per joint.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PerJoint(Vec<f64>);
 
 impl PerJoint {
-    /// Returns the gains; a single number applies to all joints.
+    /// Creates the parameter; a single number applies to all joints.
     pub fn new(numbers: Vec<f64>) -> Self {
         Self(numbers)
     }
 
-    /// Returns the gain of the joint at index `place` of the group.
+    /// Returns the number for the joint at index `place` in the group.
     #[inline(always)]
     pub fn at(&self, place: usize) -> f64 {
         if self.0.len() == 1 { self.0[0] } else { self.0[place] }
     }
 
-    /// Returns true if a number differs from zero.
+    /// Returns true if any of the numbers differs from zero.
     pub(super) fn is_used(&self) -> bool {
         self.0.iter().any(|x| *x != 0.0)
     }
@@ -28,13 +28,13 @@ impl PerJoint {
         self.0.iter().all(|x| *x > 0.0)
     }
 
-    /// Checks that there is one number, or one for each of `count` joints, and that none is negative.
+    /// Checks that there is one number, or one per joint of `count` joints, and that no number is negative.
     pub(super) fn check(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         check_numbers(name, &self.0)
     }
 
-    /// Checks limits as [`PerJoint::check`] does; infinity means no limit.
+    /// Checks limits in the same way as [`PerJoint::check`]; infinity means no limit.
     pub(super) fn check_limit(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         match self.0.iter().find(|x| x.is_nan() || **x < 0.0) {
@@ -63,7 +63,7 @@ impl From<f64> for PerJoint {
     }
 }
 
-/// Checks that the numbers are finite, not too large and not negative.
+/// Checks that the numbers are finite, not negative and not too large.
 pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     check_size(name, numbers)?;
     match numbers.iter().find(|x| **x < 0.0) {
@@ -75,7 +75,7 @@ pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), C
 /// Largest accepted gain, SI units; typical gains of robots are 1e-3 to 1e6.
 const LARGEST: f64 = 1e20;
 
-/// Checks that the numbers are finite and not beyond [`LARGEST`].
+/// Checks that the numbers are finite and that their magnitude does not exceed [`LARGEST`].
 fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     if let Some(&value) = numbers.iter().find(|x| !x.is_finite()) {
         return Err(ControlError::NotFinite { name, value });
@@ -86,7 +86,7 @@ fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     }
 }
 
-/// Checks that a `(6, 6)` gain is finite and its diagonal not negative.
+/// Checks that a `(6, 6)` gain is finite and that its diagonal has no negative entry.
 pub(super) fn check_matrix(name: &'static str, gains: &[f64; 36]) -> Result<(), ControlError> {
     check_size(name, gains)?;
     check_numbers(name, &[0, 1, 2, 3, 4, 5].map(|i| gains[7 * i]))

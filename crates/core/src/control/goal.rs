@@ -1,4 +1,4 @@
-//! Goals of a tracked path: tolerances and outcome.
+//! Goals of a tracked path: tolerances and outcomes.
 
 use super::error::ControlError;
 use super::gains::{PerJoint, check_numbers};
@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 
 /// Tolerances of a tracked path, as in the joint trajectory controller of ROS.
 ///
-/// The components of the error are those of the joints of the group, rad or m (rad/s or m/s where rates are
-/// commanded), or, for a task, the distance, m, and the angle, rad. The goal fails if an error exceeds `path` before
-/// the end of the path. After the end, it is reached once all errors are within `tolerance`, and fails after `time`.
-/// After a failure the control holds the current joint positions, or the current pose in W (relative to the base if
-/// its reference is).
+/// The components of the error are those of the joints of the group, rad or m (rad/s or m/s if rates are
+/// commanded), or, for a task, the distance, m, and the angle, rad. The goal fails if an error exceeds `path`
+/// before the end of the path. After the end, the goal is reached as soon as all errors are within
+/// `tolerance`, and fails after `time`. After a failure the control holds the present joint positions, or the
+/// present pose: relative to the base if the reference is, otherwise in W.
 #[derive(Clone, Debug)]
 pub struct Goal {
     /// Largest permitted errors during the path, in units of the error; `None` for no limit.
@@ -24,7 +24,7 @@ pub struct Goal {
 /// Outcome of a goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// No decision: the control never ran, was stopped, or the run ended first.
+    /// No decision: the control was never active or was stopped, or the run ended first.
     #[default]
     Unfinished,
     /// All errors were within the goal's tolerance at `time`, s.
@@ -32,9 +32,9 @@ pub enum Outcome {
         /// Simulation time, s.
         time: f64,
     },
-    /// An error left the tolerance of the path.
+    /// An error exceeded the tolerance of the path.
     PathToleranceViolated(Miss),
-    /// The goal was not reached in the time allowed.
+    /// The goal was not reached within the time allowed.
     GoalToleranceViolated(Miss),
 }
 
@@ -50,7 +50,7 @@ pub struct Miss {
 }
 
 impl Outcome {
-    /// Returns the name of the outcome in results and summaries.
+    /// Returns the name of the outcome that results and summaries use.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Unfinished => "unfinished",
@@ -60,7 +60,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the error that exceeded its tolerance.
+    /// Returns the error that exceeded its tolerance, if the goal failed.
     pub fn miss(&self) -> Option<Miss> {
         match self {
             Self::PathToleranceViolated(miss) | Self::GoalToleranceViolated(miss) => Some(*miss),
@@ -84,8 +84,8 @@ impl Outcome {
 }
 
 impl Goal {
-    /// Returns a goal with one tolerance for all components at the end, no tolerance during the path and no
-    /// time limit.
+    /// Creates a goal with one tolerance for all components at the end, without a tolerance during the path
+    /// and without a time limit.
     pub fn within(tolerance: f64) -> Self {
         Self { path: None, tolerance: tolerance.into(), time: None }
     }
@@ -98,7 +98,7 @@ impl Goal {
         check_numbers("goal_time", self.time.as_slice())
     }
 
-    /// Returns the outcome for `errors` at `time`, `clock` s after the start of a path of `duration` s.
+    /// Returns the outcome for `errors` at `time`, s, `clock` s after the start of a path of `duration` s.
     pub(super) fn judge(&self, time: f64, clock: f64, duration: f64, errors: &[f64]) -> Outcome {
         let miss = |tolerance: &PerJoint| {
             let component = errors.iter().enumerate().position(|(i, e)| e.abs() > tolerance.at(i))?;

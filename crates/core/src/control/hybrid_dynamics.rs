@@ -1,19 +1,20 @@
-//! Hybrid dynamics of joints with given accelerations or tasks and joints with given efforts.
+//! Hybrid dynamics: some joints have given accelerations or tasks, the others have given efforts.
 
 use super::control_law::JointCommand;
 use super::pseudo_inverse::{PseudoInverse, ROWS};
 use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 
-/// Solver for the torques that give the joints `A` their commanded accelerations while the efforts of the joints `E`
-/// are given.
+/// Solver for the torques with which the joints `A` have their commanded accelerations while the efforts of
+/// the joints `E` are given.
 ///
 /// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`. The joints `E` react like a second base,
 /// `q̈_E = y − G q̈_A` with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d`
-/// depends on `A` alone: `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. The set `A` consists of the joints `J`, whose
-/// accelerations joint laws command, and the joints `T`, which the tasks drive with one damped pseudo-inverse
-/// of all task rows, `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each task accounts for the
-/// reactions to all others. Joints that friction holds belong to neither set; their acceleration is zero. For a single
-/// task on all joints the solution equals that of [`computed_torque`](super::computed_torque).
+/// depends only on `A`: `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. The set `A` consists of the joints `J`, whose
+/// accelerations are commanded by joint laws, and the joints `T`, which the tasks drive. A single damped
+/// pseudo-inverse of all task rows gives `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so
+/// that each task accounts for the reactions to all others. Joints held by friction belong to neither set;
+/// their acceleration is zero. For a single task on all joints the solution equals that of
+/// [`computed_torque`](super::computed_torque).
 ///
 /// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
 pub(super) struct HybridDynamics {
@@ -22,7 +23,7 @@ pub(super) struct HybridDynamics {
     pub(super) inertia: Vec<f64>,
     /// Load `l` of the joints, `(n,)`, N m (N).
     pub(super) load: Vec<f64>,
-    /// Joint accelerations `q̈`, `(n,)`, rad/s² (m/s²); the caller sets those of the joints `J`.
+    /// Joint accelerations `q̈`, `(n,)`, rad/s² (m/s²); the caller sets the accelerations of the joints `J`.
     pub(super) acceleration: Vec<f64>,
     /// Damping `k` and `κ` of each joint of `T`, 1/s.
     pub(super) null_damping: Vec<[f64; 2]>,
@@ -30,11 +31,11 @@ pub(super) struct HybridDynamics {
     fixed: Vec<usize>,
     given: Vec<usize>,
     factor: Vec<f64>,
-    /// `Gᵀ`: row `j` belongs to joint `j` of `A` and begins with one number per joint of `E`.
+    /// Transpose of `G`: row `j` belongs to joint `j` of `A` and begins with one number per joint of `E`.
     gain: Vec<f64>,
     y: Vec<f64>,
     jacobian: Vec<f64>,
-    /// Task accelerations that the joints `T` must produce, `p̈r − d − J_E y − J_J q̈_J`, of all tasks.
+    /// Accelerations `p̈r − d − J_E y − J_J q̈_J`, for all tasks, that the joints `T` must produce.
     task_accelerations: Vec<f64>,
     damping: Vec<f64>,
     inverse: PseudoInverse<f64>,
@@ -111,13 +112,13 @@ impl HybridDynamics {
         self.damping.push(damping);
     }
 
-    /// Returns the friction torque that holds a joint whose drive gives `tau`, N m (N). Requires the
-    /// accelerations of all joints.
+    /// Returns the friction torque, N m (N), that holds a joint at rest whose drive exerts `tau`. Requires
+    /// the accelerations of all joints.
     pub(super) fn holding_torque(&self, j: usize, tau: f64) -> f64 {
         dot(&self.inertia[j * self.n..(j + 1) * self.n], &self.acceleration) + self.load[j] - tau
     }
 
-    /// Computes all accelerations and writes the torques of `A` to `tau`.
+    /// Computes the accelerations of all joints, and writes the torques of the joints `A` to `tau`.
     pub(super) fn solve(&mut self, rates: &[f64], tau: &mut [f64]) {
         let Self { n, tasks, fixed, given, acceleration, null_damping, .. } = self;
         let [a, x, free, suppressed] = &mut self.work;

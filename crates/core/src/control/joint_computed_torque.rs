@@ -7,27 +7,27 @@ use super::gains::PerJoint;
 use crate::model::Model;
 use crate::reference::JointSample;
 
-/// Joint-space computed torque on the reduced model, which realises `q̈ = q̈d + kd (q̇d − q̇) + kp (qd − q)`
-/// exactly, regardless of the motion of the base.
+/// Joint-space computed torque on the reduced model, which produces `q̈ = q̈d + kd (q̇d − q̇) + kp (qd − q)`
+/// exactly, whatever the motion of the base.
 ///
-/// `τ = M* q̈ + c* − Q* + f`, so that the error obeys `ë + kd ė + kp e = 0`. The joint drives compensate
-/// Coulomb friction, from rest and through reversals. Joint angles are not wrapped: after a full turn the
-/// error is 2π.
+/// `τ = M* q̈ + c* − Q* + f`, so that the error `e = qd − q` obeys `ë + kd ė + kp e = 0`. The joint drives
+/// compensate Coulomb friction, from rest and through reversals. Joint angles are not wrapped: after a full
+/// turn the error is 2π.
 #[derive(Clone, Debug)]
 pub struct JointComputedTorque {
     /// Gain `kp` of the position error, 1/s².
     pub kp: PerJoint,
     /// Gain `kd` of the rate error, 1/s.
     pub kd: PerJoint,
-    /// True if the wrenches of the environment are compensated.
+    /// True if the law compensates the wrenches of the environment.
     pub compensate_environment: bool,
-    /// True if damping and Coulomb friction of the joints are compensated: the damping at control ticks,
-    /// Coulomb friction by the joint drives at every instant.
+    /// True if damping and Coulomb friction of the joints are compensated: damping at control ticks, Coulomb
+    /// friction by the joint drives at every instant.
     pub compensate_friction: bool,
 }
 
 impl JointComputedTorque {
-    /// Returns a law with one gain `kp` (1/s²) and one `kd` (1/s) for all joints.
+    /// Creates a law with one gain `kp` (1/s²) and one gain `kd` (1/s) for all joints.
     pub fn new(kp: f64, kd: f64) -> Self {
         Self { kp: kp.into(), kd: kd.into(), compensate_environment: true, compensate_friction: true }
     }
@@ -35,7 +35,7 @@ impl JointComputedTorque {
     /// Checks the gains for a group of `count` joints.
     ///
     /// # Errors
-    /// [`ControlError`] if the number of gains differs from 1 and `count`, or a gain is negative or not
+    /// [`ControlError`] if the number of gains is neither 1 nor `count`, or if a gain is negative or not
     /// finite.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         self.kp.check("kp", count)?;

@@ -1,4 +1,4 @@
-//! PID controllers of single joints.
+//! PID controllers of individual joints.
 
 use super::control_law::{ControlLaw, EffortInput, EffortWork, Interface, PidMemory};
 use super::error::ControlError;
@@ -7,11 +7,13 @@ use super::observation::Observation;
 use crate::model::{BASE_NQ, Model};
 use crate::reference::JointSample;
 
-/// PID controller for each joint of a group: `τ = p e + i ∫e dt + d ė`.
+/// PID controller for each joint of a group: `τ = p e + i ∫e dt + d ė` with the error `e` of the commanded
+/// quantity.
 ///
-/// The integral increases by `e Δt` at each control tick. Its effort is limited to `±i_limit`, and while the
-/// total effort is at `effort_limit` the integral does not increase further in that direction (anti-windup).
-/// Friction is not compensated: a joint that sticks moves only once the effort exceeds its static friction.
+/// The integral increases by `e Δt` at each control tick, with the time `Δt` since the last tick. The effort
+/// of the integral term is limited to `±i_limit`, and while the total effort is at `effort_limit` the
+/// integral does not increase further in that direction (anti-windup). Friction is not compensated: a joint
+/// that sticks does not move until the effort exceeds its static friction.
 #[derive(Clone, Debug)]
 pub struct JointPid {
     /// Quantity that the reference commands.
@@ -29,7 +31,7 @@ pub struct JointPid {
 }
 
 impl JointPid {
-    /// Returns a PID with these gains for all joints and without limits.
+    /// Creates a PID law with these gains for all joints and without limits.
     pub fn new(interface: Interface, p: f64, i: f64, d: f64) -> Self {
         let unlimited = PerJoint::from(f64::INFINITY);
         let (i_limit, effort_limit) = (unlimited.clone(), unlimited);
@@ -39,8 +41,8 @@ impl JointPid {
     /// Checks the gains for a group of `count` joints.
     ///
     /// # Errors
-    /// [`ControlError`] if the number of gains or limits differs from 1 and `count`, a gain is negative, not finite or
-    /// too large, a limit is negative or NaN, or the effort interface has gains.
+    /// [`ControlError`] if the number of gains or limits is neither 1 nor `count`, a gain is negative, not
+    /// finite or too large, a limit is negative or NaN, or gains are given for the effort interface.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         for (name, gains) in [("p", &self.p), ("i", &self.i), ("d", &self.d)] {
             gains.check(name, count)?;
@@ -52,7 +54,8 @@ impl JointPid {
         self.effort_limit.check_limit("effort_limit", count)
     }
 
-    /// Computes the effort of the joint at `place` in the group, at `(q, rate)`, `dt` s after the last tick.
+    /// Computes the effort of the joint at `place` in the group with the position `q` and the rate `rate`,
+    /// `dt` s after the last tick.
     pub(super) fn effort(
         &self,
         place: usize,
@@ -107,7 +110,7 @@ impl ControlLaw for JointPid {
     }
 }
 
-/// Returns the nearest number within `±limit`.
+/// Returns the number in `[-limit, limit]` that is nearest to `x`.
 fn clamp(x: f64, limit: f64) -> f64 {
     x.max(-limit).min(limit)
 }

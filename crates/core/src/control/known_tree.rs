@@ -1,13 +1,15 @@
-//! Reduced model of a robot that is connected to others whose models its controllers know.
+//! Reduced model of a robot that is connected to other robots whose models its controllers know.
 //!
-//! To the controllers of a robot, the links behind a grasp are a heavier robot with further joints, in which they have no
-//! motors. Eliminating these joints leaves a reduced model of the robot's own joints, with which all laws work unchanged.
+//! From the viewpoint of the controllers, the links beyond a grasp belong to a heavier robot with additional
+//! joints that have no motors. Eliminating these joints yields a reduced model of the robot's own joints,
+//! which all laws can use unchanged.
 
 use crate::dynamics::{Data, FreeFloating, free_floating_frame, free_floating_recursion, kinematics};
 use crate::model::Model;
 use crate::spatial::{Motion, Scalar, cholesky_factor, cholesky_solve, dot};
 
-/// Tree of a robot and of the robots connected to it that its controllers know, rooted at its base.
+/// Tree of a robot and those robots connected to it whose models its controllers know, rooted at the robot's
+/// base.
 #[derive(Debug)]
 pub struct KnownTree {
     /// Model of the tree.
@@ -18,10 +20,10 @@ pub struct KnownTree {
     pub q: Vec<f64>,
     /// Velocity of the tree, `(nv,)`, m/s and rad/s.
     pub v: Vec<f64>,
-    /// Index in the tree of each joint of the robot, and of all other joints.
+    /// For each joint of the robot, its index in the tree; then the indices of all other joints.
     own: Vec<usize>,
     others: Vec<usize>,
-    /// Index in the tree of each frame of the robot.
+    /// For each frame of the robot, its index in the tree.
     frames: Vec<usize>,
     full: FreeFloating<f64>,
     /// Factor of `M_PP`, and `M_PP⁻¹ M_PO` with one row per joint of the robot.
@@ -33,8 +35,8 @@ pub struct KnownTree {
 }
 
 impl KnownTree {
-    /// Returns the tree with this model; `own` and `frames` are the indices in it of the joints and of the frames of the
-    /// robot.
+    /// Creates the tree from its model; `own` and `frames` are the indices, in the tree, of the joints and
+    /// the frames of the robot.
     pub fn new(model: Model, own: Vec<usize>, frames: Vec<usize>) -> Self {
         let others: Vec<usize> = (0..model.joint_count()).filter(|joint| !own.contains(joint)).collect();
         let zeros = |count: usize| vec![0.0; count];
@@ -55,14 +57,14 @@ impl KnownTree {
         }
     }
 
-    /// Computes the kinematics of the tree and removes the external wrenches from its data.
+    /// Computes the kinematics of the tree and sets its external wrenches to zero.
     pub fn update_kinematics(&mut self) {
         kinematics(&self.model, &mut self.data, &self.q, &self.v);
         self.data.clear_external();
     }
 
-    /// Computes the reduced model of the robot's own joints, for accelerations of the other joints `P` without motor
-    /// torques: `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`.
+    /// Computes the reduced model of the robot's own joints `O`, with the accelerations of the other joints
+    /// `P`, which have no motor torques: `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`.
     ///
     /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
     pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {
@@ -92,8 +94,8 @@ impl KnownTree {
         }
     }
 
-    /// Computes pose, twist, Jacobian and drift of a frame (index) of the robot. Expects the results of
-    /// [`KnownTree::reduce`].
+    /// Computes pose, twist, Jacobian and drift of a frame (index) of the robot. Requires the results of
+    /// [`KnownTree::reduce`] in `out`.
     ///
     /// `J' = J_O − J_P M_PP⁻¹ M_PO`,  `d' = d + J_P M_PP⁻¹ (Q_P − c_P)`
     pub(super) fn reduce_frame<S: Scalar>(&mut self, frame: usize, out: &mut FreeFloating<S>) {

@@ -1,7 +1,7 @@
-//! Control laws with their references.
+//! Control laws together with their references.
 //!
-//! A new law is one file with the type of its gains and its [`ControlLaw`], and a variant of [`Law`] in this file;
-//! `docs/howto/controller.md`, "Add a law to the engine", lists all places.
+//! To add a law, add a file with the type of its gains and its [`ControlLaw`], and a variant of [`Law`] in
+//! this file; `docs/howto/controller.md`, "Add a law to the engine", lists all places.
 
 use super::compliance::Compliance;
 use super::computed_torque::{ComputedTorque, check_frame};
@@ -14,7 +14,7 @@ use super::joint_pid::JointPid;
 use crate::model::Model;
 use crate::reference::{JointReference, TaskReference};
 
-/// A control law with the reference that it tracks. The time of a reference starts with its control.
+/// Control law and the reference that it tracks. The time of a reference starts when its control starts.
 pub enum Law {
     /// Task-space computed torque.
     TaskComputedTorque(Box<ComputedTorque>, TaskReference),
@@ -24,9 +24,9 @@ pub enum Law {
     Pid(JointPid, JointReference),
     /// Compliance of a frame.
     Compliance(Box<Compliance>, TaskReference),
-    /// Commands from outside of the run.
+    /// Law that follows external commands.
     External(Box<External>),
-    /// A user's controller and, if it tracks one, the frame (index) and its reference.
+    /// User-defined controller and, if it tracks a frame, the index and the reference of that frame.
     User(Box<dyn Controller>, Option<(usize, TaskReference)>),
 }
 
@@ -55,7 +55,7 @@ impl Law {
         }
     }
 
-    /// Returns the tracked frame (index) and its reference.
+    /// Returns the tracked frame (index) and its reference, if the law tracks a frame.
     pub fn task(&self) -> Option<(usize, &TaskReference)> {
         match self {
             Self::TaskComputedTorque(law, reference) => Some((law.frame, reference)),
@@ -65,7 +65,7 @@ impl Law {
         }
     }
 
-    /// Returns the reference of the joints.
+    /// Returns the reference of the joints, if the law has one.
     pub fn joint_reference(&self) -> Option<&JointReference> {
         match self {
             Self::JointComputedTorque(_, reference) | Self::Pid(_, reference) => Some(reference),
@@ -73,7 +73,7 @@ impl Law {
         }
     }
 
-    /// Returns the law as one that follows commands from outside of the run, if it is.
+    /// Returns the law if it follows external commands.
     pub fn external(&self) -> Option<&External> {
         match self {
             Self::External(law) => Some(law),
@@ -81,7 +81,7 @@ impl Law {
         }
     }
 
-    /// Returns the law as a mutable one that follows commands from outside of the run, if it is.
+    /// Returns the law as a mutable reference if it follows external commands.
     pub(super) fn external_mut(&mut self) -> Option<&mut External> {
         match self {
             Self::External(law) => Some(law),
@@ -89,7 +89,7 @@ impl Law {
         }
     }
 
-    /// Returns the quantity of the joints that the joint reference commands.
+    /// Returns the joint quantity that the joint reference commands.
     pub fn interface(&self) -> Interface {
         self.control_law().interface()
     }
@@ -99,7 +99,8 @@ impl Law {
         self.control_law().compensates_friction()
     }
 
-    /// Checks that the law and its reference fit a group of joints; `control` is its name in messages.
+    /// Checks that the law and its reference fit a group of joints; `control` is the name of the control in
+    /// messages.
     pub(super) fn check(&self, control: &str, joints: &[usize], model: &Model) -> Result<(), ControlError> {
         self.task().map(|(frame, _)| check_frame(model, frame)).transpose()?;
         self.control_law().check_group(control, joints, model)?;

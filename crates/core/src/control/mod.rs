@@ -1,7 +1,7 @@
 //! Controllers: joint torques from the state of the robot.
 //!
-//! A run has a list of [`Control`]s: each is a [`Law`] on a group of joints during an interval of time. Laws are plain
-//! data; [`Controller`] is the interface for users' own controllers. [`ControllerSet`] runs the list.
+//! A run has a list of [`Control`]s. Each is a [`Law`] for a group of joints during an interval of time. Laws
+//! are plain data; users implement [`Controller`] for their own laws. A [`ControllerSet`] evaluates the list.
 
 mod check;
 mod compliance;

@@ -1,9 +1,9 @@
-//! Input of a user's controller.
+//! Input of a user-defined controller.
 
 use crate::model::Model;
 use crate::reference::TaskSample;
 
-/// State of the robot at a control tick, with the joints to drive and the desired motion.
+/// State of the robot at a control tick, with the joints to drive and the desired motion of the tool.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<'a> {
     /// Time, s.
@@ -12,10 +12,11 @@ pub struct Observation<'a> {
     pub q: &'a [f64],
     /// Velocity, `(nv,)`, m/s and rad/s.
     pub v: &'a [f64],
-    /// The robot.
+    /// Model of the robot.
     pub model: &'a Model,
     /// Indices of the joints to drive, in the order of the torques.
     pub joints: &'a [usize],
-    /// Desired pose and motion of the tool, if the controller has a reference.
+    /// Desired pose and motion of the tool, if the controller has a reference; axes are those of the
+    /// reference sample.
     pub desired: Option<TaskSample<f64>>,
 }

@@ -5,14 +5,14 @@ use crate::spatial::{Real, cholesky_factor, cholesky_solve, dot};
 /// Number of rows of one task: three of position, three of attitude.
 pub(super) const ROWS: usize = 6;
 
-/// Damped pseudo-inverse `J⁺ = Jᵀ (J Jᵀ + Λ²)⁻¹` for `k` tasks of six rows; well-conditioned tasks are not
+/// Damped pseudo-inverse `J⁺ = Jᵀ (J Jᵀ + Λ²)⁻¹` for `k` tasks of six rows. Well-conditioned tasks are not
 /// damped.
 ///
-/// For each task, `1/σ²` is the sum of the six diagonal entries of `(J Jᵀ)⁻¹` in its rows. `σ²` is at most the
-/// square of the smallest singular value of the task's own six rows of `J`; for a single task it is at least a
-/// sixth of that square. If `σ²` is below the task's `λ₀²`, the rows of that task are damped by the difference,
-/// `λ² = λ₀² − σ²`. The null-space projector is always built from the undamped inverse, since a damped one would
-/// disturb the task.
+/// For each task, `1/σ²` is the sum of the six diagonal entries of `(J Jᵀ)⁻¹` in its rows. `σ²` is at most
+/// the square of the smallest singular value of the task's own six rows of `J`; for a single task it is at
+/// least a sixth of that square. If `σ²` is below the task's `λ₀²`, the rows of that task are damped by the
+/// difference, `λ² = λ₀² − σ²`. The null-space projector always uses the undamped inverse, because a
+/// projector from the damped inverse would disturb the task.
 ///
 /// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
 /// the distance from singularity.
@@ -41,7 +41,8 @@ impl<S: Real> PseudoInverse<S> {
         }
     }
 
-    /// Factors `J Jᵀ` of a row-major `(6 k, n)` Jacobian; `damping` contains `λ₀` of each of the `k` tasks.
+    /// Factorizes `J Jᵀ` of a row-major `(6 k, n)` Jacobian; `damping` contains the threshold `λ₀` of each of
+    /// the `k` tasks.
     #[inline(always)]
     pub(super) fn factor(&mut self, jacobian: &[S], n: usize, damping: &[f64]) {
         self.rows = ROWS * damping.len();
@@ -63,7 +64,7 @@ impl<S: Real> PseudoInverse<S> {
             }
             trace += gram[i * rows + i];
         }
-        // the floor keeps the factor of a singular Jacobian finite; otherwise it is below rounding
+        // the floor keeps the factor of a singular Jacobian finite; for other Jacobians it is below rounding
         undamped.copy_from_slice(gram);
         let floor = trace * S::of(1e-14) + S::of(f64::MIN_POSITIVE);
         add_diagonal(undamped, rows, 0..rows, floor);
@@ -90,7 +91,7 @@ impl<S: Real> PseudoInverse<S> {
         }
     }
 
-    /// Computes `out = J⁺ x`, damped; `x` is `(6 k,)`, `out` `(n,)`.
+    /// Computes `out = J⁺ x` with the damped pseudo-inverse; `x` is `(6 k,)` and `out` is `(n,)`.
     #[inline(always)]
     pub(super) fn apply(&mut self, jacobian: &[S], x: &[S], out: &mut [S]) {
         self.x[..self.rows].copy_from_slice(&x[..self.rows]);
@@ -98,13 +99,14 @@ impl<S: Real> PseudoInverse<S> {
         transpose_apply(self.rows, factor, jacobian, &mut self.x, out);
     }
 
-    /// Returns true if a task is damped.
+    /// Returns true if any task is damped.
     #[inline(always)]
     pub(super) fn is_damped(&self) -> bool {
         self.is_damped
     }
 
-    /// Projects joint rates `y`, `(n,)`, on the null space of `J`: `(1 − J⁺ J) y`, undamped.
+    /// Computes the projection `(1 − J⁺ J) y` of joint rates `y`, `(n,)`, onto the null space of `J`, without
+    /// damping.
     #[inline(always)]
     pub(super) fn free(&mut self, jacobian: &[S], y: &[S], free: &mut [S]) {
         multiply(self.rows, jacobian, y, &mut self.x);
@@ -112,9 +114,9 @@ impl<S: Real> PseudoInverse<S> {
         free.iter_mut().zip(y).for_each(|(free, y)| *free = *y - *free);
     }
 
-    /// Computes `D y = (J₀⁺ − J⁺) J y` for joint rates `y`, `(n,)`, with the undamped inverse `J₀⁺`: the part that the
-    /// damping suppresses, zero without damping. With damping, `achieved` receives `J⁺ J y`; otherwise it is not
-    /// written.
+    /// Computes `D y = (J₀⁺ − J⁺) J y` for joint rates `y`, `(n,)`, with the undamped inverse `J₀⁺`. This is
+    /// the part of `y` that the damping suppresses, and zero without damping. With damping, `achieved`
+    /// receives `J⁺ J y`; otherwise `achieved` is not written.
     #[inline(always)]
     pub(super) fn suppressed(&mut self, jacobian: &[S], y: &[S], achieved: &mut [S], suppressed: &mut [S]) {
         if !self.is_damped {
@@ -143,7 +145,7 @@ fn add_diagonal<S: Real>(a: &mut [S], rows: usize, at: std::ops::Range<usize>, x
     }
 }
 
-/// Computes `out = Jᵀ A⁻¹ x` with the factor of `A`; overwrites `x`.
+/// Computes `out = Jᵀ A⁻¹ x` with the factor of `A`, and overwrites `x`.
 #[inline(always)]
 fn transpose_apply<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &mut [S], out: &mut [S]) {
     match rows {
@@ -164,7 +166,7 @@ fn transpose_apply_rows<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &
     }
 }
 
-/// Returns `Σ (A⁻¹)_jj = Σ (L⁻¹)_ij²/D_i` over some columns `j`, with the factors of `A`; `column` is
+/// Returns `Σ (A⁻¹)_jj = Σ (L⁻¹)_ij²/D_i` over the given columns `j`, with the factors of `A`; `column` is
 /// workspace.
 #[inline(always)]
 fn inverse_trace<S: Real>(factor: &[S], rows: usize, columns: std::ops::Range<usize>, column: &mut [S]) -> S {

@@ -27,22 +27,22 @@ pub enum ReferenceError {
     )]
     Ramp { value: f64 },
     #[error(
-        "the limit {name} of the reference is {value}; it must be positive, or be omitted for no limit",
+        "the limit {name} of the reference is {value}; it must be positive; omit it for no limit",
         value = short(*value)
     )]
     LimitNotPositive { name: String, value: f64 },
     #[error(
-        "no limit applies to the motion of the reference, so its duration is undetermined; give a duration or \
-         times, as a reference that does not move requires, or limit a rate or an acceleration of its motion"
+        "none of the given limits applies to the motion of the reference, so its duration is undetermined; give a duration or \
+         times, or limit a rate or acceleration of the motion"
     )]
     NoLimit,
     #[error(
-        "points {point} and {next} of the reference coincide, so limits do not determine the time between \
-         them; remove one, or give times",
+        "points {point} and {next} of the reference coincide, so the limits do not determine the time between \
+         them; remove one of the points, or give times",
         next = point + 1
     )]
     SamePoint { point: usize },
-    #[error("the axis of the reference has length {length}; give it a direction", length = short(*length))]
+    #[error("the axis of the reference has length {length}; it must be at least 1e-9", length = short(*length))]
     NoAxis { length: f64 },
     #[error("the reference moves joint {joint}, but the robot has joints 0 to {last}", last = count.saturating_sub(1))]
     NoJoint { joint: usize, count: usize },
@@ -60,10 +60,10 @@ pub enum ReferenceError {
     Orbit(#[from] OrbitError),
 }
 
-/// Checks that numbers are finite and so small that products of several such numbers are finite.
+/// Checks that numbers are finite and small enough that products of several such numbers are finite.
 ///
 /// # Errors
-/// [`ReferenceError::NotFinite`].
+/// [`ReferenceError::NotFinite`] for the first invalid number.
 pub(super) fn check_numbers<'a>(
     name: &'static str,
     numbers: impl IntoIterator<Item = &'a f64>,
@@ -74,5 +74,5 @@ pub(super) fn check_numbers<'a>(
     }
 }
 
-/// Shortest duration of a motion, s; rates overflow for shorter ones.
+/// Shortest accepted duration of a motion, s; rates of shorter motions overflow.
 pub(super) const SHORTEST: f64 = 1e-12;

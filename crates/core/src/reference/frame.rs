@@ -7,24 +7,24 @@ use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::{Matrix3, Vector3};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Frame that gives the axes and the origin of a path.
+/// Frame in which a path is given: it defines the axes and the origin.
 #[derive(Clone, Debug, Default)]
 pub enum ReferenceFrame {
     /// W: inertial axes, origin on the reference orbit.
     #[default]
     World,
-    /// L, the local orbital frame (Hill) of an orbit, with its origin at the origin of W.
+    /// Local orbital frame L (Hill) of an orbit, with its origin at the origin of W.
     Lvlh(Arc<dyn Orbit>),
-    /// The base of the robot; the path is relative to it.
+    /// Base of the robot, relative to which the path is given.
     Base,
-    /// The body frame of a second spacecraft.
+    /// Body frame of a second spacecraft in free motion.
     Target(Target),
-    /// A frame of another system of the same world.
+    /// Frame of another system of the same world.
     System(MovingFrame),
 }
 
-/// Frame of another system of a world. The simulation sets its motion at each instant at which it evaluates references;
-/// copies share it.
+/// Frame of another system of a world. Before each evaluation of references, the simulation sets the motion
+/// of the frame, which all copies share.
 #[derive(Clone, Debug)]
 pub struct MovingFrame {
     /// Number of the system in the world.
@@ -35,7 +35,7 @@ pub struct MovingFrame {
 }
 
 impl MovingFrame {
-    /// Returns a frame of a system, at the origin of W until its motion is set.
+    /// Creates the frame of a system; it is at the origin of W until its motion is set.
     pub fn new(system: usize, frame: usize) -> Self {
         let rest = TaskSample::at_rest(Mat3::identity(), Vec3::zero());
         Self { system, frame, motion: Arc::new(Mutex::new(rest)) }
@@ -52,7 +52,7 @@ impl MovingFrame {
     }
 }
 
-/// Force-free spacecraft with constant velocity and angular velocity.
+/// Force-free spacecraft with constant velocity and constant angular velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Target {
     start: Hold,
@@ -60,11 +60,12 @@ pub struct Target {
 }
 
 impl Target {
-    /// Returns a target with the pose `(rot_wt, pos_w)`, m, at time zero of the simulation, with `velocity`,
-    /// m/s, and `spin`, rad/s, both in W axes.
+    /// Creates a target with the pose `(rot_wt, pos_w)`, m, at simulation time zero, and with `velocity`,
+    /// m/s, and angular velocity `spin`, rad/s, in W axes.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`], [`ReferenceError::NotARotation`].
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite; [`ReferenceError::NotARotation`] for
+    /// `rot_wt`.
     pub fn new(
         rot_wt: Matrix3<f64>,
         pos_w: Vector3<f64>,
@@ -74,10 +75,11 @@ impl Target {
         Self::at(Hold::new(rot_wt, pos_w)?, velocity, spin)
     }
 
-    /// Returns a target as [`Target::new`] does, from a pose.
+    /// Creates a target with the pose `start` at simulation time zero; other arguments as for
+    /// [`Target::new`].
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`].
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite.
     pub fn at(start: Hold, velocity: Vector3<f64>, spin: Vector3<f64>) -> Result<Self, ReferenceError> {
         check_numbers("velocity", &velocity)?;
         check_numbers("spin", &spin)?;
@@ -85,7 +87,7 @@ impl Target {
         Ok(Self { start, velocity })
     }
 
-    /// Returns the motion of the target at `t`, s of simulation.
+    /// Returns the motion of the target in W at `t`, s of simulation.
     pub fn sample(&self, t: f64) -> TaskSample<f64> {
         TaskSample {
             rot_wd: exp_so3(self.velocity.angular * t).matrix() * self.start.rot_fd,
@@ -102,7 +104,7 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
     let lvlh = orbit.lvlh(t)?;
     let (r, v, rate) = (&state.position, &state.velocity, &lvlh.rate_l);
     let radius = r.norm();
-    // d/dt (h/r²) = ẑ·(r × a)/r² − 2 (h/r²) ṙ/r
+    // rate of the z component of the angular velocity: d/dt (h/r²) = ẑ·(r × a)/r² − 2 (h/r²) ṙ/r
     let z = lvlh.rot_il.column(2);
     let climb = r.dot(v) / radius;
     let along_z = z.dot(&r.cross(&state.acceleration)) / (radius * radius) - 2.0 * rate.z * climb / radius;
@@ -117,10 +119,11 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
     })
 }
 
-/// Returns the rate of the x component of L's angular velocity. It depends on the jerk of the orbit and is
-/// computed by finite differences over 1e-3 rad of the orbit, or less near the ends of its time span.
+/// Returns the time derivative of the x component of L's angular velocity. Because it depends on the jerk of
+/// the orbit, it is computed by finite differences with steps of 1e-3 rad along the orbit, or less near the
+/// ends of its time span.
 ///
-/// `ẋ = [8 (x₁ − x₋₁) − (x₂ − x₋₂)]/12h`; at an end `ẋ = ±(4 x₁ − x₂ − 3 x₀)/2h`.
+/// `ẋ = [8 (x₁ − x₋₁) − (x₂ − x₋₂)]/12h`, and at an end `ẋ = ±(4 x₁ − x₂ − 3 x₀)/2h`.
 fn turn_of_plane(orbit: &dyn Orbit, t: f64, rate: &Vector3<f64>) -> f64 {
     let x = |dt: f64| orbit.lvlh(t + dt).ok().map(|there| there.rate_l.x);
     let steps = || (0..12).map(|halvings| 1e-3 / rate.norm() * 0.5_f64.powi(halvings));

@@ -13,10 +13,11 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// Returns a reference at the pose `(rot_fd, pos_f)`, m, in the frame of the reference.
+    /// Creates a reference at the constant pose `(rot_fd, pos_f)`, m, in the frame of the reference.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`], [`ReferenceError::NotARotation`].
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite; [`ReferenceError::NotARotation`] for
+    /// `rot_fd`.
     pub fn new(rot_fd: Matrix3<f64>, pos_f: Vector3<f64>) -> Result<Self, ReferenceError> {
         check_numbers("pose", rot_fd.iter().chain(&pos_f))?;
         let error = (rot_fd.transpose() * rot_fd - Matrix3::identity()).amax();

@@ -5,7 +5,7 @@ use super::error::check_numbers;
 use std::fmt::Debug;
 use std::sync::Arc;
 
-/// Sample of a joint reference, `(n,)` each: positions, rates and accelerations.
+/// Sample of a joint reference: positions, rates and accelerations, each `(n,)`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct JointSample {
     /// Positions, rad or m.
@@ -17,7 +17,7 @@ pub struct JointSample {
 }
 
 impl JointSample {
-    /// Returns a sample of zeros for `n` joints.
+    /// Creates a sample of zeros for `n` joints.
     pub fn new(n: usize) -> Self {
         Self { q: vec![0.0; n], v: vec![0.0; n], a: vec![0.0; n] }
     }
@@ -28,19 +28,19 @@ pub trait JointPath: Send + Sync + Debug {
     /// Returns the number of joints.
     fn count(&self) -> usize;
 
-    /// Computes the desired motion at `t`, s since the start of the path; outside `0..duration` the first or
-    /// last positions are held.
+    /// Computes the desired motion at `t`, s since the start of the path. Before the start the first
+    /// positions are held, after the end the last positions.
     fn sample(&self, t: f64, out: &mut JointSample);
 
-    /// Returns the time at which the path comes to rest, s: 0 if it never moves, infinity if it never comes
-    /// to rest.
+    /// Returns the time at which the path comes to rest, s. It is 0 for a path that never moves and infinity
+    /// for a path that never comes to rest.
     fn duration(&self) -> f64;
 }
 
-/// Shared joint path.
+/// Joint path that several owners can share.
 pub type JointReference = Arc<dyn JointPath>;
 
-/// Returns the joint, as an index into `q`, whose position differs most from the start of `path`, and this
+/// Returns the joint, as an index into `q`, whose position differs most from the start of `path`, and that
 /// difference, rad or m.
 pub fn joint_start_offset(path: &dyn JointPath, q: &[f64]) -> (usize, f64) {
     let mut first = JointSample::new(path.count());
@@ -56,10 +56,10 @@ pub struct JointHold {
 }
 
 impl JointHold {
-    /// Returns a reference at `q`, rad or m.
+    /// Creates a reference at the constant positions `q`, rad or m.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`].
+    /// [`ReferenceError::NotFinite`] for positions that are not finite.
     pub fn new(q: Vec<f64>) -> Result<Self, ReferenceError> {
         check_numbers("q", &q)?;
         Ok(Self { q })

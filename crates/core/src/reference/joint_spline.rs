@@ -5,25 +5,25 @@ use super::pose_spline::rest_times;
 use super::{JointPath, JointSample, RateLimit, ReferenceError, Timing};
 use crate::spatial::{Ends, Spline};
 
-/// Quintic splines through joint positions, which are waypoints or samples of a motion. All joints reach a point at the
-/// same time.
+/// Quintic splines through joint positions, which are waypoints or samples of a motion. All joints reach a
+/// point at the same time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointSpline {
     spline: Spline,
 }
 
 impl JointSpline {
-    /// Returns the motion from rest to rest through `points` (K, n), rad or m, with or without stops at the
+    /// Creates the motion from rest to rest through `points` (K, n), rad or m, with or without stops at the
     /// inner points.
     ///
-    /// If limits are given, one per joint, they determine the times. With stops, each piece takes the shortest time
-    /// that respects them; without stops, all pieces are scaled by the same factor, so that the whole path respects
-    /// them.
+    /// Limits, if given one per joint, determine the times. With stops, each piece takes the shortest time
+    /// that respects the limits. Without stops, the times of all pieces are scaled by a common factor such
+    /// that the whole path respects the limits.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two points, wrong lengths, numbers that are not finite, times that do not
-    /// increase, limits that are not positive or do not determine the times, or, with limits, equal neighbouring
-    /// points.
+    /// [`ReferenceError`] for fewer than two points, wrong lengths, numbers that are not finite, times that
+    /// do not increase, and limits that are not positive or do not determine the times; with limits, also for
+    /// successive points that coincide.
     pub fn waypoints(
         count: usize,
         points: &[f64],
@@ -61,8 +61,8 @@ impl JointSpline {
         }
     }
 
-    /// Returns a motion that starts at `start` (n,) and moves one joint after the other. Each of `moves` moves one
-    /// joint to a position, rad or m, from rest to rest, while the other joints are held.
+    /// Creates a motion that starts at `start` (n,) and moves one joint after the other. Each element of
+    /// `moves` moves a joint to a position, rad or m, from rest to rest, while the other joints are held.
     ///
     /// # Errors
     /// The errors of [`JointSpline::waypoints`]; [`ReferenceError::NoJoint`] for a joint that does not exist.
@@ -79,12 +79,13 @@ impl JointSpline {
         Self::waypoints(start.len(), &points, timing, true)
     }
 
-    /// Returns the spline through samples of a motion at `times`, s, of `positions` (K, n), with their `rates` (K, n)
-    /// if known. Outside `times`, the first or last positions are held.
+    /// Creates the spline through samples of a motion: `positions` (K, n) at `times`, s, with their `rates`
+    /// (K, n) if known. Before the first time the first positions are held, after the last time the last
+    /// positions.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, or times that do not
-    /// increase.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, or times
+    /// that do not increase.
     pub fn sampled(
         count: usize,
         times: &[f64],

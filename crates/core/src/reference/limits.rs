@@ -1,8 +1,8 @@
-//! Limits of rates and accelerations of a motion.
+//! Limits of the rates and accelerations of a motion.
 
 use super::{JointPath, JointSample, ReferenceError, TaskPath};
 
-/// Limits of a rate and of its derivative; infinity means no limit.
+/// Limits of a rate and of its time derivative; infinity means no limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RateLimit {
     /// Largest rate, m/s or rad/s.
@@ -11,14 +11,16 @@ pub struct RateLimit {
     pub acceleration: f64,
 }
 
-/// Largest rate of the quintic multiplied by the duration, `15/8`; it occurs at half the duration.
+/// Largest rate of the quintic over a unit distance, multiplied by the duration: `15/8`, at half the
+/// duration.
 const PEAK_RATE: f64 = 1.875;
 
-/// Largest acceleration of the quintic multiplied by the squared duration, `10/√3`; it occurs at `u = ½ ± √3/6`.
+/// Largest acceleration of the quintic over a unit distance, multiplied by the squared duration: `10/√3`, at
+/// `u = ½ ± √3/6`.
 const PEAK_ACCELERATION: f64 = 5.773_502_691_896_258;
 
-/// Number of instants per piece at which peaks are searched. Peaks between these instants exceed the found ones by a
-/// fraction of less than [`MARGIN`], which is added to the result.
+/// Number of instants per piece at which peaks are searched. Peaks between these instants exceed the peaks
+/// found by a fraction of less than [`MARGIN`], by which the result is increased.
 const LOOKS: usize = 400;
 const MARGIN: f64 = 1e-4;
 
@@ -26,16 +28,17 @@ impl RateLimit {
     /// No limit on rate and acceleration.
     pub const NONE: Self = Self { rate: f64::INFINITY, acceleration: f64::INFINITY };
 
-    /// Returns the shortest time, s, of the quintic over `distance`: `max(15/8 d/v, √(10/√3 d/a))`.
+    /// Returns the shortest duration, s, of the quintic over the distance `d`: `max(15/8 d/v, √(10/√3 d/a))`
+    /// for the limits `v` and `a`.
     pub fn time_for(&self, distance: f64) -> f64 {
         (PEAK_RATE * distance / self.rate).max((PEAK_ACCELERATION * distance / self.acceleration).sqrt())
     }
 
-    /// Checks that both limits are positive, possibly infinite; `names` are those of the rate and the acceleration in
-    /// messages.
+    /// Checks that both limits are positive; they may be infinite. `names` are the names that messages use
+    /// for the limits of the rate and of the acceleration.
     ///
     /// # Errors
-    /// [`ReferenceError::LimitNotPositive`].
+    /// [`ReferenceError::LimitNotPositive`] for the first invalid limit.
     fn check(&self, names: [&str; 2]) -> Result<(), ReferenceError> {
         let mut limits = names.into_iter().zip([self.rate, self.acceleration]);
         match limits.find(|(_, x)| x.is_nan() || *x <= 0.0) {
@@ -44,8 +47,8 @@ impl RateLimit {
         }
     }
 
-    /// Returns the factor by which the duration of a motion with the peaks `rate` and `acceleration` must grow. A
-    /// factor `k` divides rates by `k` and accelerations by `k²`.
+    /// Returns the factor by which the duration of a motion with the peak values `rate` and `acceleration`
+    /// must increase. A factor `k` divides rates by `k` and accelerations by `k²`.
     fn stretch(&self, rate: f64, acceleration: f64) -> f64 {
         (rate / self.rate).max((acceleration / self.acceleration).sqrt())
     }
@@ -64,14 +67,14 @@ impl TaskLimits {
     /// Checks that all four limits are positive.
     ///
     /// # Errors
-    /// [`ReferenceError::LimitNotPositive`].
+    /// [`ReferenceError::LimitNotPositive`] for the first invalid limit.
     pub(super) fn check(&self) -> Result<(), ReferenceError> {
         self.linear.check(["speed", "acceleration"])?;
         self.angular.check(["angular_speed", "angular_acceleration"])
     }
 
-    /// Returns the factor by which the duration of `path`, smooth between neighbouring `times`, must grow to
-    /// respect the limits.
+    /// Returns the factor by which the duration of `path` must increase to respect the limits. The path is
+    /// smooth between successive `times`, s.
     pub fn stretch(&self, path: &dyn TaskPath, times: &[f64]) -> f64 {
         let peak = instants(times).map(|t| path.sample(t)).fold(0.0, |peak: f64, now| {
             let (v, a) = (now.velocity, now.acceleration);
@@ -85,7 +88,7 @@ impl TaskLimits {
 /// Checks that the limits of all joints are positive.
 ///
 /// # Errors
-/// [`ReferenceError::LimitNotPositive`].
+/// [`ReferenceError::LimitNotPositive`] for the first invalid limit.
 pub(super) fn check_joint_limits(limits: &[RateLimit]) -> Result<(), ReferenceError> {
     let check = |(j, limit): (usize, &RateLimit)| {
         limit.check([format!("speed[{j}]").as_str(), format!("acceleration[{j}]").as_str()])
@@ -93,8 +96,8 @@ pub(super) fn check_joint_limits(limits: &[RateLimit]) -> Result<(), ReferenceEr
     limits.iter().enumerate().try_for_each(check)
 }
 
-/// Returns the factor by which the duration of `path`, smooth between neighbouring `times`, must grow for all
-/// joints to respect their limits.
+/// Returns the factor by which the duration of `path` must increase so that all joints respect their limits.
+/// The path is smooth between successive `times`, s.
 pub(super) fn joint_stretch(limits: &[RateLimit], path: &dyn JointPath, times: &[f64]) -> f64 {
     let mut now = JointSample::new(path.count());
     let mut peak = 0.0_f64;
@@ -107,7 +110,7 @@ pub(super) fn joint_stretch(limits: &[RateLimit], path: &dyn JointPath, times: &
     peak * (1.0 + MARGIN)
 }
 
-/// Returns the instants in each piece between neighbouring `times`.
+/// Returns the instants, s, at which each piece between successive `times` is evaluated.
 fn instants(times: &[f64]) -> impl Iterator<Item = f64> {
     let piece = |ends: &[f64]| {
         let (from, length) = (ends[0], ends[1] - ends[0]);
@@ -116,11 +119,11 @@ fn instants(times: &[f64]) -> impl Iterator<Item = f64> {
     times.windows(2).flat_map(piece)
 }
 
-/// Timing of a path.
+/// Timing of a path: given times, or limits that determine the times.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Timing<T, L> {
     /// Given times, s: a duration, or the time of each point.
     Given(T),
-    /// The shortest times that respect the limits.
+    /// Limits; the times are the shortest ones that respect them.
     Limits(L),
 }

@@ -3,7 +3,8 @@
 use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3, log_rotation};
 
-/// Straight line `p(t) = p₀ + s d`, `R(t) = exp(s θ) R₀`, with the attitude on the geodesic of SO(3).
+/// Straight line `p(t) = p₀ + s d` with the attitude `R(t) = exp(s θ) R₀` on a geodesic of SO(3), where
+/// `s(t)` is a time law.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     start: Hold,
@@ -14,18 +15,19 @@ pub struct Line {
 }
 
 impl Line {
-    /// Returns the line from `start` to `end` with the time law `law`; the attitude rotates by the smaller
+    /// Creates the line from `start` to `end` with the time law `law`. The attitude rotates by the smaller
     /// angle.
     pub fn new(start: Hold, end: &Hold, law: TimeLaw) -> Self {
         let turn = log_rotation(&(end.rot_fd * start.rot_fd.transpose()));
         Self { displacement: end.pos_f - start.pos_f, turn, start, law }
     }
 
-    /// Returns the line from `start` to `end`, from rest to rest, in the shortest time that respects
+    /// Creates the line from `start` to `end`, from rest to rest, in the shortest time that respects
     /// `limits`.
     ///
     /// # Errors
-    /// [`ReferenceError::LimitNotPositive`]; [`ReferenceError::NoLimit`] if the limits determine no time.
+    /// [`ReferenceError::LimitNotPositive`] for an invalid limit; [`ReferenceError::NoLimit`] if the limits
+    /// do not determine a time.
     pub fn within(start: Hold, end: &Hold, limits: &TaskLimits) -> Result<Self, ReferenceError> {
         limits.check()?;
         let mut line = Self::new(start, end, TimeLaw::quintic(1.0)?);

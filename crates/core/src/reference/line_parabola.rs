@@ -1,14 +1,15 @@
-//! Line with a lateral parabola, the trajectory of the OnOrbitROS paper.
+//! Straight line with a lateral parabola, the trajectory of the OnOrbitROS paper.
 
 use super::error::check_numbers;
 use super::{Hold, ReferenceError, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Motion, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// Line with a parabola, `p(t) = p₀ + s d + s(1 − s) h`, with constant attitude; `s` is the quintic from 0 to
-/// 1.
+/// Line with a lateral parabola, `p(t) = p₀ + s d + s(1 − s) h`, with constant attitude, where `s(t)` is the
+/// quintic time law from 0 to 1.
 ///
-/// The motion starts and ends at rest with zero acceleration; the end poses are held before and after.
+/// The motion starts and ends at rest with zero acceleration. The start pose is held before the motion and
+/// the end pose after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineParabola {
     start: Hold,
@@ -18,9 +19,9 @@ pub struct LineParabola {
 }
 
 impl LineParabola {
-    /// Returns the motion from the pose `(rot_fd, pos_f)` by `displacement` (m) in `duration` (s). `height` (m) is the
-    /// coefficient of the parabola, a quarter of which is reached halfway. All vectors are in the axes of the frame of
-    /// the reference.
+    /// Creates the motion from the pose `(rot_fd, pos_f)` by `displacement` (m) in `duration` (s). `height`
+    /// (m) is the coefficient `h` of the parabola, whose lateral offset reaches a quarter of `h` halfway. All
+    /// vectors are in the axes of the frame of the reference.
     ///
     /// # Errors
     /// [`ReferenceError`] for an invalid pose, numbers that are not finite, or a duration that is not
@@ -35,7 +36,7 @@ impl LineParabola {
         Self::from_pose(Hold::new(rot_fd, pos_f)?, displacement, height, duration)
     }
 
-    /// Returns the motion as [`LineParabola::new`] does, from a pose.
+    /// Creates the motion from the pose `start`; other arguments as for [`LineParabola::new`].
     ///
     /// # Errors
     /// The errors of [`LineParabola::new`].

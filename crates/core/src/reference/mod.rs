@@ -1,9 +1,9 @@
 //! Reference motions of a tool or of joints: consistent positions, velocities and accelerations as functions
 //! of time.
 //!
-//! References are evaluated in `f64`, once per instant, since all lanes share the time, and then
+//! References are evaluated in `f64` once per instant, because all lanes share the time, and are then
 //! [copied](TaskSample::lift) to the lanes. A path of a frame is a [`TaskPath`], given in one of five
-//! [frames](ReferenceFrame); a path of joints is a [`JointPath`].
+//! [frames](ReferenceFrame). A path of joints is a [`JointPath`].
 
 mod error;
 mod frame;

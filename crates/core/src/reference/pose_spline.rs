@@ -11,15 +11,17 @@ pub struct PoseSpline {
 }
 
 impl PoseSpline {
-    /// Returns the motion from rest to rest through `poses`, with or without stops at the inner poses.
+    /// Creates the motion from rest to rest through `poses`, with or without stops at the inner poses.
     ///
-    /// With stops, each piece is a straight line with the attitude on its geodesic. If limits are given, they determine
-    /// the times. With stops, each piece takes the shortest time that respects them; without stops, all pieces are
-    /// scaled by the same factor, so that the whole path respects them.
+    /// With stops, each piece is a straight line with the attitude on a geodesic. If limits are given, they
+    /// determine the times: with stops, each piece takes the shortest time that respects the limits; without
+    /// stops, the times of all pieces are scaled by a common factor such that the whole path respects the
+    /// limits.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two poses, times that do not increase, neighbouring attitudes half a turn
-    /// apart, limits that are not positive or do not determine the times, or, with limits, equal neighbouring poses.
+    /// [`ReferenceError`] for fewer than two poses, times that do not increase, successive attitudes half a
+    /// turn apart, and limits that are not positive or do not determine the times; with limits, also for
+    /// successive poses that coincide.
     pub fn waypoints(
         poses: &[Hold],
         timing: &Timing<Vec<f64>, TaskLimits>,
@@ -54,12 +56,13 @@ impl PoseSpline {
         }
     }
 
-    /// Returns the spline through samples of a motion at `times`, s, with their `velocities` (K, 6) if known: linear,
-    /// then angular, in the axes of the poses. Outside `times`, the first or last pose is held.
+    /// Creates the spline through samples of a motion at `times`, s. Their `velocities` (K, 6), if known, are
+    /// linear, then angular, in the axes of the poses. Before the first time the first pose is held, after
+    /// the last time the last pose.
     ///
     /// # Errors
-    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, times that do not
-    /// increase, or neighbouring attitudes half a turn apart.
+    /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, times that
+    /// do not increase, or successive attitudes half a turn apart.
     pub fn sampled(
         times: &[f64],
         poses: &[Hold],
@@ -85,7 +88,7 @@ impl PoseSpline {
     }
 }
 
-/// Returns the times of waypoints, from zero on; `time_for` returns the duration of a piece.
+/// Returns the times of the waypoints, starting at zero; `time_for` returns the duration of each piece.
 pub(super) fn rest_times<P>(
     points: &[P],
     time_for: impl Fn(&P, &P) -> f64,

@@ -2,13 +2,13 @@
 
 use crate::spatial::{Mat3, Motion, Real, Vec3, pose_rows};
 
-/// Desired pose of a frame D, and velocity and acceleration at its origin, in the axes of the frame in which the
+/// Desired pose of a frame D, with the velocity and acceleration at its origin, in the axes in which the
 /// reference is given (W by default).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskSample<S> {
     /// Rotation from D axes to W axes.
     pub rot_wd: Mat3<S>,
-    /// Origin, m.
+    /// Position of the origin, m.
     pub pos_w: Vec3<S>,
     /// Velocity, m/s and rad/s.
     pub velocity: Motion<S>,
@@ -25,7 +25,7 @@ impl<S: Real> TaskSample<S> {
 }
 
 impl TaskSample<f64> {
-    /// Returns the sample in every lane.
+    /// Returns the sample with its numbers in every lane.
     #[inline(always)]
     pub fn lift<S: Real>(&self) -> TaskSample<S> {
         let motion = |m: &Motion<f64>| Motion::new(Vec3::of(&m.linear), Vec3::of(&m.angular));
@@ -37,10 +37,11 @@ impl TaskSample<f64> {
         }
     }
 
-    /// Returns the motion of a frame that moves as `inner` relative to a frame that moves as `self`.
+    /// Returns the motion of a frame whose motion relative to the frame of `self` is `inner`.
     ///
     /// `p = p_f + R x`, `v = v_f + ω × Rx + R ẋ`, `a = a_f + α × Rx + ω × (ω × Rx) + 2 ω × R ẋ + R ẍ`;
-    /// rates `ω + R ω'`, `α + ω × R ω' + R α'`.
+    /// angular velocity `ω + R ω'` and angular acceleration `α + ω × R ω' + R α'`, where `x` and `ω'` belong
+    /// to `inner`.
     #[must_use]
     pub fn carry(&self, inner: &Self) -> Self {
         let (r, w, alpha) = (&self.rot_wd, self.velocity.angular, self.acceleration.angular);
@@ -61,7 +62,7 @@ impl TaskSample<f64> {
         }
     }
 
-    /// Returns the pose as a row-major `(4, 4)` matrix.
+    /// Returns the pose as a homogeneous `(4, 4)` matrix, row major.
     pub fn pose_rows(&self) -> [f64; 16] {
         pose_rows(&self.rot_wd, self.pos_w)
     }

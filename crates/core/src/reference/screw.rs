@@ -5,9 +5,11 @@ use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw, Tim
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3};
 use nalgebra::Vector3;
 
-/// Screw motion `p(t) = c + exp(s θ u)(p₀ − c) + s d u`, with `R(t) = exp(s θ u) R₀` or constant attitude.
+/// Screw motion `p(t) = c + exp(s θ u)(p₀ − c) + s d u`, with `R(t) = exp(s θ u) R₀` or constant attitude,
+/// where `s(t)` is a time law.
 ///
-/// With rotating attitude the motion is the exponential of a twist on SE(3); without advance the path is a circle.
+/// If the attitude rotates, the motion is the exponential of a twist on SE(3). Without advance `d`, the path
+/// is a circle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Screw {
     start: Hold,
@@ -20,12 +22,13 @@ pub struct Screw {
 }
 
 impl Screw {
-    /// Returns the motion from `start` about the line through `center` (m) along `axis` (length 1e-9 or more) by `angle` (rad,
-    /// right-handed, any size) that also advances by `advance` (m) along the axis. The attitude rotates with the motion
-    /// if `turns` is true, and is constant otherwise.
+    /// Creates the motion from `start` about the line through `center` (m) along `axis` (length 1e-9 or
+    /// more), by `angle` (rad, right-handed, of any magnitude) and, along the axis, by `advance` (m). The
+    /// attitude rotates with the motion if `turns` is true; otherwise it is constant.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`], [`ReferenceError::NoAxis`].
+    /// [`ReferenceError::NotFinite`] for numbers that are not finite; [`ReferenceError::NoAxis`] for too
+    /// short an axis.
     pub fn new(
         start: Hold,
         center: Vector3<f64>,
@@ -47,8 +50,8 @@ impl Screw {
         Ok(Self { start, center: center.into(), axis, angle, advance, turns, law })
     }
 
-    /// Returns the motion as [`Screw::new`] does, in a given duration, s, or in the shortest time that respects limits.
-    /// `ramp` is that of [`TimeLaw::ramped`], or `None` for the quintic.
+    /// Creates the motion of [`Screw::new`] with a given duration, s, or with the shortest duration that
+    /// respects limits. `ramp` is an argument of [`TimeLaw::ramped`]; `None` selects the quintic time law.
     ///
     /// # Errors
     /// The errors of [`Screw::new`] and of the constructors of [`TimeLaw`].
@@ -71,7 +74,7 @@ impl Screw {
         Ok(screw)
     }
 
-    /// Returns the same path with another time law.
+    /// Returns the same path with a different time law.
     #[must_use]
     pub fn with_law(&self, law: TimeLaw) -> Self {
         Self { law, ..self.clone() }

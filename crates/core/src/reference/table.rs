@@ -4,10 +4,11 @@ use super::{Hold, JointPath, JointSample, ReferenceError, TaskReference};
 use nalgebra::{Matrix4, Vector4};
 
 impl Hold {
-    /// Returns poses from row-major `(4, 4)` matrices.
+    /// Converts row-major homogeneous `(4, 4)` matrices to poses.
     ///
     /// # Errors
-    /// [`ReferenceError::LastRow`] for a last row other than 0, 0, 0, 1, and the errors of [`Hold::new`].
+    /// [`ReferenceError::LastRow`] for a last row that differs from 0, 0, 0, 1, and the errors of
+    /// [`Hold::new`].
     pub fn from_rows(rows: &[[f64; 16]]) -> Result<Vec<Self>, ReferenceError> {
         let pose = |row: &[f64; 16]| {
             let pose = Matrix4::from_row_slice(row);
@@ -21,11 +22,12 @@ impl Hold {
     }
 }
 
-/// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6), in W axes, or in
-/// the axes of the frame of the reference if `in_own_frame` is true.
+/// Samples a reference at many `times` (T,), s: poses (T, 4, 4), velocities and accelerations (T, 6). They
+/// are in W axes, or in the axes of the reference's frame if `in_own_frame` is true.
 ///
 /// # Errors
-/// [`ReferenceError::WrongLength`] and the errors of [`TaskReference::sample`]. Rows before the error are written.
+/// [`ReferenceError::WrongLength`] for outputs of the wrong length, and the errors of
+/// [`TaskReference::sample`]. Rows before the error are written.
 pub fn task_table(
     reference: &TaskReference,
     in_own_frame: bool,
@@ -52,7 +54,7 @@ pub fn task_table(
 /// Samples a joint path at many `times` (T,), s: positions, rates and accelerations (T, n).
 ///
 /// # Errors
-/// [`ReferenceError::WrongLength`].
+/// [`ReferenceError::WrongLength`] for outputs of the wrong length.
 pub fn joint_table(
     path: &dyn JointPath,
     times: &[f64],
@@ -72,7 +74,7 @@ pub fn joint_table(
     Ok(())
 }
 
-/// Returns an error for an output of the wrong length.
+/// Returns an error if an output has the wrong length.
 fn check_room(name: &'static str, expected: usize, out: &[f64]) -> Result<(), ReferenceError> {
     let got = out.len();
     if got == expected { Ok(()) } else { Err(ReferenceError::WrongLength { name, expected, got }) }

@@ -15,18 +15,19 @@ pub struct TaskReference {
 }
 
 impl<P: TaskPath + 'static> From<P> for TaskReference {
-    /// Returns a reference in W.
+    /// Creates a reference whose path is given in W.
     fn from(path: P) -> Self {
         Self { path: Arc::new(path), frame: ReferenceFrame::World }
     }
 }
 
 impl TaskReference {
-    /// Returns the desired motion at `t`, s of simulation, on a path that starts at `start`: in W axes, or in
-    /// those of the base if [`TaskReference::is_relative_to_base`]. A frame of another system has its present motion.
+    /// Returns the desired motion at `t`, s of simulation, on a path that starts at `start`, s. It is in W
+    /// axes, or in base axes if [`TaskReference::is_relative_to_base`]. For a frame of another system, the
+    /// present motion of that frame is used.
     ///
     /// # Errors
-    /// [`ReferenceError::Orbit`] if L is not defined at `t`.
+    /// [`ReferenceError::Orbit`] if the local orbital frame L is not defined at `t`.
     pub fn sample(&self, t: f64, start: f64) -> Result<TaskSample<f64>, ReferenceError> {
         let inner = self.path.sample(t - start);
         Ok(match &self.frame {
@@ -42,7 +43,7 @@ impl TaskReference {
         matches!(self.frame, ReferenceFrame::Base)
     }
 
-    /// Returns the frame of another system in which the reference is given, if it is.
+    /// Returns the frame in which the reference is given, if it belongs to another system.
     pub fn moving_frame(&self) -> Option<&MovingFrame> {
         match &self.frame {
             ReferenceFrame::System(moving) => Some(moving),
@@ -55,13 +56,13 @@ impl TaskReference {
         matches!(self.frame, ReferenceFrame::Lvlh(_))
     }
 
-    /// Returns the time since its start, s, at which the path comes to rest in the frame of the reference.
+    /// Returns the time from the start of the path until it comes to rest in the frame of the reference, s.
     pub fn duration(&self) -> f64 {
         self.path.duration()
     }
 
-    /// Returns the distance, m and rad, of a frame at `(rot, pos)` from the start of the reference at the
-    /// time `start`.
+    /// Returns the distance, m, and the angle, rad, between a frame at `(rot, pos)` and the start of the
+    /// reference at the time `start`, s.
     ///
     /// # Errors
     /// The errors of [`TaskReference::sample`].

@@ -3,15 +3,16 @@
 use super::TaskSample;
 use std::fmt::Debug;
 
-/// Path of a frame: a pose with its velocity and acceleration as functions of time, in the axes of a frame.
+/// Path of a frame: a pose with its velocity and acceleration as functions of time, in the axes of a given
+/// frame.
 ///
-/// The time of a path starts at zero. A new kind of path is one file with one `impl`.
+/// The time of a path starts at zero. To add a kind of path, implement this trait in a new file.
 pub trait TaskPath: Send + Sync + Debug {
-    /// Returns the desired pose and motion at `t`, s since the start of the path; outside `0..duration` the
-    /// first or last pose is held.
+    /// Returns the desired pose and motion at `t`, s since the start of the path. Before the start the first
+    /// pose is held, after the end the last pose.
     fn sample(&self, t: f64) -> TaskSample<f64>;
 
-    /// Returns the time at which the path comes to rest, s: 0 if it never moves, infinity if it never comes
-    /// to rest.
+    /// Returns the time at which the path comes to rest, s. It is 0 for a path that never moves and infinity
+    /// for a path that never comes to rest.
     fn duration(&self) -> f64;
 }

@@ -3,20 +3,20 @@
 use super::error::{SHORTEST, check_numbers};
 use super::{ReferenceError, TaskLimits, TaskPath};
 
-/// Time law `s(t)` from 0 to 1 with zero rate and acceleration at both ends; `s` is 0 before the start and 1 after the
-/// end.
+/// Time law `s(t)` from 0 to 1 with zero rate and acceleration at both ends; before the start `s` is 0 and
+/// after the end it is 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeLaw {
     duration: f64,
-    /// Fraction of the duration until the constant rate is reached; `None` for the quintic.
+    /// Fraction of the duration until the constant rate is reached; `None` for the quintic time law.
     ramp: Option<f64>,
 }
 
 impl TimeLaw {
-    /// Returns the quintic time law over `duration`, s.
+    /// Creates the quintic time law with a `duration` in s.
     ///
     /// # Errors
-    /// [`ReferenceError::NotFinite`], [`ReferenceError::DurationNotPositive`].
+    /// [`ReferenceError::NotFinite`] and [`ReferenceError::DurationNotPositive`] for an invalid duration.
     pub fn quintic(duration: f64) -> Result<Self, ReferenceError> {
         check_numbers("duration", [&duration])?;
         if duration < SHORTEST {
@@ -25,11 +25,11 @@ impl TimeLaw {
         Ok(Self { duration, ramp: None })
     }
 
-    /// Returns a law with a constant rate between two ramps, each of which lasts the fraction `ramp` of
+    /// Creates a time law with a constant rate between two ramps, each of which takes the fraction `ramp` of
     /// `duration` (s).
     ///
     /// # Errors
-    /// The errors of [`TimeLaw::quintic`]; [`ReferenceError::Ramp`] for a fraction that is not above 0 and at most ½.
+    /// The errors of [`TimeLaw::quintic`], and [`ReferenceError::Ramp`] for a fraction outside (0, ½].
     pub fn ramped(duration: f64, ramp: f64) -> Result<Self, ReferenceError> {
         let law = Self::quintic(duration)?;
         if !(ramp > 0.0 && ramp <= 0.5) {
@@ -38,13 +38,13 @@ impl TimeLaw {
         Ok(Self { ramp: Some(ramp), ..law })
     }
 
-    /// Returns the time law for which the path returned by `path_with` has the shortest duration, to 1e-4 of it,
-    /// within `limits`;
-    /// `ramp` is that of [`TimeLaw::ramped`], or `None` for the quintic.
+    /// Returns the time law with which the path returned by `path_with` has the shortest duration, to a
+    /// relative accuracy of 1e-4, within `limits`. `ramp` is an argument of [`TimeLaw::ramped`]; `None`
+    /// selects the quintic time law.
     ///
     /// # Errors
-    /// [`ReferenceError::LimitNotPositive`], [`ReferenceError::Ramp`]; [`ReferenceError::NoLimit`] if the
-    /// limits do not determine the duration.
+    /// [`ReferenceError::LimitNotPositive`] for an invalid limit, [`ReferenceError::Ramp`] for an invalid
+    /// ramp, and [`ReferenceError::NoLimit`] if the limits do not determine the duration.
     pub fn within<P: TaskPath>(
         limits: &TaskLimits,
         ramp: Option<f64>,
@@ -62,7 +62,7 @@ impl TimeLaw {
         self.duration
     }
 
-    /// Returns `s` and its first two derivatives.
+    /// Returns `s` and its first two time derivatives at `t`, s.
     pub fn at(&self, t: f64) -> (f64, f64, f64) {
         match self.ramp {
             None => quintic(t, self.duration),
@@ -71,7 +71,8 @@ impl TimeLaw {
     }
 }
 
-/// Returns `s = 10u³ − 15u⁴ + 6u⁵` with `u = t/T` clamped to 0..1, and its derivatives in `u`.
+/// Returns `s = 10u³ − 15u⁴ + 6u⁵`, with `u = t/T` clamped to 0..1 and the duration `T`, and its first two
+/// time derivatives.
 fn quintic(t: f64, duration: f64) -> (f64, f64, f64) {
     let per_s = 1.0 / duration;
     let u = (t * per_s).clamp(0.0, 1.0);
@@ -82,8 +83,8 @@ fn quintic(t: f64, duration: f64) -> (f64, f64, f64) {
     (s, rate, acceleration)
 }
 
-/// Returns the ramped law: `ṡ = c (3u² − 2u³)` with `u = t/r` on a ramp of duration `r`, `ṡ = c = 1/(T − r)` between
-/// the ramps.
+/// Returns the ramped time law and its first two time derivatives: `ṡ = c (3u² − 2u³)` with `u = t/r` on a
+/// ramp of duration `r`, and `ṡ = c = 1/(T − r)` between the ramps.
 fn ramped(t: f64, duration: f64, ramp: f64) -> (f64, f64, f64) {
     let t = t.clamp(0.0, duration);
     let cruise = 1.0 / (duration - ramp);

@@ -9,8 +9,8 @@ use crate::model::{BASE_NQ, Model};
 use crate::spatial::Scalar;
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Evaluates the goals, then stops and starts the controls that are due at `t`. Returns true if anything
-    /// changed.
+    /// Evaluates the goals, and stops and starts the controls for which this is due at `t`, s. Returns true
+    /// if the set of active controls changed.
     pub(super) fn activate(&mut self, t: f64, model: &Model) -> Result<bool, ControlError> {
         let Self { controls, states, same_instant, events, .. } = self;
         let now = t + *same_instant;
@@ -44,7 +44,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
                 match controls[i].begin {
                     Begin::At(_) => {}
                     Begin::After(before) => states[before].memory.phase = Phase::Over,
-                    // the time of an event may be unknown, so the control replaces those that drive its joints
+                    // because the time of an event is not known in advance, the control replaces those that
+                    // drive its joints
                     Begin::AfterEvent(_) => {
                         let drives =
                             |other: &Control| other.joints.iter().any(|j| controls[i].joints.contains(j));

@@ -1,4 +1,4 @@
-//! Commands from outside of the run.
+//! External commands to the controls of a run.
 
 use super::ControllerSet;
 use crate::control::control::Control;
@@ -9,16 +9,16 @@ use crate::model::{BASE_NQ, BASE_NV};
 use crate::spatial::Scalar;
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Returns the controls that follow commands from outside of the run.
+    /// Returns the controls that follow external commands.
     pub fn external(&self) -> impl Iterator<Item = &Control> {
         self.controls.iter().filter(|control| control.law.external().is_some())
     }
 
-    /// Gives a control a command at `now`, s, which takes effect at the next update.
+    /// Sends a command to the control `name` at `now`, s. The command takes effect at the next update.
     ///
     /// # Errors
-    /// [`ControlError`] for a control that does not exist, follows no commands or has ended, and for an invalid command;
-    /// nothing is changed.
+    /// [`ControlError`] for an invalid command, and for a control that does not exist, does not follow
+    /// commands or has ended. Nothing is changed then.
     pub fn send(&mut self, name: &str, command: ExternalCommand, now: f64) -> Result<(), ControlError> {
         let names =
             |list: &mut dyn Iterator<Item = &Control>| list.map(|control| control.name.clone()).collect();
@@ -48,13 +48,13 @@ impl<S: Scalar> ControllerSet<'_, S> {
         self.controls.iter().any(is_due)
     }
 
-    /// Sets whether the next update repeats the last one, at the same time and state: laws with a state, such as those of
-    /// users, are then not evaluated again and keep their torques.
+    /// Sets whether the next update repeats the previous one at the same time and state. Laws with a state,
+    /// such as user-defined ones, are then not evaluated again and keep their torques.
     pub fn set_repeated(&mut self, is_repeated: bool) {
         self.is_repeated = is_repeated;
     }
 
-    /// Lets the controls take the commands that are due at `t`, s. Returns true if a command of joints has changed.
+    /// Applies the commands that are due at `t`, s. Returns true if the command of a joint has changed.
     pub(super) fn follow_commands(&mut self, t: f64) -> bool {
         let Self { controls, states, same_instant, q, v, .. } = self;
         let mut has_changed = false;

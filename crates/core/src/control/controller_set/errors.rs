@@ -8,11 +8,11 @@ use crate::model::{BASE_NQ, BASE_NV, Model};
 use crate::spatial::{Scalar, Vec3};
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Evaluates the desired motion and the tracking error of every active control at a state.
+    /// Evaluates the desired motion and the tracking error of every active control at the given state.
     /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) in `data`.
     ///
     /// # Errors
-    /// [`ControlError::Reference`].
+    /// [`ControlError::Reference`] if a reference is not defined at this time.
     pub fn update_errors(
         &mut self,
         t: f64,
@@ -21,7 +21,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         q: &[S],
         v: &[S],
     ) -> Result<(), ControlError> {
-        // a row is often recorded at the time and state of the last control tick
+        // rows are often recorded at the time and state of the last control tick
         let is_same = |last: &[f64], now: &[S]| last.iter().zip(now).all(|(last, now)| *last == now.value());
         if self.evaluated_at == t && (!self.reads_state || is_same(&self.q, q) && is_same(&self.v, v)) {
             return Ok(());

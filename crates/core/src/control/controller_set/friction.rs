@@ -1,16 +1,16 @@
-//! Friction of the joints with given efforts: sticking and slipping.
+//! Friction, sticking or slipping, of the joints with given efforts.
 
 use super::ControllerSet;
 use crate::control::control_law::JointCommand;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Scalar;
 
-/// Rate, rad/s (m/s), at which the friction of an engine without static friction reaches its full value.
+/// Rate, rad/s (m/s), at which friction reaches its full value in an engine without static friction.
 const CREEP: f64 = 1e-2;
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Adds damping and friction of the joints with given efforts to their loads. Joints at rest that have
-    /// friction are assumed to stick.
+    /// Adds damping and friction to the loads of the joints with given efforts. Joints with friction that are
+    /// at rest are assumed to stick.
     pub(super) fn assume_friction(&mut self, model: &Model) {
         for (j, joint) in model.joints().iter().enumerate() {
             if self.commands[j] != JointCommand::Effort {
@@ -28,16 +28,16 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
     }
 
-    /// Releases the first held joint whose holding torque exceeds its static friction: it slips in the
-    /// direction of that torque. Returns false if there is no such joint. Requires the accelerations of all
-    /// joints.
+    /// Releases the first held joint whose holding torque exceeds its static friction; the joint then slips
+    /// in the direction of that torque. Returns false if there is no such joint. Requires the accelerations
+    /// of all joints.
     pub(super) fn release_joint(&mut self, model: &Model) -> bool {
         let slips = |j: &usize| {
             let holding = self.dynamics.holding_torque(*j, self.tau[*j]);
             self.commands[*j] == JointCommand::Held && holding.abs() > model.joints()[*j].static_friction
         };
         let Some(j) = (0..self.commands.len()).find(slips) else { return false };
-        // kinetic friction acts in the direction of the holding torque λ: τ − l, l = … − f sign(λ)
+        // kinetic friction replaces the holding torque λ and has its direction: τ − l, l = … − f sign(λ)
         let holding = self.dynamics.holding_torque(j, self.tau[j]);
         self.dynamics.load[j] -= model.joints()[j].friction * holding.signum();
         self.commands[j] = JointCommand::Effort;

@@ -1,4 +1,4 @@
-//! Set of the controls of a run.
+//! The controls of a run as a set.
 
 mod activation;
 mod commands;
@@ -22,53 +22,55 @@ use crate::model::Model;
 use crate::reference::{TaskReference, TaskSample};
 use crate::spatial::Scalar;
 
-/// Controls of a run with their states and workspaces, allocated once.
+/// Controls of a run, with their states and with workspaces that are allocated once.
 pub struct ControllerSet<'a, S> {
     controls: &'a mut [Control],
     states: Vec<ControlState>,
-    /// Time, s, at which desired motions and errors were last evaluated, at the state `q`, `v`; NaN if they are
-    /// outdated.
+    /// Time, s, of the last evaluation of desired motions and errors, at the state `q`, `v`; NaN if their
+    /// values are outdated.
     evaluated_at: f64,
-    /// Difference, s, below which two instants are treated as the same.
+    /// Difference, s, up to which two instants are treated as equal.
     same_instant: f64,
-    /// True if a control needs `q` and `v`; a task law on all joints needs them only if its error is evaluated.
+    /// True if a control needs `q` and `v`. A task law on all joints needs them only if its error is
+    /// evaluated.
     reads_state: bool,
     /// Workspace of a task law on all joints.
     whole_robot: Option<Box<ComputedTorqueWork<S>>>,
     reduced: FreeFloating<S>,
     dynamics: HybridDynamics,
-    /// Pseudo-inverse of one task, for the laws that command efforts.
+    /// Pseudo-inverse for one task, used by the laws that command efforts.
     inverse: PseudoInverse<f64>,
     commands: Vec<JointCommand>,
-    /// Desired acceleration, rad/s² (m/s²), of the joints whose friction a law compensates.
+    /// Desired accelerations, rad/s² (m/s²), of the joints whose friction a law compensates.
     desired_accelerations: Vec<Option<f64>>,
     compensates_environment: bool,
     /// True if a joint has Coulomb friction.
     has_friction: bool,
-    /// True if the engine has no static friction: friction is proportional to the rate near rest.
+    /// True if the engine has no static friction; the friction near rest is then proportional to the rate.
     friction_creeps: bool,
     q: Vec<f64>,
     v: Vec<f64>,
     tau: Vec<f64>,
-    /// External torque commands, `(n,)`, N m (N), for joints that no active control drives.
+    /// External torque commands, `(n,)`, N m (N), for joints without an active control.
     commanded: Vec<Option<f64>>,
     jacobian: Vec<f64>,
     /// Numbers of the events that have happened.
     events: Vec<usize>,
-    /// Efforts and rates of a group, and workspace of its law.
+    /// Efforts of a group, rates of a group, and workspace of its law.
     group: [Vec<f64>; 3],
-    /// Tree of connected robots that the laws know.
+    /// Tree of connected robots whose model the laws use.
     known: Option<Box<KnownTree>>,
-    /// True if the next update repeats the last one: laws with a state, such as those of users, then keep their torques.
+    /// True if the next update repeats the previous one, in which case laws with a state, such as
+    /// user-defined ones, keep their torques.
     is_repeated: bool,
 }
 
 impl<'a, S: Scalar> ControllerSet<'a, S> {
-    /// Checks the controls, resets the users' controllers, and allocates the workspaces. `knows_others` is true if
-    /// [`ControllerSet::know`] will be called.
+    /// Checks the controls, resets user-defined controllers, and allocates the workspaces. `knows_others`
+    /// must be true if [`ControllerSet::know`] will be called.
     ///
     /// # Errors
-    /// The errors of [`check_controls`] and of the users' controllers.
+    /// The errors of [`check_controls`] and of user-defined controllers.
     pub fn new(
         controls: &'a mut [Control],
         model: &Model,
@@ -117,17 +119,19 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         })
     }
 
-    /// Sets the tree of connected robots whose models the laws use instead of that of the robot alone.
+    /// Sets the tree of connected robots whose model the laws use instead of the robot's model; `None`
+    /// selects the latter.
     pub fn know(&mut self, known: Option<KnownTree>) {
         self.known = known.map(Box::new);
     }
 
-    /// Returns the tree of connected robots that the laws know, to be brought to the current state before an update.
+    /// Returns the tree whose model the laws use. The caller must set its state before an update.
     pub fn known(&mut self) -> Option<&mut KnownTree> {
         self.known.as_deref_mut()
     }
 
-    /// Assumes the friction of an engine in which joints do not stick: it is proportional to the rate near rest.
+    /// Makes the laws assume the friction of an engine in which joints do not stick: proportional to the rate
+    /// near rest.
     pub fn assume_creeping_friction(&mut self) {
         self.friction_creeps = true;
     }
@@ -138,7 +142,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     }
 
     /// Returns the desired accelerations of the last update, rad/s² (m/s²), of the joints whose Coulomb
-    /// friction a law compensates; their drives add the friction torque.
+    /// friction a law compensates. The drives of these joints add the friction torque.
     pub fn desired_accelerations(&self) -> &[Option<f64>] {
         &self.desired_accelerations
     }
@@ -148,13 +152,13 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.controls
     }
 
-    /// Returns the laws of the controls that are running, with the indices of the controls.
+    /// Returns the laws of the active controls, with the indices of the controls.
     pub fn running(&self) -> impl Iterator<Item = (usize, &Law)> {
         let all = self.controls.iter().zip(&self.states).enumerate();
         all.filter(|(_, (_, state))| state.is_running()).map(|(index, (control, _))| (index, &control.law))
     }
 
-    /// Returns the control that drives joint `j` at `t`, which is active or due to start.
+    /// Returns the control that drives joint `j` at `t`, s: one that is active or is due to start.
     pub fn driver_of(&self, j: usize, t: f64) -> Option<&Control> {
         let now = t + self.same_instant;
         let drives = |(control, state): &(&Control, &ControlState)| {
@@ -171,7 +175,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.events.extend_from_slice(happened);
     }
 
-    /// Returns true if an event that has happened starts a control that still waits.
+    /// Returns true if an event that has happened starts a control that has not yet started.
     pub fn is_started_by_event(&self) -> bool {
         let starts = |(control, state): (&Control, &ControlState)| {
             let event = matches!(control.begin, Begin::AfterEvent(event) if self.events.contains(&event));
@@ -185,36 +189,36 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         &self.commanded
     }
 
-    /// Sets the external torque commands, `(n,)`, N m (N), which are held until the next call; `None` keeps
-    /// the command of a joint. Torques of active controls take precedence.
+    /// Sets the external torque commands, `(n,)`, N m (N), which are held until the next call. `None` leaves
+    /// the command of a joint unchanged. Torques of active controls take precedence.
     pub fn command(&mut self, tau: &[Option<f64>]) {
         for (held, tau) in self.commanded.iter_mut().zip(tau) {
             *held = tau.or(*held);
         }
     }
 
-    /// Returns the desired pose and motion of a control at the last instant evaluated, relative to the base
-    /// if its reference is, otherwise in W; `None` while the control is not active.
+    /// Returns the desired pose and motion of a control at the instant that was evaluated last, relative to
+    /// the base if the reference is, otherwise in W; `None` while the control is not active.
     pub fn desired(&self, control: usize) -> Option<&TaskSample<f64>> {
         let state = &self.states[control];
         state.desired_pose.as_ref().filter(|_| state.is_running())
     }
 
-    /// Returns the tracking error of a control, desired minus actual, at the last instant evaluated,
-    /// `(width,)`; zeros while the control is not active or was not evaluated yet.
+    /// Returns the tracking error of a control, desired less actual, `(width,)`, at the instant that was
+    /// evaluated last; zeros if the control is not active or has not yet been evaluated.
     pub fn error(&self, control: usize) -> &[f64] {
         &self.states[control].error
     }
 
-    /// Returns the outcome of a control's goal so far.
+    /// Returns the present outcome of a control's goal.
     pub fn outcome(&self, control: usize) -> Outcome {
         self.states[control].memory.outcome
     }
 
-    /// Returns the states of all controls, including users' controllers, for a checkpoint.
+    /// Returns the states of all controls, including user-defined controllers, for a checkpoint.
     ///
     /// # Errors
-    /// The errors of a user's controller.
+    /// The errors of a user-defined controller.
     pub fn save(&self) -> Result<Vec<ControlMemory>, ControlError> {
         let states = self.controls.iter().zip(&self.states);
         let saved = states.map(|(control, state)| {
@@ -229,8 +233,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     /// Restores the states returned by [`ControllerSet::save`].
     ///
     /// # Errors
-    /// [`ControlError::OtherControls`], [`ControlError::OtherMemory`] for states of other controls, and the errors of a
-    /// user's controller.
+    /// [`ControlError::OtherControls`] and [`ControlError::OtherMemory`] for states of different controls,
+    /// and the errors of a user-defined controller.
     pub fn load(&mut self, saved: &[ControlMemory]) -> Result<(), ControlError> {
         let (got, expected) = (saved.len(), self.controls.len());
         if got != expected {
@@ -251,15 +255,15 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         Ok(())
     }
 
-    /// Computes the torques, `(n,)`, N m (N), at `t`; those of joints that no active control drives are
-    /// given by external commands, or zero.
+    /// Computes the torques, `(n,)`, N m (N), at `t`, s. Joints without an active control have the torque of
+    /// an external command, or zero.
     ///
-    /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and the external wrenches
-    /// to compensate in `data`.
+    /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and, in `data`, the
+    /// external wrenches that are to be compensated.
     ///
     /// # Errors
-    /// [`ControlError`]: active controls with a joint in common, a reference that is not defined at `t`, or an error of
-    /// a user's controller.
+    /// [`ControlError`] for active controls with a joint in common, a reference that is not defined at `t`,
+    /// or an error of a user-defined controller.
     pub fn update(
         &mut self,
         t: f64,
@@ -271,7 +275,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     ) -> Result<(), ControlError> {
         self.update_errors(t, model, data, q, v)?;
         if self.activate(t, model)? | self.follow_commands(t) {
-            self.evaluated_at = f64::NAN; // other controls are active now
+            self.evaluated_at = f64::NAN; // the set of active controls has changed
             self.update_errors(t, model, data, q, v)?;
         }
         if !self.task_of_whole_robot(model, data, q, v, tau) {
@@ -284,8 +288,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         Ok(())
     }
 
-    /// Computes the torques of a task law on all joints if it is the only active control (fast path). Returns
-    /// false otherwise.
+    /// Computes the torques of a task law on all joints if it is the only active control (fast path).
+    /// Otherwise returns false.
     fn task_of_whole_robot(
         &mut self,
         model: &Model,
@@ -306,7 +310,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         true
     }
 
-    /// Computes the torques of several groups of joints; `last` holds those of the last update.
+    /// Computes the torques of several groups of joints; `last` holds the torques of the previous update.
     fn torques_of_groups(
         &mut self,
         t: f64,
@@ -315,7 +319,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         (q, v): (&[S], &[S]),
         last: &[S],
     ) -> Result<(), ControlError> {
-        // laws that solve for accelerations take the torques of the other joints into account
+        // laws that solve for accelerations take the efforts of the other joints into account
         self.tau.iter_mut().zip(&self.commanded).for_each(|(tau, held)| *tau = held.unwrap_or(0.0));
         self.commands.fill(JointCommand::Effort);
         self.desired_accelerations.fill(None);
@@ -335,7 +339,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     }
 }
 
-/// Returns the active controls with their states.
+/// Returns the active controls, each with its state.
 fn running<'c>(
     controls: &'c [Control],
     states: &'c [ControlState],
@@ -343,7 +347,8 @@ fn running<'c>(
     controls.iter().zip(states).filter(|(_, state)| state.is_running())
 }
 
-/// Returns the law and the reference of a control that tracks a frame by computed torque with all `n` joints.
+/// Returns the law and the reference of a control if it tracks a frame by computed torque with all `n`
+/// joints.
 fn task_on_all_joints(control: &Control, n: usize) -> Option<(&ComputedTorque, &TaskReference)> {
     match &control.law {
         Law::TaskComputedTorque(law, reference) if control.joints.len() == n => Some((law, reference)),

@@ -1,4 +1,4 @@
-//! Torques of the active laws.
+//! Evaluation of the active laws.
 
 use super::{ControllerSet, running};
 use crate::control::control_law::{ControlLaw, EffortInput, EffortWork, JointCommand};
@@ -13,7 +13,8 @@ use crate::reference::TaskReference;
 use crate::spatial::{Motion, Scalar};
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Computes the torques of the laws that command efforts; `last` holds those of the last update.
+    /// Computes the torques of the laws that command efforts; `last` holds the torques of the previous
+    /// update.
     pub(super) fn efforts(
         &mut self,
         t: f64,
@@ -86,7 +87,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
     }
 
-    /// Sets inertia, loads and given accelerations of the reduced model, and the command of each joint.
+    /// Sets the inertia, the loads and the given accelerations of the reduced model, and the command of each
+    /// joint.
     fn set_up_dynamics(&mut self, model: &Model) {
         let Self { dynamics, reduced, .. } = self;
         for (to, from) in dynamics.inertia.iter_mut().zip(&reduced.inertia) {
@@ -149,19 +151,20 @@ impl<S: Scalar> ControllerSet<'_, S> {
 }
 
 impl ControlState {
-    /// Returns the velocity error, desired minus actual, of the frame of the reduced model.
+    /// Returns the velocity error, desired less actual, of the frame to which the reduced model belongs.
     fn velocity_error<S: Scalar>(&self, reduced: &FreeFloating<S>) -> Motion<f64> {
         let desired = self.desired_pose.map_or(Motion::zero(), |desired| desired.velocity);
         desired - motion(reduced.velocity)
     }
 }
 
-/// Returns true if a law compensates damping and friction; one that commands efforts does not.
+/// Returns true if a law compensates damping and friction; laws that command efforts never do.
 fn has_compensation(law: &dyn ControlLaw) -> bool {
     law.compensates_friction() && law.joint_command() != JointCommand::Effort
 }
 
-/// Computes Jacobian, velocity and drift of a frame, in W, or relative to the base if its reference is.
+/// Computes the Jacobian, velocity and drift of a frame, relative to the base if its reference is, otherwise
+/// in W.
 fn reduce_to_frame<S: Scalar>(
     (model, data, q, v): (&Model, &Data<S>, &[S], &[S]),
     known: Option<&mut KnownTree>,
@@ -175,7 +178,7 @@ fn reduce_to_frame<S: Scalar>(
     }
 }
 
-/// Returns a motion in `f64`.
+/// Converts the numbers of a motion to `f64`.
 fn motion<S: Scalar>(m: Motion<S>) -> Motion<f64> {
     Motion::new(m.linear.map(|x| x.value()), m.angular.map(|x| x.value()))
 }
