@@ -3,7 +3,7 @@
 use super::kernels::Kernel;
 use crate::model::Model;
 
-/// Rows of an input.
+/// Rows of an input array.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<'a> {
     /// Values of all rows, one row after the other.
@@ -12,7 +12,7 @@ pub struct Rows<'a> {
     pub width: usize,
 }
 
-/// Values of the rows of an output, one row after the other.
+/// Rows of an output array, one after the other.
 pub type RowsMut<'a> = &'a mut [f64];
 
 /// External wrenches on the body of a frame, in frame axes about the frame origin, N and N m, linear first.
@@ -24,7 +24,7 @@ pub struct Wrenches<'a> {
     pub rows: &'a [f64],
 }
 
-/// Call of a kernel: kernel, robot and inputs.
+/// Call of a kernel: the kernel, the robot and the inputs.
 #[derive(Clone, Copy)]
 pub(super) struct Call<'a> {
     pub(super) kernel: Kernel,
@@ -34,7 +34,7 @@ pub(super) struct Call<'a> {
 }
 
 impl Call<'_> {
-    /// Returns the number of states.
+    /// Returns the number of states, which is the number of rows of the first input.
     pub(super) fn count(&self) -> usize {
         self.inputs[0].data.len() / self.inputs[0].width.max(1)
     }

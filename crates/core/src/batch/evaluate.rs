@@ -9,10 +9,10 @@ use crate::model::Model;
 use crate::spatial::{Fused, InstructionSet, Lanes4, Lanes8, Real};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Number of states per task: a constant, so that the results do not depend on the number of threads.
+/// Number of states per task. The number is constant, so that results do not depend on the number of threads.
 const CHUNK: usize = 128;
 
-/// Evaluator of kernels, which keeps the workspace of one model for single states between calls.
+/// Evaluator of kernels for one robot, which reuses the workspace for single states.
 #[derive(Clone, Debug)]
 pub struct Evaluator {
     plain: Workspace<f64>,
@@ -25,11 +25,11 @@ impl Evaluator {
         Self { plain: Workspace::new(model), fused: Workspace::new(model) }
     }
 
-    /// Checks the shapes of inputs and outputs and computes one state on the calling thread.
+    /// Checks the shapes of inputs and outputs, and computes one state on the calling thread.
     ///
     /// # Errors
-    /// [`InputError`]. The outputs are unchanged, except after [`InputError::Singular`] and
-    /// [`InputError::Overflow`].
+    /// [`InputError`] for invalid inputs. The outputs do not change, except after [`InputError::Singular`]
+    /// and [`InputError::Overflow`].
     pub fn single(
         &mut self,
         kernel: Kernel,
@@ -53,12 +53,12 @@ impl Evaluator {
         if is_valid { Ok(()) } else { first_fault(&call, outputs) }
     }
 
-    /// Checks the shapes of inputs and outputs and computes many states. The results are bit-identical for
+    /// Checks the shapes of inputs and outputs, and computes many states. The results are bit-identical for
     /// any number of threads.
     ///
     /// # Errors
-    /// [`InputError`] for the first error in the order of the arguments. The contents of the outputs are then
-    /// undefined.
+    /// [`InputError`] for the first invalid input in the order of the arguments; the contents of the outputs
+    /// are then undefined.
     pub fn many<'a>(
         kernel: Kernel,
         model: &Model,
@@ -79,7 +79,7 @@ impl Evaluator {
     }
 }
 
-/// Computes all states. Returns true if inputs and outputs are valid.
+/// Computes all states. Returns true if all inputs and outputs are valid.
 fn evaluate_all<S: Real>(
     call: &Call<'_>,
     outputs: &mut [RowsMut<'_>],
@@ -111,7 +111,7 @@ fn evaluate_all<S: Real>(
     Ok(is_valid.into_inner())
 }
 
-/// Splits the next `count` rows off every output.
+/// Splits off the next `count` rows of every output.
 fn split_rows<'a>(
     remaining: &mut [RowsMut<'a>; OUTPUTS],
     widths: &[usize],
@@ -136,7 +136,7 @@ fn first_fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputErro
     for wrenches in call.external {
         check_finite("external wrench", wrenches.rows, 6)?;
     }
-    // not finite: the mass matrix is singular, or products overflow
+    // outputs that are not finite: the mass matrix is singular, or products overflow
     for (out, width) in outputs.iter().zip(call.kernel.widths(call.model).0) {
         if let Some(index) = out.iter().position(|x| !x.is_finite()) {
             let state = index / width;

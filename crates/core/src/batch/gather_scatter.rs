@@ -1,8 +1,8 @@
-//! Conversion between rows of numbers and SIMD lanes.
+//! Conversion between rows of numbers and vectors with SIMD lanes.
 
 use crate::spatial::Real;
 
-/// Memory layout of a group of states: row k starts at index `first + k · stride`.
+/// Memory layout of a group of states: row k begins at index `first + k · stride`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strides {
     pub(super) first: usize,
@@ -11,7 +11,7 @@ pub(super) struct Strides {
     pub(super) count: usize,
 }
 
-/// Loads rows into lanes. Surplus lanes repeat the last row.
+/// Loads rows into lanes. Lanes without a state repeat the last row.
 #[inline(always)]
 pub(super) fn gather<S: Real>(from: &[f64], strides: Strides, to: &mut [S]) {
     let last = strides.count - 1;
@@ -23,11 +23,11 @@ pub(super) fn gather<S: Real>(from: &[f64], strides: Strides, to: &mut [S]) {
     );
 }
 
-/// Length of the blocks in which wide rows are written. Writing to many rows at once is slow, so each block
-/// is first assembled in a buffer.
+/// Length of the blocks in which wide rows are written. Because writing to many rows at once is slow, each
+/// block is first assembled in a buffer.
 const BLOCK: usize = 64;
 
-/// Buffer for one block of each row, for up to eight lanes, aligned to a vector register.
+/// Buffer for one block of each row, with up to eight lanes, aligned to a vector register.
 #[repr(align(64))]
 struct BlockBuffer([f64; 8 * BLOCK]);
 

@@ -7,7 +7,7 @@ use crate::number_text::{count, short, unlike};
 use crate::orbit::OrbitError;
 use thiserror::Error;
 
-/// Invalid input of a batch.
+/// Reason why the input of a batch is invalid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum InputError {
@@ -33,7 +33,7 @@ pub enum InputError {
     )]
     QuaternionNorm { state: usize, norm: f64 },
     #[error(
-        "the mass matrix of state {state} is singular: in this configuration some motion of the joints moves no \
+        "the mass matrix of state {state} is singular: in this configuration, some motion of the joints moves no \
          inertia; give the massless links between these joints an inertia, or the joints a rotor_inertia. If the state \
          contains very large values, their products may have overflowed instead; check their units"
     )]
@@ -120,7 +120,7 @@ pub(super) fn check_whole(name: &'static str, data: &[f64], width: usize) -> Res
 
 /// Checks that all numbers are finite.
 pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {
-    // 0 · x is 0 only for a finite x, and one pass of additions is cheap
+    // 0 · x is 0 only for a finite x, and a single pass of additions is cheap
     let sum: f64 = data.iter().map(|x| x * 0.0).sum();
     if sum == 0.0 {
         return Ok(());

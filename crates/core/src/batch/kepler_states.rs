@@ -8,14 +8,15 @@ use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 /// Number of states per task.
 const CHUNK: usize = 4096;
 
-/// Computes positions (m) and velocities (m/s) on Kepler ellipses, each (N, 3).
+/// Computes positions (m) and velocities (m/s) on Kepler ellipses, each an (N, 3) array.
 ///
-/// `elements`: semi-major axis (m), eccentricity, inclination, right ascension of the node, argument of periapsis, mean
-/// anomaly at time zero (rad), time (s). Each has one value for all states or one per state.
+/// `elements`: semi-major axis (m), eccentricity, inclination, right ascension of the node, argument of
+/// periapsis and mean anomaly at time zero (rad), and time (s). Each has one value for all states or one
+/// value per state.
 ///
 /// # Errors
-/// [`InputError`] for wrong lengths, numbers that are not finite, elements that do not describe an ellipse, or zero
-/// threads.
+/// [`InputError`] for wrong lengths, numbers that are not finite, elements that do not describe an ellipse,
+/// or zero threads.
 pub fn kepler_states<'a>(
     elements: [&[f64]; 7],
     mu: f64,
@@ -91,7 +92,7 @@ fn compute_chunk<S: Real>(
 ) {
     let width = 3 * S::LANES;
     for (group, (r, v)) in positions.chunks_mut(width).zip(velocities.chunks_mut(width)).enumerate() {
-        // surplus lanes repeat the last state
+        // lanes without a state repeat the last state
         let (from, last) = (first + group * S::LANES, r.len() / 3 - 1);
         let pick = [0, 1, 2, 3, 4, 5, 6].map(
             #[inline(always)]
@@ -106,7 +107,8 @@ fn compute_chunk<S: Real>(
     }
 }
 
-/// Returns the single value in all lanes, or the values starting at `from`; lanes after `last` repeat its value.
+/// Returns the single value in all lanes, or the values from index `from` on. Lanes after index `last` repeat
+/// its value.
 #[inline(always)]
 fn pick<S: Real>(values: &[f64], from: usize, last: usize) -> S {
     if let [one] = values {

@@ -1,4 +1,4 @@
-//! Kernels with their inputs, outputs and evaluation.
+//! Kernels, with their inputs, outputs and evaluation.
 
 use crate::dynamics::derivatives::{
     Derivatives, forward_dynamics_derivatives, free_floating_derivatives, inverse_dynamics_derivatives,
@@ -11,39 +11,41 @@ use crate::dynamics::{
 use crate::model::{Model, difference, integrate};
 use crate::spatial::{Force, Real, pose_rows};
 
-/// Largest number of outputs of a kernel.
+/// Largest number of outputs that a kernel has.
 pub(super) const OUTPUTS: usize = 5;
 
-/// Quantity computed from a state. Frames are given by index.
+/// Quantity that is computed from a state. Frames are given by index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
-    /// `q` → `(4, 4)` pose in W.
+    /// `q` → `(4, 4)` pose of a frame in W.
     FramePose(usize),
-    /// `q, v` → `(6,)` twist at the frame origin, W axes.
+    /// `q, v` → `(6,)` twist at the frame origin, W axes, m/s and rad/s.
     FrameVelocity(usize),
     /// `q` → `(6, nv)` Jacobian at the frame origin, W axes.
     FrameJacobian(usize),
     /// `q` → `(nv, nv)` mass matrix.
     MassMatrix,
-    /// `q, v` → `(nv,)` bias forces.
+    /// `q, v` → `(nv,)` bias forces, N and N m.
     BiasForces,
-    /// `q, v, a` → `(nv,)` generalized forces.
+    /// `q, v, a` → `(nv,)` generalized forces, N and N m.
     InverseDynamics,
-    /// `q, v, tau` → `(nv,)` generalized accelerations.
+    /// `q, v, tau` → `(nv,)` generalized accelerations, m/s² and rad/s².
     ForwardDynamics,
     /// `q, v, a` → `∂τ/∂q`, `∂τ/∂v`, `∂τ/∂a`, each `(nv, nv)`.
     InverseDynamicsDerivatives,
     /// `q, v, tau` → `∂a/∂q`, `∂a/∂v`, `∂a/∂τ`, each `(nv, nv)`.
     ForwardDynamicsDerivatives,
-    /// `q, v` → `(6,)` linear momentum, and angular momentum about the centre of mass.
+    /// `q, v` → `(6,)` linear momentum, kg m/s, and angular momentum about the centre of mass, kg m²/s, W
+    /// axes.
     Momentum,
-    /// `q, v` → `(1,)` kinetic energy.
+    /// `q, v` → `(1,)` kinetic energy, J.
     KineticEnergy,
-    /// `q` → `(3,)` centre of mass in W.
+    /// `q` → `(3,)` centre of mass in W, m.
     CenterOfMass,
-    /// `q, v` → `M* (n, n)`, `c* (n,)`, `Q* (n,)`, `Jg (6, n)`, `d (6,)`.
+    /// `q, v` → reduced model `M*` `(n, n)`, `c*` `(n,)`, `Q*` `(n,)`, `Jg` `(6, n)`, `d` `(6,)`.
     FreeFloating(usize),
-    /// `q, v, joint_acceleration` → `∂τ/∂q`, `∂τ/∂v` `(n, nv)`, `∂ẍ/∂q`, `∂ẍ/∂v`, `∂ẋ/∂q` `(6, nv)`.
+    /// `q, v, joint_acceleration` → `∂τ/∂q`, `∂τ/∂v`, each `(n, nv)`, and `∂ẍ/∂q`, `∂ẍ/∂v`, `∂ẋ/∂q`, each
+    /// `(6, nv)`.
     FreeFloatingDerivatives(usize),
     /// `q, dv` → `(nq,)` configuration `q ⊕ dv`.
     Integrate,
@@ -65,7 +67,7 @@ impl Kernel {
         }
     }
 
-    /// Returns the row width of an input. Names of configurations start with `q`.
+    /// Returns the row width of an input. Names of configurations begin with `q`.
     pub(super) fn width(name: &str, model: &Model) -> usize {
         match name {
             "joint_acceleration" => model.joint_count(),
@@ -74,13 +76,13 @@ impl Kernel {
         }
     }
 
-    /// Returns true if the kernel divides by the inertia at the joints, so that its first output is not finite when the
-    /// mass matrix is singular.
+    /// Returns true if the kernel divides by the inertia at the joints, in which case its first output is not
+    /// finite if the mass matrix is singular.
     pub(super) fn divides(self) -> bool {
         matches!(self, Self::ForwardDynamics | Self::ForwardDynamicsDerivatives)
     }
 
-    /// Returns the frame of the kernel, if it has one.
+    /// Returns the index of the kernel's frame, if it has one.
     pub(super) fn frame(self) -> Option<usize> {
         match self {
             Self::FramePose(frame)
@@ -119,7 +121,7 @@ impl Kernel {
         (widths, used.len())
     }
 
-    /// Computes the outputs of one state, or of one group of lanes.
+    /// Computes the outputs for one state, or for one group of SIMD lanes.
     pub(super) fn evaluate<S: Real>(
         self,
         model: &Model,

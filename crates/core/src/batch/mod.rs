@@ -1,4 +1,4 @@
-//! Kernels, rollouts and orbits for one state or many. Inputs and outputs are flat arrays of `f64` rows.
+//! Kernels, rollouts and orbits for one or many states. Inputs and outputs are flat arrays of `f64` rows.
 
 mod call;
 mod evaluate;

@@ -8,26 +8,26 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Times of the states, s of simulation.
 #[derive(Clone, Copy, Debug)]
 pub enum Times<'a> {
-    /// Times that are the same for all orbits, (T,).
+    /// Times (T,) that all orbits share.
     Common(&'a [f64]),
-    /// Times that differ between orbits, (N, T), row after row.
+    /// Times of each orbit, (N, T), row-major.
     Each(&'a [f64]),
 }
 
-/// Number of instants of one orbit that are computed between two checks of the stop flag; a multiple of the
-/// SIMD lanes.
+/// Number of instants of an orbit that are computed between two checks of the stop flag, a multiple of the
+/// number of SIMD lanes.
 const INSTANTS: usize = 4096;
 /// Number of integration steps of a numerical orbit between two checks of the stop flag.
 const STEPS: usize = 16;
 
-/// Computes positions (m) and velocities (m/s) of `orbits`, each (N, T, 3), row-major. The states of every orbit are in
-/// the axes of that orbit.
+/// Computes positions (m) and velocities (m/s) of `orbits`, each (N, T, 3), row-major. The states of an orbit
+/// are in the axes of that orbit.
 ///
 /// The results are bit-identical for any number of threads.
 ///
 /// # Errors
-/// [`InputError::NoThreads`], [`InputError::WrongLength`], [`InputError::Ragged`], and [`InputError::Orbit`]
-/// for the first orbit that has no state at one of its times.
+/// [`InputError::NoThreads`], [`InputError::WrongLength`] and [`InputError::Ragged`] for invalid arguments,
+/// and [`InputError::Orbit`] for the first orbit that has no state at one of its times.
 pub fn propagate<'a>(
     orbits: &[Arc<dyn Orbit>],
     times: Times<'_>,
@@ -78,7 +78,7 @@ pub fn propagate<'a>(
     }
 }
 
-/// Computes the rows of one orbit; ends early if the batch is stopped.
+/// Computes the rows of one orbit. Returns early if the batch is stopped.
 fn fill(
     orbit: &dyn Orbit,
     times: &[f64],

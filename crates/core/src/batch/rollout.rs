@@ -1,4 +1,4 @@
-//! Rollouts: many runs without environment, with passive joints, given torques or computed torque.
+//! Rollouts: many runs without an environment, with passive joints, given torques or computed torque.
 
 use super::gather_scatter::{Strides, gather, scatter};
 use super::input::{InputError, check_finite, check_frame, check_quaternions, check_whole};
@@ -21,11 +21,12 @@ pub enum RolloutControl<'a> {
     Passive,
     /// Given joint efforts, `(B, steps, n)`, N m or N.
     Torques(&'a [f64]),
-    /// Computed torque that tracks one reference in all runs; the reference must not be in an orbital frame.
+    /// Computed torque that tracks the same reference in all runs. The reference must not be in an orbital
+    /// frame.
     ComputedTorque(&'a ComputedTorque, &'a TaskReference),
 }
 
-/// Settings of a rollout.
+/// Parameters of a rollout.
 #[derive(Clone, Copy, Debug)]
 pub struct Rollout<'a> {
     /// Number of steps.
@@ -36,12 +37,13 @@ pub struct Rollout<'a> {
     pub integrator: Integrator,
     /// Control of the joints.
     pub control: RolloutControl<'a>,
-    /// Number of steps between recorded rows, the first of which is the initial state; `None` records only
-    /// the final state.
+    /// Number of steps between recorded rows, the first of which is the initial state. With `None`, only the
+    /// final state is recorded.
     pub record_every: Option<usize>,
     /// Number of threads; all cores if `None`.
     pub threads: Option<usize>,
-    /// Flag that another thread sets to stop the rollout early. The contents of the outputs are then undefined.
+    /// Flag that another thread sets to stop the rollout early. The contents of the outputs are then
+    /// undefined.
     pub stop: &'a AtomicBool,
 }
 
@@ -56,7 +58,7 @@ impl Rollout<'_> {
     ///
     /// # Errors
     /// [`InputError`] for invalid inputs, and [`InputError::Diverged`] for the first state that becomes
-    /// non-finite; the results of all other states are then written.
+    /// non-finite, after the results of all other states were written.
     pub fn run(
         &self,
         model: &Model,
@@ -89,7 +91,7 @@ impl Rollout<'_> {
         if self.integrator == Integrator::DormandPrince {
             return Err(InputError::Adaptive);
         }
-        // stick-slip transitions occur at a different time in each state, so states are simulated one by one
+        // stick-slip transitions occur at different times in each run, so the runs are simulated one by one
         let sticks = model.has_friction();
         if let RolloutControl::ComputedTorque(law, reference) = self.control {
             check_frame(model, law.frame)?;
@@ -139,7 +141,7 @@ impl Rollout<'_> {
     }
 }
 
-/// Workspace that simulates a group of runs, one per lane of the scalar.
+/// Workspace that simulates a group of runs, one per SIMD lane.
 struct Lanes<'a, S> {
     settings: &'a Rollout<'a>,
     equations: EquationsOfMotion<'a, S, NoLoads>,
@@ -148,7 +150,7 @@ struct Lanes<'a, S> {
     work: Option<ComputedTorqueWork<S>>,
     /// Index of the first run.
     first: usize,
-    /// Number of runs in the group; surplus lanes repeat the last run.
+    /// Number of runs in the group. Lanes without a run repeat the last run.
     count: usize,
 }
 
@@ -204,11 +206,11 @@ impl<'a, S: Real> Lanes<'a, S> {
         }
     }
 
-    /// Advances by one step, which is divided at the instants at which joints stick or start to slip.
+    /// Advances by one step, which is divided at the instants at which joints begin to stick or to slip.
     fn advance(&mut self, mut t: f64, end: f64) {
         let Self { equations, state, stepper, .. } = self;
         equations.solve_modes(state);
-        // no evaluation in a step returns an error, because there is no environment
+        // steps return no error, because there is no environment to evaluate
         while let Ok(reached) = stepper.advance(equations, state, (t, end)) {
             if reached >= end {
                 break;
@@ -219,7 +221,7 @@ impl<'a, S: Real> Lanes<'a, S> {
         }
     }
 
-    /// Computes the torques of a step.
+    /// Computes the torques for a step.
     fn drive(&mut self, step: usize) {
         let Self { equations, state, settings, work, first, count, .. } = self;
         let (tree, state) = (only_mut(&mut equations.trees), only(&state.trees));
@@ -263,8 +265,8 @@ impl<'a, S: Real> Lanes<'a, S> {
         );
     }
 
-    /// Returns the lane of the first run whose state is not finite. A state that has become non-finite never becomes
-    /// finite again.
+    /// Returns the lane of the first run whose state is not finite. A state that has become non-finite
+    /// remains so.
     fn diverged(&self) -> Option<usize> {
         let state = only(&self.state.trees);
         let numbers = || state.q.iter().chain(&state.v);

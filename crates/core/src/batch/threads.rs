@@ -22,19 +22,19 @@ impl From<Option<usize>> for Threads<'_> {
 }
 
 impl Threads<'_> {
-    /// Returns true if the batch must stop early.
+    /// Returns true if the stop flag is set.
     pub(super) fn is_stopped(&self) -> bool {
         self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed))
     }
 }
 
-/// Runs `task` for every element until stopped, with one workspace per thread.
+/// Runs `task` for every element until the batch is stopped, with one workspace per thread.
 ///
-/// Uses at most as many threads as there are elements and processors, and only the calling thread if that number is
-/// one. The elements are generated on demand, so a long batch needs no memory in advance.
+/// The number of threads is at most the number of elements and the number of processors. A single thread is
+/// the calling thread. The elements are generated on demand, so a long batch needs no memory in advance.
 ///
 /// # Errors
-/// [`InputError::NoThreads`].
+/// [`InputError::NoThreads`] for zero threads.
 pub(super) fn for_each<T, W>(
     threads: Threads<'_>,
     tasks: impl IntoIterator<IntoIter: ExactSizeIterator<Item = T> + Send>,
@@ -70,7 +70,7 @@ pub(super) fn for_each<T, W>(
 
 /// Returns the thread pool of this process, created on first use; `None` if the system cannot create threads.
 ///
-/// Rayon's global pool cannot be used: a child process made by `fork` (multiprocessing in Python) inherits
+/// Rayon's global pool is unsuitable: a child process created by `fork` (multiprocessing in Python) inherits
 /// the memory of the pool but not its threads, and would wait for them forever.
 fn pool() -> Option<&'static ThreadPool> {
     static POOL: Mutex<Option<(u32, &ThreadPool)>> = Mutex::new(None);

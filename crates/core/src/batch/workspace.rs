@@ -9,15 +9,16 @@ use crate::model::{Model, Node, QUATERNION};
 use crate::spatial::{Force, Quat, Real, Sym3, Vec3};
 use std::ops::Range;
 
-/// Kernel data, inputs and outputs of one state, or of one group of lanes.
+/// Kernel data, inputs and outputs of one state, or of one group of SIMD lanes.
 #[derive(Clone, Debug)]
 pub(super) struct Workspace<S> {
     kernel_data: KernelData<S>,
-    /// Mass, centre of mass and inertia of the robot's base, which `kernel_data` stores only when it is allocated.
+    /// Mass, centre of mass and inertia of the robot's base, whose values `kernel_data` copies only when it
+    /// is allocated.
     base: (f64, Vec3<f64>, Sym3<f64>),
     inputs: [Vec<S>; 3],
     outputs: [Vec<S>; OUTPUTS],
-    /// True if all inputs are so small that no product of them overflows.
+    /// True if all inputs are so small that no product of inputs overflows.
     cannot_overflow: bool,
 }
 
@@ -33,16 +34,16 @@ impl<S: Real> Workspace<S> {
         }
     }
 
-    /// Returns true if the workspace suits this robot: the number of bodies and the base are those it was allocated
-    /// for.
+    /// Returns true if the workspace can be used for this robot, because it was allocated for a robot with
+    /// the same number of bodies and the same base.
     pub(super) fn fits(&self, model: &Model) -> bool {
         self.kernel_data.data.bodies.len() == model.nodes().len() && self.base == base_of(model)
     }
 
-    /// Computes the states in `range` (at most one per lane). Returns true if inputs and outputs are valid;
-    /// for invalid inputs, nothing is written.
+    /// Computes the states in `range`, at most one per lane. Returns true if inputs and outputs are valid; if
+    /// the inputs are invalid, nothing is written.
     ///
-    /// Surplus lanes repeat the last state of the range; their results are discarded.
+    /// Lanes without a state repeat the last state of the range; their results are discarded.
     pub(super) fn compute(
         &mut self,
         call: &Call<'_>,
@@ -74,7 +75,7 @@ impl<S: Real> Workspace<S> {
         )
     }
 
-    /// Loads the states. Returns true if all numbers are finite and all quaternions have unit norm.
+    /// Loads the inputs. Returns true if all numbers are finite and all quaternions have unit norm.
     #[inline(always)]
     fn read(&mut self, call: &Call<'_>, range: &Range<usize>) -> bool {
         let mut is_valid = true;
@@ -90,7 +91,7 @@ impl<S: Real> Workspace<S> {
         self.kernel_data.external.clear();
         for Wrenches { frame, rows } in call.external {
             let mut numbers = [S::of(0.0); 6];
-            let range = if rows.len() == 6 { &(0..1) } else { range }; // one wrench for all states
+            let range = if rows.len() == 6 { &(0..1) } else { range }; // one wrench applies to all states
             gather(rows, strides(6, range), &mut numbers);
             is_valid &= all_finite(&numbers, &mut self.cannot_overflow);
             let wrench = Force::from_slice(&numbers);
@@ -115,8 +116,8 @@ fn is_finite<S: Real>(numbers: &[S]) -> bool {
     is_finite_times(S::of(1.0), numbers)
 }
 
-/// Returns true if all numbers are finite. Clears `cannot_overflow` if the magnitude of one exceeds 1.8e58; no product
-/// of smaller numbers in a kernel overflows.
+/// Returns true if all numbers are finite. Sets `cannot_overflow` to false if a magnitude exceeds 1.8e58; no
+/// product of smaller numbers in a kernel overflows.
 #[inline(always)]
 fn all_finite<S: Real>(numbers: &[S], cannot_overflow: &mut bool) -> bool {
     let is_small = is_finite_times(S::of(1e250), numbers);
@@ -124,10 +125,10 @@ fn all_finite<S: Real>(numbers: &[S], cannot_overflow: &mut bool) -> bool {
     is_small || is_finite(numbers)
 }
 
-/// Returns true if `factor` times each number is finite.
+/// Returns true if the product of `factor` with each number is finite.
 #[inline(always)]
 fn is_finite_times<S: Real>(factor: S, numbers: &[S]) -> bool {
-    // 0 · x is 0 only for a finite x; four sums, because one would be a chain of dependent additions
+    // 0 · x is 0 only for a finite x; four partial sums avoid a chain of dependent additions
     let mut sums = [S::of(0.0); 4];
     for (i, x) in numbers.iter().enumerate() {
         sums[i % 4] = (*x * factor).mul_add(S::of(0.0), sums[i % 4]);
@@ -136,10 +137,10 @@ fn is_finite_times<S: Real>(factor: S, numbers: &[S]) -> bool {
     !S::any(S::less(S::of(0.0), S::select(S::less(sum, S::of(1.0)), S::of(0.0), S::of(1.0))))
 }
 
-/// Normalises the quaternion x, y, z, w. Returns true if its norm before was 1 within [`UNIT_NORM`].
+/// Normalises the quaternion x, y, z, w. Returns true if its norm was 1 within [`UNIT_NORM`].
 #[inline(always)]
 fn normalise<S: Real>(xyzw: &mut [S]) -> bool {
-    // the same bits as in `check_quaternions`
+    // evaluated as in `check_quaternions`, so that both yield the same bits
     let squared = xyzw[0] * xyzw[0] + xyzw[1] * xyzw[1] + xyzw[2] * xyzw[2] + xyzw[3] * xyzw[3];
     let off = (squared.sqrt() - S::of(1.0)).abs();
     Quat::from_xyzw(xyzw).normalized().write_xyzw(xyzw);

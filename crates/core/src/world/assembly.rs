@@ -1,4 +1,5 @@
-//! Compiles connected systems to trees: one model for the systems that welds connect, rooted at one of them.
+//! Assembly of connected systems into trees: one model for all systems that welds connect, rooted at one of
+//! the systems.
 
 use super::event::{FrameIndex, Seating, Weld};
 use super::seating::{Chain, GivenJoint};
@@ -6,18 +7,18 @@ use crate::model::{Model, ModelError, Mount};
 use crate::reference::TimeLaw;
 use crate::spatial::{Mat3, Quat, Vec3};
 
-/// Tree compiled from one system, or from several systems that welds connect.
+/// Tree built from one system, or from several systems that welds connect.
 #[derive(Clone, Debug)]
 pub struct Assembly {
-    /// Model of the tree; `None` if it has a single system, whose own model then applies.
+    /// Model of the tree; `None` if the tree has a single system, whose own model then applies.
     pub model: Option<Model>,
     /// Systems of the tree, the root first.
     pub members: Vec<Member>,
-    /// Joints between systems that move as a function of time.
+    /// Joints between systems whose positions are given functions of time.
     pub given: Vec<GivenJoint>,
 }
 
-/// Place of a system in a tree.
+/// System of a tree, with the places of its joints and bodies in the tree.
 #[derive(Clone, Debug)]
 pub struct Member {
     /// Number of the system in the world.
@@ -28,22 +29,24 @@ pub struct Member {
     pub bodies: Vec<BodyPlace>,
 }
 
-/// Body of a tree to which a body of a system belongs, and the pose of the latter in its axes.
+/// Body of a tree that contains a body of a system, and the pose of the system's body in the axes of the
+/// tree's body.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyPlace {
     /// Index of the body in the tree.
     pub body: usize,
-    /// Rotation from the axes of the system's body to those of the tree's body.
+    /// Rotation from axes of the system's body to axes of the tree's body.
     pub rot_kb: Mat3<f64>,
     /// Origin of the system's body in the axes of the tree's body, m.
     pub pos_kb: Vec3<f64>,
 }
 
-/// Returns the trees into which `welds` connect systems with these models, whose links, joints and frames have the
-/// names of the systems as prefixes. The first system of `roots` in a tree is its root; without one, the first system.
+/// Assembles the trees into which `welds` connect systems with these models, in which the names of links,
+/// joints and frames have the names of the systems as prefixes. The root of a tree is its first system in
+/// `roots`, or else its first system.
 ///
 /// # Errors
-/// [`ModelError`] if a merged model is not valid.
+/// [`ModelError`] if the model of a tree is not valid.
 pub fn assemble(models: &[Model], welds: &[Weld], roots: &[usize]) -> Result<Vec<Assembly>, ModelError> {
     let mut is_placed = vec![false; models.len()];
     let mut assemblies = Vec::new();
@@ -60,16 +63,16 @@ pub fn assemble(models: &[Model], welds: &[Weld], roots: &[usize]) -> Result<Vec
 /// Tree to which connected systems are added one at a time.
 struct GrowingTree<'m> {
     models: &'m [Model],
-    /// Model of the tree; `None` while it has a single system.
+    /// Model of the tree; `None` while the tree has a single system.
     model: Option<Model>,
     /// Systems of the tree, the root first.
     order: Vec<usize>,
-    /// Name and travel of each joint that a seating moves.
+    /// For each joint that a seating motion moves: its name, its travel, and the seating motion.
     moving: Vec<(String, f64, Seating)>,
 }
 
 impl<'m> GrowingTree<'m> {
-    /// Returns the tree of all systems that `welds` connect to a root, breadth first.
+    /// Creates the tree of all systems that `welds` connect to a root, in breadth-first order.
     fn from_root(root: usize, models: &'m [Model], welds: &[Weld]) -> Result<Self, ModelError> {
         let mut tree = Self { models, model: None, order: vec![root], moving: Vec::new() };
         let mut next = 0;
@@ -86,7 +89,8 @@ impl<'m> GrowingTree<'m> {
         Ok(tree)
     }
 
-    /// Adds the captured system of a weld, or the capturing one if `is_reversed`, to the other one, which is in the tree.
+    /// Adds the captured system of a weld to the tree or, if `is_reversed`, the capturing system. The other
+    /// one is in the tree already.
     fn add(&mut self, weld: &Weld, is_reversed: bool) -> Result<(), ModelError> {
         let (near, far) = if is_reversed { (weld.of, weld.by) } else { (weld.by, weld.of) };
         let Chain { joints, travels, pose } = weld.chain(&format!("capture {}", weld.capture), is_reversed);
@@ -125,7 +129,7 @@ impl Member {
         let place = |body: usize| {
             let own = own.body_frame(body);
             let link = &tree.frames()[tree.frame(&own.name)?];
-            // the link has the same pose in both bodies: X_kb = X_kl X_bl⁻¹
+            // X_kb = X_kl X_bl⁻¹, because the link has the same pose in W whether it belongs to body k or b
             let rot_kb = link.rot_kf * own.rot_kf.transpose();
             Ok(BodyPlace { body: link.body, rot_kb, pos_kb: link.pos_kf - rot_kb * own.pos_kf })
         };
@@ -138,7 +142,7 @@ impl Member {
 }
 
 impl BodyPlace {
-    /// Returns the rotation as a quaternion.
+    /// Returns the rotation `rot_kb` as a quaternion.
     pub fn quaternion(&self) -> Quat<f64> {
         Quat::from_matrix(&self.rot_kb)
     }

@@ -1,25 +1,26 @@
-//! Momentum and energy of one system, from its own model, for the audit of an event.
+//! Momentum and energy of one system, computed with the system's own model, for the audit of an event.
 
 use crate::dynamics::{Data, base_rotation, kinematics, kinetic_energy};
 use crate::model::Model;
 use crate::spatial::{Force, Vec3};
 
-/// Speed below which a body counts as at rest, m/s; it keeps the scales above zero.
+/// Speed below which a body is treated as at rest, m/s. It keeps the scales of momentum above zero.
 const REST: f64 = 1e-9;
-/// Smallest angular scale of a body, relative to `|r| |p| + |H|`, of which `|r × p + H|` may be any part.
+/// Smallest angular scale of a body, relative to `|r| |p| + |H|`, because `r × p` and `H` may cancel.
 const LEAST: f64 = 1e-3;
 
-/// Momentum of a system, and the scales to which its errors are relative.
+/// Momentum of a system, and the scales relative to which its errors are stated.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Balance {
     /// Linear momentum, N s, and angular momentum about a point, N m s, in W axes.
     pub momentum: Force<f64>,
-    /// Sum of the magnitudes of the momenta of the bodies, N s and N m s; it does not vanish for bodies at rest.
+    /// Sums of the magnitudes of the momenta of the bodies, N s and N m s, with a lower bound for bodies at
+    /// rest.
     pub scales: [f64; 2],
 }
 
 impl Balance {
-    /// Returns the momentum of a system about `point` in W.
+    /// Computes the momentum of a system about `point` in W, m.
     pub fn of(model: &Model, q: &[f64], v: &[f64], point: Vec3<f64>) -> Self {
         let mut data = Data::<f64>::new(model);
         kinematics(model, &mut data, q, v);
@@ -44,7 +45,7 @@ impl Balance {
         self.scales = [0, 1].map(|i| self.scales[i] + other.scales[i]);
     }
 
-    /// Returns the differences of both momenta from those of `before`, relative to the scales.
+    /// Returns the changes of both momenta since `before`, relative to the scales.
     pub fn error_since(&self, before: &Self) -> [f64; 2] {
         let change = self.momentum - before.momentum;
         let sizes = [change.linear.norm(), change.angular.norm()];
@@ -53,10 +54,11 @@ impl Balance {
     }
 }
 
-/// Returns the kinetic energy, J, of the change of a system's velocity from `before` to `after` at `q`.
+/// Returns the kinetic energy, J, that corresponds to the change of a system's velocity from `before` to
+/// `after` at `q`.
 ///
-/// For an impulse on motions that the connection forbids, the energy lost is that of the change:
-/// `T⁻ − T⁺ = ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺)`, summed over the systems.
+/// If an impulse stops only the motions that a connection forbids, the energy lost is the energy of the
+/// velocity change: `T⁻ − T⁺ = ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺)`, summed over the systems.
 pub fn energy_of_change(model: &Model, q: &[f64], before: &[f64], after: &[f64]) -> f64 {
     let change: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
     energy(model, q, &change)

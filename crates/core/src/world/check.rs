@@ -7,22 +7,24 @@ use super::system::System;
 use crate::model::{Model, Mount};
 use crate::reference::TimeLaw;
 
-/// Names that a path or a frame of a reference already uses.
+/// Names that references use for frames or paths and that no system may have.
 const RESERVED: [&str; 4] = ["world", "lvlh", "base", "path"];
 
-/// Largest difference from 1 of the norm of a quaternion.
+/// Largest accepted deviation of the norm of a quaternion from 1.
 const UNIT_NORM: f64 = 1e-9;
 
-/// Longest motion to a nominal pose, s.
+/// Longest accepted duration of a seating motion, s.
 const LONGEST: f64 = 1e9;
 
-/// Largest distance of a nominal pose from the capturing frame, m: more than the size of any spacecraft.
+/// Largest accepted distance of a nominal pose from the capturing frame, m: more than the size of any
+/// spacecraft.
 const FARTHEST: f64 = 1e3;
 
-/// Checks the names of the systems of a world. A single system may have any name.
+/// Checks the names of the systems of a world. If there is only one system, it may have any name.
 ///
 /// # Errors
-/// [`WorldError::NoSystems`], [`WorldError::SystemName`], [`WorldError::SystemTwice`].
+/// [`WorldError::NoSystems`] for an empty world, [`WorldError::SystemName`] for an invalid name, and
+/// [`WorldError::SystemTwice`] for a name given twice.
 pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
     if systems.is_empty() {
         return Err(WorldError::NoSystems);
@@ -46,9 +48,9 @@ pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
 /// Checks the events of a world.
 ///
 /// # Errors
-/// A [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a capture
-/// within one system, captures that would close a loop or make a tree that is not valid, numbers outside their range, or
-/// events that wait for each other.
+/// [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a
+/// capture within one system, captures that would close a loop or produce an invalid tree, numbers outside
+/// their range, or events that wait for each other.
 pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldError> {
     for (i, event) in events.iter().enumerate() {
         if events[..i].iter().any(|before| before.name == event.name) {
@@ -63,7 +65,7 @@ pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldErr
     events.iter().try_for_each(|event| check_merged(systems, event))
 }
 
-/// Checks that the tree of two systems that a capture connects is a valid model. The pose of the capture does not matter.
+/// Checks that a capture of two systems produces a valid model. The pose at the capture does not matter.
 fn check_merged(systems: &[System], event: &Event) -> Result<(), WorldError> {
     let Action::Capture { by, of, .. } = event.action else { return Ok(()) };
     let [near, far] = [by, of].map(|place| &systems[place.system].model);
@@ -129,7 +131,7 @@ fn check_seat(event: &Event, seat: &Seat) -> Result<(), WorldError> {
     }
     let distance = position.iter().fold(0.0, |sum: f64, x| sum.hypot(*x));
     if distance > FARTHEST {
-        let expected = "at most 1000 m; give the position of the captured frame in the capturing frame in m";
+        let expected = "at most 1000 m; give the position of the captured frame in the capturing frame, in m";
         return wrong("the distance of the nominal pose", distance, "m", expected);
     }
     let norm = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -170,7 +172,7 @@ fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
     }
 }
 
-/// Checks that no event waits, through others, for itself.
+/// Checks that no event waits, directly or through other events, for itself.
 fn check_circles(events: &[Event]) -> Result<(), WorldError> {
     for start in 0..events.len() {
         let (mut at, mut path) = (start, Vec::new());
@@ -180,7 +182,7 @@ fn check_circles(events: &[Event]) -> Result<(), WorldError> {
                 return Err(WorldError::Circle { names: path.join(", ") });
             }
             if path.len() > events.len() {
-                break; // a circle that does not contain `start`
+                break; // a cycle that does not contain `start`
             }
             at = event;
         }
@@ -188,7 +190,7 @@ fn check_circles(events: &[Event]) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Checks that captures that no event releases do not connect the same systems twice.
+/// Checks that captures that are never released do not connect the same systems twice.
 fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
     let (mut union, mut names) = (Union::new(systems), Vec::new());
     for (number, event) in events.iter().enumerate() {
@@ -204,8 +206,8 @@ fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Checks that captures whose times are known before the run do not connect systems that are connected then. Captures
-/// that an event at an unknown time may release are not considered.
+/// Checks that captures whose times are known before the run do not connect systems that are already
+/// connected at that time. Captures that may be released by an event at an unknown time are not considered.
 fn check_timed_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
     let mut due: Vec<Option<f64>> = events.iter().map(|event| event.when.time()).collect();
     let mut order = Vec::new();

@@ -4,20 +4,20 @@ use crate::model::ModelError;
 use crate::number_text::short;
 use thiserror::Error;
 
-/// Invalid system or event of a world.
+/// Reason why a system or an event of a world is invalid.
 #[derive(Debug, Error, PartialEq)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum WorldError {
-    #[error("the world has no systems; give at least one")]
+    #[error("the world has no systems; give at least one system")]
     NoSystems,
     #[error(
         "'{name}' is not a name of a system; it must start with a letter, contain only letters, digits, '_' and '-', \
          and differ from world, lvlh, base and path"
     )]
     SystemName { name: String },
-    #[error("two systems have the name '{name}'; give each its own name")]
+    #[error("two systems have the name '{name}'; give each system a different name")]
     SystemTwice { name: String },
-    #[error("two events have the name '{name}'; give each its own name")]
+    #[error("two events have the name '{name}'; give each event a different name")]
     EventTwice { name: String },
     #[error(
         "the event '{event}' captures '{system}' by itself; the two frames must belong to different systems"
@@ -27,7 +27,7 @@ pub enum WorldError {
         "a reference of the system '{system}' is given in a frame of the system itself or in one that does not exist"
     )]
     ReferenceFrame { system: String },
-    #[error("the event '{event}' connects two systems to a robot that is not valid: {source}")]
+    #[error("the event '{event}' connects two systems into a robot that is not valid: {source}")]
     Merged { event: String, source: ModelError },
     #[error("the event '{event}' refers to system {system}; the world has {count} systems")]
     UnknownSystem { event: String, system: usize, count: usize },

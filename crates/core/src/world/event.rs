@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Index of a frame of a system.
+/// Frame of a system, given by two indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FrameIndex {
     /// Number of the system in the world.
@@ -11,37 +11,39 @@ pub struct FrameIndex {
     pub frame: usize,
 }
 
-/// An event: what happens, and when. Each event happens at most once in a run.
+/// Event of a world: an action, and the condition under which it occurs. Each event happens at most once in a
+/// run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Name, unique among the events.
+    /// Name, which is unique among the events.
     pub name: String,
     /// Condition under which the event happens.
     pub when: When,
-    /// What happens.
+    /// Action of the event.
     pub action: Action,
 }
 
 /// Condition under which an event happens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// At this time, s.
+    /// At a given time, s.
     At(f64),
-    /// A delay, s, after another event.
+    /// After a delay, s, that begins with another event.
     After {
         /// Number of the other event.
         event: usize,
         /// Delay, s.
         delay: f64,
     },
-    /// When the caller of the stepper triggers it.
+    /// When the caller of the stepper triggers the event.
     OnCommand,
     /// When the two frames of a capture have been within an envelope for long enough.
     Latch(Envelope),
 }
 
 impl When {
-    /// Returns the time at which an event is declared to happen, s; `None` if it depends on the run or on other events.
+    /// Returns the time at which an event is scheduled to happen, s; `None` if that depends on the run or on
+    /// other events.
     pub fn time(&self) -> Option<f64> {
         match *self {
             Self::At(t) => Some(t),
@@ -55,54 +57,54 @@ impl When {
 pub struct Envelope {
     /// Largest distance and angle between the frames, m and rad.
     pub within: [f64; 2],
-    /// Largest speed of the captured frame's origin as observed in the capturing frame, m/s, and largest relative angular
-    /// speed, rad/s.
+    /// Largest speed of the captured frame's origin as observed in the capturing frame, m/s, and largest
+    /// relative angular speed, rad/s.
     pub slower_than: [f64; 2],
-    /// Time for which all conditions must hold, s.
+    /// Time for which all conditions must hold without interruption, s.
     pub held_for: f64,
 }
 
-/// What an event does.
+/// Action of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Connects two frames rigidly at their relative pose of that instant.
+    /// Connects two frames rigidly, with the relative pose that they have at that instant.
     Capture {
-        /// Capturing frame, whose tree keeps its base.
+        /// Capturing frame; the tree keeps the base of the tree to which this frame belongs.
         by: FrameIndex,
         /// Captured frame.
         of: FrameIndex,
-        /// Motion to a nominal pose after the capture, if any.
+        /// Motion of the captured frame to a nominal pose after the capture, if any.
         seat: Option<Seat>,
     },
-    /// Removes the connection that a capture made.
+    /// Removes the connection that a capture established.
     Release {
         /// Number of the capture among the events.
         capture: usize,
-        /// Impulse of a spring on the system of the captured frame, in the axes of the capturing frame at its origin,
-        /// N s and N m s; the opposite impulse acts on the other system.
+        /// Impulse of a spring on the system of the captured frame, N s and N m s, at the origin and in the
+        /// axes of the capturing frame. The opposite impulse acts on the other system.
         impulse: [f64; 6],
     },
 }
 
-/// Motion of a captured frame to its nominal pose, as latches and grapple fixtures impose it.
+/// Motion of a captured frame to its nominal pose, as imposed by latches and grapple fixtures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seat {
-    /// Time that the motion takes, s.
+    /// Duration of the motion, s.
     pub duration: f64,
     /// Nominal pose of the captured frame in the capturing frame.
     pub pose: RigidPose,
 }
 
-/// Pose of a frame in another one.
+/// Pose of a frame relative to another frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RigidPose {
-    /// Rotation to the axes of the other frame, as a quaternion (x, y, z, w).
+    /// Rotation from axes of this frame to axes of the other frame, as a quaternion (x, y, z, w).
     pub rotation: [f64; 4],
     /// Origin in the other frame, m.
     pub position: [f64; 3],
 }
 
-/// Motion of a captured frame to its nominal pose, once it has begun.
+/// Motion of a captured frame to its nominal pose that has begun.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seating {
     /// Start, s.
@@ -116,14 +118,15 @@ pub struct Seating {
 /// Rigid connection of two frames of different systems.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weld {
-    /// Number of the capture that made the connection, among the events.
+    /// Number, among the events, of the capture that established the connection.
     pub capture: usize,
     /// Capturing frame.
     pub by: FrameIndex,
     /// Captured frame.
     pub of: FrameIndex,
-    /// Pose of the captured frame in the capturing frame, at the start of a seating motion.
+    /// Pose of the captured frame in the capturing frame; during a seating motion, the pose at the start of
+    /// that motion.
     pub pose: RigidPose,
-    /// Motion to the nominal pose, until it ends.
+    /// Seating motion to the nominal pose; `None` after the motion has ended.
     pub seating: Option<Seating>,
 }

@@ -1,9 +1,9 @@
-//! Groups: systems that may interact during a run. Systems of different groups never do, so each group is a separate
-//! run.
+//! Groups of systems that may interact during a run. Systems of different groups never interact, so each
+//! group is a separate run.
 
 use super::event::{Action, Event, When};
 
-/// Sets of numbers that are joined one pair at a time.
+/// Union-find structure: sets of numbers that are joined one pair at a time.
 pub(super) struct Union {
     parent: Vec<usize>,
 }
@@ -21,7 +21,7 @@ impl Union {
         i
     }
 
-    /// Joins the sets of two numbers; returns false if they are already in the same set.
+    /// Joins the sets that contain two numbers. Returns false if both are already in the same set.
     pub(super) fn join(&mut self, a: usize, b: usize) -> bool {
         let (a, b) = (self.first(a), self.first(b));
         self.parent[a.max(b)] = a.min(b);
@@ -29,7 +29,8 @@ impl Union {
     }
 }
 
-/// Returns the systems that an event involves; for an event after another one, also those of the other.
+/// Returns the systems that an event involves. For an event after another event, these include the systems of
+/// the latter.
 pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
     let (mut all, mut at) = (Vec::new(), number);
     for _ in 0..=events.len() {
@@ -48,8 +49,8 @@ pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
     all
 }
 
-/// Returns the groups of `count` systems, each with its systems in order; `links` are further pairs of systems that
-/// interact.
+/// Returns the groups of `count` systems, each with its systems in ascending order. `links` are additional
+/// pairs of systems that interact.
 pub fn groups(count: usize, events: &[Event], links: &[(usize, usize)]) -> Vec<Vec<usize>> {
     let mut union = Union::new(count);
     for number in 0..events.len() {

@@ -1,4 +1,5 @@
-//! Impulses: the velocity of systems at the instant at which they are connected, and after a push.
+//! Impulses: the velocities of systems at the instant at which they are connected, and the response to an
+//! impulse.
 
 use super::assembly::Member;
 use crate::dynamics::{
@@ -8,11 +9,11 @@ use crate::dynamics::{
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Vec3};
 
-/// A system in motion, with its place in a tree.
+/// System in motion, with its place in a tree.
 pub struct Moving<'a> {
     /// Place of the system in the tree.
     pub member: &'a Member,
-    /// Model of the system alone.
+    /// Model of the system by itself.
     pub model: &'a Model,
     /// Configuration, `(nq,)`, m and rad.
     pub q: &'a [f64],
@@ -20,13 +21,15 @@ pub struct Moving<'a> {
     pub v: &'a [f64],
 }
 
-/// Returns the velocity `(nv,)` of a tree at `q` at the instant at which its systems are rigidly connected; the first
-/// system is the root. `given` are the indices and the rates, rad/s (m/s), of the joints whose motion is given.
+/// Returns the velocity `(nv,)` of a tree at `q` immediately after its systems have been rigidly connected;
+/// the first system is the root. `given` are the indices and the rates, rad/s (m/s), of the joints whose
+/// motion is given.
 ///
-/// The impulses of the connections do no work on motions that the tree permits, so its generalized momentum is that of
-/// the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By Gauss's principle, `v⁺` is the motion of
-/// the tree closest to the motion before in the metric of the kinetic energy; with `Λ = (J M⁻¹ Jᵀ)⁻¹` of the relative
-/// twist `J v` at the connection it equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻`.
+/// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
+/// of the tree equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By
+/// Gauss's principle, `v⁺` is the motion of the tree that is closest to the previous motion in the metric of
+/// the kinetic energy. With `Λ = (J M⁻¹ Jᵀ)⁻¹` of the relative twist `J v` at the connection it equals `v⁻ −
+/// M⁻¹ Jᵀ Λ J v⁻`.
 pub fn connected_velocity(
     tree: &Model,
     q: &[f64],
@@ -36,7 +39,7 @@ pub fn connected_velocity(
     let mut data = Data::<f64>::new(tree);
     positions(tree, &mut data, q);
     let rot_bw = base_rotation(q).transpose();
-    // relative to the velocity of the root, so that a common velocity costs no precision
+    // velocities are taken relative to the root, so that a common velocity costs no precision
     let common = base_rotation(systems[0].q) * Vec3::from_slice(systems[0].v);
     let mut momentum = vec![0.0; tree.nv()];
     for Moving { member, model, q, v } in systems {
@@ -54,7 +57,8 @@ pub fn connected_velocity(
             momentum[BASE_NV + in_tree] = model.nodes()[joint + 1].rotor_inertia * v[BASE_NV + joint];
         }
     }
-    // at zero velocity the bias vanishes, the wrenches Jᵀ F of ABA are momenta, and its accelerations are velocities
+    // at zero velocity the bias vanishes; with momenta in place of the wrenches F, the accelerations of ABA
+    // are velocities
     let (at_rest, mut v) = (vec![0.0; tree.nv()], vec![0.0; tree.nv()]);
     let (mut locked, mut rates) = (vec![false; tree.joint_count()], vec![0.0; tree.joint_count()]);
     given.iter().for_each(|&(joint, rate)| (locked[joint], rates[joint]) = (true, rate));
@@ -66,8 +70,9 @@ pub fn connected_velocity(
     v
 }
 
-/// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i`, of a robot at `q` by an impulse at the origin of a frame,
-/// N s and N m s in the axes of the frame. The rates of the joints `given` do not change.
+/// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i`, of a robot at `q` that is caused by an impulse
+/// `i` at the origin of a frame, N s and N m s in the axes of the frame. The rates of the joints `given` do
+/// not change.
 pub fn impulse_response(
     model: &Model,
     q: &[f64],

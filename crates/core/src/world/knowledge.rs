@@ -1,22 +1,22 @@
-//! Knowledge of other systems that has no effect.
+//! Detection of systems that are known to other systems without any effect.
 
 use super::event::{Action, Event};
 use super::groups::Union;
 use super::system::System;
 
-/// A system that another one knows without effect: captures connect them only through systems that are not known, or not
-/// at all.
+/// System that another system knows without effect, because captures connect the two only through systems
+/// that are not known, or not at all.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdleKnowledge {
-    /// Number of the system whose controllers know the other one.
+    /// Number of the system whose controllers know the other system.
     pub system: usize,
     /// Number of the known system.
     pub known: usize,
-    /// Systems between them that are not known; empty if no capture connects them.
+    /// Systems on the path between the two that are not known; empty if no captures connect the two.
     pub through: Vec<usize>,
 }
 
-/// Returns the knowledge that has no effect, whatever events happen.
+/// Returns those entries of `knows` that have no effect, whatever events happen.
 pub fn idle_knowledge(systems: &[System], events: &[Event]) -> Vec<IdleKnowledge> {
     let pairs: Vec<[usize; 2]> = events
         .iter()
@@ -40,7 +40,8 @@ pub fn idle_knowledge(systems: &[System], events: &[Event]) -> Vec<IdleKnowledge
     found
 }
 
-/// Returns the systems on a shortest path of `pairs` from one of `count` systems to another, in order; empty without one.
+/// Returns the systems on a shortest path, along `pairs`, between two of `count` systems, in order; empty if
+/// there is none.
 fn path(count: usize, pairs: &[[usize; 2]], from: usize, to: usize) -> Vec<usize> {
     let mut before = vec![None; count];
     let (mut queue, mut next) = (vec![from], 0);

@@ -1,4 +1,4 @@
-//! Index ranges of systems and joints, found by name, in vectors with the coordinates of all systems.
+//! Index ranges of systems and joints, found by name, in vectors that hold the coordinates of all systems.
 
 use crate::model::Model;
 use std::ops::Range;
@@ -9,7 +9,8 @@ pub struct Layout {
     systems: Vec<SystemPlace>,
 }
 
-/// Index ranges of one system in vectors that hold the coordinates of all systems, one system after the other.
+/// Index ranges of one system in vectors that hold the coordinates of all systems, one system after the
+/// other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SystemPlace {
     /// Name of the system.
@@ -25,7 +26,7 @@ pub struct SystemPlace {
 }
 
 impl Layout {
-    /// Returns the layout of these systems, each with its name, in this order.
+    /// Creates the layout of these systems, given by name and model, in this order.
     pub fn new<'a>(systems: impl IntoIterator<Item = (&'a str, &'a Model)>) -> Self {
         let (mut q, mut v, mut tau) = (0, 0, 0);
         let place = |(name, model): (&str, &Model)| SystemPlace {
@@ -43,20 +44,21 @@ impl Layout {
         &self.systems
     }
 
-    /// Returns the index of the system with this name; `None` if there is none.
+    /// Returns the index of the system `name`; `None` if there is no such system.
     pub fn system(&self, name: &str) -> Option<usize> {
         self.systems.iter().position(|system| system.name == name)
     }
 }
 
 impl SystemPlace {
-    /// Returns the index of the joint with this name among the joints of the system; `None` if there is none.
+    /// Returns the index of the joint `name` among the joints of the system; `None` if there is no such
+    /// joint.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|joint| joint == name)
     }
 }
 
-/// Returns the range of the next `length` indices, which starts at `end`, and moves `end` to the end of this range.
+/// Returns the range of `length` indices that starts at `end`, and advances `end` to the end of this range.
 fn next(end: &mut usize, length: usize) -> Range<usize> {
     let start = *end;
     *end += length;
@@ -71,7 +73,7 @@ mod tests {
     use crate::model::{BASE_NQ, BASE_NV, Inertial, Joint, JointKind, Link, Model, ModelBuilder};
     use nalgebra::{Isometry3, Matrix3, Vector3};
 
-    /// A chain of links with joints of these names.
+    /// Creates a chain of links whose joints have these names.
     fn chain(joints: &[&str]) -> Model {
         let link = |name: &str| {
             let inertial = Inertial { mass: 1.0, com: Vector3::zeros(), inertia: Matrix3::identity() };

@@ -1,8 +1,9 @@
-//! Seating: the motion of a captured frame, relative to the frame that captured it, to its nominal pose, as latches and
-//! grapple fixtures impose it.
+//! Seating: the motion of a captured frame, relative to the capturing frame, to its nominal pose, as imposed
+//! by latches and grapple fixtures.
 //!
-//! The captured frame moves on a straight line and turns about one axis, both with the same time law. In the tree these
-//! are a prismatic and a revolute joint whose positions are given functions of time.
+//! The captured frame moves along a straight line and rotates about one axis, both with the same time law. In
+//! the tree this motion is represented by a prismatic and a revolute joint whose positions are given
+//! functions of time.
 
 use super::event::{RigidPose, Seating, Weld};
 use crate::model::{Joint, JointKind};
@@ -14,28 +15,28 @@ use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector
 pub struct GivenJoint {
     /// Index of the joint in the tree.
     pub joint: usize,
-    /// Position at the end of the motion, rad (m); it is zero at the start.
+    /// Position at the end of the motion, rad (m); the position at the start is zero.
     pub travel: f64,
     /// Start of the motion, s.
     pub start: f64,
-    /// Progress of the motion since its start.
+    /// Time law of the motion.
     pub law: TimeLaw,
 }
 
 impl GivenJoint {
-    /// Returns position, rate and acceleration at `t`, s.
+    /// Returns the position, rate and acceleration of the joint at `t`, s.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let (s, rate, acceleration) = self.law.at(t - self.start);
         [s, rate, acceleration].map(|x| x * self.travel)
     }
 }
 
-/// Number of steps over which a motion must extend at least, so that a fixed-step integrator resolves it.
+/// Smallest number of steps into which a motion is divided, so that a fixed-step integrator resolves it.
 const STEPS: usize = 64;
 
 impl Seating {
-    /// Returns the times at which steps must end, s: the end of the motion and, if `time_step` (s) is long against it,
-    /// times at equal distances within it.
+    /// Returns the times at which steps must end, s: the end of the motion and, if `time_step` (s) is long
+    /// compared with the motion, equally spaced times within it.
     pub fn cuts(&self, time_step: f64) -> impl Iterator<Item = f64> + use<> {
         let Self { start, duration, .. } = *self;
         let parts = if duration < STEPS as f64 * time_step { STEPS } else { 1 };
@@ -43,7 +44,8 @@ impl Seating {
     }
 }
 
-/// Connection that a weld makes in a tree: moving joints, the travel of each, and the constant pose behind them.
+/// Connection that a weld adds to a tree: moving joints, the travel of each, and the constant pose after the
+/// last of them.
 pub(super) struct Chain {
     pub(super) joints: Vec<Joint>,
     pub(super) travels: Vec<f64>,
@@ -51,15 +53,17 @@ pub(super) struct Chain {
 }
 
 impl Weld {
-    /// Returns the time at which the captured frame reaches its nominal pose, s; `None` if it has.
+    /// Returns the time at which the captured frame will reach its nominal pose, s; `None` if the frame has
+    /// no seating motion.
     pub fn seated_at(&self) -> Option<f64> {
         self.seating.map(|seating| seating.start + seating.duration)
     }
 
-    /// Returns the connection from the capturing frame to the captured one, or, if `is_reversed`, in the opposite
-    /// direction. `name` is the prefix of the names of its joints.
+    /// Returns the connection from the capturing frame to the captured frame or, if `is_reversed`, in the
+    /// opposite direction. `name` is the prefix of the names of its joints.
     ///
-    /// `X(s) = (p₀ + s d, exp(s θ n) R₀)`, with `d = p₁ − p₀` and `exp(θ n) = R₁ R₀ᵀ`.
+    /// `X(s) = (p₀ + s d, exp(s θ n) R₀)` with `d = p₁ − p₀` and `exp(θ n) = R₁ R₀ᵀ`, where the indices 0 and
+    /// 1 denote the start and the nominal pose.
     pub(super) fn chain(&self, name: &str, is_reversed: bool) -> Chain {
         let start = self.pose.isometry();
         let rotation = |turn| Isometry3::from_parts(Translation3::identity(), turn);
@@ -102,7 +106,7 @@ impl From<Isometry3<f64>> for RigidPose {
 }
 
 impl RigidPose {
-    /// Returns the pose as a transformation.
+    /// Returns the pose as an isometry.
     pub fn isometry(&self) -> Isometry3<f64> {
         let [x, y, z, w] = self.rotation;
         let rotation = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
