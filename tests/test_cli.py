@@ -209,7 +209,7 @@ def test_ctrl_c_keeps_the_partial_trace_and_reports_it(tmp_path: Path) -> None:
         _, stderr = run.communicate(timeout=60)
     assert run.returncode == 130
     assert stderr.startswith("onorbit: stopped by Ctrl-C at t = ")
-    assert "the trace so far is in" in stderr
+    assert "the trace up to this time is in" in stderr
     assert len(stderr.splitlines()) == 1
     assert (tmp_path / "out" / "trace.npz").is_file()
 

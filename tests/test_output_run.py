@@ -125,7 +125,7 @@ def diverging() -> dict[str, Any]:
 
 
 def test_a_diverged_run_keeps_its_trace(tmp_path: Path) -> None:
-    with pytest.raises(SimulationError, match="the trace so far is in") as caught:
+    with pytest.raises(SimulationError, match="the trace up to this time is in") as caught:
         oo.run(diverging(), out=tmp_path / "out", quiet=True)
     assert isinstance(caught.value, ArithmeticError)
     assert 0.0 < caught.value.time < 10.0
@@ -188,4 +188,4 @@ def test_a_full_disk_does_not_hide_another_error(
     assert type(own).__name__ == end
     notes = getattr(own, "__notes__", [])
     assert "cannot write trace.npz: No space left" in "; ".join([str(own), *notes])
-    assert "rows so far are in" not in str(notes) and "so far is in" not in str(own)
+    assert "rows recorded so far are in" not in str(notes) and "up to this time is in" not in str(own)

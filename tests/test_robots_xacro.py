@@ -180,7 +180,8 @@ BODIES = {
     "deep": ("<a>" * 3000 + "</a>" * 3000, ("nested too deeply",)),
     "no link": ("", ("no links",)),
     "macros alone": (
-        '<xacro:macro name="m"><link name="a"/></xacro:macro>', ("macros", "give the file that calls them")
+        '<xacro:macro name="m"><link name="a"/></xacro:macro>',
+        ("macros", "give the file that calls the macros"),
     ),
     "python's own names": (LINK.format("${__import__('os').getcwd()}", 1), ("__import__",)),
     "unknown kind of joint": (

@@ -148,7 +148,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "index, too few": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: [1, 2]}}]\n",
         "6: environment[0].atmosphere.ap",
-        ("ap is a list of length 2; give one number (not in a list) or a list of seven",),
+        ("ap is a list of 2 numbers; give one number without a list, or a list of seven",),
     ),
     "index, a word": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: high}}]\n",
@@ -298,7 +298,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "a tab": (ROBOT + "simulation:\n\tduration: 5\n", "3", ("invalid YAML", "with spaces instead of tabs")),
     "a colon left out": ("robot humanoid_torso\n" + RUN, "2", ("invalid YAML", "is a ':' missing above")),
     "two scenarios": (JOINTS + "---\n" + JOINTS, "3", ("invalid YAML", "a file contains one scenario")),
-    "an alias of nothing": (ROBOT + "simulation: *run\n", "2", ("'run'", "define it with '&' above")),
+    "an alias of nothing": (ROBOT + "simulation: *run\n", "2", ("'run'", "define the alias with '&' above")),
     "a tag": ("robot: !robot x\n" + RUN, "1", ("'!robot'", "tags ('!') are not supported")),
     "a bracket left open": (
         ROBOT + "initial: {joints: [1, 2\n" + RUN,

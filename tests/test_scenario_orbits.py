@@ -68,7 +68,7 @@ def test_one_of_several_sets_is_chosen_by_name_or_number(satellite: Any, tmp_pat
     (tmp_path / "all.tle").write_text(text)
     made = orbit_of(written(tmp_path, {"kind": "sgp4", "tle_file": "all.tle", "satellite": satellite}))
     np.testing.assert_array_equal(made.state(60.0)[0], oo.Sgp4(*OTHER).state(60.0)[0])
-    for other, says in [("VANGARD", "did you mean 'VANGUARD 1'"), (None, "by 'satellite'")]:
+    for other, says in [("VANGARD", "did you mean 'VANGUARD 1'"), (None, "with 'satellite'")]:
         with pytest.raises(ElementSetError, match=says):
             orbit_of(written(tmp_path, {"kind": "sgp4", "tle_file": "all.tle", "satellite": other}))
     with pytest.raises(ElementSetError, match="contains 2 element sets"):

@@ -138,7 +138,7 @@ def test_one_system_gives_the_motion_of_the_short_form() -> None:
 INVALID: dict[str, tuple[str, str, str]] = {
     "both forms": ("systems:\n", "robot: servicer\nsystems:\n", r":3: robot: .* either 'systems'"),
     "system twice": ("  target:\n", "  chaser:\n", r":10: key 'chaser' is given twice"),
-    "slash": ("  target:\n", "  a/b:\n", r":10: systems.a/b: 'a/b' is not a name"),
+    "slash": ("  target:\n", "  a/b:\n", r":10: systems.a/b: 'a/b' is not a valid name"),
     "reserved": ("  target:\n", "  world:\n", r":10: systems.world: .* name of a frame"),
     "key of a system": ("    tool: tool", "    tol: tool", r":6: systems.chaser.tol: .*'tool'"),
     "key of a robot": (

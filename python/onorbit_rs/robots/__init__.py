@@ -1,4 +1,4 @@
-"""Loads bundled robots, each of which is one URDF file, and robots from other files."""
+"""Loads bundled robots, each of which is one URDF file, and robots from user files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def path(name: str) -> Path:
     Raises
     ------
     NotFoundError
-        If there is no such robot; suggests the nearest name.
+        If no bundled robot has this name; the message suggests the nearest name.
     """
     return bundled_files.path(name, "robot", _FOLDER, ".urdf")
 
@@ -66,9 +66,9 @@ def load(
 
 
 def is_file(name: str | os.PathLike[str]) -> bool:
-    """Return whether a robot is given by a path, such as ``arms/my_arm.urdf``, and not by a bundled name.
+    """Return whether a robot is given by a path, such as ``arms/my_arm.urdf``, instead of a bundled name.
 
-    A text is a path if it contains a folder or ends in ``.urdf``, ``.xml`` or ``.xacro``.
+    A string is a path if it contains a folder or ends in ``.urdf``, ``.xml`` or ``.xacro``.
     """
     text = os.fspath(name)
     has_ending = text.lower().endswith((".urdf", ".xml", ".xacro"))

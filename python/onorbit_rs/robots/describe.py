@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 def describe(model: Model) -> dict[str, Any]:
     """Return the data that ``onorbit info`` prints, in SI and radians; None for a missing limit.
 
-    A body is a link with all links that are fixed to it. Its centre of mass and inertia are in the axes of
-    that link; the centre of mass of the whole robot is in base axes, with all joints at zero. Inertias and
-    principal moments are about the centre of mass.
+    A body is a link together with all links that are fixed to it. The centre of mass and inertia of a body
+    are in the axes of its link; the centre of mass of the whole robot is in base axes, with all joints at
+    zero. Inertias and principal moments are about the centre of mass.
     """
     com, moments = _whole_robot(model)
     return {

@@ -20,7 +20,7 @@ from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
 from onorbit_rs.robots.xacro_parts import replace_parts
 
-_LOCK = threading.Lock()  # xacro keeps its state in globals
+_LOCK = threading.Lock()  # xacro keeps its state in global variables
 
 
 def expand(
@@ -37,15 +37,17 @@ def expand(
         it is executed. It may include and load files of its package, of ``package_paths`` and of packages
         that ``$(find name)`` returns.
     package_paths : sequence of paths
-        ROS packages or folders of ROS packages, for ``$(find name)``; the parents of the file are searched
-        after them.
+        ROS packages or folders of ROS packages, for ``$(find name)``; the parent folders of the file are
+        searched after them.
     arguments : mapping, optional
         Values of ``$(arg name)``, ``$(env name)`` and ``$(optenv name)``; the environment is not read.
 
     Returns
     -------
     urdf : str
+        Text of the expanded file.
     remarks : list of str
+        Omitted parts, unused arguments and warnings of xacro.
 
     Raises
     ------
@@ -65,7 +67,7 @@ def expand(
         text = document.documentElement.toxml()
     if not document.getElementsByTagName("link") and b"<xacro:macro" in file.read_bytes():
         raise ModelError(
-            f"{file}: defines xacro macros but no robot; give the file that calls them", path=str(file)
+            f"{file}: defines xacro macros but no robot; give the file that calls the macros", path=str(file)
         )
     for name in values:
         if name not in used:
@@ -119,12 +121,12 @@ def _model_errors(file: Path) -> Iterator[None]:
         raise ReadError(
             f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot"
         ) from error
-    except Exception as error:  # of xacro, of expat, or raised by an expression in the file
+    except Exception as error:  # raised by xacro, by expat, or by an expression in the file
         raise ModelError(f"{file}: {_reason(error)}", path=str(file)) from error
 
 
 class _Arguments(dict[str, str]):
-    """Arguments that record which of them the file uses."""
+    """Arguments by name; the names of arguments that the file uses are recorded."""
 
     def __init__(self, values: Mapping[str, str], used: set[str]) -> None:
         super().__init__(values)
@@ -136,7 +138,7 @@ class _Arguments(dict[str, str]):
 
 
 def _text(value: object) -> str:
-    """Return a value as on a command line: ``true`` for True."""
+    """Return a value as text, as written on a command line: ``true`` for True."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 

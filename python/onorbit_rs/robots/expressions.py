@@ -26,7 +26,7 @@ from onorbit_rs.robots.functions import (
 )
 
 _LONGEST = 4096
-"""Largest number of characters of an expression; those of real robots have a few hundred."""
+"""Largest number of characters of an expression; expressions of real robots have a few hundred."""
 
 _COMPARE: dict[type[ast.cmpop], Callable[[Any, Any], Any]] = {
     ast.Eq: operator.eq,
@@ -50,17 +50,18 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
     text : str
         The expression between ``${`` and ``}``.
     names : callable
-        Returns the value of a property, or such a callable for a namespace; raises KeyError if undefined.
+        Returns the value of a property, or, for a namespace, a function that returns its properties; raises
+        KeyError for an undefined name.
     functions : mapping
         Functions and constants by name, such as ``sqrt`` and ``math.sqrt``.
     work : Work
-        Remaining steps for the file.
+        Number of steps that remain for the expansion of the file.
 
     Raises
     ------
     ValueError
-        If the expression is too long, cannot be parsed, contains an element that is not allowed, its value
-        is too large, or no steps remain.
+        If the expression is too long, cannot be parsed or contains an element that is not allowed, if its
+        value is too large, or if no steps remain.
     NameError, TypeError, ArithmeticError, LookupError
         As Python raises them for the same operations.
     """
@@ -73,7 +74,7 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
 
 
 class _Evaluation(Evaluator):
-    """Evaluation of one syntax tree."""
+    """Evaluates the syntax tree of one xacro expression."""
 
     constants: ClassVar = (int, float, str, bool, type(None))
     binary: ClassVar = {
@@ -181,7 +182,7 @@ class _Evaluation(Evaluator):
         return owner[node.attr]
 
     def _dotted(self, node: ast.Attribute) -> str | None:
-        """Return ``math.sqrt`` if ``math`` is not a property of the file, otherwise None."""
+        """Return the name as text, such as ``math.sqrt``; None if ``math`` is a property of the file."""
         if not isinstance(node.value, ast.Name):
             return None
         try:
@@ -191,7 +192,7 @@ class _Evaluation(Evaluator):
         return None
 
     def _scope(self, node: ast.expr) -> Callable[[str], Any] | None:
-        """Return the namespace with this name, or None for a value."""
+        """Return the function that reads a namespace's properties; None if the node is not a namespace."""
         outer = self._names if isinstance(node, ast.Name) else None
         if isinstance(node, ast.Attribute):
             outer = self._scope(node.value)

@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
 DIGITS = 9
-"""Decimal places kept of lengths, m, and rotation matrices, so that rounding does not change the fingerprint.
+"""Decimal places of lengths, m, and rotation matrices, so that rounding does not change the fingerprint.
 
-An inertia is kept relative to its largest entry. Masses, limits and losses have twelve digits.
+An inertia is divided by its largest entry. Masses, limits and losses have twelve significant digits.
 """
 
 
 def fingerprint(model: Model) -> str:
     """Return sixteen hexadecimal digits that depend on the content of a robot, not on its path.
 
-    They depend on bodies, joints, named frames, and the shapes of visuals without their colours; of a mesh
-    only on the name of its file.
+    The digits depend on bodies, joints, named frames and visual shapes, but not on colours or on the content
+    of mesh files.
     """
     content = {
         "bodies": [
@@ -49,7 +49,7 @@ def fingerprint(model: Model) -> str:
 
 
 def has_changed(model: Model, recorded: Any) -> bool:
-    """Return whether the fingerprint of a robot has changed; False for older runs, which recorded none."""
+    """Return whether the robot's fingerprint has changed; False for older runs without a fingerprint."""
     return isinstance(recorded, str) and recorded != fingerprint(model)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from onorbit_rs.common.counting import count
 
 MAX_TEXT = 100_000
-"""Largest number of characters of a text."""
+"""Largest number of characters in a string."""
 MAX_ITEMS = 10_000
 """Largest number of items of a list or mapping, including nested items."""
 MAX_BITS = 2048
@@ -19,14 +19,14 @@ MAX_BITS = 2048
 
 
 class Work:
-    """Limit on the steps to expand a file, about a microsecond each; large robots use a tenth of it."""
+    """Limit on the steps to expand a file, about 1 µs each; large robots use a tenth of the limit."""
 
     def __init__(self, steps: int = 4_000_000) -> None:
-        """Start with this number of steps."""
+        """Set the number of steps that are allowed."""
         self._steps, self._left = steps, steps
 
     def spend(self, steps: int) -> None:
-        """Count steps; raises ValueError if none remain."""
+        """Subtract steps from the remaining steps; raises ValueError if too few remain."""
         self._left -= steps
         if self._left < 0:
             raise ValueError(f"the expansion requires more than {self._steps} steps, the limit for a file")
@@ -60,7 +60,7 @@ def check_size(value: Any, work: Work) -> None:
 
 
 def repeated(a: Any, b: Any) -> Any:
-    """Return ``a * b``; repeated text and lists have a limited length."""
+    """Return ``a * b``; raises ValueError if a repeated string or list exceeds its size limit."""
     for items, times in ((a, b), (b, a)):
         if isinstance(items, (str, list, tuple)) and isinstance(times, int):
             limit = MAX_TEXT if isinstance(items, str) else MAX_ITEMS
@@ -82,7 +82,7 @@ def safe_shift(a: Any, b: Any) -> Any:
 
 
 def remainder_or_text(a: Any, b: Any) -> Any:
-    """Return ``a % b``: the remainder, or formatted text of limited width."""
+    """Return ``a % b``: the remainder, or formatted text; raises ValueError for unsafe formats."""
     if isinstance(a, str) and (found := re.search(r"%[^a-zA-Z%]*(\(|\*|\d{3})", a)):
         what = {"(": "a key", "*": "a width or precision of '*'"}.get(found[1], "a number of three digits")
         raise ValueError(f"the format {a!r} contains {what}, which is not allowed in xacro expressions")
@@ -101,7 +101,9 @@ def _round(value: Any, digits: int | None = None) -> Any:
 
 
 def _sum(values: Any, start: float = 0) -> Any:
-    return sum((value + 0 for value in values), start + 0)  # + 0 raises an error for anything but numbers
+    return sum(
+        (value + 0 for value in values), start + 0
+    )  # + 0 raises an error for operands other than numbers
 
 
 def _replace(text: str, old: str, new: str) -> str:
@@ -199,4 +201,4 @@ METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     (dict, "items"): lambda mapping: list(dict.items(mapping)),
     (dict, "get"): lambda mapping, key, default=None: dict.get(mapping, key, default),
 }
-"""Methods of text, lists and mappings; without ``format``, which reads attributes."""
+"""Methods of strings, lists and mappings that are allowed; ``format`` is not, since it reads attributes."""

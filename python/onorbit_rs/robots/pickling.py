@@ -21,16 +21,16 @@ def rebuild_robot(
     Raises
     ------
     ModelError
-        If the description now has another fingerprint.
+        If the description has changed since the robot was pickled.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # these warnings were given when the description was first read
+        warnings.simplefilter("ignore")  # these warnings were issued when the description was first read
         model: Model = rebuild(constructor, arguments, keywords)
     if has_changed(model, fingerprint):
         path = keywords.get("path")
         raise ModelError(
-            f"{path or 'the description'} no longer describes the pickled robot, because it or a file that "
-            "it includes was changed; restore the file, or load the robot again and pickle the new one",
+            f"{path or 'the description'} no longer describes the pickled robot, because this file or an "
+            "included file was changed; restore the file, or load the robot again and pickle the new one",
             path=path and str(path),
         )
     return model

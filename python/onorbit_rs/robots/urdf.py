@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def urdf_text(model: Model) -> str:
     """Return a robot as URDF, with shapes, limits and losses; named frames become links without mass.
 
-    Lengths and angles are written with all digits. Paths of meshes are absolute.
+    Lengths and angles are written in full precision. Paths of meshes are absolute.
 
     Raises
     ------
@@ -90,7 +90,7 @@ def _add_shape(link: xml.Element, tag: str, shape: Visual) -> None:
 
 
 def _material(shape: Visual) -> str:
-    """Return a name that depends on the colour only, since URDF names materials once."""
+    """Return a material name that depends only on the colour, so that equal colours share a material."""
     assert shape.rgba is not None
     return "rgba_" + "_".join(f"{round(255 * part):02x}" for part in shape.rgba)
 

@@ -1,4 +1,4 @@
-"""Names of the options for robot files, as the caller writes them, for messages."""
+"""Names of the options for robot files in messages: those of Python, the command line or the scenario."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Wording:
-    """Option for folders of ROS packages, and format of an argument of a xacro file."""
+    """Name of the option for folders of ROS packages, and format of the option for a xacro argument."""
 
     packages: str
     _argument: str
 
     def argument(self, name: str) -> str:
-        """Return the option that gives this argument a value."""
+        """Return the option that sets the xacro argument ``name``, for messages."""
         return self._argument.replace("NAME", name)
 
 

@@ -1,4 +1,4 @@
-"""Files that a xacro file may read: those of its package and of packages given or found."""
+"""Files that a xacro file may read: those of its package and of other given or found packages."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ _LARGEST = 16 << 20
 
 
 class Files:
-    """Opens the files that one xacro file includes or loads, and finds packages."""
+    """Opens files that one xacro file includes or loads, and finds packages."""
 
     def __init__(self, file: Path, package_paths: Sequence[Path], work: Work) -> None:
-        """Allow a file to read from its package and those in ``package_paths``."""
+        """Allow ``file`` to read files of its package and of those in ``package_paths``."""
         self._above = list(file.absolute().parents)
         self._given = [folder.absolute() for folder in package_paths]
         self._work = work
@@ -32,10 +32,10 @@ class Files:
             self._roots |= _real(own)
 
     def find(self, package: str) -> str:
-        """Return the folder of a package, in or one of ``package_paths`` and the parents of the file.
+        """Return the folder of a package, searched in ``package_paths`` and in the file's parent folders.
 
-        A folder in one of the file's parents must contain a ``package.xml``. For a package that is not found,
-        returns ``package://name``: its meshes are not drawn, and includes are reported as missing.
+        Packages in the parent folders must contain a ``package.xml``. If the package is not found, return
+        ``package://name``; its meshes are then not drawn, and its includes are reported as missing.
         """
         if not package:
             raise ValueError(
@@ -61,10 +61,10 @@ class Files:
         Raises
         ------
         OSError
-            If there is no such file or it cannot be read.
+            If the file does not exist or cannot be read.
         ValueError
-            If it is outside of the packages, is not a regular file of at most 16 MiB, is not UTF-8 text, is
-            empty, or has a document type.
+            If the file is outside of the packages, is not a regular file of at most 16 MiB, is not UTF-8
+            text, is empty, or has a document type.
         """
         path = Path(name)
         path.stat()  # a missing file must reach xacro as an OSError
@@ -96,7 +96,7 @@ class Environment:
     """Values of ``$(env NAME)`` and ``$(optenv NAME default)``, taken from the given arguments."""
 
     def __init__(self, values: dict[str, str], used: set[str]) -> None:
-        """Use these arguments; the names that the file uses are added to ``used``."""
+        """Store the arguments; the names of arguments that the file uses are added to ``used``."""
         self._values, self._used = values, used
 
     def required(self, name: str) -> str:
@@ -111,7 +111,7 @@ class Environment:
         return self._values[name]
 
     def optional(self, name: str, default: Any = "") -> Any:
-        """Return the argument with this name, or the default in the file."""
+        """Return the argument with this name, or the default given in the file."""
         self._used.add(name)
         return self._values.get(name, default)
 
@@ -121,7 +121,7 @@ def _is_package(folder: Path) -> bool:
 
 
 def _real(folder: Path) -> set[Path]:
-    """Return the real path of a folder, and that of its files if they are links (``--symlink-install``)."""
+    """Return the real paths of a folder and of linked files in it (ROS's ``--symlink-install``)."""
     manifest = folder / "package.xml"
     return {folder.resolve()} | ({manifest.resolve().parent} if manifest.is_file() else set())
 

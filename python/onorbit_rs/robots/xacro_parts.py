@@ -42,8 +42,8 @@ def replace_parts(
 ) -> None:
     """Replace the parts of xacro that evaluate, open files or read the environment, until ``undo`` closes.
 
-    A version of xacro without one of the replaced functions is refused (AttributeError), since another
-    function would evaluate in its place. ``eval`` and ``exec`` are hidden from xacro.
+    A version of xacro that lacks one of the replaced functions raises AttributeError, because that version
+    would evaluate expressions in another function. ``eval`` and ``exec`` are hidden from xacro.
     """
     substitution = importlib.import_module("xacro.substitution_args")
     functions = FUNCTIONS | _file_functions(xacro, files, work)
@@ -67,7 +67,7 @@ def replace_parts(
     def counted_call(node: Any, macros: Any, symbols: Any) -> Any:
         with contextlib.suppress(KeyError):  # not a macro
             _, _, macro = xacro.resolve_macro(node.tagName.removeprefix("xacro:"), macros, symbols)
-            work.spend(5 * sizes.of(macro.body))  # it is copied
+            work.spend(5 * sizes.of(macro.body))  # the macro call copies its body
         return call(node, macros, symbols)
 
     def folder_of(_: object) -> str:
@@ -111,15 +111,15 @@ class _Sizes:
             while waiting:
                 size += 1
                 waiting.extend(waiting.pop().childNodes)
-            self._known[id(body)] = (body, size)  # holds the body, so that its id is not reused
+            self._known[id(body)] = (body, size)  # stores the body, so that Python does not reuse its id
         return self._known[id(body)][1]
 
 
 def _property(table_type: Any, symbols: Any, name: str) -> Any:
-    """Return a property of the file, or for a namespace a function that returns its properties.
+    """Return a property of the file or, for a namespace, a function that returns its properties.
 
-    Raises KeyError if it is not defined. The symbols that xacro defines, among them Python's functions, are
-    not accessible.
+    Raises KeyError if the name is not defined. Symbols that xacro itself defines, among them Python's
+    functions, are not accessible.
     """
     table = symbols
     while isinstance(table, table_type):
@@ -165,7 +165,7 @@ def _loader(work: Work) -> type[yaml.SafeLoader]:
     """Return a loader of plain YAML with xacro's units."""
 
     class Loader(yaml.SafeLoader):
-        """Separate class, so that the units apply to no other reader of YAML."""
+        """YAML loader; a separate class, so that the units do not apply to other YAML loaders."""
 
     def of_unit(factor: float, loader: yaml.SafeLoader, node: Any) -> float:
         return float(evaluate(str(loader.construct_scalar(node)), _nothing, FUNCTIONS, work)) * factor
@@ -193,7 +193,9 @@ def _without_extras(
         except (xacro.XacroException, ValueError) as error:
             name, paths = node.getAttribute("filename"), xacro.all_includes[known:]
             given = xacro.substitution_args_context["arg"]
-            is_folder = len(paths) == 1 and Path(paths[0]).is_dir()  # an empty argument leaves one
+            is_folder = (
+                len(paths) == 1 and Path(paths[0]).is_dir()
+            )  # an empty argument leaves only the folder
             if not isinstance(getattr(error, "exc", None), OSError) and not (
                 is_folder and _empty(name, given)
             ):
@@ -224,7 +226,7 @@ def _leave_out(node: Any, why: str, remarks: list[str]) -> None:
 
 
 def _missing(name: str, path: str, files: Files, given: Mapping[str, Any]) -> str:
-    """Return why a file is missing: an argument is empty, the package was not found, or it does not exist.
+    """Return why a file is missing: an argument or package is missing, or the file does not exist.
 
     ``name`` is the name in the file, ``path`` its expanded path, and ``given`` are the values of arguments.
     """
@@ -242,6 +244,6 @@ def _missing(name: str, path: str, files: Files, given: Mapping[str, Any]) -> st
 
 
 def _empty(name: str, given: Mapping[str, Any]) -> str | None:
-    """Return the first argument in the name of a file whose value is empty."""
+    """Return the first xacro argument in a file name whose value is empty; None without one."""
     asked = re.findall(r"\$\(arg\s+([^)\s]+)\s*\)", name)
     return next((argument for argument in asked if given.get(argument) == ""), None)

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Built:
-    """Objects of the engine that a run requires."""
+    """A scenario and the objects that are built from it: robot, initial state, environment, simulation."""
 
     scenario: Scenario
     model: _core.Model
@@ -45,9 +45,9 @@ class Built:
     v: Floats
     simulation: _core.Simulation
     reference: _core.Reference | _core.JointReference | None
-    """Reference of a single controller."""
+    """Reference of a single controller; None for several controllers or without a reference."""
     warnings: tuple[str, ...] = ()
-    """Settings that run but are probably not intended."""
+    """Warnings about valid settings that are probably not intended."""
 
 
 class Environment(NamedTuple):
@@ -61,13 +61,13 @@ class Environment(NamedTuple):
 def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     """Return the robot, orbit, initial state and simulation of a scenario, checked with a trial step.
 
-    Settings that run but are probably not intended give warnings. Without ``runs_code``, the source of
+    Valid settings that are probably not intended cause warnings. If ``runs_code`` is False, the source of
     controllers in Python is inspected but not executed, and the simulation must not be run.
 
     Raises
     ------
     OnOrbitError
-        The appropriate subclass, with file, line and key before the message of the engine.
+        The appropriate subclass; file, line and key precede the message of the engine.
     """
     check_record_every(scenario)
     model = scenario.robot.build(scenario)
@@ -93,7 +93,7 @@ def build_around(
     tool = scenario.tracked_tool
     with located(scenario, "tool"):
         if tool is not None:
-            model.frame_pose(q, tool)  # raises if there is no such frame
+            model.frame_pose(q, tool)  # raises an error for an unknown frame
     _check_surfaces(scenario, model)
     flight = Flight(model, q, v, orbit, earth)
     try_effects(scenario, effects, flight)
@@ -110,14 +110,14 @@ def build_around(
             )  # fmt: skip
         return built, reference
 
-    # a controller in Python may keep state from its trial, so the run gets a new one
+    # a Python controller may keep state from the trial step, so the run gets a new controller
     try_one_step(scenario, model, simulation()[0])
     messages = tuple(warnings_of(scenario, flight, effects))
     return Built(scenario, model, orbit, earth, q, v, *simulation(), messages)
 
 
 def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:
-    """Raise an error if the surfaces of the robot do not fit it, also if no effect uses them."""
+    """Raise an error if the surfaces do not match the robot's links, even if no effect uses the surfaces."""
     surfaces, bodies = scenario.surfaces, list(model.body_names)
     if surfaces is None:
         return
@@ -133,25 +133,25 @@ def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:
 
 
 def build_environment(scenario: Scenario | WorldScenario, model: _core.Model | None) -> Environment:
-    """Return orbit, Earth and effects; raise an error if orbit or Earth end before the run."""
+    """Return orbit, Earth and effects; raise an error if data of orbit or Earth end before the run."""
     duration, folder = scenario.simulation.duration, scenario.folder
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(folder)
     with located(scenario, "epoch" if scenario.earth is None else "earth"):
         earth = build_earth(scenario.earth, scenario.epoch, orbit, folder)
         if earth is not None:
-            earth.rotation(duration)  # raises if its table ends before the run
+            earth.rotation(duration)  # raises an error if the table ends before the run
     effects = build_effects(scenario, model)
     with located(scenario, "orbit"):
         if isinstance(scenario.orbit, NumericalOrbit) and orbit is not None:
             orbit = scenario.orbit.integrate(orbit, effects, earth)
         if orbit is not None:
-            orbit.state(duration)  # raises if a path or a decaying orbit ends before the run
+            orbit.state(duration)  # raises an error if a path or a decaying orbit ends before the run
     return Environment(orbit, earth, effects)
 
 
 def build_effects(scenario: Scenario | WorldScenario, model: _core.Model | None) -> list[_core.Effect]:
-    """Return the effects. Links must exist on ``model``; those of a world (None) are checked by system."""
+    """Return the effects, whose links must exist on ``model``; None skips this check, as for a world."""
     effects: list[_core.Effect] = []
     for index, effect in enumerate(scenario.effects):
         with located(scenario, "environment", index):
@@ -162,7 +162,7 @@ def build_effects(scenario: Scenario | WorldScenario, model: _core.Model | None)
 def check_record_every(scenario: Scenario) -> None:
     """Raise an error if ``record_every`` exceeds the number of steps.
 
-    The schema does not check this, since folders of such runs can still be read.
+    The schema does not check this, so that output folders of earlier runs with such a value remain readable.
     """
     every, steps = scenario.simulation.record_every, scenario.simulation.steps
     if every > steps:
@@ -180,10 +180,10 @@ def controlled(
     runs_code: bool,
     neighbours: Mapping[str, Neighbour] | None = None,
 ) -> tuple[Any, Any]:
-    """Return new controllers, and the reference of a single one.
+    """Return new controllers, and the reference if there is a single controller.
 
-    Without ``neighbours``, the other systems of the world, those controls are left out that start after an
-    event or follow a frame of another system.
+    ``neighbours`` are the other systems of the world. Without them, controls that start after an event or
+    track a frame of another system are omitted.
     """
     folder, tool = scenario.folder, scenario.tool
     start = Start(model, q, orbit, folder, neighbours=neighbours or {})
@@ -218,8 +218,9 @@ def _is_moving(reference: Any) -> bool:
 
 
 def _waiting(scenario: Scenario) -> set[str]:
-    """Return the names of the controls that require other systems: those that start after an event or follow
-    a frame of another system, and those that start after one of them.
+    """Return the names of the controls that require other systems.
+
+    These controls start after an event or track a frame of another system, or start after such a control.
     """
     controls = scenario.controllers or []
     found = {str(part.name) for part in controls if _is_moving(part.reference)}
@@ -231,5 +232,5 @@ def _waiting(scenario: Scenario) -> set[str]:
 
 
 def _reference(part: AnyReference | None, start: Start) -> _core.Reference | _core.JointReference | None:
-    """Return the reference of the engine; None for a controller without one."""
+    """Return the reference of the engine; None for a controller without a reference."""
     return None if part is None else part.build(start)

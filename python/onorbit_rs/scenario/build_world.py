@@ -42,26 +42,27 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class BuiltWorld:
-    """Objects of the engine that a run of a world requires."""
+    """A scenario with several systems and the objects that are built from it."""
 
     scenario: WorldScenario
     systems: dict[str, Built]
-    """Each system; its simulation is that of the system alone."""
+    """Objects of each system by name; their simulations contain one system alone."""
     orbit: _core.Orbit | None
     earth: _core.Earth | None
     simulation: _core.Simulation
     """Simulation of the world."""
     warnings: tuple[str, ...] = ()
-    """Settings that run but are probably not intended."""
+    """Warnings about valid settings that are probably not intended."""
 
 
 def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorld:
-    """Return the world of a scenario; each system alone, and then the world, is checked with a trial step.
+    """Return the world of a scenario; trial steps check each system alone and then the world.
 
     Raises
     ------
     OnOrbitError
-        As :func:`onorbit_rs.scenario.build.build`; errors of a system are located in its part of ``systems``.
+        As for :func:`onorbit_rs.scenario.build.build`; errors of a system are located at its entry in
+        ``systems``.
     """
     single = scenario.scenarios
     check_record_every(next(iter(single.values())))
@@ -69,7 +70,7 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     around = build_environment(scenario, None)
     states = _initial_states(scenario, models, around)
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", ".* does not act on bodies")  # the world warns
+        warnings.filterwarnings("ignore", ".* does not act on bodies")  # the world issues this warning
         systems = {
             name: build_around(
                 alone, models[name], states[name],
@@ -152,7 +153,7 @@ def _check_frame(model: _core.Model, frame: str) -> None:
 def _system(
     scenario: WorldScenario, name: str, built: Built, neighbours: dict[str, Neighbour], *, runs_code: bool
 ) -> _core.System:
-    """Return the system of the engine, with new controllers."""
+    """Return the system ``name`` as an object of the engine, with new controllers."""
     alone = built.scenario
     controller, reference = controlled(
         alone, built.model, built.q, built.orbit, runs_code=runs_code, neighbours=neighbours
@@ -168,7 +169,7 @@ def _system(
 
 @contextmanager
 def _located_event(scenario: WorldScenario) -> Iterator[None]:
-    """Locate errors of the world at the event that they name, otherwise at ``events`` or ``systems``."""
+    """Locate errors of the world at the event named in the error, otherwise at ``events`` or ``systems``."""
     names = [event.name for event in scenario.events]
     at: Location = ("events",) if names else ("systems",)
     try:
@@ -194,7 +195,7 @@ def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None
 
 
 def _warnings(systems: dict[str, Built]) -> Iterator[str]:
-    """Yield the warnings of all systems; those about the orbit are the same for all."""
+    """Yield the warnings of all systems; warnings about the common orbit are yielded once."""
     for name, built in systems.items():
         for message in built.warnings:
             yield message if message.startswith("orbit:") else f"systems.{name}: {message}"

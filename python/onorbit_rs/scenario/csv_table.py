@@ -25,6 +25,7 @@ def read_table(
     Parameters
     ----------
     path : path
+        CSV file.
     groups : mapping
         Names of the columns in each group.
     needed : tuple of str
@@ -38,10 +39,10 @@ def read_table(
     Raises
     ------
     NotFoundError
-        If there is no such file.
+        If the file does not exist.
     ReadError
         If a required group or a column of a group is missing, a column is unknown or duplicate, or a cell is
-        not a number; names the line.
+        not a number; the message contains the line.
     """
     reader = csv.reader(read_text(path, LARGEST_TABLE).splitlines())
     rows = [(reader.line_num, row) for row in reader if _is_filled(row)]

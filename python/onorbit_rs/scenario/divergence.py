@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 _BASE = ("linear", "m/s"), ("angular", "rad/s")
 _TURN = 0.1
-"""Rotation of the base or a joint per step, rad, up to which a step is usually short enough."""
+"""Rotation of the base or a joint in one step, rad, below which the step is usually short enough."""
 
 
 def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
-    """Return the message in one line; ``stop`` contains the last finite state as ``q`` and ``v``."""
+    """Return the message about a diverged run, in one line; ``stop`` has the last finite ``q`` and ``v``."""
     if stop.time is None or stop.v is None:
         return stop.message
     settings = scenario.simulation
@@ -43,10 +43,9 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
 
 
 def _fastest_turn(stop: SimulationError, model: Model) -> float:
-    """Return the largest angular rate at the start of the run, of an axis of the base or of a joint, rad/s.
+    """Return the largest initial angular rate about an axis of the base or of a revolute joint, rad/s.
 
-    Prismatic joints are excluded. Later rates are a result of the divergence. Without a recorded row, the
-    last finite state is used.
+    Later rates are a result of the divergence. If no row was recorded, the last finite state is used.
     """
     has_rows = stop.trace is not None and len(stop.trace) > 0
     start = np.asarray(stop.trace.v)[0] if has_rows else np.asarray(stop.v)

@@ -1,4 +1,4 @@
-"""What every scenario has: name, engine, orbit and environment, and the locations of its entries."""
+"""Content of every scenario: name, engine, orbit and environment, and the locations of its entries."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
 
 class Document(Part):
-    """Keys of a scenario that do not belong to a robot."""
+    """Keys of a scenario that do not describe a robot."""
 
     name: str = "scenario"
-    """Name in results and messages; the default of a file is its name."""
+    """Name in results and messages. Default: the name of the file."""
     description: str = ""
-    """One sentence for lists and reports."""
+    """Description in one sentence, for lists and reports."""
     engine: Literal["native", "mujoco"] = "native"
     """Physics engine that integrates the motion of the robot; ``mujoco`` is an independent check.
-    Former name of the key: ``plant``."""
+    The former name of this key is ``plant``."""
     epoch: Epoch | None = None
     """Time zero with its time scale: ``2024-03-01T12:00:00 UTC``. Default: the epoch of an element set."""
     earth: EarthPart | None = None
@@ -44,7 +44,7 @@ class Document(Part):
 
     @classmethod
     def checked(cls, data: dict[str, Any], file: Path | None, lines: Lines) -> Self:
-        """Return the scenario of plain data; ``file`` and ``lines`` locate errors in the YAML."""
+        """Return a validated scenario from plain data; ``file`` and ``lines`` locate errors in the YAML."""
         scenario = cls.__new__(cls)
         named = data if file is None or "name" in data else data | {"name": file.stem}
         scenario._validate(named, file, lines)
@@ -66,17 +66,17 @@ class Document(Part):
 
     @property
     def file(self) -> Path | None:
-        """The YAML file, or None for a scenario made in Python."""
+        """YAML file of the scenario; None for a scenario created in Python."""
         return self._file
 
     @property
     def folder(self) -> Path:
-        """Folder of the YAML file, at which relative paths start."""
+        """Folder of the YAML file; relative paths start there."""
         return self._file.parent if self._file else Path()
 
     @property
     def gravity_mode(self) -> Literal["true", "carried"]:
-        """Gravity mode of the orbit; ``true`` for orbits that have no such key."""
+        """Gravity mode of the orbit; ``true`` for kinds of orbit without the key ``gravity_mode``."""
         return "carried" if getattr(self.orbit, "gravity_mode", None) == "carried" else "true"
 
     def location(self, *at: str | int) -> Location:
@@ -88,7 +88,7 @@ class Document(Part):
         return line_of(self.location(*at), self._lines)
 
     def resolved(self, folder: Path | None = None) -> dict[str, Any]:
-        """Return the scenario as plain data in SI with all defaults; reading it gives the same scenario.
+        """Return the scenario as plain data in SI with all defaults, which load as an equal scenario.
 
         Parameters
         ----------

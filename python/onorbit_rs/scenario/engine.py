@@ -52,12 +52,12 @@ def check_world_engine(scenario: WorldScenario) -> None:
 
 
 def build_engine(scenario: Scenario, model: Model) -> engines.Mujoco | None:
-    """Return the physics engine of the run, or None for the native one."""
+    """Return the physics engine of the run, or None for the native engine."""
     return _build(scenario, model, scenario.simulation.enforce_limits)
 
 
 def build_world_engine(scenario: WorldScenario, models: dict[str, Model]) -> engines.Mujoco | None:
-    """Return the physics engine of a run of several systems, or None for the native one."""
+    """Return the physics engine of a run of several systems, or None for the native engine."""
     stops = [name for name, one in scenario.systems.items() if one.enforce_limits]
     return _build(scenario, models, stops, weld_time_constant=scenario.simulation.weld_time_constant)
 
@@ -72,7 +72,7 @@ def _build(
     if scenario.engine == "native":
         return None
     settings = scenario.simulation
-    assert settings.integrator != "dormand_prince"  # check_engine raises an error for it
+    assert settings.integrator != "dormand_prince"  # check_engine rejects it
     return engines.Mujoco(
         model, time_step=settings.time_step, integrator=settings.integrator, enforce_limits=enforce_limits,
         weld_time_constant=weld_time_constant,

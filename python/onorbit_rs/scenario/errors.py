@@ -11,17 +11,17 @@ if TYPE_CHECKING:
 
 
 def invalid(message: str) -> PydanticCustomError:
-    """Return the error of the part that is being validated."""
+    """Return a validation error for the part of the scenario that is being validated."""
     return PydanticCustomError("invalid", "{message}", {"message": message})
 
 
 def unknown_key(key: str, hint: str) -> PydanticCustomError:
-    """Return the error of an unknown key in the part that is being validated."""
+    """Return the error for an unknown key in the part of the scenario that is being validated."""
     return PydanticCustomError("unknown_key", "unknown key{hint}", {"key": key, "hint": hint})
 
 
 def inconsistent(at: str | Location, message: str) -> PydanticCustomError:
-    """Return the error of inconsistent parts, located at the entry to correct."""
+    """Return the error for entries that contradict each other; ``at`` is the entry to correct."""
     where = (at,) if isinstance(at, str) else at
     return PydanticCustomError("inconsistent", "{message}", {"message": message, "at": where})
 

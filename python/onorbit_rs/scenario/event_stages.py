@@ -1,4 +1,4 @@
-"""Trees of connected systems after each event of a scenario, before it runs."""
+"""Trees of connected systems after each event of a scenario, computed before the run."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from onorbit_rs.scenario.world import WorldScenario
 
 @dataclass(frozen=True)
 class Stage:
-    """Trees from an event on."""
+    """Trees of connected systems between an event and the next event."""
 
     event: str | None
     """Name of the event; None at the start of the run."""
     time: float | None
     """Time, s; None if it is not known before the run."""
     trees: tuple[tuple[str, ...], ...]
-    """Names of the systems of each tree, its root first."""
+    """Names of the systems in each tree; the first is the root."""
     remark: str = ""
-    """Why the event changes no tree; otherwise empty."""
+    """Reason why the event changes no tree; empty if it changes the trees."""
     seating_joints: tuple[int, ...] = ()
-    """Number of joints of each tree whose positions seatings give, until these end."""
+    """Number of joints of each tree whose positions are prescribed by a seating in progress."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class _Weld:
     by: str
     of: str
     seat: float
-    """Duration of the seating, s; zero without one."""
+    """Duration of the seating, s; zero without a seating."""
 
 
 SEATING_JOINTS = 2
@@ -42,8 +42,8 @@ SEATING_JOINTS = 2
 def stages(scenario: WorldScenario) -> list[Stage]:
     """Return the start of the run, and the stages after its events in the order of :func:`expected_order`.
 
-    As in the engine, a tree keeps the root of the capturing system, and a part that is released has the
-    system of its frame as root, unless it contains the former root.
+    As in the engine, a tree keeps the root of the capturing system. The root of a released part is the system
+    of the released frame, unless the part contains the former root.
     """
     names = list(scenario.systems)
     welds: list[_Weld] = []
@@ -78,8 +78,8 @@ def _elapsed(event: Event, capture: str, by_name: dict[str, Event]) -> float:
 def expected_order(events: Sequence[Event]) -> list[tuple[Event, float | None]]:
     """Return the events with their times, in the order in which they are expected to happen.
 
-    The time is None for latches and commands, and for events that wait for them. These events are assumed
-    to happen in the order of declaration, after the event that they wait for.
+    The time is None for latches and commands, and for events that wait for a latch or a command. Such events
+    are assumed to happen in the order of the scenario, after the event for which they wait.
     """
     by_name = {event.name: event for event in events}
     times = {event.name: _time(event, by_name) for event in events}
@@ -104,7 +104,7 @@ def _time(event: Event, by_name: dict[str, Event]) -> float | None:
 
 
 def _capture(event: Event, trees: Sequence[Sequence[str]], welds: list[_Weld], roots: list[str]) -> str:
-    """Connect two systems; return why that is not possible, otherwise an empty text."""
+    """Connect two systems; return the reason if that is not possible, otherwise an empty string."""
     by, of = (split_path(path)[0] for path in event.do.capture or ())
     first, second = (next(tree for tree in trees if name in tree) for name in (by, of))
     if first == second:
@@ -115,7 +115,7 @@ def _capture(event: Event, trees: Sequence[Sequence[str]], welds: list[_Weld], r
 
 
 def _release(capture: str, names: Sequence[str], welds: list[_Weld], roots: list[str]) -> str:
-    """Separate two systems; return why nothing changes, otherwise an empty text."""
+    """Separate two systems; return the reason if nothing changes, otherwise an empty string."""
     weld = next((weld for weld in welds if weld.capture == capture), None)
     if weld is None:
         return f"no effect: {capture} has not happened, or was released already"
@@ -128,14 +128,14 @@ def _release(capture: str, names: Sequence[str], welds: list[_Weld], roots: list
 
 
 def _trees(names: Sequence[str], welds: Sequence[_Weld], roots: Sequence[str]) -> tuple[tuple[str, ...], ...]:
-    """Return the trees, in the order of the engine: those with a given root, then the others by system."""
+    """Return the trees in the order of the engine: first those with a given root, then the others."""
     placed: set[str] = set()
     found = []
     for root in (*roots, *names):
         if root in placed:
             continue
         tree = [root]
-        for system in tree:  # grows while it is traversed
+        for system in tree:  # the list grows during the iteration
             ends = ((weld.by, weld.of) if weld.by == system else (weld.of, weld.by) for weld in welds
                     if system in (weld.by, weld.of))  # fmt: skip
             tree += [far for _, far in ends if far not in tree]

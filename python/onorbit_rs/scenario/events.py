@@ -19,17 +19,18 @@ from onorbit_rs.scenario.pose import Pose
 from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 RESERVED = ("world", "lvlh", "base", "path")
-"""Names of frames, which no system may have."""
+"""Names of frames, which are reserved and cannot be names of systems."""
 
 
 def checked_name(value: Any) -> Any:
     """Return the name of a system or an event if it is valid."""
     if not isinstance(value, str) or re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", value) is None:
         raise invalid(
-            f"{shortened(value)} is not a name; a name is a letter, then letters, digits, '_' and '-'"
+            f"{shortened(value)} is not a valid name; a name is a letter, followed by letters, digits, '_' "
+            "or '-'"
         )
     if value in RESERVED:
-        raise invalid(f"{value!r} is the name of a frame; choose another name")
+        raise invalid(f"{value!r} is a reserved name of a frame; choose another name")
     return value
 
 
@@ -59,14 +60,14 @@ EnvelopeRates = Annotated[list[float], _quantities(units.SPEED, units.ANGULAR_RA
 
 
 class Latch(Part):
-    """Conditions of the captured frame relative to the capturing one, at which a capture happens."""
+    """Condition of a capture: limits on the motion of the captured relative to the capturing frame."""
 
     within: Envelope
-    """Largest distance and angle."""
+    """Largest distance and angle between the frames."""
     slower_than: EnvelopeRates | None = None
-    """Largest speed as observed in the capturing frame, and largest relative angular rate. Default: any."""
+    """Largest speed as observed in the capturing frame, and largest relative angular rate. Default: unlimited."""
     held_for: Annotated[Time, NotNegative] = 0.0
-    """Time for which the conditions must hold."""
+    """Time for which the conditions must hold without interruption."""
 
 
 class When(Part):
@@ -74,11 +75,11 @@ class When(Part):
 
     at: Annotated[Time, NotNegative] | None = None
     after: str | None = None
-    """Name of another event."""
+    """Name of the event after which this event happens."""
     delay: Annotated[Time, NotNegative] = 0.0
-    """Time after the other event."""
+    """Time between the event named in ``after`` and this event."""
     on_command: bool = False
-    """Whether ``Stepper.trigger`` starts the event."""
+    """Whether the event happens when ``Stepper.trigger`` is called."""
     latch: Latch | None = None
 
     @model_validator(mode="after")
@@ -97,23 +98,23 @@ class When(Part):
 
 
 class Action(Part):
-    """Exactly one of ``capture`` and ``release``."""
+    """Action of an event: exactly one of ``capture`` and ``release``."""
 
     later: ClassVar = ("engage", "disengage")
-    """Keys that are planned."""
+    """Keys that are planned but not available yet."""
 
     capture: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
-    """Capturing and captured frame, each ``SYSTEM/FRAME``."""
+    """Capturing and captured frame, both written ``SYSTEM/FRAME``."""
     seat: Annotated[Time, Positive] | None = None
-    """Time in which the captured frame is pulled into ``pose`` after the capture. Default: the pose at the
-    capture is kept."""
+    """Duration of the seating, which moves the captured frame into ``pose`` after the capture. Default: the
+    pose at the capture is kept."""
     pose: Pose | None = None
     """Nominal pose of the captured frame in the capturing frame. Default: the frames coincide."""
     release: str | None = None
     """Name of the capture whose connection is removed."""
     impulse: Impulse | None = None
-    """Impulse of a spring on the captured system at a release, N s and N m s, axes of the capturing frame at
-    its origin; the opposite acts on the other system."""
+    """Impulse of a spring on the captured system at a release, N s and N m s, in axes of the capturing frame
+    and at its origin; the opposite impulse acts on the other system."""
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
@@ -135,14 +136,14 @@ class Action(Part):
 
 
 class Event(Part):
-    """Capture or release, and its condition."""
+    """Capture or release, with the condition at which it happens."""
 
     name: ItsName
     when: When
     do: Action
 
     def build(self) -> _core.Capture | _core.Release:
-        """Return the event of the engine."""
+        """Return the event as an object of the engine."""
         values = self.when.arguments()
         if self.do.capture is not None:
             pose = None if self.do.pose is None else self.do.pose.transform()
@@ -152,7 +153,7 @@ class Event(Part):
 
 
 def check_events(events: list[Event], systems: list[str]) -> None:
-    """Raise an error for names that do not exist or exist twice, and for events that wait for each other."""
+    """Raise an error for unknown or duplicate names, and for events that wait for each other."""
     names = [event.name for event in events]
     by_name = dict(zip(names, events, strict=True))
     for index, event in enumerate(events):
@@ -176,7 +177,7 @@ def check_events(events: list[Event], systems: list[str]) -> None:
 
 
 def _refusal(index: int) -> Callable[..., Exception]:
-    """Return the function that makes an error at a location in the event with this index."""
+    """Return a function that creates an error located in the event with this index."""
 
     def refuse(*at: str | int, message: str) -> Exception:
         return inconsistent(("events", index, *at), message)

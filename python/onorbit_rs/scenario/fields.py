@@ -1,4 +1,4 @@
-"""Types of scenario fields: each reads a quantity of one dimension and stores its value in SI."""
+"""Types of scenario fields; each type reads a quantity of one dimension and stores its value in SI."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def _not_negative(value: float) -> float:
 
 
 def resolved_path(path: Path | str, info: SerializationInfo) -> str:
-    """Return the path, made absolute from the folder that is the context of the dump, if there is one."""
+    """Return the path; absolute if the context of the serialization is a folder at which paths start."""
     return str(path if info.context is None else (info.context / path).resolve())
 
 

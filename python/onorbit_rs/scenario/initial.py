@@ -52,9 +52,10 @@ class InitialState(Part):
     }  # fmt: skip
 
     frame: InitialFrame = "world"
-    """Frame of ``position`` and ``attitude``, relative to which the velocities are given: W, the local
-    orbital frame L (x radial outward, y along track, z along the orbital angular momentum), the attitude
-    of the path (L if it has none), or ``SYSTEM/FRAME``, a frame of another system at its initial state."""
+    """Frame in which ``position`` and ``attitude`` are given and relative to which the velocities are given:
+    W, the local orbital frame L (x radial outward, y along track, z along the orbital angular momentum), the
+    axes of the path (L if it defines no attitude), or ``SYSTEM/FRAME``, a frame of another system in its
+    initial state."""
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None
     linear_velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
@@ -67,18 +68,18 @@ class InitialState(Part):
 
     @property
     def neighbour(self) -> tuple[str, str] | None:
-        """Names of the system and of its frame in ``frame``, if there are any."""
+        """Names of the system and of its frame if ``frame`` is ``SYSTEM/FRAME``, otherwise None."""
         system, slash, frame = self.frame.partition("/")
         return (system, frame) if slash else None
 
     def build(
         self, model: Model, orbit: Orbit | None, neighbour: Neighbour | None = None
     ) -> tuple[Floats, Floats]:
-        """Return configuration and velocity at time zero.
+        """Return the configuration and the velocity of the robot at time zero.
 
         A position and attitude relative to L are rotated by `R_il`, and the rotation of L is added in body
         axes: `ω_b = ω + R_bl ω_l` and `v_b = v + R_bl (ω_l × p_l)`, with the rate `ω_l` in the axes of L.
-        A frame of the system ``neighbour`` adds its own velocity in the same way.
+        The velocity of a frame of the system ``neighbour`` is added in the same way.
 
         Returns
         -------
@@ -94,7 +95,7 @@ class InitialState(Part):
         ShapeError
             If a list of joints has the wrong length.
         QuantityError
-            If the unit is a length on a revolute joint or an angle on a prismatic one.
+            If a revolute joint has a value in a unit of length, or a prismatic joint in a unit of angle.
         """
         q, v = np.array(model.neutral(), dtype=np.float64), np.zeros(model.nv)
         rot_fb = matrix_from_quaternion(quaternion_of(self.attitude))

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class JointValue(float):
-    """Value of a joint in SI; ``dimension`` is that of its unit, None for a bare number."""
+    """Value of a joint in SI; ``dimension`` is the dimension of its unit, None if it has no unit."""
 
     dimension: Dimension | None = None
 
@@ -82,7 +82,7 @@ JointRates = Annotated[_Joints, _joints_reader(units.ANGULAR_RATE, units.SPEED),
 def joint_values(
     name: str, given: list[JointValue] | dict[str, JointValue], default: Floats, model: Model
 ) -> Floats:
-    """Return the values in the order of the model's joints; joints that are not given have the default.
+    """Return the values in the order of the model's joints; joints that are not given get the default.
 
     Raises
     ------
@@ -91,7 +91,7 @@ def joint_values(
     ShapeError
         If a list has the wrong length.
     QuantityError
-        If the unit is a length on a revolute joint or an angle on a prismatic one.
+        If a revolute joint has a value in a unit of length, or a prismatic joint in a unit of angle.
     """
     values, joints = default.copy(), list(model.joint_names)
     if isinstance(given, dict):

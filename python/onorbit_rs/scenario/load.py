@@ -82,9 +82,9 @@ def locate(source: str | os.PathLike[str]) -> Path:
 
 
 def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
-    """Return the scenario of plain data; ``lines`` has the line of each entry.
+    """Return a validated scenario from plain data; ``lines`` contains the line of each entry.
 
-    One system alone is a scenario of one robot.
+    Several ``systems`` give a :class:`WorldScenario`; a single system or robot gives a :class:`Scenario`.
     """
     if not isinstance(data, dict):
         what = "empty" if data is None else f"a {type(data).__name__}"

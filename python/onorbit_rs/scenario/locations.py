@@ -19,7 +19,7 @@ def dotted(at: tuple[str | int, ...]) -> str:
 
 
 def file_and_line(file: Path | None, line: int | None) -> str:
-    """Return file and line, such as ``mine.yaml:11``; ``scenario`` for a scenario made in Python."""
+    """Return file and line, such as ``mine.yaml:11``; ``scenario`` for a scenario created in Python."""
     return f"{file or 'scenario'}" + (f":{line}" if line else "")
 
 

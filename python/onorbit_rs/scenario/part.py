@@ -10,20 +10,20 @@ from onorbit_rs.common.suggestions import nearest
 from onorbit_rs.scenario.errors import invalid, shortened, unknown_key
 
 FEW = 8
-"""Largest number of known keys that a message lists in addition to the nearest one."""
+"""Largest number of known keys that a message lists in addition to the most similar key."""
 
 
 class Part(BaseModel):
-    """Mapping in the YAML file."""
+    """Base class of the parts of a scenario, each of which is a mapping in the YAML file."""
 
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
     synonyms: ClassVar[dict[str, str]] = {}
-    """Common other names of keys, for suggestions."""
+    """Common alternative names of keys, for suggestions in messages."""
 
     @classmethod
     def yaml_keys(cls) -> list[str]:
-        """Return the names of the keys in the YAML file."""
+        """Return the names that the keys of this part have in the YAML file."""
         return [field.alias or name for name, field in cls.model_fields.items()]
 
     @model_validator(mode="before")
@@ -52,9 +52,9 @@ class Part(BaseModel):
 
 
 def of_kind(union: Any) -> BeforeValidator:
-    """Return the validator of a union of parts with a ``kind``: errors name the kinds.
+    """Return the validator of a union of parts that have a ``kind``; error messages list the kinds.
 
-    A single word is a kind: ``gravity_gradient`` means ``{kind: gravity_gradient}``.
+    A single word is a kind: ``gravity_gradient`` is equivalent to ``{kind: gravity_gradient}``.
     """
     parts = {get_args(part.model_fields["kind"].annotation)[0]: part for part in get_args(union)}
     keys = {kind: part.yaml_keys() for kind, part in parts.items()}
@@ -71,7 +71,7 @@ def of_kind(union: Any) -> BeforeValidator:
         own = keys.get(str(value["kind"]), [*value])  # an unknown kind accepts any key
         for key in value:
             others = [kind for kind, names in keys.items() if key in names]
-            if key not in own and others:  # implies that the kind is known
+            if key not in own and others:  # true only for a known kind
                 meant = parts[str(value["kind"])].synonyms.get(str(key))
                 hint = f"; did you mean {meant!r}?" if meant else f"; it belongs to {', '.join(others)}"
                 raise unknown_key(key, f" of kind '{value['kind']}'{hint}")

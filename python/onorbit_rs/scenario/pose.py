@@ -1,4 +1,4 @@
-"""Pose of a frame."""
+"""Pose of a frame relative to its parent frame."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Pose(Part):
-    """Position and attitude of a frame; the default of both is that of the parent frame."""
+    """Position and attitude of a frame relative to its parent frame; both are zero by default."""
 
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None

@@ -43,11 +43,11 @@ InertiaMatrix = Annotated[list[list[Inertia]], BeforeValidator(_from_diagonal)]
 
 
 class RigidBody(Part):
-    """Spacecraft without joints; its body is named ``base`` and has its origin at the centre of mass."""
+    """Spacecraft without joints; its only link is named ``base``, with the origin at the centre of mass."""
 
     mass: Annotated[Mass, Positive]
     inertia: InertiaMatrix
-    """Inertia (3, 3), kg m², about the centre of mass, body axes; three numbers are a diagonal."""
+    """Inertia (3, 3), kg m², about the centre of mass in body axes; three numbers are its diagonal."""
 
 
 def _argument(value: Any) -> Any:
@@ -60,22 +60,22 @@ XacroArgument = Annotated[str | bool | int | float, BeforeValidator(_argument)]
 
 
 class LinkValues(Part):
-    """Inertial values that replace those of the file; values not given keep those of the file."""
+    """Inertial parameters of a link that replace those of the robot's file; each is optional."""
 
     mass: Annotated[Mass, Positive] | None = None
     com: Length3 | None = None
     """Centre of mass in link axes."""
     inertia: InertiaMatrix | None = None
-    """Inertia (3, 3), kg m², about the centre of mass in link axes; three numbers are a diagonal."""
+    """Inertia (3, 3), kg m², about the centre of mass in link axes; three numbers are its diagonal."""
 
     @property
     def given(self) -> dict[str, Any]:
-        """The given values as keyword arguments of ``Model.with_link``."""
+        """Return the given values as keyword arguments of ``Model.with_link``."""
         return self.model_dump(exclude_none=True)
 
 
 class PlainRobot(Part):
-    """Exactly one of ``bundled``, ``urdf`` and ``rigid_body``."""
+    """Robot from exactly one of ``bundled``, ``urdf`` and ``rigid_body``."""
 
     bundled: str | None = None
     urdf: FilePath | None = None
@@ -85,9 +85,9 @@ class PlainRobot(Part):
     xacro_arguments: dict[str, XacroArgument] = Field(default_factory=dict)
     """Values of ``$(arg name)`` in a xacro file."""
     xacro: bool = False
-    """Whether to expand a file that is not named ``.xacro``."""
+    """Whether to expand the file with xacro even if its name does not end in ``.xacro``."""
     links: dict[str, LinkValues] = Field(default_factory=dict)
-    """Mass, centre of mass and inertia that replace those of the file, by the name of the link."""
+    """Masses, centres of mass and inertias that replace those of the file, by the name of the link."""
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body")
 
@@ -114,7 +114,7 @@ class PlainRobot(Part):
                 if getattr(self, name):
                     raise invalid(f"{name!r} requires a 'urdf'; add one or omit {name!r}")
         if self.rigid_body is not None and self.links:
-            raise invalid("'links' applies only to robots from files; give these values in 'rigid_body'")
+            raise invalid("'links' applies only to robots from files; give mass and inertia in 'rigid_body'")
         return self
 
     @classmethod
@@ -124,7 +124,7 @@ class PlainRobot(Part):
         return f"{', '.join(map(repr, some))} {last} {end!r}"
 
     def build_plain(self, scenario: Scenario, at: Location) -> _core.Model:
-        """Return the robot without arms; ``at`` is its location in the scenario."""
+        """Return the robot without attached arms; ``at`` is the location of its keys in the scenario."""
         if self.rigid_body is not None:
             with located(scenario, *at):
                 return _core.Model.rigid_body(self.rigid_body.mass, np.array(self.rigid_body.inertia))
@@ -132,7 +132,7 @@ class PlainRobot(Part):
             return _core.Model.from_urdf(**self._file(scenario.folder))
 
     def build_part(self, scenario: Scenario, at: Location) -> _core.RobotPart:
-        """Return a robot that is attached to another; its root need not have mass."""
+        """Return a robot to be attached to another robot; its root link may be massless."""
         with located(scenario, *at), worded(_wording(at)):
             return _core.RobotPart.from_urdf(**self._file(scenario.folder))
 
@@ -148,7 +148,7 @@ class PlainRobot(Part):
 
     @model_serializer(mode="wrap")
     def _without_empty_parts(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Omit empty and false entries."""
+        """Return the serialized robot without empty and false entries."""
         return {key: value for key, value in handler(self).items() if value not in ({}, [], "", False)}
 
 
@@ -168,7 +168,7 @@ class Arm(PlainRobot):
     """A robot attached to a frame of the bus."""
 
     at: Name
-    """Link or frame of the bus to attach to."""
+    """Link or frame of the bus to which the arm is attached."""
     frame: Name | None = None
     """Mounting frame of the arm. Default: its root link."""
     pose: Pose | None = None
@@ -178,7 +178,7 @@ class Arm(PlainRobot):
 
 
 class Robot(PlainRobot):
-    """Exactly one of ``bundled``, ``urdf``, ``rigid_body`` and ``bus``."""
+    """Robot from exactly one of ``bundled``, ``urdf``, ``rigid_body`` and ``bus``."""
 
     bus: PlainRobot | None = None
     """Robot to which ``arms`` are attached; its base is the base of the combined robot."""
@@ -193,7 +193,7 @@ class Robot(PlainRobot):
             return value
         has_bus, has_arms = value.get("bus") is not None, value.get("arms") is not None
         if has_arms and not has_bus:
-            raise invalid("'arms' requires a 'bus'; give the robot to attach them to")
+            raise invalid("'arms' requires a 'bus', the robot to which the arms are attached")
         if has_bus and not has_arms:
             raise invalid("'bus' requires 'arms'; list at least one, each {urdf: FILE, at: FRAME}")
         return value

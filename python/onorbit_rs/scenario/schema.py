@@ -30,18 +30,18 @@ class RobotKeys(Part):
 
     robot: Robot
     tool: str | None = None
-    """Frame that is tracked and recorded."""
+    """Frame that tracks the reference and is recorded."""
     controller: Controller | None = None
     """Single controller. Default: no joint torques."""
     controllers: Annotated[list[AnyControl], Field(min_length=1)] | None = None
-    """Several controllers, each with a joint group and a reference, instead of ``controller``."""
+    """Several controllers, each with a joint group and a reference; an alternative to ``controller``."""
     reference: Reference | None = None
     """Reference of ``controller``. Default: the tool or the joints are held."""
     initial: InitialState = Field(default_factory=InitialState)
     """Initial state. Default: at rest in the neutral configuration."""
     surfaces: RobotSurfaces | None = None
-    """Surfaces for drag and radiation pressure that name none: one for all links, or a mapping from link to
-    surface. Default: the visual geometry."""
+    """Surfaces for drag and radiation pressure, if the effect defines no surfaces: one surface for all links,
+    or a mapping from link to surface. Default: the visual geometry."""
 
     @property
     def laws(self) -> list[AnyController]:
@@ -50,7 +50,7 @@ class RobotKeys(Part):
 
     @property
     def tracked_tool(self) -> str | None:
-        """Frame that is recorded: that of the scenario, otherwise the first tool among the controls."""
+        """Recorded frame: the ``tool`` of the scenario, otherwise the first tool among the controls."""
         tools = (getattr(control, "tool", None) for control in self.controllers or [])
         return self.tool or next(filter(None, tools), None)
 
@@ -58,7 +58,7 @@ class RobotKeys(Part):
 class Scenario(RobotKeys, Document):
     """Robot, orbit, environment, controllers and integrator settings of a run.
 
-    :func:`onorbit_rs.scenario.load` reads one from a file. In Python:
+    :func:`onorbit_rs.scenario.load` reads a scenario from a file. In Python:
     ``Scenario(robot="humanoid_torso", simulation={"duration": "5 s"})``.
     """
 
@@ -79,17 +79,17 @@ class Scenario(RobotKeys, Document):
         return scenario
 
     def location(self, *at: str | int) -> Location:
-        """Return the location of an entry in the YAML file, also for a system of a world."""
+        """Return the location of an entry in the YAML file, which may be the file of a world."""
         return at if self._in_world is None else self._in_world.location(at)
 
     @property
     def event_names(self) -> list[str]:
-        """Names of the events of the world; empty for a robot alone."""
+        """Names of the events of the world; empty for a scenario with one robot."""
         return [] if self._in_world is None else self._in_world.events
 
     @property
     def effects(self) -> list[AnyEffect]:
-        """Effects of the environment, on the surfaces of the robot."""
+        """Effects of the environment, with the surfaces of the robot as their default."""
         return [
             effect.with_default(self.surfaces) if isinstance(effect, SurfaceEffect) else effect
             for effect in self.environment
@@ -97,7 +97,7 @@ class Scenario(RobotKeys, Document):
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        """Return the hint for an unknown key: the section that accepts it, or the nearest key."""
+        """Return the hint for an unknown key: the section that accepts the key, or the most similar key."""
         parts = {"orbit": get_args(AnyOrbit), "initial": [InitialState], "simulation": [SimulationSettings]}
         sections = [repr(name) for name, kinds in parts.items()
                     if key != "kind" and any(key in part.yaml_keys() for part in kinds)]  # fmt: skip
@@ -122,18 +122,18 @@ class Scenario(RobotKeys, Document):
 
 
 class InWorld(NamedTuple):
-    """Place of the scenario of one system in that of its world."""
+    """Location of the scenario of one system within the scenario of a world."""
 
     system: str
     effects: list[int]
-    """Index, in the environment of the world, of each effect on the system."""
+    """Index of each effect on the system in the environment of the world."""
     events: list[str]
     """Names of the events of the world, after which a control may start."""
     systems: list[str]
     """Names of the other systems, in whose frames references may be given."""
 
     def location(self, at: Location) -> Location:
-        """Return the location in the file of an entry of the scenario of the system."""
+        """Return the location in the world's file of an entry of the system's scenario."""
         if at and at[0] in RobotKeys.model_fields:
             return ("systems", self.system, *at)
         if len(at) > 1 and at[0] == "simulation" and at[1] in ControlSettings.model_fields:

@@ -14,26 +14,27 @@ from onorbit_rs.scenario.part import Part
 NotNegativeNumber = Annotated[Number, NotNegative]
 MAX_STEPS = 10**10
 MAX_ROWS = 10**7
-"""Largest number of rows in a trace; a row has about half a kilobyte."""
+"""Largest number of rows in a trace; a row requires about half a kilobyte."""
 
 
 class ControlSettings(Part):
-    """Clock of the controllers, and stops of the joints, of one robot."""
+    """Settings of one robot: control period, joint stops, and tolerance at the start of references."""
 
     control_period: Annotated[Time, Positive] | None = None
     """Interval between two updates of the controllers. Default: the time step."""
     enforce_limits: bool = False
     """Whether rigid stops keep the joints within their position limits."""
     restitution: Number = Field(default=0.0, ge=0.0, le=1.0)
-    """Fraction of its rate with which a joint rebounds from a stop."""
+    """Coefficient of restitution at the stops: rate of rebound divided by rate of impact, 0 to 1."""
     reference_start_tolerance: (
         Annotated[list[NotNegativeNumber], Field(min_length=2, max_length=2)] | None
     ) = None
-    """Largest distance from the tool at which a reference may start, m and rad. Default: 0.05 and 0.1."""
+    """Largest distance, m, and angle, rad, between a tool and the start of its reference. Default: 0.05,
+    0.1."""
 
 
 class IntegrationSettings(Part):
-    """Integrator and recording; times are simulated time."""
+    """Settings of the integrator and of the recording; all times are simulated times."""
 
     synonyms: ClassVar = {
         "dt": "time_step", "step": "time_step", "timestep": "time_step", "end": "duration",
@@ -46,14 +47,15 @@ class IntegrationSettings(Part):
     integrator: Literal["rk4", "semi_implicit_euler", "dormand_prince"] = "rk4"
     """``dormand_prince`` adapts its steps; ``time_step`` is then the interval of the time grid."""
     tolerance: Number = Field(default=1e-9, ge=1e-13, le=0.1)
-    """Largest error of a step of ``dormand_prince``, relative to one radian, the robot's size, and rates."""
+    """Largest error of a step of ``dormand_prince``, relative to 1 rad, the size of the robot, and its
+    rates."""
     record_every: Whole = Field(default=1, ge=1, le=MAX_STEPS)
     """Number of steps between two rows of the trace."""
     record_wrenches: bool = False
     """Whether the trace contains the wrench of every effect on every body."""
     rereference_beyond: Drift = 1e5
-    """Distance from the reference orbit beyond which a robot that no controller tracks in W gets a new
-    reference orbit; or ``never``."""
+    """Distance from the reference orbit beyond which a robot without a reference in W gets a new reference
+    orbit; or ``never``."""
 
     @property
     def steps(self) -> int:
@@ -87,7 +89,7 @@ class IntegrationSettings(Part):
 
 
 class SimulationSettings(ControlSettings, IntegrationSettings):
-    """Settings of a scenario with one robot."""
+    """Simulation settings of a scenario with one robot."""
 
     @model_validator(mode="after")
     def _has_valid_period(self) -> Self:
@@ -101,7 +103,7 @@ class SimulationSettings(ControlSettings, IntegrationSettings):
 
 
 class WorldSettings(IntegrationSettings):
-    """Settings of a scenario with ``systems``."""
+    """Simulation settings of a scenario with ``systems``."""
 
     weld_time_constant: Annotated[Time, Positive] | None = None
     """Time constant of the connections of ``engine: mujoco``. Default, and least: two time steps."""

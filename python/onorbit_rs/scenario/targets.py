@@ -27,7 +27,7 @@ class Target:
     velocity: Floats
     spin: Floats
     size: tuple[float, ...] = ()
-    """Edge lengths of its box, m; empty if only its axes are drawn."""
+    """Edge lengths of the target's box, m; empty if only the axes of the target are drawn."""
 
     def position_at(self, t: Floats) -> Floats:
         """Return the positions (T, 3) in W, m, at the times ``t``, (T,), s."""

@@ -1,4 +1,4 @@
-"""Trial step before the run, which locates errors in the scenario that would stop the run at once."""
+"""Trial step before the run, which detects errors that would stop the run at once and locates their keys."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Flight:
-    """Robot in its initial state, with orbit and Earth."""
+    """Robot in its initial state, with the orbit and the Earth of the run."""
 
     model: _core.Model
     q: Floats
@@ -79,12 +79,12 @@ def try_one_step(scenario: Scenario, model: _core.Model, simulation: _core.Simul
 
 
 def try_effects(scenario: Scenario, effects: list[Any], flight: Flight) -> None:
-    """Run one step under drag or radiation pressure alone, to locate their errors; ignore other errors."""
+    """Run one step with each drag or radiation-pressure effect alone, to locate its errors."""
     for index, (part, effect) in enumerate(zip(scenario.environment, effects, strict=True)):
         if not isinstance(part, SurfaceEffect):
             continue
         with located(scenario, "environment", index), warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # the run itself warns
+            warnings.simplefilter("ignore")  # the run itself issues these warnings
             try:
                 alone = _core.Simulation(
                     flight.model, flight.q, flight.v, orbit=flight.orbit, earth=flight.earth,

@@ -26,7 +26,7 @@ class Dimension:
     powers: Powers
     si: str
     also: tuple[str, ...] = ()
-    """Compound units that messages list too."""
+    """Additional compound units that messages suggest."""
 
 
 NUMBER = Dimension("a plain number", (0, 0, 0, 0), "")
@@ -99,7 +99,7 @@ def parse_quantity(value: object, *allowed: Dimension) -> float:
     Parameters
     ----------
     value : float or str
-        Such as ``0.5`` (in SI), ``"6778 km"``, ``"2 rev/min"`` or ``"1e-3"``.
+        Number in SI or text with a unit, such as ``0.5``, ``"6778 km"``, ``"2 rev/min"`` or ``"1e-3"``.
     *allowed : Dimension
         Dimensions that are accepted.
 
@@ -110,8 +110,8 @@ def parse_quantity(value: object, *allowed: Dimension) -> float:
     Raises
     ------
     QuantityError
-        If the value is not a finite number, or its unit is unknown or has another dimension; names units
-        that are accepted.
+        If the value is not a finite number, or its unit is unknown or has another dimension; the message
+        lists accepted units.
     """
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         raise _refused(value, f"is not {_any_of(allowed)}", allowed)
@@ -182,5 +182,7 @@ def _example_units(dimension: Dimension) -> str:
 
 def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> QuantityError:
     units = "; ".join(filter(None, (_example_units(dimension) for dimension in allowed)))
-    fix = f"give a number in SI, or one with a unit: {units}" if units else "give a number without a unit"
+    fix = (
+        f"give a number in SI, or a number with a unit: {units}" if units else "give a number without a unit"
+    )
     return QuantityError(f"{shortened(value)} {why}; {fix}", text=value, expected=_any_of(allowed))

@@ -25,9 +25,9 @@ def first_error(
     lines: Lines,
     location: Callable[..., Location] = lambda *at: at,
 ) -> ScenarioError:
-    """Return the error that is first in the file, with the number of further errors in its message.
+    """Return the error that is first in the file; its message contains the number of further errors.
 
-    ``location`` converts the location of an entry in ``data`` to that in the file.
+    ``location`` converts the location of an entry in ``data`` to the location in the file.
     """
     found: list[tuple[int, Location, str]] = []
     for details in error.errors(include_url=False):
@@ -59,7 +59,7 @@ _FORMS: dict[str | int, str] = {
     "robot": ": a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
     "simulation": ": at least {duration: 10 s}",
 }
-"""Suggested content of a missing section."""
+"""Suggested content of required sections, for messages about a missing section."""
 
 _MUST_BE = {
     "int": "a whole number",
@@ -71,7 +71,7 @@ _MUST_BE = {
     "string": "text (put a number in quotes)",
     "path": "the path of a file",
 }
-"""Required kinds of value, by the first word of pydantic's error type."""
+"""Names of the required types in messages, by the first word of pydantic's error type."""
 
 
 def _message(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> str:
@@ -98,7 +98,7 @@ def _message(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> st
 
 
 def _near(given: object, context: Mapping[str, Any]) -> str:
-    """Return ``; did you mean ...?`` if one of the expected words is similar."""
+    """Return ``; did you mean ...?`` if one of the expected words is similar, otherwise an empty string."""
     near = nearest(str(given), re.findall(r"'([^']*)'", context["expected"]))
     return f"; did you mean {near!r}?" if near else ""
 

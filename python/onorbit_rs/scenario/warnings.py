@@ -1,4 +1,4 @@
-"""Warnings about settings that run but are probably not intended; the summary of the run contains them."""
+"""Warnings about valid settings that are probably not intended; the summary of a run contains them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _SMALL_DRIFT = 1.0
-"""Drift, m, below which no warning is given; likewise below the size of the robot."""
+"""Smallest drift, m, that causes a warning; the drift must also exceed the size of the robot."""
 _INSTANTS = 33
 """Number of times at which the reference is compared with free fall."""
 _HALF_STEP = 0.05
@@ -31,7 +31,7 @@ _HALF_STEP = 0.05
 
 
 def warnings_of(scenario: Scenario, flight: Flight, effects: Sequence[_core.Effect]) -> Iterator[str]:
-    """Yield warnings of one line each, with a suggested fix."""
+    """Yield warnings about a scenario, each one line with a suggested fix."""
     yield from _drift_from_reference(scenario, flight, effects)
     yield from gain_warnings(scenario, flight.model, flight.q)
 
@@ -42,7 +42,7 @@ def _drift_from_reference(
     """Yield a warning if the robot will drift from its reference although ``gravity_mode`` is not given.
 
     Compares the reference with free fall from its initial state in the gravity of the planet's point mass,
-    Sun and Moon. With a gravity field among the effects the drift is taken to be intended.
+    the Sun and the Moon. If the effects include a gravity field, the drift is assumed to be intended.
     """
     part, orbit = scenario.orbit, flight.orbit
     if not isinstance(part, (Sgp4Orbit, CustomPathOrbit)) or "gravity_mode" in part.model_fields_set:
@@ -58,19 +58,19 @@ def _drift_from_reference(
             start, velocity, environment=others, earth=flight.earth, mu=orbit.mu,
             axes="TEME" if orbit.axes == "TEME" else "GCRF",
         ).state(times)[0]  # fmt: skip
-    except OnOrbitError:  # impact, or no data of Sun and Moon: the run raises this error
+    except OnOrbitError:  # impact, or no data of the Sun and the Moon; the run raises the same error
         return
     drift = float(np.linalg.norm(np.asarray(fall) - np.asarray(orbit.state(times)[0]), axis=1).max())
     if drift > max(_SMALL_DRIFT, _size(flight)):
         yield (
             f"orbit: this {part.kind} reference is not in free fall in the gravity of a point mass, but the "
-            f"robot is, and will drift {_distance(drift)} from it within {duration:g} s: add a gravity_field "
-            "to the environment, or set gravity_mode: carried (or true, if this is intended)"
+            f"robot is, and will drift {_distance(drift)} from the reference in {duration:g} s: add a "
+            "gravity_field to the environment, or set gravity_mode: carried (or true, if this is intended)"
         )
 
 
 def _initial_state(orbit: _core.Orbit, *, is_sgp4: bool) -> tuple[Floats, Floats]:
-    """Return the initial position and its derivative, from which SGP4's velocity differs by up to 1 m/s."""
+    """Return the initial position and its time derivative; SGP4's velocity differs from it by up to 1 m/s."""
     start, velocity = map(np.asarray, orbit.state(0.0))
     if is_sgp4:
         before, after = np.asarray(orbit.state(np.array([-_HALF_STEP, _HALF_STEP]))[0])

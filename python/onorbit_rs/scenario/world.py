@@ -24,14 +24,14 @@ from onorbit_rs.scenario.yaml_lines import Lines, Location
 
 
 class System(RobotKeys, ControlSettings):
-    """One spacecraft: robot, initial state and controllers."""
+    """One spacecraft of a scenario: robot, initial state and controllers."""
 
     orbit: StartOrbit | None = None
-    """Orbit on which the base starts, ``kepler`` or ``sgp4``, instead of ``position`` and
-    ``linear_velocity`` of ``initial``. Its epoch may differ from that of the reference orbit."""
+    """Orbit on which the base starts, ``kepler`` or ``sgp4``, as an alternative to ``position`` and
+    ``linear_velocity`` in ``initial``. Its epoch may differ from the epoch of the reference orbit."""
     knows: list[str] = Field(default_factory=list)
-    """Other systems whose models the controllers know: while such a system is connected to this one, laws
-    that use a model use that of the connected tree. Default: controllers know their own system only."""
+    """Other systems whose models the controllers know: while such a system is connected to this system,
+    model-based control laws use the model of the connected tree. Default: the model of this system only."""
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
@@ -87,11 +87,11 @@ class WorldScenario(Document):
 
     @property
     def effects(self) -> list[AnyEffect]:
-        """Effects of the environment, whose links are paths."""
+        """Effects of the environment, whose links are given as paths ``SYSTEM/LINK``."""
         return self.environment
 
     def _effects_on(self, name: str) -> dict[int, AnyEffect]:
-        """Return the effects on a system alone, by their index."""
+        """Return the effects that act on a system, by their index in ``environment``."""
         found: dict[int, AnyEffect] = {}
         for index, effect in enumerate(self.environment):
             own: AnyEffect | None = effect
@@ -103,7 +103,7 @@ class WorldScenario(Document):
 
     @property
     def order(self) -> list[str]:
-        """Names of the systems; each is after the one to whose frame its initial state is relative."""
+        """Names of the systems; a system follows the one to which its initial state is relative."""
         found: list[str] = []
         for name in self.systems:
             chain = [name]
@@ -129,16 +129,17 @@ class WorldScenario(Document):
         return self
 
     def _check_surfaces(self, index: int, effect: AnyEffect) -> None:
-        """Raise an error if several systems are to have one surface that is not their faces."""
+        """Raise an error if a surface of one body is given for several systems."""
         one = getattr(effect, "surfaces", None)
         if one is not None and one.kind != "faces" and len(self.systems) > 1:
             message = (
-                f"{one.kind} is the surface of one body; give it in 'bodies', or as 'surfaces' of a system"
+                f"{one.kind} is the surface of one body; give the surface in 'bodies', or in 'surfaces' of a "
+                "system"
             )
             raise inconsistent(("environment", index, "surfaces"), message)
 
     def _check_path(self, at: Location, path: str, *, is_link: bool) -> None:
-        """Raise an error if a path does not begin with a system, or names no link although it must."""
+        """Raise an error if a path does not begin with a system, or lacks the required link."""
         names = list(self.systems)
         system, link = split_link(path, names)
         if system and (link or not is_link):
@@ -152,7 +153,7 @@ class WorldScenario(Document):
         raise inconsistent(at, f"{path!r} is not a link of a system{hint}")
 
     def _check_start(self, name: str, system: System) -> None:
-        """Raise an error if the orbit of a system has no reference, or is not the only start."""
+        """Raise an error if a system's orbit lacks a reference orbit or contradicts its initial state."""
         if system.orbit is None:
             return
         at = ("systems", name)
@@ -164,23 +165,21 @@ class WorldScenario(Document):
                 message = f"'orbit' defines the start of the system; omit {key!r}, or omit the orbit"
                 raise inconsistent((*at, "initial", key), message)
         if "gravity_mode" in system.orbit.model_fields_set:
-            message = "'gravity_mode' belongs to the reference orbit; set it there"
+            message = "'gravity_mode' is a key of the reference orbit; move it to 'orbit' beside 'systems'"
             raise inconsistent((*at, "orbit", "gravity_mode"), message)
 
     def _check_knows(self, name: str, system: System) -> None:
-        """Raise an error if a system knows itself, or a system that does not exist."""
+        """Raise an error if ``knows`` contains the system itself or a system that does not exist."""
         others = [other for other in self.systems if other != name]
         for index, known in enumerate(system.knows):
             if known not in others:
-                what = (
-                    "itself, which it always knows" if known == name else f"{known!r}, which is not a system"
-                )
+                what = "itself; omit its name" if known == name else f"{known!r}, which is not a system"
                 raise inconsistent(
                     ("systems", name, "knows", index), f"{name!r} knows {what}{did_you_mean(known, others)}"
                 )
 
     def _check_neighbour(self, name: str, system: System) -> None:
-        """Raise an error if the initial state is relative to no other system, or to itself in a circle."""
+        """Raise an error if the initial state is relative to an unknown system, or systems form a circle."""
         at = ("systems", name, "initial", "frame")
         chain, other = [name], system.initial.neighbour
         while other is not None:

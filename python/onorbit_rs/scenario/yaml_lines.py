@@ -29,7 +29,7 @@ class _Loader(yaml.SafeLoader):
     """SafeLoader with the scalars of YAML 1.2."""
 
 
-_Loader.yaml_implicit_resolvers = {}  # without those of YAML 1.1
+_Loader.yaml_implicit_resolvers = {}  # without the resolvers of YAML 1.1
 
 for _tag, _pattern, _first in [
     ("tag:yaml.org,2002:null", r"^(?:~|null|Null|NULL|)$", ["~", "n", "N", ""]),
@@ -51,15 +51,15 @@ def read_yaml(path: Path) -> tuple[Any, Lines]:
     Raises
     ------
     NotFoundError, ReadError
-        If there is no such file, or it is a folder, a pipe, a device or not readable.
+        If the file does not exist, is a folder, a pipe or a device, or is not readable.
     ScenarioError
-        If it is binary, too large, not UTF-8 or not YAML; has the attributes ``file`` and ``line``.
+        If the file is binary, too large, not UTF-8 or not YAML; has the attributes ``file`` and ``line``.
     """
     return parse_yaml(_read_text(path), path)
 
 
 def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
-    """Return the data of a YAML text and the line of each entry; messages contain ``file``."""
+    """Return the data of a YAML text and the line of each entry; ``file`` is the name in messages."""
     reader = _NodeReader(file)
     try:
         loader = _Loader(text)
@@ -73,7 +73,7 @@ def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
 
 
 class _NodeReader:
-    """Converts nodes to data and stores their lines; counts every alias, to limit exponential expansion."""
+    """Converts nodes to data and stores their lines; counts aliases, to prevent exponential expansion."""
 
     def __init__(self, file: Path | None) -> None:
         self.file = file
@@ -89,7 +89,7 @@ class _NodeReader:
                 self.file,
                 line,
                 f"the file has more than {MAX_NODES} entries, including those of aliases; remove "
-                "some of them",
+                "some entries",
             )
         if isinstance(node, yaml.MappingNode):
             return self._mapping(loader, node, at)
@@ -156,13 +156,13 @@ _FIXES = {
     r"'\t'": "indent with spaces instead of tabs",
     "mapping values are not allowed": "is a ':' missing above, or is a line indented too far?",
     "could not find expected ':'": "write ':' and a space after a key",
-    "expected <block end>": "does the indentation of this line differ from that of its neighbours?",
+    "expected <block end>": "does the indentation of this line differ from that of the adjacent lines?",
     "expected ',' or": "is a bracket or brace not closed?",
     "unexpected end of stream": "is a quote not closed?",
     "cannot start any token": "put text that starts with such a character in quotes",
     "another document": "a file contains one scenario",
     "constructor for the tag": "tags ('!') are not supported",
-    "undefined alias": "define it with '&' above",
+    "undefined alias": "define the alias with '&' above this line",
 }
 """Likely fixes of errors reported by PyYAML."""
 

@@ -20,6 +20,6 @@ def path(name: str) -> Path:
     Raises
     ------
     NotFoundError
-        If there is no such scenario; suggests the nearest name.
+        If no bundled scenario has this name; the message suggests the nearest name.
     """
     return bundled_files.path(name, "scenario", _FOLDER, ".yaml")

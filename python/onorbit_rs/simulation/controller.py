@@ -36,13 +36,13 @@ class Controller(ABC):
         Returns
         -------
         plain data
-            Numbers, text, lists, tuples, mappings and numeric NumPy arrays, possibly nested. For anything
-            else the run gives a warning and writes no checkpoints.
+            Numbers, text, lists, tuples, mappings and numeric NumPy arrays, possibly nested. For any other
+            type, the run issues a warning and writes no checkpoints.
         """
         return {name: value for name, value in vars(self).items() if not _is_fixed(value)}
 
     def set_state(self, state: Any) -> None:
-        """Restore the state of a checkpoint; by default sets the attributes in it.
+        """Restore the state of a checkpoint; by default sets the attributes that the state contains.
 
         Parameters
         ----------
@@ -62,7 +62,7 @@ class Controller(ABC):
         state : object with ``q``, ``v`` and ``joints``
             ``q`` (nq,): base position (m, W), base quaternion xyzw, joints (rad or m);
             ``v`` (nv,): base twist (m/s and rad/s, body axes), joint rates;
-            ``joints``: names of the controlled joints, all or those of the group.
+            ``joints``: names of the controlled joints: those of the joint group, otherwise all.
 
         Returns
         -------
@@ -78,5 +78,5 @@ _FIXED = (
 
 
 def _is_fixed(value: object) -> bool:
-    """Return whether a value is an immutable object of the engine."""
+    """Return whether a value is an immutable object of the compiled module, such as a model."""
     return isinstance(value, _FIXED) and type(value).__module__ in ("onorbit_rs", "onorbit_rs._core")

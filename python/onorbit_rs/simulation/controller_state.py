@@ -29,7 +29,8 @@ def encode(state: object) -> bytes:
     Raises
     ------
     ControlError
-        If the state contains anything but plain data; names its location, its type and the allowed types.
+        If the state contains a value that is not plain data; the message names its location, its type and
+        the allowed types.
     """
     try:
         data = {"format": _FORMAT, "state": _Encoder().encoded(state, "state")}
@@ -44,12 +45,13 @@ def decode(text: bytes) -> Any:
     Raises
     ------
     CheckpointError
-        If the text is not from :func:`encode`. Pickles of earlier versions are refused without reading them.
+        If the text was not written by :func:`encode`. Pickles of earlier versions are rejected unread.
     """
     if text.startswith(b"\x80"):
         raise CheckpointError(
             "the checkpoint contains the state of a Python controller as a pickle, as in earlier versions "
-            "of onorbit_rs; reading a pickle can execute any code, so it is not read; run the scenario again"
+            "of onorbit_rs; reading a pickle can execute any code, so this pickle is not read; run the "
+            "scenario again"
         )
     try:
         data = json.loads(text)
@@ -64,7 +66,7 @@ def decode(text: bytes) -> Any:
 
 
 class _Encoder:
-    """Encodes one state; a repeated list, mapping or array is replaced by its index."""
+    """Encodes one state; a list, mapping or array that occurs again is replaced by its index."""
 
     def __init__(self) -> None:
         self._numbers: dict[int, int] = {}
@@ -141,7 +143,7 @@ def _array(array: Any, place: str, value: object) -> dict[str, Any]:
         raise _refused(place, f"is an array of dtype {array.dtype}", value)
     is_fortran = (
         array.flags.f_contiguous and not array.flags.c_contiguous
-    )  # preserved, since sums over it could round differently
+    )  # the memory order is preserved, since sums in another order could round differently
     data = array.tobytes(order="F" if is_fortran else "C")
     return {
         "dtype": array.dtype.str,

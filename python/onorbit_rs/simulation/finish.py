@@ -64,7 +64,7 @@ def _summary(
 
 @contextmanager
 def _noting(results: Callable[[], str]) -> Iterator[None]:
-    """On Ctrl-C in the block, add a note on which results exist and how to complete them."""
+    """On Ctrl-C in the block, add a note about which results exist and how to complete them."""
     try:
         yield
     except KeyboardInterrupt as stop:
@@ -76,11 +76,11 @@ def _not_written(folder: OutputFolder) -> str:
     word = shell_word(folder.path)
     if has_checkpoint(folder.path):
         return f"the run ended, but results in {folder.path} are incomplete: onorbit resume {word}"
-    return f"the run ended, but results in {folder.path} are incomplete; run it again with --force"
+    return f"the run ended, but results in {folder.path} are incomplete; repeat the run with --force"
 
 
 def _not_drawn(folder: OutputFolder) -> str:
-    """Return the command that writes missing figures and recording."""
+    """Return a note with the command that writes the missing figures and the recording."""
     word = shell_word(folder.path)
     if has_checkpoint(folder.path):
         return f"figures and recording are not; write them with: onorbit resume {word}"
@@ -88,17 +88,17 @@ def _not_drawn(folder: OutputFolder) -> str:
 
 
 def keep_failed(error: Exception, built: Built | BuiltWorld, folder: OutputFolder | None) -> None:
-    """Write the rows of a run that ended by an error other than divergence, and add a note to the error."""
+    """Write the rows of a run that failed with an error other than divergence; add a note to the error."""
     trace = getattr(error, "trace", None)
     if folder is None or trace is None or len(trace) == 0:
         return
     try:
         _write_rows(trace, "failed", built, folder)
         folder.discard_checkpoint()
-    except Exception as full:  # report the error of the run
-        error.add_note(f"the rows so far could not be written: {full}")
+    except Exception as full:  # the error of the run is the one to report
+        error.add_note(f"the rows recorded so far could not be written: {full}")
     else:
-        error.add_note(f"the rows so far are in {folder.path}")
+        error.add_note(f"the rows recorded so far are in {folder.path}")
 
 
 def keep_stopped(
@@ -107,7 +107,7 @@ def keep_stopped(
     folder: OutputFolder | None,
     tell: Callable[[str], None],
 ) -> None:
-    """Write the rows of a run that stopped early, and add the folder to its message."""
+    """Write the rows of a run that stopped early; add the folder to the message of ``stop``."""
     if isinstance(stop, SimulationError):
         if isinstance(built, Built):
             stop.message = divergence(stop, built.scenario, built.model)
@@ -120,8 +120,8 @@ def keep_stopped(
         _keep_rows(stop, built, folder, tell)
     except KeyboardInterrupt:  # again
         stop.message += f"; stopped again before all results were written to {folder.path}"
-    except Exception as full:  # report the end of the run
-        stop.message += f"; its results could not be written completely: {full}"
+    except Exception as full:  # the end of the run is what the error reports
+        stop.message += f"; the results could not be written completely: {full}"
 
 
 def _keep_rows(
@@ -130,14 +130,14 @@ def _keep_rows(
     folder: OutputFolder,
     tell: Callable[[str], None],
 ) -> None:
-    """Write the folder of a run that stopped early."""
+    """Write the results of a run that stopped early to its folder."""
     if stop.trace is None or len(stop.trace) == 0:
         folder.discard()
         return
     diverged = isinstance(stop, SimulationError)
     summary = _write_rows(stop.trace, "diverged" if diverged else "interrupted", built, folder)
-    stop.message += f"; the trace so far is in {folder.path}"
-    if diverged:  # diverged numbers are not drawn, and the run cannot resume
+    stop.message += f"; the trace up to this time is in {folder.path}"
+    if diverged:  # a diverged run is not drawn and cannot resume
         folder.discard_checkpoint()
         return
     if has_checkpoint(folder.path):
@@ -153,7 +153,7 @@ def _write_rows(
     trace: Trace | WorldTrace, status: str, built: Built | BuiltWorld, folder: OutputFolder
 ) -> dict[str, Any]:
     """Write trace and summary of a run, and return the summary."""
-    with np.errstate(all="ignore"):  # a diverged run has numbers near the end of the range of floats
+    with np.errstate(all="ignore"):  # a diverged run contains numbers near the largest float
         summary = _summary(trace, built, status=status)
     with folder.replacing() as files:
         write_trace(files, trace)

@@ -1,4 +1,4 @@
-"""A run that a viewer shows while it is simulated."""
+"""Simulates a run while a viewer shows it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def watched(
     checkpoint_every: float = CHECKPOINT_EVERY,
     resume: Checkpoint | None = None,
 ) -> Trace | WorldTrace:
-    """Simulate a scenario while a viewer shows it; without a viewer, simulate it with a warning."""
+    """Simulate a scenario while a viewer shows it; if the viewer is not available, issue a warning."""
     duration = built.scenario.simulation.duration
     live = _opened(built, duration)
     if live is None:
@@ -52,7 +52,7 @@ def watched(
 
 
 def _opened(built: Built | BuiltWorld, duration: float) -> View | None:
-    """Open the viewer for a scenario; None if that is not possible."""
+    """Open and return the viewer for a scenario; None, with a warning, if the viewer is not available."""
     from onorbit_rs.viewer import live, world_live
     from onorbit_rs.viewer.setting import Setting
     from onorbit_rs.viewer.world_setting import WorldSetting
@@ -90,7 +90,7 @@ def _advance(
 
 
 def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
-    """Return the error that carries the rows so far; for a signal within a step, the stepper raised it."""
+    """Return the exception with the recorded rows; after a signal within a step, that of the stepper."""
     if isinstance(signal, RunInterrupted):
         return signal
     message = f"the run was interrupted at t = {stepper.time:g} s"
@@ -98,10 +98,10 @@ def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
 
 
 class _Saver:
-    """Passes the checkpoints of a run to their writer, each with the rows since the previous one."""
+    """Passes the checkpoints of a run to the writer, each with the rows since the previous checkpoint."""
 
     def __init__(self, writer: CheckpointWriter | None, every_s: float, rows: int | dict[str, int]) -> None:
-        """Start after the first ``rows`` rows (by the name of the system in a world), already written."""
+        """Store writer and period; the first ``rows`` rows (in a world, by system) are already written."""
         self._writer, self._every_s, self._rows = writer, every_s, rows
         self._last = time.monotonic()
 
@@ -128,7 +128,7 @@ class _Saver:
 
 
 def _row_counts(columns: Mapping[str, Any]) -> int | dict[str, int]:
-    """Return the number of rows of the columns of a run; in a world, by the name of the system."""
+    """Return the number of recorded rows; in a world, a mapping from the name of each system."""
     if not any(path.endswith("/time") for path in columns):
         return len(columns.get("time", ()))
     return {path.removesuffix("/time"): len(rows) for path, rows in columns.items() if path.endswith("/time")}

@@ -45,12 +45,12 @@ if TYPE_CHECKING:
 class Run:
     """Results of a run.
 
-    It can be pickled, for :mod:`multiprocessing`; the robot is then loaded again on access.
+    A run can be pickled, for :mod:`multiprocessing`; the robot is then loaded again on access.
 
     Attributes
     ----------
     trace : Trace or WorldTrace
-        Recorded rows; ``trace["chaser"]`` has those of a system.
+        Recorded rows; ``trace["chaser"]`` contains the rows of a system of a world.
     summary : dict
         Content of ``summary.json``.
     scenario : Scenario or WorldScenario
@@ -64,7 +64,7 @@ class Run:
     scenario: Scenario | WorldScenario
     out: Path | None
     _ran: Model | dict[str, Model] | None = field(default=None, repr=False, compare=False)
-    """None after unpickling."""
+    """Loaded robots; None after unpickling."""
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickle data only: ``multiprocessing.Pool`` hangs if unpickling raises."""
@@ -77,7 +77,7 @@ class Run:
         Raises
         ------
         OnOrbitError
-            If its file is missing or cannot be read, or was changed since the run (``ModelError``).
+            If the robot's file is missing, cannot be read, or was changed since the run (``ModelError``).
         """
         if isinstance(self.scenario, WorldScenario):
             names = ", ".join(f"models[{name!r}]" for name in self.scenario.systems)
@@ -88,15 +88,15 @@ class Run:
 
     @cached_property
     def models(self) -> dict[str, Model]:
-        """Robots of the systems of a scenario with ``systems``, by the name of the system; as :attr:`model`.
+        """Robots of a scenario with ``systems``, by the name of the system; see :attr:`model`.
 
         Raises
         ------
         OnOrbitError
-            As :attr:`model`.
+            As for :attr:`model`.
         """
         if not isinstance(self.scenario, WorldScenario):
-            raise AttributeError("the run has one robot: use model")
+            raise AttributeError("the run has a single robot; use 'model' instead of 'models'")
         if isinstance(self._ran, dict):
             return self._ran
         systems = self.summary["systems"]
@@ -104,9 +104,9 @@ class Run:
 
 
 def _loaded(scenario: Scenario, summary: dict[str, Any]) -> Model:
-    """Return the robot of a scenario, which must be that of the summary."""
+    """Return the robot of a scenario; raise ModelError if it differs from that of the summary."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # these warnings were shown during the run
+        warnings.simplefilter("ignore")  # these warnings were issued during the run
         model = scenario.robot.build(scenario)
     if was_changed(model, summary):
         raise ModelError(CHANGED)
@@ -135,7 +135,7 @@ def run(
     quiet : bool
         Show no progress bar, even on a terminal.
     view : bool
-        Show the run in the viewer while it is simulated; without a display, a warning is given.
+        Show the run in the viewer while it is simulated; without a display, a warning is issued.
     checkpoint_every : float
         Wall-clock time between two checkpoints in ``out``, s; :func:`resume` continues from the last one.
 
@@ -150,9 +150,9 @@ def run(
         (``NotFoundError``), or a folder that is not empty, not writable or in use by another process
         (``OutputFolderError``).
     SimulationError
-        If the run diverges; the trace so far is in the error and in ``out``.
+        If the run diverges; the trace before the divergence is in the error and in ``out``.
     RunInterrupted
-        On Ctrl-C; the trace so far is in the exception and in ``out``.
+        On Ctrl-C; the trace before the interruption is in the exception and in ``out``.
     """
     every = _checked_period(checkpoint_every)
     checked = load(scenario)
@@ -194,7 +194,7 @@ def resume(
     CheckpointError
         If the run has ended, or its scenario, its robot or the version of onorbit_rs has changed.
     OnOrbitError
-        As :func:`run`.
+        As for :func:`run`.
     """
     every = _checked_period(checkpoint_every)
     path = Path(out)
@@ -220,7 +220,7 @@ def _built(scenario: Scenario | WorldScenario) -> Built | BuiltWorld:
 
 
 def _checked_period(checkpoint_every: float) -> float:
-    """Return the period if it is valid; checked before any file is written."""
+    """Return the checkpoint period, s; raise InputError if it is invalid, before any file is written."""
     every = finite_float(checkpoint_every)
     if every is None or every < 0.0:
         raise InputError(
@@ -231,7 +231,7 @@ def _checked_period(checkpoint_every: float) -> float:
 
 
 def _digest(scenario: Scenario | WorldScenario) -> str:
-    """Return the digest of the scenario, its files and the version of its engine."""
+    """Return the digest of the scenario, of the files it names, and of the engine's version."""
     return scenario_digest(with_absolute_paths(scenario) | versions(scenario.engine))
 
 
@@ -260,13 +260,13 @@ def _simulate(
         raise
     except (
         Exception
-    ) as error:  # raised by a Python controller, or outside of the range of orbit or environment
+    ) as error:  # raised by a Python controller, or outside of the validity of the orbit or environment
         keep_failed(error, built, folder)
         raise
 
 
 def _models(built: Built | BuiltWorld) -> Model | dict[str, Model]:
-    """Return the robot of a run, or those of its systems."""
+    """Return the robot of a run, or the robots of its systems by name."""
     if isinstance(built, Built):
         return built.model
     return {name: system.model for name, system in built.systems.items()}

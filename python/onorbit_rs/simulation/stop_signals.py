@@ -10,7 +10,7 @@ _NAMED = ("SIGTERM", "SIGHUP")
 
 
 def stopped_by(stop: BaseException) -> tuple[str, int]:
-    """Return the name of the signal for messages, and the exit code of a command that it ends."""
+    """Return the name of the signal for messages, and the exit code of a command ended by that signal."""
     cause = stop.__cause__ if isinstance(stop, RunInterrupted) else stop
     name = str(cause) if isinstance(cause, KeyboardInterrupt) else ""
     if name in _NAMED:

@@ -1,4 +1,4 @@
-"""Forces, torques and momenta as arrows; each kind has its scale, which a label states."""
+"""Forces, torques and momenta as arrows; each kind of arrow has a scale, which its label shows."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 WORTH_SHOWING = 1e-3
-"""Smallest momentum that is drawn, as a fraction of that of a rigid body with the same kinetic energy."""
+"""Smallest momentum drawn, as a fraction of the momentum of a rigid body with the same kinetic energy."""
 
 ROUNDING = 1e-9
-"""Net forces below this fraction of the largest force on a body are rounding errors."""
+"""Ratio of a net force to the largest force on a body below which the net force is rounding error."""
 
 LEAST_LENGTH = 0.2
-"""Least length outside the robot of the longest arrow of a kind, in sizes of the robot."""
+"""Smallest length outside the robot of the longest arrow of a kind, in sizes of the robot."""
 
 _FIRST_LINE, _LINE_HEIGHT = 0.5, 0.085
 """Position and line height of the legend, in sizes of the robot."""
@@ -53,18 +53,18 @@ class _Kind:
     unit: str
     color: Color
     longest: float = 0.55
-    """Greatest length from the point of application, in sizes of the robot."""
+    """Largest length of an arrow from its point of application, in sizes of the robot."""
     thickness: float = 1.0
 
     @classmethod
     def of_moments(cls, path: str, name: str, unit: str, color: Color) -> _Kind:
-        """Return the kind of the corresponding torques or angular momenta, drawn as thin arrows."""
+        """Return the kind of arrow for torques or angular momenta, which are drawn as thin arrows."""
         return cls(path, f"{name} (thin)", unit, color, 0.45, 0.5)
 
 
 @dataclass
 class Arrows:
-    """Sends arrows with a legend beside the robot. Scales never decrease, so a run can be sent in parts."""
+    """Sends arrows, with a legend beside the robot; scales never decrease, so a run can be sent in parts."""
 
     recording: rr.RecordingStream
     setting: Setting
@@ -87,14 +87,14 @@ class Arrows:
                 effect.replace("_", " "),
             )
             if 0.0 < ROUNDING * _peak(forces(wrenches)) > _peak(net_force(wrenches)):
-                name = f"differential {name}"  # of a carried robot: without the common acceleration
+                name = f"differential {name}"  # a carried robot: the common acceleration is removed
             force = _Kind(f"{path}/force", f"{name} force", force_unit, hue.full)
             torque = _Kind.of_moments(f"{path}/torque", f"{name} torque", torque_unit, hue.pale)
             self._send(rows, force, centers, forces(wrenches))
             self._send(rows, torque, center, torque_about_center(rows, centers, wrenches)[:, None, :])
 
     def _momenta(self, rows: TraceRows) -> Iterator[tuple[_Kind, Floats]]:
-        """Yield the momenta that are significant compared to the motion of the joints."""
+        """Yield the momenta that are significant relative to the motion of the joints."""
         mass, energy = self.setting.model.mass, float(rows["kinetic_energy"].max())
         path, hue = self.setting.entity("arrows"), MOMENTUM
         (linear_entries, linear_unit), (angular_entries, angular_unit) = COLUMNS["momentum"].parts.values()
@@ -154,7 +154,7 @@ class Arrows:
         return found
 
     def _introduce(self, kind: _Kind, meaning: str) -> None:
-        """Log the style of arrows, and the position of the label that states their scale."""
+        """Log the style of a kind of arrows, and the position of the label that shows their scale."""
         put_in(self.recording, kind.path, WORLD)
         put_in(self.recording, meaning, self.setting.frame(FOLLOW))
         radius = kind.thickness * self.viewpoint.size / 140.0

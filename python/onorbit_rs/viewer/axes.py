@@ -1,4 +1,4 @@
-"""Coordinate axes: red x, green y, blue z, named at their tips."""
+"""Coordinate axes: x red, y green, z blue, with names at their tips."""
 
 from __future__ import annotations
 
@@ -78,13 +78,15 @@ def log_all_axes(
     Parameters
     ----------
     recording : RecordingStream
+        Stream to the recording.
     setting : Setting
+        Robot, orbit and targets.
     size : float
         Size of the robot, m.
     places : pair of (3,) arrays, m
         Positions of the axes of I and of L in ``follow``.
     near : float
-        Length of the tool's axes in the close-up view of its path, m; 0 for no such axes.
+        Length of the tool's axes in the close-up view of its path, m; 0 omits these axes.
     tool_name_at : (3,) array, m, optional
         Position of the tool's name in its axes.
     in_orbit : bool
@@ -118,7 +120,7 @@ def log_compass(
     *,
     in_orbit: bool,
 ) -> None:
-    """Log the axes of I and L beside a robot; ``frames`` are those of its camera and of the inertial axes."""
+    """Log the axes of I and L beside a robot; ``frames`` are the frames of its camera and of the axes of I."""
     (follow, compass), (inertial, local) = frames, places
     if in_orbit:
         names = ("x L: out", "y L: along track", "z L: normal")

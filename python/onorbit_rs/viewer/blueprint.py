@@ -23,13 +23,13 @@ if TYPE_CHECKING:
     from onorbit_rs.viewer.viewpoint import Viewpoint
 
 PLAYS_IN_S = 40.0
-"""Longest wall-clock time a recording takes to play; shorter runs play in real time."""
+"""Longest wall-clock time, s, that playing a recording takes; shorter runs play in real time."""
 
 _SPACE = (12, 14, 20)
 
 _LARGE = ("arrows", "axes", "flight")
 _SOLID, _HIDDEN = ("robot", "target"), 0.02
-"""Entities that would hide a path shorter than this many sizes of the robot."""
+"""Entities that are omitted beside a short path, which they would hide."""
 
 
 def layout(
@@ -131,7 +131,7 @@ def near_path(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> rrb.Vi
 def orbit_view(rows: TraceRows, settings: Sequence[Setting]) -> rrb.View:
     """Return the view of the orbit: towards the start of the run, north up, with the whole path visible.
 
-    ``rows`` are those of the first robot.
+    ``rows`` are the rows of the first robot.
     """
     setting = settings[0]
     position = rows["position_eci"] / 1e3
@@ -143,7 +143,7 @@ def orbit_view(rows: TraceRows, settings: Sequence[Setting]) -> rrb.View:
         center, reach = (low + high) / 2.0, max(float(np.linalg.norm(high - low)) / 2.0, 1e-3)
         towards = np.array([0.5, -0.75, 0.45]) / np.linalg.norm([0.5, -0.75, 0.45])
     name = "Orbit (inertial axes, km)"
-    if shows_sun(setting):  # in the name, because a label in the view would hide others
+    if shows_sun(setting):  # in the name, because a label in the view would hide other labels
         name = "Orbit (I, km); yellow arrow to the Sun"
     return rrb.Spatial3DView(
         origin="orbit",

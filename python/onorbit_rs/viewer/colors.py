@@ -1,6 +1,7 @@
 """Colours of the viewer: arrows have one hue per effect, full for forces and pale for torques.
 
-Any two of a legend of up to six effects differ by at least 25 in CIE 1976 L*a*b*; 2.3 is just noticeable.
+Any two colours in a legend of up to six effects differ by at least 25 in CIE 1976 L*a*b*; a difference of 2.3
+is just noticeable.
 """
 
 from __future__ import annotations
@@ -15,9 +16,9 @@ class Hue(NamedTuple):
     """Two colours of one hue: red, green, blue, 0 to 255."""
 
     full: Color
-    """Forces, linear momentum."""
+    """Colour of forces and of linear momentum."""
     pale: Color
-    """Torques, angular momentum."""
+    """Colour of torques and of angular momentum."""
 
 
 BACKGROUND: Color = (28, 31, 38)
@@ -31,7 +32,7 @@ LINES: tuple[Color, ...] = (
     (85, 155, 250), (240, 130, 50), (70, 200, 120), (220, 140, 190), (240, 190, 50), (130, 210, 245),
     (180, 180, 180), (245, 235, 100),
 )  # fmt: skip
-"""Colours of the lines of a plot, and of spacecraft in the order of these lines."""
+"""Colours of the lines of a plot; spacecraft have the same colours in the same order."""
 
 _OF_EFFECTS = {
     "gravity": Hue((150, 112, 222), (222, 212, 255)),
@@ -43,7 +44,7 @@ _OF_OTHERS = (Hue((250, 55, 130), (250, 158, 188)), Hue((60, 150, 80), (165, 245
 
 
 def hues(effects: Iterable[str]) -> dict[str, Hue]:
-    """Return a hue for each effect; custom effects get the remaining hues in order, then repeat them."""
+    """Return a hue for each effect; custom effects get the remaining hues in order, which may repeat."""
     names = list(effects)
     left = [*_OF_OTHERS, *(hue for name, hue in _OF_EFFECTS.items() if name not in names)]
     others = [name for name in names if name not in _OF_EFFECTS]

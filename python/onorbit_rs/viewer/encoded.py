@@ -16,13 +16,13 @@ FLUSH_TIMEOUT_S = 300.0
 """Timeout of rerun's encoder, s; it usually takes seconds."""
 
 _MAGIC, _FOOTER_BYTES = b"RRF2", 12
-"""First bytes and size, bytes, of the footer of a complete file."""
+"""First bytes of a complete file, and size of its footer, bytes."""
 
 
 class Encoded:
-    """Encodes everything that is sent to a recording after construction.
+    """Encodes all data that are sent to a recording after construction.
 
-    On Linux rerun writes to a file in memory and compresses in its own thread while rows are sent.
+    On Linux, rerun writes to a file in memory and compresses in its own thread while rows are sent.
     """
 
     def __init__(self, recording: rr.RecordingStream) -> None:
@@ -50,9 +50,11 @@ class Encoded:
                 path.write_bytes(content)
                 return
             memory.seek(-_FOOTER_BYTES, os.SEEK_END)
-            if not memory.read().startswith(_MAGIC):  # its thread ran out of memory, without an error
+            if not memory.read().startswith(
+                _MAGIC
+            ):  # rerun's thread ran out of memory without raising an error
                 raise _not_encoded("it is truncated")
-            shutil.copyfile(f"/proc/self/fd/{memory.fileno()}", path)  # within the kernel
+            shutil.copyfile(f"/proc/self/fd/{memory.fileno()}", path)  # copied by the kernel
 
     def _end(self) -> bytes:
         """End the recording; return its content unless it was written to a file."""
@@ -69,4 +71,7 @@ class Encoded:
 
 
 def _not_encoded(why: str) -> ViewerError:
-    return ViewerError(f"rerun did not encode the recording: {why}", reason=why)
+    return ViewerError(
+        f"rerun did not encode the recording: {why}; free memory or record fewer rows with record_every",
+        reason=why,
+    )

@@ -27,17 +27,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 APART = 2.0
-"""Distance from the reference in sizes of the robot above which the view is shown."""
+"""Smallest distance from the reference, in sizes of the robot, for which the view is shown."""
 
 AXES = 0.15
-"""Least length of the axes of L, as a fraction of the greatest distance."""
+"""Smallest length of the axes of L, as a fraction of the largest distance from the reference."""
 
 _WHOLE = 0.5
-"""Brightness of the whole path, on which the trail is drawn."""
+"""Brightness of the path of the whole run, on which the path up to the current time is drawn."""
 
 
 class Body(NamedTuple):
-    """A base or a target: entity path, frame, label, colour, positions (T, 3) in L, m, and their rows."""
+    """A base or a target: entity path, frame, label, colour, positions (T, 3) in L, m, and trace rows."""
 
     path: str
     frame: str
@@ -83,7 +83,7 @@ def log_flight(recording: rr.RecordingStream, bodies: list[Body], axes: str = "w
 
 
 def log_whole_flight(recording: rr.RecordingStream, bodies: list[Body], most: int = 5000) -> None:
-    """Log the whole paths in a dim colour."""
+    """Log the paths of the whole run in a dim colour."""
     for body in bodies:
         points = body.points[evenly_spaced(len(body.points), most)]
         dim = (np.array(body.color) * _WHOLE).astype(np.uint8)
@@ -99,9 +99,9 @@ def send_flight(recording: rr.RecordingStream, bodies: list[Body], most: int) ->
 
 
 def flight_view(bodies: list[Body], contents: list[str] | None = None) -> rrb.View:
-    """Return the view from beside the orbital plane: radial is up, along track to the right.
+    """Return the view along the orbit normal: radial is up, along track is to the right.
 
-    ``contents`` are the entities to show; by default all below ``world/flight``.
+    ``contents`` are the entities to show; by default all entities below ``world/flight``.
     """
     length = _axes_length(bodies)
     points = np.concatenate([np.eye(3) * length, *(body.points for body in bodies)])
@@ -128,5 +128,5 @@ def _farthest(bodies: list[Body]) -> float:
 
 
 def _axes_length(bodies: list[Body]) -> float:
-    """Return a round length that shows the scale, m."""
+    """Return the length of the axes of L, m: a round number that serves as a scale."""
     return round_up(AXES * _farthest(bodies))

@@ -1,4 +1,4 @@
-"""Replaces characters that the viewer's font lacks, which crash the viewer, by escape codes."""
+"""Replaces characters missing from the viewer's font, which crash the viewer, with escape codes."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ _LACKING = re.compile(
     "\u03f0-\u049d\u04a0-\u04ff\u1e00-\u1eff\u2010-\u2027\u2030-\u205e\u2070\u2074-\u208e\u2090-\u209c\u20a0-\u20bf"
     "\u2190-\u2199\u2202\u2205\u2206\u220f\u2211\u2212\u221a\u221e\u222b\u2248\u2260\u2264\u2265\u2713\u2717]"
 )
-"""Characters that Inter, the only font, lacks: all but Latin, Greek, Cyrillic, punctuation and symbols."""
+"""Characters missing from Inter, the viewer's font: all but Latin, Greek, Cyrillic and symbols."""
 
 
 def shown(text: str) -> str:
-    r"""Return the text on one line; different names give different results.
+    r"""Return the text on one line, with missing characters escaped; different texts stay different.
 
     >>> shown("ω of 腕")
     'ω of \\u8155'
@@ -24,7 +24,7 @@ def shown(text: str) -> str:
 
 
 def shown_lines(text: str) -> str:
-    """Return several lines, each as by :func:`shown`."""
+    """Return the text with each of its lines converted by :func:`shown`."""
     return "\n".join(shown(line) for line in text.split("\n"))
 
 

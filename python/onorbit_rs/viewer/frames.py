@@ -1,7 +1,7 @@
-"""Tree of named frames as in tf: W → L → follow → base → links; each frame is relative to the previous one.
+"""Tree of named frames as in ROS tf: W → L → follow → base → links; each is relative to the previous frame.
 
-The frame ``follow`` has the axes of L (of W without an orbit) and its origin on the base: coordinates in it
-stay precise in 32 bits however far the robot drifts, and the camera is fixed in it.
+The frame ``follow`` has the axes of L (of W without an orbit) and its origin at the base. The camera is fixed
+in this frame, in which 32-bit coordinates stay precise however far the robot drifts.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def send_frame(
     translation: Floats,
     quat_xyzw: Floats,
 ) -> None:
-    """Send the motion of a frame in its parent: (T, 3) or (3,), m, and (T, 4) or (4,), child to parent."""
+    """Send translations, (T, 3) or (3,), m, and quaternions, (T, 4) or (4,), from a child frame to its parent."""
     count = len(time.times)
     columns = rr.Transform3D.columns(
         translation=np.broadcast_to(np.asarray(translation, np.float32), (count, 3)),
@@ -61,7 +61,7 @@ def fix_frame(recording: rr.RecordingStream, parent: str, child: str, pose: Floa
 
 
 def path_of(frame: str) -> str:
-    """Return the entity path of a frame's transform."""
+    """Return the path of the entity that contains the transform of a frame."""
     return rr.new_entity_path(["frames", *frame.split("/")])
 
 
@@ -83,7 +83,7 @@ def send_fixed_frames(recording: rr.RecordingStream, setting: Setting) -> None:
 
 
 def send_local_frame(recording: rr.RecordingStream, rows: TraceRows) -> None:
-    """Send L, if it is defined."""
+    """Send the motion of frame L in W, if L is defined."""
     if rows.quat_wl is not None:
         send_frame(recording, rows.times, WORLD, LOCAL, ORIGIN, rows.quat_wl)
 
@@ -91,7 +91,7 @@ def send_local_frame(recording: rr.RecordingStream, rows: TraceRows) -> None:
 def send_moving_frames(
     recording: rr.RecordingStream, rows: TraceRows, setting: Setting, compass: Floats
 ) -> None:
-    """Send the base and every joint; inertial axes are shown at ``compass`` in ``follow``, m."""
+    """Send the motion of the base and every joint; inertial axes are shown at ``compass``, m, in ``follow``."""
     q, time, base = rows["q"], rows.times, setting.frame_of(setting.base)
     quat_fb = q[:, QUATERNION] if rows.quat_lb is None else rows.quat_lb
     send_follow(recording, rows, setting.frame(FOLLOW), setting.frame(COMPASS), q[:, POSITION], compass)
@@ -107,7 +107,7 @@ def send_follow(
 ) -> None:
     """Send the frame of a camera at ``place``, (T, 3) in W, with the axes of L, or of W if L is undefined.
 
-    In it, the frame ``axes`` has the axes of W and its origin at ``axes_at``, (3,), m.
+    The frame ``axes`` has the axes of W and its origin at ``axes_at``, (3,), m, in the camera's frame.
     """
     if rows.quat_wl is None or rows.rot_wl is None:
         send_frame(recording, rows.times, WORLD, follow, place, AT_REST)
@@ -129,5 +129,5 @@ def _joint_transform(joint: Joint, values: Floats) -> tuple[Floats, Floats]:
     anchor = np.array(joint.anchor)
     if not anchor.any():
         return pose[:3, 3], turned
-    # the anchor, which lies on the axis, stays where it is
+    # the anchor, which lies on the axis, does not move
     return pose[:3, 3] + pose[:3, :3] @ anchor - matrix_from_quaternion(turned) @ anchor, turned

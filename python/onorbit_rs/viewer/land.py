@@ -1,7 +1,7 @@
-"""Map of land on a grid of two degrees, and its texture.
+"""Map of land on a grid of two degrees, and a texture of the Earth made from this map.
 
-Made from the 30 arc second GLOBE elevation model (NOAA, 1999, public domain) by way of PyPI's
-`global-land-mask` 1.0.0: a cell is land if more than half of its points are.
+The map is computed with PyPI's `global-land-mask` 1.0.0 from the 30 arc second GLOBE elevation model (NOAA,
+1999, public domain): a cell is land if more than half of its points are land.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _PACKED = (
 
 
 def land() -> NDArray[np.bool_]:
-    """Return cells (90, 180), True on land; rows go south from the north pole, columns east from -180°."""
+    """Return cells (90, 180), True on land; rows from the north pole to the south, columns east from -180°."""
     bits = np.frombuffer(zlib.decompress(base64.b85decode(_PACKED)), np.uint8)
     return np.unpackbits(bits).reshape(_CELLS).astype(bool)
 

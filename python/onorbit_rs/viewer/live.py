@@ -44,7 +44,7 @@ LAST_ROWS_S = 5.0
 
 
 class View(ABC):
-    """A view of a run that lasts ``duration_s`` in a recording; errors there never stop the run."""
+    """A live view of a run of ``duration_s`` seconds; errors of the view never stop the run."""
 
     def __init__(self, recording: rr.RecordingStream, duration_s: float) -> None:
         """Prepare for a run that has not started."""
@@ -59,23 +59,23 @@ class View(ABC):
 
     @abstractmethod
     def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:
-        """Show the rows from number :attr:`shown` on, the columns of a stepper, and the events until then."""
+        """Show new rows, given as the columns of a stepper from row :attr:`shown` on, and the events so far."""
 
     @abstractmethod
     def _show_rest(self, trace: Any) -> None:
-        """Show the rows of a trace that were not shown yet."""
+        """Show the rows of a trace from row :attr:`shown` on."""
 
     @abstractmethod
     def _release(self) -> None:
-        """Delete everything that refers to the recording."""
+        """Delete all references to the recording."""
 
     def take(self, columns: Mapping[str, Floats], events: Sequence[EventRecord] = ()) -> None:
-        """Show the rows from number :attr:`shown` on, the columns of a stepper, and the events so far."""
+        """Show new rows, given as the columns of a stepper from row :attr:`shown` on, and the events so far."""
         with self._loses_view():
             self._show_columns(columns, events)
 
     def finish(self, trace: Trace | WorldTrace | None) -> None:
-        """Show the remaining rows and disconnect."""
+        """Show the remaining rows and disconnect from the viewer."""
         with self._loses_view():
             if trace is not None:
                 self._show_rest(trace)
@@ -84,20 +84,22 @@ class View(ABC):
                 self._wait_for_viewer()
         with self._loses_view():
             self._recording.disconnect()
-        self._is_lost = True  # nothing is sent after this
+        self._is_lost = True  # no data are sent from here on
         self._release()
         del self._recording
         with self._loses_view():
             release_streams()
 
     def _wait_for_viewer(self) -> None:
-        """Wait for the last rows to arrive; rerun reports a closed viewer only here."""
+        """Wait until the viewer has received the last rows; rerun reports a closed viewer only here."""
         try:
             self._recording.flush(timeout_sec=LAST_ROWS_S)
         except Exception:
             self._is_lost = True
             warnings.warn(
-                "the viewer was closed or did not respond before it had received the whole run", stacklevel=2
+                "the viewer was closed or stopped responding before it had received the whole run; open the recording "
+                "with onorbit show",
+                stacklevel=2,
             )
 
     @contextmanager
@@ -109,7 +111,7 @@ class View(ABC):
             self._lose(error)
 
     def _continued(self, series: Series) -> Series:
-        """Return angles unwrapped so that they continue those of the previous rows."""
+        """Return the series with angles unwrapped, continuing the angles of the previous rows."""
         if series.names != ANGLES:
             return series
         values = series.values
@@ -126,7 +128,7 @@ class View(ABC):
 
 
 class LiveView(View):
-    """View of the run of one robot."""
+    """Live view of a run with one robot."""
 
     def __init__(self, recording: rr.RecordingStream, setting: Setting, duration_s: float) -> None:
         """Prepare for a run that has not started."""
@@ -177,7 +179,7 @@ class LiveView(View):
 
 
 def send_paths_so_far(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
-    """Send the paths of the tool and on the orbit, from the last row of the previous update on."""
+    """Send the paths of the tool and of the robot on the orbit, from the last row of the previous update on."""
     if "reference_pose" in rows:
         send_trails(recording, rows, setting, MOST_ROWS, "desired")
     if "tool_pose" in rows:

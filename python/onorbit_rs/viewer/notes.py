@@ -26,7 +26,7 @@ def notes(summary: dict[str, Any], scenario: Scenario | WorldScenario) -> str:
 
 
 def world_notes(summary: dict[str, Any], scenario: WorldScenario) -> str:
-    """Return the summary of a run with several systems as Markdown: its events first."""
+    """Return the summary of a run with several systems as Markdown, with the events first."""
     own = {key: value for key, value in summary.items() if not isinstance(value, (dict, list))}
     text = notes(own, scenario)
     if summary["events"]:
@@ -41,7 +41,7 @@ def world_notes(summary: dict[str, Any], scenario: WorldScenario) -> str:
 
 
 def _event(event: dict[str, Any]) -> str:
-    """Return the row of an event."""
+    """Return the row of an event in a Markdown table."""
     errors = ", ".join(_short(event[f"{part}_momentum_error_rel"]) for part in ("linear", "angular"))
     numbers = (event[key] for key in ("time_s", "energy_lost_j", "impulse_ns", "angular_impulse_nms"))
     cells = [f"{event['name']} ({event['kind']})", *map(_short, numbers), errors]
@@ -49,14 +49,14 @@ def _event(event: dict[str, Any]) -> str:
 
 
 def about_rows(recorded: int, rows: int) -> str:
-    """Return a note on the rows of the trace that are not recorded; empty if all are."""
+    """Return a note on rows of the trace that are not recorded; empty if all rows are recorded."""
     if recorded == rows:
         return ""
     return f"\n\nThe recording contains {recorded} of the {rows} rows of the trace.\n"
 
 
 def about_meshes(model: Model) -> str:
-    """Return a note on the meshes that are not drawn; empty if all are."""
+    """Return a note on meshes that are not drawn; empty if all meshes are drawn."""
     missing = missing_meshes(model)
     if not missing:
         return ""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 INERTIAL, EARTH, SUN = "I", "earth", "sun"
 SUN_PLACE, SUN_ARROW = "sun_place", "sun_arrow"
 MEAN_DENSITY = 5.0e3
-"""Assumed mean density of a planet other than the Earth, from which its radius follows, kg/m³."""
+"""Assumed mean density of a planet other than the Earth, kg/m³, from which its radius is computed."""
 
 MOST_TURNS = 2000
 """Largest number of rows at which the Earth's attitude is recorded."""
@@ -86,12 +86,12 @@ def to_eye(rows: TraceRows, setting: Setting) -> Floats:
         sun = np.asarray(setting.earth.sun(0.0)).reshape(3)
         towards -= 0.9 * (towards @ sun) / (sun @ sun) * sun
     towards /= np.linalg.norm(towards)
-    over_pole = abs(towards[2]) > 0.98  # where north is not up on the screen
+    over_pole = abs(towards[2]) > 0.98  # here north is not up on the screen
     return np.array([0.5, 0.0, math.copysign(math.sqrt(0.75), towards[2])]) if over_pole else towards
 
 
 def shows_sun(setting: Setting) -> bool:
-    """Return True if night and the Sun's arrow are shown."""
+    """Return True if the night side and the arrow to the Sun are shown."""
     orbit = setting.orbit
     return orbit is not None and orbit.mu is not None and is_earth(orbit.mu) and has_sun(setting.earth)
 
@@ -102,7 +102,7 @@ def has_sun(earth: Earth | None) -> bool:
 
 
 def send_planet(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
-    """Send the rotation of the Earth, and that of its night side."""
+    """Send the rotation of the Earth and of its night side."""
     earth = setting.earth
     if earth is None or setting.orbit is None or setting.orbit.mu is None:
         return
@@ -119,13 +119,13 @@ def send_planet(recording: rr.RecordingStream, rows: TraceRows, setting: Setting
 
 
 def send_orbit_trail(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, most: int) -> None:
-    """Send the path so far."""
+    """Send the path of the robot up to the current time in the view of the orbit."""
     path = setting.orbit_entity("trail")
     send_trail(recording, path, INERTIAL, rows, rows["position_eci"] / 1e3, most, _PATH)
 
 
 def log_path_flown(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
-    """Log the whole path of the robot."""
+    """Log the path of the robot over the whole run in the view of the orbit."""
     position = rows["position_eci"]
     points = position[evenly_spaced(len(position), _MOST_PATH_POINTS)] / 1e3
     path = rr.LineStrips3D([points], colors=[_PATH], radii=rr.Radius.ui_points(2.0))
@@ -137,7 +137,7 @@ def log_path_flown(recording: rr.RecordingStream, rows: TraceRows, setting: Sett
 def send_spacecraft(
     recording: rr.RecordingStream, rows: TraceRows, setting: Setting, label: str | None = None
 ) -> None:
-    """Send the positions of the robot, with a label: its name by default, nothing if empty."""
+    """Send the positions of the robot; the label is by default its name, and omitted if empty."""
     path = setting.orbit_entity("spacecraft")
     put_in(recording, path, INERTIAL)
     label = setting.label if label is None else label
@@ -150,7 +150,7 @@ def send_spacecraft(
 
 
 def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
-    """Return positions (k, 3), m, along a closed orbit or custom path around a planet; None for others."""
+    """Return positions (k, 3), m, along a closed orbit or custom path; None without such an orbit."""
     if orbit is None or orbit.mu is None:
         return None
     period = getattr(orbit, "period", None)
@@ -164,20 +164,20 @@ def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
 
 
 def _radius_km(mu: float, rows: TraceRows) -> float:
-    """Return the radius of a sphere of the mean density, below the lowest point of the path."""
+    """Return the radius, km, of a sphere of the assumed density; at most that of the path's lowest point."""
     radius = (3.0 * mu / (4.0 * math.pi * _GRAVITATION * MEAN_DENSITY)) ** (1.0 / 3.0)
     lowest = float(np.linalg.norm(rows["position_eci"], axis=1).min())
     return float(min(radius, 0.95 * lowest)) / 1e3
 
 
 def _globe(radii: Floats, *, has_land: bool, bands: int = 60, sectors: int = 120) -> rr.Mesh3D:
-    """Return an ellipsoid with a map; longitude zero is the x axis."""
+    """Return the mesh of an ellipsoid with a map of the Earth; longitude zero is on the x axis."""
     v, u = (np.linspace(0.0, 1.0, count + 1) for count in (bands, sectors))
     colatitude, longitude = np.pi * v[:, None], 2.0 * np.pi * u[None, :] - np.pi
     unit = _directions(colatitude, longitude)
     return rr.Mesh3D(
         vertex_positions=(unit * radii).reshape(-1, 3),
-        vertex_normals=np.zeros((unit.shape[0] * unit.shape[1], 3)),  # no shading by the light of the viewer
+        vertex_normals=np.zeros((unit.shape[0] * unit.shape[1], 3)),  # disables shading by the viewer's light
         vertex_texcoords=np.stack(np.broadcast_arrays(u[None, :], v[:, None]), axis=-1).reshape(-1, 2),
         triangle_indices=_triangles(bands, sectors),
         albedo_texture=world_map(has_land),
@@ -185,7 +185,7 @@ def _globe(radii: Floats, *, has_land: bool, bands: int = 60, sectors: int = 120
 
 
 def _night(radii: Floats, depth: float, bands: int = 24, sectors: int = 72) -> rr.Mesh3D:
-    """Return a dark surface opposite to x, where a Sun at x is at least ``depth`` rad below the horizon."""
+    """Return a dark surface where the Sun, in direction x, is at least ``depth`` rad below the horizon."""
     away, around = np.meshgrid(
         np.linspace(np.pi / 2 + depth, np.pi, bands + 1),
         np.linspace(0.0, 2.0 * np.pi, sectors + 1),
@@ -211,7 +211,7 @@ def _triangles(bands: int, sectors: int) -> NDArray[np.int64]:
 
 
 def _directions(colatitude: Floats, longitude: Floats) -> Floats:
-    """Return unit vectors (bands, sectors, 3)."""
+    """Return unit vectors (bands, sectors, 3), given colatitude and longitude, rad."""
     parts = np.broadcast_arrays(
         np.sin(colatitude) * np.cos(longitude), np.sin(colatitude) * np.sin(longitude), np.cos(colatitude)
     )

@@ -36,7 +36,7 @@ _FIRST_WITHOUT_TOOL = (
 )
 _MOST_IN_A_COLUMN = 4
 _LOW = 4
-"""Relative height of a plot of few lines."""
+"""Relative height of a plot with few lines."""
 
 _MOST_TICKS = 6.0
 """Largest number of labelled ticks in a low plot."""
@@ -48,7 +48,7 @@ _FOR_LEGENDS = 1.24
 def plots_in_groups(
     plots: Sequence[Series], duration_s: float, *, is_live: bool, system: str = ""
 ) -> rrb.Tabs:
-    """Return an overview, and a tab for each group; ``system`` is that to which the plots belong, if any."""
+    """Return an overview, and a tab for each group; ``system`` is the name of the plots' system, if any."""
     by_path = {plot.path.replace(f"/{system}/", "/", 1): plot for plot in plots}
     wanted = _FIRST if _FIRST[0] in by_path else _FIRST_WITHOUT_TOOL
     first = [by_path[path] for path in wanted if path in by_path][:_MOST_IN_A_COLUMN]
@@ -60,7 +60,7 @@ def plots_in_groups(
 
 
 def plot_column(name: str, group: Sequence[Series], duration_s: float, *, is_live: bool) -> rrb.Vertical:
-    """Return the plots of a group below each other."""
+    """Return the plots of a group in one column."""
     return rrb.Vertical(
         *(_plot(plot, duration_s, is_live=is_live) for plot in group),
         row_shares=[min(max(_LOW, len(plot.names)), 9) for plot in group],
@@ -90,7 +90,7 @@ def _plot(series: Series, duration_s: float, *, is_live: bool) -> rrb.TimeSeries
 
 
 def with_two_ticks(values: Floats) -> tuple[float, float] | None:
-    """Return a value range with two labelled ticks for a low plot; None if the default range has them.
+    """Return a value range with two labelled ticks for a low plot; None if the default range suffices.
 
     Rerun places ticks only at multiples of powers of ten, and omits ticks that are close to each other.
     """
@@ -102,7 +102,9 @@ def with_two_ticks(values: Floats) -> tuple[float, float] | None:
     inside = math.floor(high / step) - math.ceil(low / step) + 1
     if inside > 1:
         return None
-    if inside == 1 and above - below > 1.5 * step:  # the nearer of the next two is enough
+    if (
+        inside == 1 and above - below > 1.5 * step
+    ):  # extending the range to the nearer of the two adjacent ticks suffices
         below, above = (low, above) if above - high <= low - below else (below, high)
     margin = 0.05 * (above - below)
     return below - margin, above + margin

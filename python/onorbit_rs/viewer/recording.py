@@ -1,7 +1,7 @@
 """``run.rrd``: the robot moving in named frames, its tool's path, arrows, a view of the orbit, and plots.
 
 W has the axes of the inertial frame and its origin on the reference orbit, so that 32-bit graphics are
-precise at the scale of the robot. The orbit has its own view, in km; its exact state is plotted in 64 bits.
+precise at the scale of the robot. The orbit has a separate view, in km; plots show its state in 64 bits.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_STEPS = 500_000
-"""Largest number of rows, half a gigabyte; a longer trace is decimated evenly, including its last row."""
+"""Largest number of rows, which require 0.5 GB; longer traces are decimated evenly, including the last row."""
 
 
 def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
@@ -63,8 +63,9 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
     Parameters
     ----------
     path : Path
-        The ``.rrd`` file.
+        Path of the ``.rrd`` file.
     trace : Trace
+        Rows to record.
     setting : Setting
         The robot, its orbit and its targets.
     notes : str
@@ -94,7 +95,7 @@ def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = 
 
 @contextmanager
 def recorded_in(path: Path, name: str) -> Iterator[rr.RecordingStream]:
-    """Yield a new recording, whose content is written to a file at the end; its stream is released."""
+    """Yield a new recording; write it to a file after the block and release its stream."""
     try:
         recording = new_recording(name)
         encoded = Encoded(recording)
@@ -105,7 +106,7 @@ def recorded_in(path: Path, name: str) -> Iterator[rr.RecordingStream]:
 
 
 def log_paths(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
-    """Log the paths of the tool and on the orbit, which are known after the run."""
+    """Log the paths of the tool and of the robot on its orbit, which are known after the run."""
     if "reference_pose" in rows:
         log_path(recording, rows, setting, viewpoint.size)
     if "tool_pose" in rows:
@@ -134,7 +135,7 @@ def send_static(
     notes: str = "",
     is_live: bool = False,
 ) -> Viewpoint:
-    """Send the layout and log the static entities, from the first rows."""
+    """Send the layout and log the static entities, which depend on the first rows only."""
     viewpoint = Viewpoint.of(rows, setting)
     views = layout(rows, setting, viewpoint, plots, duration_s, has_notes=bool(notes), is_live=is_live)
     send_blueprint(recording, views)
@@ -151,7 +152,7 @@ def send_static(
 
 
 def log_craft(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
-    """Log the shapes and the axes of one robot, from its first rows."""
+    """Log the shapes and the axes of one robot, whose positions depend on its first rows."""
     send_fixed_frames(recording, setting)
     log_robot(recording, setting)
     log_all_axes(
@@ -171,7 +172,7 @@ def log_notes(recording: rr.RecordingStream, notes: str) -> None:
 
 
 def send_rows(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
-    """Send everything that moves, for every row."""
+    """Send all moving entities, for every row."""
     send_local_frame(recording, rows)
     send_craft(recording, rows, setting, viewpoint)
     if "position_eci" in rows:

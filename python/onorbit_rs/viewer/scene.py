@@ -35,10 +35,10 @@ if TYPE_CHECKING:
 
 MOST_TRAIL_PIECES = 1000
 MOVES = 1e-3
-"""Length of the path, in sizes of the robot, below which the tool is considered to hold its pose."""
+"""Length of the tool's path, in sizes of the robot, below which the tool is considered at rest."""
 
 NEAR = 0.25
-"""Length of the axes in the close-up view, in lengths of the path."""
+"""Length of the axes in the close-up view, as a fraction of the length of the path."""
 
 COLORS = {"desired": (240, 240, 240), "obtained": (255, 96, 64)}
 UNTIL_NOW = rrb.VisibleTimeRanges(
@@ -46,7 +46,7 @@ UNTIL_NOW = rrb.VisibleTimeRanges(
         TIMELINE, start=rrb.TimeRangeBoundary.infinite(), end=rrb.TimeRangeBoundary.cursor_relative()
     )
 )
-"""Time range of a trail that a view shows: up to the current time."""
+"""Time range of the part of a trail that a view shows: from its start to the current time."""
 
 _POSES = {"desired": "reference_pose", "obtained": "tool_pose"}
 
@@ -66,7 +66,7 @@ def send_desired(recording: rr.RecordingStream, rows: TraceRows, setting: Settin
 
 
 def path_length(rows: TraceRows, setting: Setting) -> float:
-    """Return the diagonal of the box around the desired path, m; 0 without one."""
+    """Return the diagonal of the box around the desired path, m; 0 if there is no desired path."""
     if "reference_pose" not in rows:
         return 0.0
     points, _ = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
@@ -113,7 +113,7 @@ def send_trail(
     most: int,
     color: tuple[int, int, int],
 ) -> None:
-    """Send points (T, 3) as at most ``most`` line segments, each at its time; a view shows past segments."""
+    """Send points (T, 3) as at most ``most`` line segments with times; a view shows the past segments."""
     ends = evenly_spaced(len(points), most + 1)
     if len(ends) < 2:
         return

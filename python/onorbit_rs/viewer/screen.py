@@ -33,7 +33,7 @@ def has_screen() -> bool:
 
 
 def open_recording(recording: Path) -> None:
-    """Open a ``.rrd`` and return when its window is open; the viewer outlives this process.
+    """Open a ``.rrd`` file and return when the window is open; the viewer continues after this process ends.
 
     Raises
     ------
@@ -62,14 +62,14 @@ def url_of(port: int) -> str:
 
 
 def command_of(port: int) -> list[str]:
-    """Return the command of the viewer's executable; ``python -m rerun_cli`` does not stop it on exit."""
+    """Return the command of the viewer's executable; ``python -m rerun_cli`` would not stop it on exit."""
     places = [Path(rerun_cli.__file__).parent / name for name in _BINARIES]
     binary = next((place for place in places if place.is_file()), places[0])
     return [str(binary), "--bind", _LOCAL, "--port", str(port)]
 
 
 def environment() -> dict[str, str]:
-    """Return the environment of a viewer: no welcome screen, and only errors on stderr."""
+    """Return the environment variables of a viewer: without a welcome screen, only errors on stderr."""
     return os.environ | {"RERUN_APP_ONLY": "true", "RUST_LOG": "error"}
 
 
@@ -91,7 +91,7 @@ def reason(printed: str) -> str:
     if panic := _PANIC.search(printed):
         return panic[1]
     lines = printed.strip().splitlines()
-    return lines[-1].rsplit(": ", 1)[-1] if lines else "it printed nothing"
+    return lines[-1].rsplit(": ", 1)[-1] if lines else "it gave no reason"
 
 
 def _start(port: int, *arguments: str) -> None:
@@ -105,7 +105,7 @@ def _start(port: int, *arguments: str) -> None:
             raise _not_started(str(error)) from error
         try:
             _await_window(viewer, port, said)
-        except BaseException:  # also Ctrl-C: the viewer has its own session and would keep running
+        except BaseException:  # includes Ctrl-C: the viewer has a separate session and would keep running
             viewer.kill()
             viewer.wait()
             raise
@@ -136,6 +136,6 @@ def _ask(url: str, answered: threading.Event) -> None:
     """Request the state of the viewer, which only a viewer with a window returns."""
     try:
         ViewerClient.connect(url).get_state()
-    except OSError:  # not yet
+    except OSError:  # the viewer does not answer yet
         return
     answered.set()

@@ -1,4 +1,4 @@
-"""Picture of a recording from a headless viewer, which accepts local connections only.
+"""Saves a picture of a recording from a headless viewer, which accepts local connections only.
 
 ``onorbit show out --picture picture.png --at 1``
 
@@ -21,20 +21,20 @@ from onorbit_rs.viewer.screen import command_of, environment, free_port, reason,
 from onorbit_rs.viewer.trace_rows import TIMELINE
 
 SETTLE_S = 3.0
-"""Wall-clock time for the viewer to load fonts and draw, before and after a change of time, s."""
+"""Wall-clock times, s, to wait for the viewer to draw, before and after setting the simulation time."""
 
 
 def take_screenshot(
     recording: Path, picture: Path, *, at_s: float = 0.0, width: int = 1920, height: int = 1080
 ) -> Path:
-    """Open a ``.rrd`` without a window, go to a time, and save the picture.
+    """Open a ``.rrd`` file without a window, set the simulation time, and save a picture.
 
     Parameters
     ----------
     recording : Path
-        A ``run.rrd``.
+        Recording, such as ``run.rrd``.
     picture : Path
-        The PNG file to write.
+        PNG file to be written.
     at_s : float
         Simulation time, s.
     width, height : int
@@ -43,7 +43,7 @@ def take_screenshot(
     Raises
     ------
     NotFoundError
-        If there is no such recording.
+        If the recording does not exist.
     ViewerError
         If the viewer did not start, or does not show the recording.
     OutputFolderError
@@ -88,7 +88,7 @@ def _picture(
             client.set_time(TIMELINE, duration=at_s, play_state="paused")
             time.sleep(SETTLE_S)
             return client.take_screenshot()
-        except OSError as error:  # no recording yet
+        except OSError as error:  # the recording is not loaded yet
             has_ended = viewer.poll() is not None
             if has_ended or time.monotonic() > deadline:
                 said.seek(0)
@@ -105,7 +105,7 @@ def _connect(
     while time.monotonic() < deadline and viewer.poll() is None:
         try:
             return ViewerClient.connect(url_of(port))
-        except OSError:  # not yet
+        except OSError:  # the viewer does not answer yet
             time.sleep(0.1)
     said.seek(0)
     raise _not_started(reason(said.read()))
@@ -113,7 +113,7 @@ def _connect(
 
 def _not_started(why: str) -> ViewerError:
     return ViewerError(
-        f"the headless viewer did not start: {why}; it needs a Vulkan driver "
+        f"the headless viewer did not start: {why}; install a Vulkan driver "
         "(Debian: mesa-vulkan-drivers and libegl1)",
         reason=why,
     )

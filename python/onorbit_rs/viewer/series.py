@@ -1,6 +1,6 @@
 """Groups of plots for the viewer, computed from the rows of a trace.
 
-The lines of a plot share a unit label, which is ``rad or m`` for joint errors of mixed joints.
+The lines of a plot share a unit label, which is ``rad or m`` for joint errors of both kinds of joints.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _XYZ = [(240, 95, 75), (70, 200, 120), (85, 155, 250)]
 _OTHERS, OTHERS = (90, 94, 104), "others, smaller"
 AXES, ANGLES = ("x", "y", "z"), ("roll", "pitch", "yaw")
 SUM, _SUM = "sum", (235, 235, 235)
-"""Name and colour of the last line of a plot that is the sum of the others."""
+"""Name and colour of the last line of a plot if that line is the sum of the others."""
 
 _TOOL_ERRORS = (COLUMNS["position_error"], COLUMNS["attitude_error"])
 
@@ -47,7 +47,7 @@ ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Series:
-    """One plot: ``values`` (T, n), a name for each column, one unit for all."""
+    """One plot: ``values`` (T, n), a name for each column, and one unit for all columns."""
 
     group: str
     path: str
@@ -58,9 +58,9 @@ class Series:
 
 
 def series_of(rows: TraceRows, setting: Setting, *, is_live: bool = False) -> Iterator[Series]:
-    """Yield every plot for which these rows contain the columns.
+    """Yield every plot whose columns the rows contain.
 
-    Plots of a completed run have units that fit their peaks. Rounding errors are shown as zero, and effects
+    Plots of a completed run have units that suit their peaks. Rounding errors are shown as zero, and effects
     that are zero are omitted.
     """
     parts = (
@@ -171,10 +171,10 @@ def _of_part(rows: TraceRows, group: str, path: str, title: str, column: str, pa
 
 
 def log_style(recording: rr.RecordingStream, series: Series) -> None:
-    """Log names and colours of the lines of a plot."""
+    """Log the names and colours of the lines of a plot."""
     count = len(series.names)
     names, colors = list(series.names), list(_XYZ if series.names in (AXES, ANGLES) else LINES)
-    if count > len(colors):  # no two lines have the same colour
+    if count > len(colors):  # more lines than colours: names distinguish the lines
         peaks = np.abs(series.values).max(axis=0)
         largest = np.sort(np.argsort(-peaks, kind="stable")[: len(colors)])
         taken = dict(zip(largest.tolist(), LINES, strict=True))

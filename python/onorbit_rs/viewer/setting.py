@@ -1,4 +1,4 @@
-"""Data of a run that the viewer needs in addition to its rows."""
+"""Data of a run that the viewer requires in addition to the rows of the trace."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Setting:
 
     @classmethod
     def of(cls, built: Built, system: str = "", grasps: tuple[str, ...] = ()) -> Setting:
-        """Return the setting of a scenario."""
+        """Return the setting of a scenario that was built; ``system`` and ``grasps`` are those of a world."""
         scenario = built.scenario
         return cls(
             built.model,
@@ -67,16 +67,16 @@ class Setting:
         return f"orbit/{part}/{self.system}" if self.system else f"orbit/{part}"
 
     def frame(self, name: str) -> str:
-        """Return the name of a frame that belongs to the robot."""
+        """Return the viewer's name of a frame of the robot."""
         return f"{self.system}/{name}" if self.system else name
 
     def frame_of(self, link: str) -> str:
-        """Return the name of the frame of a link, or of a frame fixed to a link."""
+        """Return the viewer's name of the frame of a link, or of a named frame that is fixed to a link."""
         return self.frame(f"robot/{shown(link)}")
 
     @cached_property
     def shapes(self) -> list[Shape]:
-        """Shapes to draw of the robot."""
+        """Shapes of the robot that are drawn."""
         return shapes(self.model)
 
     @property

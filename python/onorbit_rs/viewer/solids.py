@@ -11,9 +11,9 @@ from onorbit_rs.visuals.meshes import Part
 
 
 def log_shape(recording: rr.RecordingStream, path: str, shape: Shape) -> list[str]:
-    """Log one static shape in the axes of its link; return its entities, each of which needs a frame."""
+    """Log one static shape in axes of its link; return its entities, whose frame the caller must set."""
     pose = shape.pose
-    if shape.kind == "capsule":  # rerun's capsule starts at its origin, URDF's is centred
+    if shape.kind == "capsule":  # rerun's capsule starts at its origin, but URDF's capsule is centred
         pose = pose.copy()
         pose[:3, 3] -= pose[:3, 2] * shape.size[1] / 2.0
     placed = rr.InstancePoses3D(

@@ -1,7 +1,8 @@
 """Releases rerun's streams, each of which otherwise keeps two threads and its buffers.
 
-rerun disconnects a stream that Python dropped but releases it only at the next ``rr.init``. It never releases
-the stream of a blueprint, because its memory sink and the stream own each other (rerun-io/rerun issue 2116).
+rerun disconnects a stream that Python deletes, but releases its resources only at the next ``rr.init``. The
+stream of a blueprint is never released, because the stream and its memory sink own each other (rerun-io/rerun
+issue 2116).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ def send_blueprint(recording: rr.RecordingStream, views: rrb.Blueprint) -> None:
     views._log_to_stream(carrier)
     storage = rr.memory_recording(carrier).storage
     rerun_bindings.send_blueprint(storage, True, True, recording=recording.to_native())
-    carrier.disconnect()  # replaces the memory sink
+    carrier.disconnect()  # disconnecting replaces the memory sink
 
 
 def release_streams() -> None:

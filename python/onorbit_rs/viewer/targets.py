@@ -41,7 +41,7 @@ def send_targets(recording: rr.RecordingStream, rows: TraceRows, setting: Settin
 
 
 def log_targets(recording: rr.RecordingStream, setting: Setting, size: float) -> None:
-    """Log the axes of the targets, and boxes of those whose size is given."""
+    """Log the axes of the targets, and a box for each target whose size is given."""
     for index, target in enumerate(setting.targets):
         path = setting.entity(f"target/{index}")
         log_axes(recording, path, frame_of_target(setting, index), 0.25 * size, ("x T", "y T", "z T"))

@@ -36,7 +36,7 @@ TIMELINE = "simulation_time"
 class TraceRows:
     """Rows of a trace: ``columns`` maps the name of each column to its values, (T, ...).
 
-    ``wrenches``, (T, bodies, 6), are stored by effect and ``tracking`` errors, (T, k), by control.
+    ``wrenches``, (T, bodies, 6), are stored by effect, and ``tracking`` errors, (T, k), by control.
     """
 
     columns: Mapping[str, Floats]
@@ -45,7 +45,7 @@ class TraceRows:
 
     @classmethod
     def of_trace(cls, trace: Trace, chosen: NDArray[np.int64] | slice = slice(None)) -> TraceRows:
-        """Return chosen rows of a trace."""
+        """Return the chosen rows of a trace."""
         return cls(
             {name: np.asarray(getattr(trace, name))[chosen] for name in trace.columns()},
             {shown(name): np.asarray(values)[chosen] for name, values in trace.wrenches.items()},
@@ -68,7 +68,7 @@ class TraceRows:
         return cls(plain, **owned)
 
     def __getitem__(self, name: str) -> Floats:
-        """Return a column."""
+        """Return the values, (T, ...), of a column."""
         return self.columns[name]
 
     def __contains__(self, name: str) -> bool:
@@ -86,7 +86,7 @@ class TraceRows:
         return self.at(evenly_spaced(len(self), most))
 
     def at(self, chosen: NDArray[np.int64] | slice) -> TraceRows:
-        """Return chosen rows."""
+        """Return the rows with the chosen indices."""
         parts = (self.columns, self.wrenches, self.tracking)
         return TraceRows(*({name: values[chosen] for name, values in part.items()} for part in parts))
 
@@ -95,7 +95,7 @@ class TraceRows:
         return TraceRows({name: values[-1:] for name, values in self.columns.items()})
 
     def after(self, earlier: TraceRows) -> TraceRows:
-        """Return these rows preceded by earlier ones, in the columns that both have.
+        """Return these rows preceded by the rows ``earlier``, with the columns that both contain.
 
         A stepper omits columns without entries, such as the efforts of a robot without joints.
         """

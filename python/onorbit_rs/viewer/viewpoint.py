@@ -24,7 +24,7 @@ TO_EYE = np.array([0.5, -0.8, 0.34])
 """Direction from the robot to the camera in base axes: front, right and a little above."""
 
 _NEAR = 4.0
-"""Distance in sizes of the robot beyond which a target does not move the camera back."""
+"""Largest distance, in sizes of the robot, at which a target is included in the initial view."""
 
 _POSES = 12
 """Number of rows from which the size of the robot is computed."""
@@ -32,24 +32,24 @@ _POSES = 12
 
 @dataclass(frozen=True)
 class Viewpoint:
-    """Size and centre of the robot in ``follow``, m, from which the camera position follows."""
+    """Size and centre of the robot in ``follow``, m, which determine the position of the camera."""
 
     size: float
     center: Floats
     rot_fb: Floats
-    """Rotation from base axes to those of ``follow`` at the start."""
+    """Rotation from base axes to the axes of ``follow`` at the start."""
     to_eye: Floats = field(default_factory=TO_EYE.copy)
     """Direction to the camera in base axes."""
 
     @classmethod
     def of(cls, rows: TraceRows, setting: Setting) -> Viewpoint:
-        """Return the viewpoint from the robot's extent in these rows and its attitude in the first."""
+        """Return the viewpoint for the robot's extent in these rows and its attitude in the first row."""
         q = rows["q"][0]
         center, size = setting.extent(rows["q"][evenly_spaced(len(rows), _POSES)])
         quat = q[QUATERNION] if rows.quat_lb is None else rows.quat_lb[0]
         rot_fb = matrix_from_quaternion(quat)
         center = rot_fb @ center
-        for target in setting.targets:  # include targets that are near
+        for target in setting.targets:  # targets nearby are included
             aside = (
                 rot_fb @ matrix_from_quaternion(q[QUATERNION]).T @ (target.position - q[POSITION]) - center
             )
@@ -65,7 +65,7 @@ class Viewpoint:
         return place
 
     def beside_tool(self, rows: TraceRows, setting: Setting) -> Floats:
-        """Return the position of the tool's name in its axes, m: away from the robot and upwards."""
+        """Return the position of the tool's label in axes of the tool, m: away from the robot and upwards."""
         pose = setting.tool_pose(rows["q"][evenly_spaced(len(rows), _POSES)])
         off = pose[:, :3, 3] - self.rot_fb.T @ self.center
         sight = self.to_eye / np.linalg.norm(self.to_eye)

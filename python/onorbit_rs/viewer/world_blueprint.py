@@ -1,4 +1,4 @@
-"""Layout of the viewer for several systems: all together, each alone, events, and plots beside them."""
+"""Layout of the viewer for several systems: a common view, a view of each system, events, and plots."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from onorbit_rs.viewer.world_rows import WorldRows
 
 _ALONE = ("arrows", "axes")
-"""Parts of a system that only its own view shows, because they would cover the other systems."""
+"""Parts of a system that only the view of this system shows; elsewhere they would cover other systems."""
 _FIRST = (
     "position",
     "attitude",
@@ -89,7 +89,7 @@ def world_layout(
 
 
 def _contents(names: Sequence[str], alone: str = "") -> list[str]:
-    """Return the contents of a 3-D view: of all systems, or of one with the others around it."""
+    """Return the contents of a 3-D view of all systems; ``alone`` is the system that is shown with all parts."""
     found = ["$origin/**", "- $origin/lvlh/flight/**"]
     found += [f"- $origin/{name}/{part}/**" for name in names for part in _APART]
     found += [f"- $origin/{name}/{part}/**" for name in names if name != alone for part in _ALONE]

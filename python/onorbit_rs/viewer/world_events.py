@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 LOG, STATES = "events", "connections"
-"""Entities of the log, and of the states of the connections."""
+"""Paths of the entities of the event log, and of the states of the connections."""
 
 COLORS = {"capture": (110, 220, 130), "release": (255, 190, 80)}
 _OTHER = (220, 220, 220)
@@ -45,7 +45,7 @@ _FIRST_LINE, _LINE_HEIGHT = 0.42, 0.06
 """Position and line height of the labels of events, in sizes of the scene."""
 
 _AXES, _ARROW = 0.07, 0.2
-"""Lengths of the axes of a grasp and of the largest impulse, in sizes of the scene."""
+"""Lengths of the axes of a captured or capturing frame, and of the largest impulse, in sizes of the scene."""
 
 
 def log_grasps(recording: rr.RecordingStream, world: WorldRows, scene: Viewpoint) -> None:
@@ -70,7 +70,7 @@ def _of_frame(system: Setting, frame: str) -> str:
 
 
 def log_states(recording: rr.RecordingStream, setting: WorldSetting) -> None:
-    """Log the colours of the states of the connections, all of which are free at the start."""
+    """Log the colours of the connections' states; initially, all connections are free."""
     for connection in setting.connections:
         path = f"{STATES}/{connection.name}"
         style = rr.StateConfiguration(values=[_FREE, _CONNECTED], colors=[_GREY, COLORS["capture"]])
@@ -131,7 +131,7 @@ def send_marks(
 
 
 def described(event: EventRecord, connection: Connection | None = None) -> str:
-    """Return one line about an event with its audit."""
+    """Return one line that describes an event and its balances of momentum and energy."""
     by, of = event.systems if connection is None else connection.frames
     linear, angular = np.asarray(event.momentum_error).tolist()
     return (
@@ -141,14 +141,14 @@ def described(event: EventRecord, connection: Connection | None = None) -> str:
 
 
 def impulse_of(event: EventRecord) -> str:
-    """Return the magnitudes of the impulse and of its moment."""
+    """Return the magnitudes of the linear and the angular impulse of an event as text."""
     impulse = np.asarray(event.impulse)
     sizes = (float(np.linalg.norm(part)) for part in (impulse[:3], impulse[3:]))
     return " and ".join(f"{digits(size)} {unit}" for size, unit in zip(sizes, ("N s", "N m s"), strict=True))
 
 
 def energy_of(lost_j: float) -> str:
-    """Return the energy that an event removed, or added if it is negative."""
+    """Return the energy that an event removed or, if ``lost_j`` is negative, added, as text."""
     return f"{amount(abs(lost_j), 'J')} {'added' if lost_j < 0.0 else 'lost'}"
 
 
@@ -165,7 +165,7 @@ def _send_arrow(
     style: tuple[float, Color],
     shown_s: float,
 ) -> None:
-    """Show the impulse on the second system for a while; the arrow ends at the point where it acts."""
+    """Show the impulse on the second system for ``shown_s``; the arrow ends at the point of application."""
     (scale, color), (name, frame) = style, connection.by
     system, rows = world.setting.systems[name], world[name]
     row = int(np.searchsorted(rows["time"], event.time, side="right")) - 1
@@ -186,7 +186,7 @@ def _send_arrow(
 def _send_label(
     recording: rr.RecordingStream, event: EventRecord, place: Floats, color: Color, shown_s: float
 ) -> None:
-    """Show the name of an event, its impulse and the energy lost above the scene for a while."""
+    """Show the name of an event, its impulse and the energy lost above the scene for ``shown_s``."""
     path = f"world/lvlh/events/{event.name}"
     put_in(recording, path, FOLLOW)
     size = float(np.linalg.norm(event.impulse[:3]))
@@ -198,7 +198,7 @@ def _send_label(
 def _show(
     recording: rr.RecordingStream, path: str, content: rr.AsComponents, t: float, shown_s: float
 ) -> None:
-    """Show an entity for a while from the time ``t`` on, s."""
+    """Show an entity from the time ``t``, s, for a duration of ``shown_s``, s."""
     recording.set_time(TIMELINE, duration=t)
     recording.log(path, content, strict=True)
     recording.set_time(TIMELINE, duration=t + shown_s)

@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 
 class WorldLiveView(View):
-    """View of the run of several systems and of its events."""
+    """Live view of a run with several systems and of its events."""
 
     def __init__(self, recording: rr.RecordingStream, setting: WorldSetting, duration_s: float) -> None:
-        """Prepare for a run that has not started."""
+        """Prepare the view before the run starts."""
         super().__init__(recording, duration_s)
         self._setting = setting
         self._stage: Stage | None = None
@@ -42,7 +42,7 @@ class WorldLiveView(View):
 
     @property
     def shown(self) -> int:
-        """Number of rows that the view has received of every system."""
+        """Number of rows of each system that the view has received."""
         return min(self._counts.values())
 
     def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:
@@ -55,7 +55,7 @@ class WorldLiveView(View):
 
     def _show_rest(self, trace: WorldTrace) -> None:
         rest = {}
-        for name, count in self._counts.items():  # at least the last row
+        for name, count in self._counts.items():  # includes at least the last row
             first = min(count, len(trace[name].time) - 1)
             rest[name] = TraceRows.of_trace(trace[name], slice(first, None))
         self._show(WorldRows(self._setting, rest), trace.events)
@@ -64,7 +64,7 @@ class WorldLiveView(View):
         self._arrows = {}
 
     def _show(self, world: WorldRows, events: Sequence[EventRecord]) -> None:
-        """Show new rows and events; systems without rows wait for the next update, as the others do."""
+        """Show new rows and events; if a system has no new rows, all systems wait for the next update."""
         if any(len(rows) == 0 for rows in world.systems.values()):
             return
         for name, rows in world.systems.items():

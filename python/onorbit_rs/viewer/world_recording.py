@@ -1,4 +1,4 @@
-"""``run.rrd`` of several systems: each below its name, all in one scene, and the events between them."""
+"""``run.rrd`` of several systems: entities are grouped by system in one scene, and events are marked."""
 
 from __future__ import annotations
 
@@ -43,25 +43,25 @@ if TYPE_CHECKING:
     from onorbit_rs.viewer.world_setting import WorldSetting
 
 Plots = list[tuple["TraceRows", Series]]
-"""Plots with the rows whose times they have."""
+"""Plots, each with the rows that contain its times."""
 
 LIVE_MARGIN = 1.3
-"""Size of the scene of a live view, whose later motion is not known, in sizes of its start."""
+"""Ratio of the size of a live view's scene to its initial size, as space for the later motion."""
 
 NEAR_ON_ORBIT = 0.02
-"""Distance of spacecraft that share a label in the view of the orbit, as a fraction of its radius."""
+"""Largest distance between spacecraft that share a label in the view of the orbit, in orbit radii."""
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Viewpoints on all systems together and on each of them."""
+    """Viewpoints on all systems together and on each system."""
 
     common: Viewpoint
     alone: dict[str, Viewpoint]
 
     @classmethod
     def of(cls, world: WorldRows, *, is_live: bool = False) -> Stage:
-        """Return the viewpoints for these rows; those of a live view are the first ones only."""
+        """Return the viewpoints for these rows, which in a live view are the first rows only."""
         alone = {name: Viewpoint.of(world[name], setting) for name, setting in world.setting.systems.items()}
         common = common_viewpoint(world)
         return cls(replace(common, size=LIVE_MARGIN * common.size) if is_live else common, alone)
@@ -78,8 +78,9 @@ def write_world_recording(path: Path, trace: WorldTrace, setting: WorldSetting, 
     Parameters
     ----------
     path : Path
-        The ``.rrd`` file.
+        Path of the ``.rrd`` file.
     trace : WorldTrace
+        Rows and events to record.
     setting : WorldSetting
         The systems and the connections between them.
     notes : str
@@ -139,7 +140,7 @@ def log_world(
     has_events: bool = False,
     is_live: bool = False,
 ) -> Stage:
-    """Send the layout and log the static entities, from the first rows."""
+    """Send the layout and log the static entities, which depend on the first rows only."""
     setting, bodies = world.setting, bodies_of(world)
     stage = Stage.of(world, is_live=is_live)
     send_blueprint(
@@ -169,7 +170,7 @@ def log_world(
 
 
 def send_world(recording: rr.RecordingStream, world: WorldRows, stage: Stage) -> None:
-    """Send everything that moves, for every row."""
+    """Send all moving entities, for every row."""
     shared = world.all_times
     send_local_frame(recording, shared)
     send_follow(recording, shared, FOLLOW, COMPASS, world.center, stage.common.inertial_at)
@@ -202,7 +203,7 @@ def _events_of(series: Series, setting: WorldSetting, events: Sequence[EventReco
 
 
 def _orbit_labels(world: WorldRows) -> dict[str, str]:
-    """Return the label of each spacecraft: all names at the first one if they are near each other."""
+    """Return the label of each spacecraft; spacecraft near each other share a label at the first of them."""
     names = world.setting.names
     first = world.first["position_eci"][0]
     apart = max(float(np.linalg.norm(world[name]["position_eci"][0] - first)) for name in names)

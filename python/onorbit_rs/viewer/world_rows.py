@@ -32,7 +32,7 @@ class WorldRows:
 
     @classmethod
     def of_trace(cls, trace: WorldTrace, setting: WorldSetting, most: int | None = None) -> WorldRows:
-        """Return the rows of a trace, at most ``most`` of each system."""
+        """Return the rows of a trace, decimated to at most ``most`` rows per system."""
         found = {}
         for name in setting.names:
             own = trace[name]
@@ -43,7 +43,7 @@ class WorldRows:
 
     @classmethod
     def of_columns(cls, columns: Mapping[str, Floats], setting: WorldSetting) -> WorldRows:
-        """Return the rows in the columns of a stepper, whose names begin with that of the system."""
+        """Return the rows in the columns of a stepper, whose names begin with the name of the system."""
         found = {}
         for name in setting.names:
             prefix = f"{name}/"
@@ -63,7 +63,7 @@ class WorldRows:
 
     @cached_property
     def all_times(self) -> TraceRows:
-        """Time and reference orbit of every row, or at each time of a row if systems have different times."""
+        """Time and reference orbit of every row, sorted by time if the systems have rows at different times."""
         parts = list(self.systems.values())
         names = [name for name in ("time", *_REFERENCE) if name in self.first]
         if all(np.array_equal(part["time"], self.first["time"]) for part in parts):

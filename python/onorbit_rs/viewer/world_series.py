@@ -28,11 +28,11 @@ if TYPE_CHECKING:
 CONNECTIONS, MOMENTUM, ENERGY, PLACES = "Connections", "Momentum", "Energy", "Positions"
 
 SHARED = "plots/world/"
-"""Beginning of the paths of plots of several systems; no system has this name."""
+"""Prefix of the paths of plots of several systems; the name is reserved and cannot be that of a system."""
 
 
 def world_series(world: WorldRows, *, is_live: bool = False) -> Iterator[tuple[TraceRows, Series]]:
-    """Yield every plot of several systems, with the rows whose times it has."""
+    """Yield every plot of several systems, with the rows that contain its times."""
     for rows, series in _all(world):
         yield rows, series if is_live else fitted_unit(series)
 
@@ -47,7 +47,7 @@ def _all(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
 
 
 def _relative(world: WorldRows, connection: Connection) -> Iterator[tuple[TraceRows, Series]]:
-    """Yield the motion of the captured frame in axes of the capturing one."""
+    """Yield plots of the motion of the captured frame relative to the capturing frame, in axes of the latter."""
     chosen = _shared(world, connection.systems)
     moving = []
     for (system, frame), rows in zip((connection.by, connection.of), chosen, strict=True):
@@ -67,7 +67,7 @@ def _relative(world: WorldRows, connection: Connection) -> Iterator[tuple[TraceR
 
 
 def _balance(world: WorldRows, group: Sequence[str]) -> Iterator[tuple[TraceRows, Series]]:
-    """Yield momentum and kinetic energy of each system of a group, and their sums."""
+    """Yield plots of momentum and kinetic energy of each system of a group, and of their sums."""
     chosen = _shared(world, group)
     masses = [world.setting.systems[name].model.mass for name in group]
     momentum = group_momentum(
@@ -86,7 +86,7 @@ def _balance(world: WorldRows, group: Sequence[str]) -> Iterator[tuple[TraceRows
 
 
 def _places(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
-    """Yield the components in L of the positions of all bases, if L is defined."""
+    """Yield plots of the positions of all bases in L, if L is defined."""
     names = world.setting.names
     chosen = _shared(world, names)
     rot_wl = chosen[0].rot_wl
@@ -99,7 +99,7 @@ def _places(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
 
 
 def _distances(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
-    """Yield the distances between the bases."""
+    """Yield the plot of the distances between the bases."""
     names = world.setting.names
     chosen = dict(zip(names, _shared(world, names), strict=True))
     pairs = pairs_of(names)
@@ -113,7 +113,7 @@ def _distances(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
 
 
 def _shared(world: WorldRows, names: Sequence[str]) -> list[TraceRows]:
-    """Return the rows of systems at the times that all of them have."""
+    """Return the rows of these systems at the times common to all of them."""
     rows = [world[name] for name in names]
     return [
         own.at(chosen) for own, chosen in zip(rows, shared_rows([own["time"] for own in rows]), strict=True)
@@ -121,5 +121,5 @@ def _shared(world: WorldRows, names: Sequence[str]) -> list[TraceRows]:
 
 
 def _with_sum(values: Floats) -> Floats:
-    """Return columns (T, n + 1), the last of which is the sum of the others."""
+    """Return columns (T, n + 1): the columns of ``values`` (T, n), followed by their sum."""
     return np.column_stack([values, values.sum(axis=1)])

@@ -1,4 +1,4 @@
-"""Data of a run with several systems that the viewer needs in addition to its rows."""
+"""Data of a run with several systems that the viewer requires in addition to the rows of the trace."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class WorldSetting:
-    """The systems by name, all about one orbit, and the connections that events can make between them."""
+    """The systems by name, all on one reference orbit, and the connections that events can make."""
 
     systems: Mapping[str, Setting]
     connections: tuple[Connection, ...] = ()
@@ -23,7 +23,7 @@ class WorldSetting:
 
     @classmethod
     def of(cls, built: BuiltWorld) -> WorldSetting:
-        """Return the setting of a scenario."""
+        """Return the setting of a scenario with several systems that was built."""
         found = connections(built.scenario)
         systems = {
             name: Setting.of(alone, name, grasps_of(name, found)) for name, alone in built.systems.items()
@@ -37,17 +37,17 @@ class WorldSetting:
 
     @property
     def first(self) -> Setting:
-        """Setting of the first system, whose orbit and Earth are those of all."""
+        """Setting of the first system, whose orbit and Earth apply to all systems."""
         return next(iter(self.systems.values()))
 
     @property
     def groups(self) -> list[list[str]]:
-        """Names of the systems that connections can join."""
+        """Groups of systems, by name, that connections can join."""
         return connected_groups(self.names, self.connections)
 
     @property
     def pairs(self) -> tuple[Connection, ...]:
-        """Connections whose frames differ from those of the ones before."""
+        """Connections without those that repeat the frames of an earlier connection."""
         return tuple({connection.frames: connection for connection in reversed(self.connections)}.values())[
             ::-1
         ]

@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEAR = 8.0
-"""Size of a scene, in sizes of its largest system, up to which the systems in it are well visible."""
+"""Largest size of a scene, in sizes of its largest system, at which all systems are well visible."""
 
 _SAMPLES = 12
 _ABOVE = 0.4
-"""Height of the camera above the line between two systems, divided by its distance from it."""
+"""Ratio of the camera's height above the line between two systems to its distance from that line."""
 _WIDE, _HIGH = 0.65, 1.05
-"""Sizes of a scene that just fits into the view, in its width and its height."""
+"""Width and height of the largest scene that fits into the view."""
 
 
 def common_viewpoint(world: WorldRows) -> Viewpoint:
-    """Return the viewpoint on all systems, relative to their common centre of mass; axes of L, or of W."""
+    """Return the viewpoint on all systems, relative to their common centre of mass, in axes of L or of W."""
     parts, shared = [], world.all_times
     for name, rows in world.systems.items():
         setting = world.setting.systems[name]

@@ -48,9 +48,11 @@ def torque_about_center(rows: TraceRows, centers: Floats, wrenches: Floats) -> F
     Parameters
     ----------
     rows : TraceRows
+        Rows with the configurations of the robot.
     centers : (T, bodies, 3) array, m
-        Centres of mass of the bodies, at which the forces act.
+        Centres of mass of the bodies in W, at which the forces act.
     wrenches : (T, bodies, 6) array, N and N m
+        Force on each body and torque about its centre of mass, in axes of W.
     """
     lever = centers - rows["center_of_mass"][:, None, :]
     torque: Floats = (np.cross(lever, forces(wrenches)) + wrenches[:, :, _TORQUE]).sum(axis=1)

@@ -27,15 +27,17 @@ class Shape:
     Attributes
     ----------
     link : str
+        Name of the link.
     pose : (4, 4) array
-        Pose in the axes of the link, m.
+        Pose in axes of the link, m.
     kind : str
         ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
     size : tuple of float
         Edges x, y, z of a box; radius and length along z of a cylinder or capsule; radius of a sphere; m.
     rgba : tuple of float
-        Colour, 0 to 1; a mesh has its own colours.
+        Red, green, blue and opacity, 0 to 1; not used for a mesh, which contains its colours.
     mesh : Mesh or None
+        Triangles of a mesh.
     """
 
     link: str
@@ -47,14 +49,14 @@ class Shape:
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
-    """Return centre (3,) in W and diameter, at least 0.1, of a sphere around a robot in all q (k, nq), m."""
+    """Return the centre (3,) in W, m, and diameter, at least 0.1 m, of a sphere around a robot in all ``q``."""
     corners = corners_of(model, robot, q)
     center = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
     return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
 
 
 def corners_of(model: Model, robot: list[Shape], q: Floats) -> Floats:
-    """Return the corners (k, 3) in W of the boxes around all shapes in all q (k, nq), m."""
+    """Return the corners (c, 3) in W, m, of the boxes around all shapes in all configurations q (k, nq)."""
     return np.vstack([_corners(model, row, shape) for row in q for shape in robot])
 
 
@@ -90,7 +92,7 @@ def pose_of(rotation: Floats, position: Floats) -> Floats:
 
 
 def grey_shape(link: str, kind: str, size: Iterable[float], pose: Floats) -> Shape:
-    """Return a grey primitive."""
+    """Return a grey primitive shape that is fixed to a link."""
     return Shape(link, pose, kind, tuple(size), GREY)
 
 

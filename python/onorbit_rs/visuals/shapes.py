@@ -1,7 +1,7 @@
 """Shapes that are drawn for a robot: its visual geometry, with substitutes for meshes that cannot be drawn.
 
-The substitutes are the collision shapes of the link, or a sphere at its joint (for the base, the box of its
-inertia) with rods to the next joints.
+The substitutes are the collision shapes of the link or, without them, a sphere at its joint with rods to the
+next joints. For the base, a uniform box with the same inertia replaces the sphere.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ROD, SPHERE = 0.008, 0.016
 """Radii in a stick figure, as fractions of the robot's reach."""
 
 LARGEST = 1e5
-"""Upper limit for the size of a mesh, m. A larger one has a wrong scale or unit."""
+"""Largest size of a mesh, m; a larger mesh has a wrong scale or unit."""
 
 
 def shapes(model: Model) -> list[Shape]:
@@ -38,14 +38,14 @@ def shapes(model: Model) -> list[Shape]:
         _warn_once(message)
     links = {visual.link for visual in lost} if model.visuals else set(model.body_names)
     bare = links - {shape.link for shape in found}
-    # no warning about the meshes of collision shapes, which are only a substitute
+    # no warnings about meshes of collision shapes, which are only substitutes
     solid, _, _ = _drawable([shape for shape in model.collisions if shape.link in bare])
     return [*found, *solid, *_stick_figure(model, bare, {shape.link for shape in solid})]
 
 
 @lru_cache(1024)
 def _warn_once(message: str) -> None:
-    """Warn once per message, since the viewer and the figures of a run load the same files."""
+    """Issue each warning only once, since the viewer and the figures of a run load the same files."""
     warnings.warn(message, stacklevel=3)
 
 
@@ -56,13 +56,13 @@ def missing_meshes(model: Model) -> list[str]:
 
 
 def _drawable(visuals: Sequence[Visual]) -> tuple[list[Shape], list[Visual], list[str]]:
-    """Return the drawable shapes, the visuals that cannot be drawn, and a message for each unusable file."""
+    """Return the drawable shapes, the other visuals, and a message for each unusable mesh file."""
     found, lost = [], []
     messages: dict[str, str] = {}
     for visual in visuals:
         try:
             found.append(_of(visual))
-        except NotFoundError:  # the warning was given when the robot was read
+        except NotFoundError:  # this warning was issued when the robot was read
             lost.append(visual)
         except OnOrbitError as error:
             lost.append(visual)
@@ -72,7 +72,7 @@ def _drawable(visuals: Sequence[Visual]) -> tuple[list[Shape], list[Visual], lis
 
 
 def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:
-    """Yield rods and spheres for bodies with links without shapes; for such a base, its box of inertia."""
+    """Yield rods and spheres for bodies whose links have no shapes; for such a base, a box of equal inertia."""
     ends: dict[str, list[Floats]] = {body.name: [] for body in model.bodies}
     for joint in model.joints:
         ends[joint.parent].append(np.array(joint.pose)[:3, 3])
@@ -94,7 +94,7 @@ def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Sha
 
 
 def _reach(model: Model) -> float:
-    """Return the diagonal of the box around joints and centres of mass in the neutral configuration, m."""
+    """Return the diagonal, m, of the box around joints and centres of mass in the neutral configuration."""
     q, points = model.neutral(), []
     for body in model.bodies:
         pose = np.asarray(model.frame_pose(q, body.name))
@@ -103,7 +103,7 @@ def _reach(model: Model) -> float:
 
 
 def _along(end: Floats) -> Floats:
-    """Return the pose (4, 4) of a cylinder from the origin to a point."""
+    """Return the pose (4, 4) of a cylinder, along z, that extends from the origin to the point ``end``."""
     z = end / np.linalg.norm(end)
     x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
     x /= np.linalg.norm(x)
@@ -122,7 +122,7 @@ def _of(visual: Visual) -> Shape:
 
 
 def _mesh(visual: Visual) -> Mesh:
-    """Return the scaled mesh; a colour in the URDF takes precedence over those of the file, as in RViz."""
+    """Return the scaled mesh; as in RViz, a colour in the URDF takes precedence over colours of the mesh."""
     file = visual.filename or ""
     mesh = read_mesh(file).scaled(visual.scale)
     size = float(np.ptp(mesh.bounds, axis=0).max())

@@ -1,6 +1,6 @@
-"""Controllers. A new law is one file with two classes, each added to its union.
+"""Controllers. A new control law is one file with two classes, each added to one of the unions below.
 
-``docs/howto/controller.md``, "Add a law to the engine", lists its places in the other folders.
+``docs/howto/controller.md``, "Add a law to the engine", lists the necessary changes in other folders.
 """
 
 from __future__ import annotations

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def check_control(scenario: Scenario, events: list[str], systems: list[str]) -> None:
     """Raise an error for inconsistent controllers; set the default reference, a constant pose or position.
 
-    ``events`` are the names of the events of the world, after which a control may start, and ``systems``
-    those of the other systems, in whose frames references may be given.
+    ``events`` are the names of the events of the world, after which a control may start. ``systems`` are the
+    names of the other systems, in whose frames references may be given.
     """
     if scenario.controllers is not None:
         if scenario.controller is not None:
@@ -29,7 +29,8 @@ def check_control(scenario: Scenario, events: list[str], systems: list[str]) -> 
             )
         if scenario.reference is not None:
             raise inconsistent(
-                "reference", "'controllers' each have their own 'reference'; move it into one of them"
+                "reference",
+                "each of the 'controllers' has a 'reference'; move this reference into one of them",
             )
         _check_names(scenario.controllers, events)
         for index, control in enumerate(scenario.controllers):
@@ -76,7 +77,7 @@ def _check_frame(reference: Any, systems: list[str], at: Location) -> None:
 
 
 def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at: Location) -> Any:
-    """Return the reference of a control law or the default; raise an error if its kind does not match."""
+    """Return the reference of a control law or the default; raise an error if it does not suit the law."""
     kind, is_task = law.kind, isinstance(reference, TaskReference)
     if isinstance(law, JointLaw):
         if is_task:

@@ -15,13 +15,14 @@ from onorbit_rs.scenario.fields import NotNegative, Number
 
 
 class ComplianceController(TaskLaw):
-    """Spring and damper between the tool and its reference; nothing is compensated, including friction."""
+    """Spring and damper between the tool and its reference; dynamics and friction are not compensated."""
 
     kind: Literal["compliance"] = "compliance"
     stiffness: SpringGain
-    """Stiffness, N/m (linear) and N m/rad (angular): one number, six, or 6 x 6; linear first."""
+    """Stiffness, N/m (linear) and N m/rad (angular): one number, six numbers, or a 6 x 6 matrix; linear
+    first."""
     damping: DamperGain
-    """Damping, N s/m (linear) and N m s/rad (angular): one number, six, or 6 x 6; linear first."""
+    """Damping, N s/m (linear) and N m s/rad (angular): one number, six numbers, or a 6 x 6 matrix."""
     null_space_damping: Annotated[Number, NotNegative] = 0.0
     """Damping of joint motion that does not move the tool, N m s/rad."""
 
@@ -41,4 +42,4 @@ class ComplianceController(TaskLaw):
 
 
 class ComplianceControl(ComplianceController, TaskControl):
-    """Spring and damper at a tool with a joint group."""
+    """Spring and damper between a tool and its reference, acting through the joints of a joint group."""

@@ -19,11 +19,11 @@ class ComputedTorqueController(TaskLaw):
 
     kind: Literal["computed_torque"] = "computed_torque"
     kp: StiffnessGain = 100.0
-    """Gain of the pose error, 1/s²: one number, six, or 6 x 6; linear first."""
+    """Gain of the pose error, 1/s²: one number, six numbers, or a 6 x 6 matrix; linear first."""
     kd: RateGain = 20.0
-    """Gain of the velocity error, 1/s."""
+    """Gain of the velocity error, 1/s, in the form of ``kp``."""
     damping: Annotated[Number, NotNegative] = 0.05
-    """Damping of the pseudo-inverse near singularities."""
+    """Largest damping of the pseudo-inverse, which is used near singularities."""
     null_space_damping: Annotated[Rate, NotNegative] = 0.0
     """Damping of joint motion that does not move the tool, 1/s; brings a redundant arm to rest."""
     compensate_environment: bool = True
@@ -47,4 +47,4 @@ class ComputedTorqueController(TaskLaw):
 
 
 class ComputedTorqueControl(ComputedTorqueController, TaskControl):
-    """Computed torque in task space with a joint group."""
+    """Computed torque in task space, acting through the joints of a joint group."""

@@ -1,4 +1,4 @@
-"""Keys of each entry in a list of controls, besides those of its law."""
+"""Keys that every entry of ``controllers`` has in addition to the keys of its control law."""
 
 from __future__ import annotations
 
@@ -15,23 +15,24 @@ from onorbit_rs.scenario.reference import Reference
 
 
 class TaskGoal(Part):
-    """Largest distance and angle of the tool from its reference."""
+    """Goal of a tool: largest distance and angle between the tool and its reference."""
 
     tolerance: TaskTolerance
     """Tolerance at the end of the reference."""
     path_tolerance: TaskTolerance | None = None
-    """Tolerance before the end; if it is exceeded, the control stops and holds the tool."""
+    """Tolerance before the end of the reference; if it is exceeded, the control stops and holds the tool."""
     time: Annotated[Time, NotNegative] | None = None
     """Time allowed after the end of the reference. Default: unlimited."""
 
 
 class JointGoal(Part):
-    """Largest errors of the joints: one number, or one per joint."""
+    """Goal of joints: largest position error, one number for all joints or one number per joint."""
 
     tolerance: JointTolerance
     """Tolerance at the end of the reference."""
     path_tolerance: JointTolerance | None = None
-    """Tolerance before the end; if it is exceeded, the control stops and holds the joints."""
+    """Tolerance before the end of the reference; if it is exceeded, the control stops and holds the
+    joints."""
     time: Annotated[Time, NotNegative] | None = None
     """Time allowed after the end of the reference. Default: unlimited."""
 
@@ -48,19 +49,21 @@ class Control(Part):
     joints: Annotated[list[str], Field(min_length=1), BeforeValidator(_as_list)] | None = None
     """Names of joints, or patterns such as ``right_*``. Default: all joints."""
     reference: Reference | None = None
-    """Reference of the control. Default: the tool or the joints are held."""
+    """Reference of the control. Default: the tool or the joints are held at their initial pose or
+    positions."""
     start: Annotated[Time, NotNegative] = 0.0
     """Time at which the control starts."""
     end: Annotated[Time, Positive] | None = None
     """Time at which the control ends. Default: the end of the run."""
     after: str | None = None
-    """Name of another control, when whose end or decided goal this one starts, or of an event. A control that
-    an event starts replaces those that drive its joints."""
+    """Name of another control or an event. This control starts when the other control ends or its goal is
+    decided, or when the event happens. A control that an event starts replaces the controls that drive its
+    joints."""
     starts_at_present: bool = False
     """Whether the reference is moved to start at the present pose of the tool or position of the joints."""
 
     def build_control(self, law: Any, reference: Any, joints: list[str] | None) -> _core.Control:
-        """Return the control of the engine from its law, its reference and its joint group."""
+        """Return the control as an object of the engine, made of a law, a reference and a joint group."""
         goal: TaskGoal | JointGoal | None = getattr(self, "goal", None)
         return _core.Control(
             law, reference=reference, joints=joints, tool=getattr(self, "tool", None), name=self.name,
@@ -70,16 +73,16 @@ class Control(Part):
 
 
 class TaskControl(Control):
-    """Control of a tool."""
+    """Control of a tool by the joints of its group."""
 
     tool: str | None = None
-    """Frame that is controlled. Default: that of the scenario."""
+    """Controlled frame. Default: the ``tool`` of the scenario."""
     goal: TaskGoal | None = None
-    """Goal, the result of which is part of the summary."""
+    """Goal; the summary of the run contains its result."""
 
 
 class JointControl(Control):
-    """Control of joints."""
+    """Control of the joints of a group."""
 
     goal: JointGoal | None = None
-    """Goal, the result of which is part of the summary."""
+    """Goal; the summary of the run contains its result."""

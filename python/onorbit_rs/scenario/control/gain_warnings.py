@@ -1,8 +1,8 @@
 """Warnings about gains that are too high for the control period.
 
 Torques are held for the control period `h`. For a double integrator under `a = -kp e - kd ė`, the error and
-rate at the next sample are linear in the present ones, and by Jury's criterion they decay only if
-`kp h / 2 < kd < 2 / h`. Beyond `kd h = 2`, and for any damping beyond `kp h² = 4`, errors therefore grow.
+rate at the next sample are linear in those at the present sample, and by Jury's criterion they decay only if
+`kp h / 2 < kd < 2 / h`. Errors therefore grow above `kd h = 2` and, for any damping, above `kp h² = 4`.
 
 Source: Franklin, Powell and Workman, Digital Control of Dynamic Systems, 3rd ed., 1998 (zero-order hold).
 """
@@ -26,7 +26,7 @@ _ROUNDING = 1e-9
 
 
 def gain_warnings(scenario: Scenario, model: Model, q: NDArray[np.float64]) -> Iterator[str]:
-    """Yield a warning for each gain with which errors grow, given the inertia of the robot at the start."""
+    """Yield a warning for each gain with which errors would grow, given the robot's initial inertia."""
     settings = scenario.simulation
     period = settings.control_period or settings.time_step
     mobility = InitialMobility(model, q, scenario.tool, scenario.reference)

@@ -12,7 +12,7 @@ from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 
 def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeValidator:
-    """Return the reader of a task-space gain; one number for two different dimensions has no unit."""
+    """Return the reader of a task-space gain; a single number for two dimensions must have no unit."""
 
     def row(value: object) -> list[float]:
         if not isinstance(value, list) or len(value) != 6:
@@ -33,7 +33,7 @@ def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeV
 
 
 _GAIN_SHAPES = (
-    "a gain must be one number, six (linear first, then angular), or a 6 x 6 matrix given as six rows"
+    "a gain must be one number, six numbers (linear, then angular), or a 6 x 6 matrix given as six rows"
 )
 _Gain = float | list[float] | list[list[float]]
 
@@ -44,7 +44,7 @@ DamperGain = Annotated[_Gain, _gain_reader(units.LINEAR_DAMPING, units.ANGULAR_D
 
 
 def _per_joint_reader(*allowed: Dimension) -> BeforeValidator:
-    """Return the reader of one number for all joints of a group, or one per joint."""
+    """Return the reader of a gain that is one number for all joints of a group, or one number per joint."""
 
     def read(value: object) -> float | list[float]:
         if isinstance(value, list):

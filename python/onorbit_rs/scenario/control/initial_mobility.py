@@ -1,4 +1,4 @@
-"""Computes the acceleration per effort of a robot at the start of a run."""
+"""Mobility (acceleration per unit effort) of a robot at the start of a run."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class InitialMobility:
     reference: Any
 
     def joint_count(self, law: Any) -> int:
-        """Return the number of joints of a law."""
+        """Return the number of joints that a control law drives."""
         return len(joint_columns(law, self.model.joint_names))
 
     def of_joints(self, law: Any) -> Floats:
         """Return `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` of the joints of a law, with the other joints fixed.
 
-        Fixing them does not reduce the inertia of any joint.
+        Fixing the other joints does not reduce the inertia that any joint of the law moves.
         """
         mass = np.asarray(self.model.mass_matrix(self.q))
         rows = [BASE_NV + column for column in joint_columns(law, self.model.joint_names)]
@@ -44,9 +44,9 @@ class InitialMobility:
         return np.asarray(np.linalg.inv(inertia), dtype=np.float64)
 
     def of_tool(self, law: Any) -> Floats:
-        """Return `Jg M*⁻¹ Jgᵀ`, (6, 6): the acceleration of the tool of a law per wrench on it."""
+        """Return `Jg M*⁻¹ Jgᵀ`, (6, 6): the acceleration of a law's tool per unit wrench on the tool."""
         tool = tool_of(law, self.tool)
-        assert tool is not None  # check_control refuses a task without a tool
+        assert tool is not None  # check_control rejects a task-space law without a tool
         columns = joint_columns(law, self.model.joint_names)
         reduced = self.model.free_floating(self.q, np.zeros(self.model.nv), tool)
         jacobian = np.asarray(reduced.jacobian)[:, columns]
@@ -54,11 +54,11 @@ class InitialMobility:
         return mobility
 
     def is_in_w(self, law: Any) -> bool:
-        """Return True unless the reference of a law is relative to the base, where the Jacobian differs."""
+        """Return True unless a law's reference is relative to the base, which requires another Jacobian."""
         return getattr(getattr(law, "reference", None) or self.reference, "frame", None) != "base"
 
 
 def square(gain: Any, size: int) -> Floats:
-    """Return the matrix (size, size) of a gain: one number, one per row, or a matrix."""
+    """Return a gain as a matrix (size, size); ``gain`` is one number, the diagonal, or the matrix."""
     gain = np.asarray(gain, dtype=np.float64)
     return gain if gain.ndim == 2 else np.diag(np.broadcast_to(gain, size))

@@ -14,13 +14,13 @@ from onorbit_rs.scenario.control.law import JointLaw, SampledGain, arguments
 
 
 class JointComputedTorqueController(JointLaw):
-    """Computed torque in joint space, exact for any motion of the base."""
+    """Computed torque in joint space; the feedforward is exact for any motion of the free base."""
 
     kind: Literal["joint_computed_torque"] = "joint_computed_torque"
     kp: JointStiffnessGain = 100.0
-    """Gain of the position errors, 1/s²: one number, or one per joint."""
+    """Gain of the position errors, 1/s²: one number for all joints, or one number per joint."""
     kd: JointRateGain = 20.0
-    """Gain of the rate errors, 1/s."""
+    """Gain of the rate errors, 1/s: one number for all joints, or one number per joint."""
     compensate_environment: bool = True
     """Whether the wrenches of the environment are compensated."""
     compensate_friction: bool = True
@@ -42,4 +42,4 @@ class JointComputedTorqueController(JointLaw):
 
 
 class JointComputedTorqueControl(JointComputedTorqueController, JointControl):
-    """Computed torque in joint space on a joint group."""
+    """Computed torque in joint space for the joints of a joint group."""

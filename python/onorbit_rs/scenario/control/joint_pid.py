@@ -17,7 +17,7 @@ from onorbit_rs.scenario.errors import invalid
 
 
 class JointPidController(JointLaw):
-    """PID controller per joint with the interfaces of ROS Control; gains are plain SI numbers.
+    """One PID controller per joint, with the interfaces of ROS Control; gains are SI numbers without units.
 
     Friction is not compensated.
     """
@@ -26,7 +26,7 @@ class JointPidController(JointLaw):
 
     kind: Literal["joint_pid"] = "joint_pid"
     interface: Literal["position", "velocity", "effort"] = "position"
-    """Meaning of the reference; with ``effort``, its positions are the efforts, N m or N."""
+    """Quantity that the reference prescribes; with ``effort``, its positions are efforts, N m or N."""
     p: JointNumber = 0.0
     """Proportional gain, N m per rad (per rad/s with ``velocity``)."""
     i: JointNumber = 0.0
@@ -67,4 +67,4 @@ class JointPidController(JointLaw):
 
 
 class JointPidControl(JointPidController, JointControl):
-    """PID controller per joint of a joint group."""
+    """One PID controller for each joint of a joint group."""

@@ -18,11 +18,11 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario.control.initial_mobility import InitialMobility
 
 SampledGain = tuple[str, Literal[1, 2], NDArray[np.float64]]
-"""Key of a gain, its order (1: rate, 2: position), and the acceleration per error."""
+"""Key of a gain, its order (1: rate, 2: position), and the acceleration per unit error."""
 
 
 class Law(Part, ABC):
-    """Control law."""
+    """Control law of a scenario, without its reference and schedule."""
 
     @abstractmethod
     def build_law(self, model: Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
@@ -31,8 +31,9 @@ class Law(Part, ABC):
         Parameters
         ----------
         model : Model
+            Robot.
         tool : str, optional
-            The frame that is controlled, if the law controls one.
+            Controlled frame; required by laws of a tool.
         folder : path
             Folder of the scenario.
         runs_code : bool
@@ -40,7 +41,7 @@ class Law(Part, ABC):
         """
 
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
-        """Yield the gains for which errors grow if they are too high for the control period.
+        """Yield the gains with which errors grow if the control period is too long.
 
         Parameters
         ----------
@@ -50,17 +51,18 @@ class Law(Part, ABC):
         Yields
         ------
         SampledGain
-            Key of the gain, its order (1: rate, 2: position), and the acceleration per error, a matrix.
+            Key of the gain, its order (1: rate, 2: position), and the matrix of the acceleration per unit
+            error.
         """
         yield from ()
 
 
 class TaskLaw(Law):
-    """Control law of a tool."""
+    """Control law that makes a tool track a reference in task space."""
 
 
 class JointLaw(Law):
-    """Control law of joints."""
+    """Control law that makes joints track a reference in joint space."""
 
 
 def arguments(**values: Any) -> dict[str, Any]:
@@ -78,11 +80,11 @@ def task_law(law: Callable[..., Any], model: Model, tool: str | None, **gains: A
     Raises
     ------
     ControlError
-        If a gain is invalid or too few joints move the tool; suggests other laws in the second case.
+        If a gain is invalid, or if too few joints move the tool; the latter message suggests other laws.
     """
     try:
         return law(model, tool, **arguments(**gains))
     except ControlError as error:
-        if error.name is None:  # the error is not about a gain, but about the joints that move the tool
+        if error.name is None:  # too few joints move the tool
             error.message += "; use joint_computed_torque for the joints, or compliance for the tool"
         raise

@@ -23,11 +23,11 @@ class PythonController(Law):
     file: FilePath | None = None
     """Python file, relative to the scenario."""
     module: str | None = None
-    """Name of a module to import, instead of ``file``."""
+    """Name of a Python module to import, as an alternative to ``file``."""
     class_: str = Field(alias="class")
-    """Name of the class."""
+    """Name of the controller class in the file or module."""
     arguments: dict[str, Any] = Field(default_factory=dict)
-    """Keyword arguments of its constructor."""
+    """Keyword arguments of the constructor of the class."""
 
     @model_validator(mode="after")
     def _has_one_source(self) -> PythonController:
@@ -36,7 +36,7 @@ class PythonController(Law):
         return self
 
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
-        """Return a new object of the user's class, or a placeholder without ``runs_code``."""
+        """Return a new object of the user's class, or a placeholder if ``runs_code`` is False."""
         return create_controller(self, folder) if runs_code else inspect_source(self, folder)
 
 

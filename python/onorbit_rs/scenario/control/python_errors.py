@@ -1,4 +1,4 @@
-"""Errors of controllers written in Python, whether their source is inspected or executed."""
+"""Errors of controllers written in Python, raised when their source is inspected or executed."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ def no_python(file: str) -> ControlError:
 
 
 def no_class(name: str, source: str, classes: Iterable[str]) -> ControlError:
-    """Return the error for a class that is missing among those of a file or module."""
+    """Return the error for a file or module that does not define the class ``name``."""
     known = list(classes)
     hint = did_you_mean(name, known)
     return ControlError(f"{source} has no class {name!r}{hint}", name="class", got=name, expected=known)
 
 
 def no_update(name: str, source: str) -> ControlError:
-    """Return the error for a class without ``update``."""
+    """Return the error for a class without the method ``update``."""
     return ControlError(
         f"{name} of {source} has no method update(t, state), which must return the efforts",
         name="class",

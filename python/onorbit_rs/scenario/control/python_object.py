@@ -26,7 +26,7 @@ def create_controller(part: PythonController, folder: Path) -> Any:
     ----------
     part : PythonController
     folder : path
-        Folder of the scenario, at which a relative path starts.
+        Folder of the scenario; relative paths start there.
 
     Raises
     ------

@@ -10,12 +10,12 @@ from onorbit_rs.exceptions import FrameError
 
 
 def tool_of(law: Any, tool: str | None) -> str | None:
-    """Return the tool of a control law; ``tool`` is that of the scenario."""
+    """Return the tool of a control law, which by default is the ``tool`` of the scenario."""
     return getattr(law, "tool", None) or tool
 
 
 def joint_group(wanted: list[str], joints: list[str]) -> list[str]:
-    """Return the joints selected by names and patterns, in this order.
+    """Return the joints selected by names and patterns, in the order of ``wanted``.
 
     Joints that match the same pattern are in the order of the robot.
 
@@ -39,6 +39,6 @@ def joint_group(wanted: list[str], joints: list[str]) -> list[str]:
 
 
 def joint_columns(law: Any, joints: list[str]) -> list[int]:
-    """Return the indices of the joints of a control law among those of the robot."""
+    """Return the indices of a control law's joints in ``joints``, the names of the robot's joints."""
     wanted = getattr(law, "joints", None)
     return [joints.index(name) for name in (joints if wanted is None else joint_group(wanted, joints))]

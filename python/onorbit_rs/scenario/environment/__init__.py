@@ -1,4 +1,4 @@
-"""Effects of the environment. A new kind is one class with its keys and ``build``, added to the union."""
+"""Effects of the environment. A new effect is a class with its keys and ``build``, added to the union."""
 
 from __future__ import annotations
 

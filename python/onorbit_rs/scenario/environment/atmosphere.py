@@ -58,7 +58,9 @@ def _ap(value: object) -> float | list[float]:
         return parse_quantity(value, NUMBER)
     if len(value) != 7:
         length = len(value)
-        raise invalid(f"ap is a list of length {length}; give one number (not in a list) or a list of seven")
+        raise invalid(
+            f"ap is a list of {length} numbers; give one number without a list, or a list of seven numbers"
+        )
     return [parse_quantity(entry, NUMBER) for entry in value]
 
 
@@ -66,15 +68,16 @@ GeomagneticIndex = Annotated[float | list[float], BeforeValidator(_ap)]
 
 
 class Nrlmsise00Air(Part):
-    """NRLMSISE-00 with constant indices or those of a table; requires an epoch."""
+    """NRLMSISE-00 with constant indices or with a table of indices; requires an epoch."""
 
     kind: Literal["nrlmsise00"] = "nrlmsise00"
     f107: Number | None = None
     f107a: Number | None = None
     ap: GeomagneticIndex | None = None
-    """The daily index, or NRLMSISE-00's seven: the daily index, then those of the preceding hours."""
+    """Geomagnetic index: the daily value, or NRLMSISE-00's seven values: daily, then of the preceding
+    hours."""
     table: FilePath | None = None
-    """CSV file, relative to the scenario."""
+    """CSV file with the indices, relative to the scenario."""
     three_hourly: bool = True
 
     def build(self, folder: Path) -> _core.Atmosphere:

@@ -23,7 +23,7 @@ class BodyWrenchEffect(Part):
 
     kind: Literal["body_wrench"] = "body_wrench"
     body: str
-    """Link; with several systems ``SYSTEM/LINK``."""
+    """Link on which the wrench acts; with several systems ``SYSTEM/LINK``."""
     force: Force3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     torque: Torque3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     start: Time = 0.0
@@ -38,11 +38,11 @@ class BodyWrenchEffect(Part):
 
     @property
     def paths(self) -> list[tuple[tuple[str, ...], str]]:
-        """Key and path of the link on which the wrench acts."""
+        """Location (key) and value of the entry that names the link on which the wrench acts."""
         return [(("body",), self.body)]
 
     def of_system(self, name: str, systems: Collection[str]) -> Self | None:
-        """Return the wrench on a system alone, with the link's own name; None if it is on another system."""
+        """Return the wrench for a system alone, with the link's name; None if it acts on another system."""
         system, link = split_link(self.body, systems)
         return self.model_copy(update={"body": link}) if system == name else None
 

@@ -18,9 +18,9 @@ from onorbit_rs.scenario.part import Part
 
 def _epoch(value: object) -> str:
     if not isinstance(value, (str, datetime)):
-        message = f"{value!r} is not an epoch; write it as in 2024-03-01T12:00:00 UTC"
+        message = f"{value!r} is not an epoch; write an epoch such as 2024-03-01T12:00:00 UTC"
         raise EarthError(message, name="epoch", got=value)
-    epoch = _core.Earth(value, rotation="about_z").epoch  # raises an error for anything else
+    epoch = _core.Earth(value, rotation="about_z").epoch  # raises an error for an invalid epoch
     assert epoch is not None
     return value if isinstance(value, str) else epoch
 
@@ -39,7 +39,7 @@ class EarthPart(Part):
     angle: Angle | None = None
     rate: AngularRate | None = None
     ephemeris: FilePath | None = None
-    """SPICE kernel with Sun and Moon, relative to the scenario."""
+    """SPICE kernel with the Sun and the Moon, relative to the scenario."""
 
     @model_validator(mode="after")
     def _is_one_rotation(self) -> EarthPart:
@@ -62,7 +62,7 @@ def build_earth(
 ) -> _core.Earth | None:
     """Return the Earth of a run in the axes of its orbit; the default epoch is that of the element set.
 
-    SGP4's positions are in TEME, whose axes differ from GCRF by 37 km on the ground in 2024.
+    SGP4's positions are in TEME, which in 2024 differs from GCRF by an angle of 37 km on the ground.
     """
     axes: Any = "GCRF" if orbit is None else orbit.axes
     if epoch is None and isinstance(orbit, _core.Sgp4) and orbit.epoch >= FIRST_UTC:
@@ -79,4 +79,4 @@ def build_earth(
 
 
 FIRST_UTC = "1972"
-"""Start of UTC with leap seconds; epochs of older element sets cannot be converted."""
+"""First date of UTC with leap seconds; epochs of older element sets cannot be converted."""

@@ -13,13 +13,13 @@ from onorbit_rs.scenario.part import Part
 
 
 class GravityFieldEffect(Part):
-    """Gravity field; its orientation is that of ``earth``."""
+    """Gravity field, which rotates with ``earth``."""
 
     kind: Literal["gravity_field"] = "gravity_field"
     model: str = "egm2008"
     """Model: ``egm2008``, ``jgm3``, ``zonal``, or the path of a ``.gfc`` file relative to the scenario."""
     degree: Annotated[Whole, Field(ge=2)] | None = None
-    """Highest degree. Default: 36 for a bundled model, 6 for ``zonal``, that of the file for a file."""
+    """Highest degree. Default: 36 for a bundled model, 6 for ``zonal``, the degree of the file for a file."""
     order: Annotated[Whole, Field(ge=0)] | None = None
     """Highest order. Default: the degree."""
 

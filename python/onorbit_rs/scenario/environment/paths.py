@@ -8,8 +8,8 @@ from collections.abc import Collection
 def split_link(path: str, systems: Collection[str]) -> tuple[str, str]:
     """Return system and link of a path.
 
-    The link of ``SYSTEM`` alone is empty. With a single system its name may be left out. The system of an
-    invalid path is empty.
+    The link is empty for a path ``SYSTEM`` without a link. If there is a single system, its name may be
+    omitted. The system is empty for an invalid path.
     """
     system, slash, link = path.partition("/")
     if system in systems and (link or not slash):

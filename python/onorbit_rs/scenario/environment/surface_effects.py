@@ -23,10 +23,11 @@ class SurfaceEffect(Part):
     """Effect on surfaces: ``surfaces`` for all links, or ``bodies``, a mapping from link to surface."""
 
     surfaces: AnySurface | None = None
-    """Surface of all links. Default, if ``bodies`` is not given either: the ``surfaces`` of the robot or of
-    each system, otherwise their visual geometry."""
+    """Surface of all links. If ``bodies`` is not given either, the default is the ``surfaces`` of the robot
+    or of each system, otherwise the visual geometry."""
     bodies: Annotated[dict[str, AnySurface], Field(min_length=1)] | None = None
-    """Surfaces by link; with several systems by ``SYSTEM/LINK``, or by ``SYSTEM`` for all of its links."""
+    """Surfaces by link; with several systems by ``SYSTEM/LINK``, or by ``SYSTEM`` for all links of a
+    system."""
 
     @model_validator(mode="after")
     def _is_given_once(self) -> SurfaceEffect:
@@ -37,11 +38,11 @@ class SurfaceEffect(Part):
         return self
 
     def build_surfaces(self) -> Any:
-        """Return the surfaces: one for all links, a mapping from link to surface, or None for the default."""
+        """Return the engine's surfaces: one for all links, a mapping by link, or None for the default."""
         return build_surfaces(self.surfaces if self.bodies is None else self.bodies)
 
     def with_default(self, surfaces: Any) -> Self:
-        """Return the effect, on these surfaces (one, or by link) if it names none."""
+        """Return the effect with these default surfaces (one, or by link) if it defines no surfaces."""
         if surfaces is None or self.surfaces is not None or self.bodies is not None:
             return self
         key = "bodies" if isinstance(surfaces, dict) else "surfaces"
@@ -49,11 +50,11 @@ class SurfaceEffect(Part):
 
     @property
     def paths(self) -> list[tuple[tuple[str, ...], str]]:
-        """Keys, and paths of the systems or links on which the effect acts."""
+        """Locations (keys) and values of the entries that name systems or links on which the effect acts."""
         return [(("bodies", path), path) for path in self.bodies or {}]
 
     def of_system(self, name: str, systems: Collection[str]) -> Self | None:
-        """Return the effect on a system alone, with the links' own names; None if it does not act on it."""
+        """Return the effect for one system, with names of its links; None if the effect acts elsewhere."""
         if self.bodies is None:
             return self
         own = {}

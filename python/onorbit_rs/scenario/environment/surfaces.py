@@ -29,7 +29,7 @@ class FacesSurface(Part):
 
 
 class CannonballSurface(Part):
-    """Surface with the same area from all directions."""
+    """Sphere-like surface with the same area in all directions (cannonball model)."""
 
     kind: Literal["cannonball"] = "cannonball"
     area: Annotated[Area, NotNegative]
@@ -44,7 +44,7 @@ class CannonballSurface(Part):
 
 
 class Plate(Part):
-    """One-sided flat plate with an outward normal; axes and origin of the link."""
+    """One-sided flat plate with an outward normal, in axes of the link, from the origin of the link."""
 
     area: Annotated[Area, NotNegative]
     normal: Number3
@@ -83,11 +83,11 @@ RobotSurfaces = Annotated[
     | Annotated[dict[str, AnySurface], Field(min_length=1), Tag("by link")],
     Discriminator(_form),
 ]
-"""One surface for all links, or a surface by link."""
+"""Field type: one surface for all links, or a mapping from links to surfaces."""
 
 
 def build_surfaces(surfaces: Any) -> Any:
-    """Return the surfaces of the engine: one for all links, a mapping by link, or None for None."""
+    """Return the engine's surfaces: one for all links, or a mapping by link; None if none are given."""
     if isinstance(surfaces, dict):
         return {link: surface.build() for link, surface in surfaces.items()}
     return None if surfaces is None else surfaces.build()

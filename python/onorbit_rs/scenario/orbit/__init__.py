@@ -1,4 +1,4 @@
-"""Reference orbits. A new kind is one file with one class, added to the union."""
+"""Reference orbits. A new kind of orbit is a file with a class, added to the union."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = [
 
 
 def _with_kind(value: Any) -> Any:
-    """Return the data of an orbit; the default of its kind is ``kepler``."""
+    """Return the data of an orbit, with the default ``kepler`` for ``kind``."""
     return {"kind": "kepler"} | value if isinstance(value, dict) else value
 
 

@@ -1,4 +1,4 @@
-"""Orbits that are defined by a conic: two-body motion and numerical integration from its initial state."""
+"""Orbits defined by a conic: two-body motion, and numerical integration from the conic's initial state."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PHASES = ("mean_anomaly", "true_anomaly", "periapsis_time")
 
 
 class ConicOrbit(Part):
-    """Conic from elements or from a state.
+    """Conic that is defined by orbital elements or by a state.
 
     Elements: a size (``semi_major_axis``, negative for a hyperbola, or ``semi_latus_rectum``, required for a
     parabola), ``eccentricity``, three angles, and one phase. State: ``position`` and ``velocity`` at the
@@ -61,7 +61,7 @@ class ConicOrbit(Part):
     """Gravitational parameter, m³/s²; default: the Earth's."""
 
     def build(self, _folder: Path) -> _core.Orbit:
-        """Return the conic as an orbit of the engine."""
+        """Return the conic as an orbit object of the engine."""
         given = self._given()
         if self.position is None:
             return _core.Kepler(**given)
@@ -94,7 +94,7 @@ class ConicOrbit(Part):
         return self
 
     def _set_defaults(self, *, has_phase: bool) -> None:
-        """Set the elements that were not given: a circle in the equatorial plane, starting at periapsis."""
+        """Set the elements that were not given to those of an equatorial circle that starts at periapsis."""
         for name in ("eccentricity", "inclination", "raan", "argument_of_periapsis"):
             if getattr(self, name) is None:
                 setattr(self, name, 0.0)
@@ -121,7 +121,7 @@ class KeplerOrbit(ConicOrbit):
     secular_j2: bool | None = None
     j2: Number | None = None
     radius: Annotated[Length, Positive] | None = None
-    """Reference radius of ``j2``; the default of both is the Earth's value."""
+    """Reference radius of ``j2``; the defaults of ``j2`` and ``radius`` are the Earth's values."""
 
     @model_validator(mode="after")
     def _has_secular_j2(self) -> KeplerOrbit:
@@ -136,7 +136,7 @@ class KeplerOrbit(ConicOrbit):
 
 
 class NumericalOrbit(ConicOrbit):
-    """Free fall in the gravity of the scenario's environment, integrated from this state at the start."""
+    """Free fall in the gravity of the scenario's environment, integrated from the state of the conic."""
 
     kind: Literal["numerical"] = "numerical"
 
@@ -144,7 +144,7 @@ class NumericalOrbit(ConicOrbit):
     def integrate(
         conic: _core.Orbit, effects: list[_core.Effect], earth: _core.Earth | None
     ) -> _core.Numerical:
-        """Return the orbit that starts on a conic and is integrated in the gravity among the effects."""
+        """Return the orbit that starts on a conic and is integrated with the gravitational effects."""
         gravity = [effect for effect in effects if isinstance(effect, (_core.GravityField, _core.ThirdBody))]
         return _core.Numerical.from_orbit(conic, environment=gravity, earth=earth)
 

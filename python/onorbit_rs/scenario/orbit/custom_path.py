@@ -31,11 +31,11 @@ COLUMNS = {
     "accelerations": ("ax", "ay", "az"),
     "attitudes": ("qx", "qy", "qz", "qw"),
 }
-"""Columns of a file of points, SI, by the arguments of :class:`onorbit_rs.CustomPath`."""
+"""Columns of a file of points, in SI units, by the argument of :class:`onorbit_rs.CustomPath`."""
 
 
 class CustomPathOrbit(Part):
-    """Path with continuous acceleration through points given here or in a CSV file."""
+    """Path with continuous acceleration through points, which are given in the scenario or in a CSV file."""
 
     kind: Literal["custom_path"] = "custom_path"
     times: list[Time] | None = None

@@ -16,7 +16,7 @@ from onorbit_rs.scenario.part import Part
 
 
 class FixedFrameOrbit(Part):
-    """Reference that is at rest in inertial axes."""
+    """Reference frame at rest in inertial axes; it does not orbit the planet."""
 
     kind: Literal["fixed_frame"] = "fixed_frame"
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])

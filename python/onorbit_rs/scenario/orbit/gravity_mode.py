@@ -10,4 +10,5 @@ GravityMode = Annotated[
     Literal["true", "carried"],
     BeforeValidator(lambda value: "true" if value is True else value),  # YAML reads true as a boolean
 ]
-"""``true``: the robot moves away from a reference that is not in free fall; ``carried``: it moves along."""
+"""``true``: the robot leaves a reference that is not in free fall; ``carried``: it moves with the
+reference."""

@@ -24,7 +24,7 @@ SatelliteName = Annotated[str, BeforeValidator(lambda value: str(value) if type(
 
 
 def _text_of_lines(value: Any) -> Any:
-    """Return the text of two lines; refuse a list, with a hint on writing two lines of text in YAML."""
+    """Return the text of two lines; reject a list and explain how to write two lines of text in YAML."""
     if isinstance(value, list):
         raise invalid(
             "must be a single text; write 'tle: |' followed by the two indented lines, or give 'line1' "
@@ -34,22 +34,23 @@ def _text_of_lines(value: Any) -> Any:
 
 
 class Sgp4Orbit(Part):
-    """Element set: two lines, their text, or a file that contains them; time zero is its epoch."""
+    """Element set: a TLE or an OMM, given in the scenario or in a file; time zero is the epoch of the set."""
 
     kind: Literal["sgp4"] = "sgp4"
     line1: str | None = None
     line2: str | None = None
     tle: Annotated[str, BeforeValidator(_text_of_lines)] | None = None
-    """Two lines, optionally after a line with a name."""
+    """Text of the two lines, optionally after a line with the name of the satellite."""
     tle_file: FilePath | None = None
     omm_file: FilePath | None = None
     """A CCSDS Orbit Mean-Elements Message: JSON, XML, CSV or KVN."""
     satellite: SatelliteName | None = None
-    """Selects one of several sets in ``tle``, ``tle_file`` or ``omm_file``, by name or catalogue number."""
+    """Name or catalogue number of the satellite, if ``tle``, ``tle_file`` or ``omm_file`` has several
+    sets."""
     gravity: Literal["wgs72", "wgs72old", "wgs84"] = "wgs72"
     check_checksum: bool = True
     propagator: Literal["native", "reference"] = "native"
-    """``reference`` reads and propagates the set with PyPI's ``sgp4``, to check the engine's SGP4."""
+    """``reference`` reads and propagates the set with PyPI's ``sgp4``, to verify the native SGP4."""
     gravity_mode: GravityMode = "true"
 
     def build(self, folder: Path) -> _core.Sgp4:
@@ -88,9 +89,9 @@ class Sgp4Orbit(Part):
 
 
 def two_lines(text: str, where: str, satellite: str | None = None) -> tuple[str, str]:
-    """Return the two lines of the only TLE, or of that of ``satellite`` (name or catalogue number).
+    """Return the lines of the only TLE in a text, or of the TLE of ``satellite`` (name or catalogue number).
 
-    A line with a name may precede them; comments (#) and blank lines are skipped.
+    A line with a name may precede the two lines; comments (#) and blank lines are skipped.
 
     Raises
     ------
@@ -106,7 +107,7 @@ def two_lines(text: str, where: str, satellite: str | None = None) -> tuple[str,
         found = count(len(lines), "line", "lines")
         raise ElementSetError(
             f"{where} contains {found}; give the two lines of one TLE, optionally after a line with a name,"
-            " or select one of several by 'satellite': its name or catalogue number"
+            " or select one of several TLEs with 'satellite', its name or catalogue number"
         )
     return lines[0], lines[1]
 

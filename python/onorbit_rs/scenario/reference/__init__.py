@@ -1,4 +1,4 @@
-"""References that controllers track. A new kind is one file with one class, added to the union."""
+"""References that controllers track. A new kind of reference is a file with a class, added to the union."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ class CircleReference(TimedReference):
 
     kind: Literal["circle"] = "circle"
     center: Length3
-    """Point on the axis, relative to the start."""
+    """Point on the axis, relative to the initial position of the tool."""
     axis: Number3
     """Direction of the axis."""
     angle: Angle
@@ -27,7 +27,8 @@ class CircleReference(TimedReference):
     turns: bool = True
     """Whether the attitude rotates with the arc."""
     ramp: Annotated[Number, Positive] | None = None
-    """Fraction of the duration in each ramp to a constant rate. Default: the quintic, without such ramps."""
+    """Fraction of the duration for each of the ramps to and from a constant rate. Default: a quintic
+    profile."""
 
     def build(self, at: Start) -> _core.Reference:
         """Return the reference of the engine."""

@@ -1,4 +1,4 @@
-"""Frame in which a reference of a tool is expressed: a named frame or that of a target."""
+"""Frame in which a reference of a tool is expressed: a named frame or the frame of a target."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class TargetMotion(Pose):
 
 
 class TargetFrame(Part):
-    """Frame of a target."""
+    """Frame of a free-flying target."""
 
     target: TargetMotion
 
@@ -47,7 +47,7 @@ FRAMES = ("world", "lvlh", "base")
 
 
 def _frame(value: Any) -> Any:
-    """Return a valid frame name or the data of a target; raise an error for anything else."""
+    """Return a valid frame name or the data of a target; raise an error for other values."""
     if value in FRAMES or isinstance(value, (dict, TargetFrame)):
         return value
     if isinstance(value, str) and all(value.partition("/")):
@@ -68,6 +68,6 @@ Frame = Annotated[
 
 
 def moving_frame(frame: Any) -> tuple[str, str] | None:
-    """Return the names of the system and of its frame, if a frame is one of another system."""
+    """Return the names of the system and of its frame for a frame of another system, otherwise None."""
     system, slash, name = frame.partition("/") if isinstance(frame, str) else ("", "", "")
     return (system, name) if slash else None

@@ -1,4 +1,4 @@
-"""Reference that holds a tool at its start."""
+"""Reference that holds a tool at a constant pose."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class HoldReference(TaskReference):
-    """Constant pose."""
+    """Constant pose of the tool, by default its pose at the start."""
 
     kind: Literal["hold"] = "hold"
 

@@ -1,4 +1,4 @@
-"""Reference that holds joints."""
+"""Reference that holds joints at constant positions."""
 
 from __future__ import annotations
 

@@ -25,12 +25,12 @@ class JointMove(Part):
     to: Annotated[float, BeforeValidator(lambda value: parse_quantity(value, ANGLE, LENGTH))]
 
     def index_and_position(self, group: list[str]) -> tuple[int, float]:
-        """Return the index of the joint in its group, and the position.
+        """Return the index of the joint in its group, and the position at the end of the motion, rad or m.
 
         Raises
         ------
         FrameError
-            If the group has no such joint; suggests the nearest name.
+            If the group does not contain the joint; the message suggests the nearest name.
         """
         if self.joint not in group:
             raise FrameError(

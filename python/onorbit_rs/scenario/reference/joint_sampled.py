@@ -20,7 +20,7 @@ class JointSampledReference(Part):
 
     kind: Literal["joint_sampled"] = "joint_sampled"
     file: FilePath
-    """CSV file in s, rad and m, relative to the scenario."""
+    """CSV file with values in s, rad and m; its path is relative to the scenario."""
 
     def build(self, at: Start) -> _core.JointSampled:
         """Return the reference of the engine, for the joints of the group."""

@@ -10,14 +10,14 @@ from onorbit_rs.scenario.reference.times import with_start
 
 
 class JointTiming(Part):
-    """Joint reference with given times, or as fast as its limits allow; limits apply to every joint."""
+    """Timing of a joint reference: given times, or the shortest times within limits that all joints share."""
 
     speed: Annotated[JointRate, Positive] | None = None
-    """Largest rate of each joint."""
+    """Largest rate of every joint."""
     acceleration: Annotated[JointAcceleration, Positive] | None = None
-    """Largest acceleration of each joint."""
+    """Largest acceleration of every joint."""
     times: list[Time] | None = None
-    """Times of the points; the start is at time zero."""
+    """Time of each point, from the start of the reference."""
 
     def timing(self) -> dict[str, Any]:
         """Return times and limits as keyword arguments of the references of the engine."""

@@ -20,9 +20,9 @@ class LineParabolaReference(TaskReference):
 
     kind: Literal["line_parabola"] = "line_parabola"
     displacement: Length3
-    """Displacement of the tool from its first to its last position."""
+    """Displacement from the initial to the final position of the tool."""
     height: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Factor of s(1 - s); the vertex of the parabola is at a quarter of it."""
+    """Coefficient of s(1 - s); the vertex of the parabola is a quarter of ``height`` from the line."""
     duration: Annotated[Time, Positive]
 
     def build(self, at: Start) -> _core.LineParabola:

@@ -21,7 +21,7 @@ COLUMNS = {
     "attitude": ("qx", "qy", "qz", "qw"),
     "velocity": ("vx", "vy", "vz", "wx", "wy", "wz"),
 }
-"""Columns of the file, SI."""
+"""Groups of columns of the CSV file, in SI units."""
 
 
 class SampledReference(TaskReference):
@@ -29,9 +29,9 @@ class SampledReference(TaskReference):
 
     kind: Literal["sampled"] = "sampled"
     file: FilePath
-    """CSV file in SI units, relative to the scenario."""
+    """CSV file with values in SI units; its path is relative to the scenario."""
     relative: bool = False
-    """Whether the motion is transformed so that it begins at the start."""
+    """Whether the motion is transformed rigidly so that it begins at the pose ``start``."""
 
     def build(self, at: Start) -> _core.Sampled:
         """Return the reference of the engine."""

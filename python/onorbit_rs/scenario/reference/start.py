@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Start:
-    """Robot at time zero, and what a controller tracks."""
+    """State of the robot at time zero, with the frame or the joints that a controller moves."""
 
     model: _core.Model
     q: Floats
     """Configuration (nq,)."""
     orbit: _core.Orbit | None
     folder: Path
-    """Folder of the scenario, at which relative paths start."""
+    """Folder of the scenario; relative paths start there."""
     tool: str | None = None
-    """Tracked frame of a reference of a tool."""
+    """Frame that tracks the reference; None for joint references."""
     joints: tuple[str, ...] | None = None
-    """Joint group of a joint reference; default: all joints."""
+    """Names of the joints that track a joint reference; default: all joints."""
     neighbours: Mapping[str, Neighbour] = field(default_factory=dict)
     """Other systems of the world, at time zero."""
 
@@ -48,7 +48,7 @@ class Start:
         return list(self.joints or self.model.joint_names)
 
     def of_group(self, values: Floats) -> Floats:
-        """Return the values of the group, (len(group),), from those of all joints, (n,)."""
+        """Return the values of the joints of the group, (len(group),), from those of all joints, (n,)."""
         names = list(self.model.joint_names)
         return values[[names.index(name) for name in self.group]]
 

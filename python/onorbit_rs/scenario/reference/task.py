@@ -37,7 +37,7 @@ _LIMITS = {"duration", "speed", "acceleration", "angular_speed", "angular_accele
 
 
 class Goal(Part):
-    """Pose to reach, relative to the start or in the frame of the reference."""
+    """Pose to be reached, given relative to the start or in the frame of the reference."""
 
     displacement: Length3 | None = None
     """Displacement from the position of the start."""
@@ -59,7 +59,7 @@ class Goal(Part):
         return self
 
     def pose(self, start: Floats) -> Floats:
-        """Return the goal (4, 4) in the frame of the reference, given its start (4, 4)."""
+        """Return the pose (4, 4) of the goal in the frame of the reference, given its start pose (4, 4)."""
         pose = start.copy()
         if self.turn is not None:
             pose[:3, :3] = matrix_from_quaternion(quaternion_of(self.turn)) @ start[:3, :3]
@@ -73,19 +73,19 @@ class Goal(Part):
 
 
 class TaskReference(Part, ABC):
-    """Reference of a tool."""
+    """Base class of references that a tool tracks."""
 
     frame: Frame = "world"
     """Frame of all poses of the reference."""
     start: Pose | None = None
-    """Pose at which it starts, in the frame. Default: the pose of the tool at the start of the run."""
+    """Start pose of the reference, in ``frame``. Default: the pose of the tool at the start of the run."""
 
     @abstractmethod
     def build(self, at: Start) -> _core.Reference:
         """Return the reference of the engine, for a robot in the state ``at``."""
 
     def engine_frame(self) -> Any:
-        """Return the argument ``frame`` of the references of the engine."""
+        """Return the frame as the engine's references expect it in the argument ``frame``."""
         return self.frame.build() if isinstance(self.frame, TargetFrame) else self.frame
 
     def first_pose(self, at: Start) -> Floats:
@@ -110,7 +110,7 @@ class TaskReference(Part, ABC):
 
 
 class LimitedReference(TaskReference):
-    """Reference of a tool that is traversed as fast as its limits allow."""
+    """Reference of a tool whose duration is the shortest that its limits allow."""
 
     speed: Annotated[Speed, Positive] | None = None
     """Largest speed of the tool."""
@@ -127,7 +127,7 @@ class LimitedReference(TaskReference):
 
 
 class TimedReference(LimitedReference):
-    """Reference of a tool with a given duration, or as fast as its limits allow."""
+    """Reference of a tool with a given duration, or with the shortest duration that its limits allow."""
 
     duration: Annotated[Time, Positive] | None = None
-    """Duration of the motion, instead of limits."""
+    """Duration of the motion, as an alternative to limits."""

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 class WaypointsReference(LimitedReference):
-    """Quintic splines through poses, at given times or as fast as limits allow."""
+    """Quintic splines through poses, with given times or the shortest times that the limits allow."""
 
     kind: Literal["waypoints"] = "waypoints"
     points: Annotated[list[Goal], Field(min_length=1)]
     times: list[Time] | None = None
-    """Times of the points; the start is at time zero."""
+    """Time of each pose, from the start of the reference."""
     stops: bool = True
-    """Whether the tool comes to rest at each point."""
+    """Whether the tool comes to rest at each pose."""
 
     @model_validator(mode="after")
     def _has_a_time_for_each(self) -> Self:

@@ -1,9 +1,9 @@
 """Reads mesh files into arrays, for the viewer and the figures.
 
-Lengths are in m and in the axes of the file: a Collada file's ``<unit>`` and the poses of nodes are applied.
-Meshes are not turned to make z point up. Collada's ``<up_axis>`` is ignored, as by RViz and Gazebo. glTF's
-y-up convention is ignored, too (Drake, and RViz since 2025, apply it), since the robots with glTF on PyPI are
-made without it.
+Lengths are in m and in axes of the file: a Collada file's ``<unit>`` and the poses of nodes are applied.
+Meshes are not rotated so that z points up. Collada's ``<up_axis>`` is ignored, as in RViz and Gazebo. glTF's
+y-up convention, which Drake and recent versions of RViz apply, is also ignored, because robots on PyPI with
+glTF meshes do not follow it.
 """
 
 from onorbit_rs.visuals.meshes.part import Mesh, Part

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 MOST_TRIANGLES = 10_000_000
-"""Largest number of triangles of a file; each instance of a geometry counts."""
+"""Largest number of triangles in a file; every instance of a geometry counts."""
 
 
 def make_part(
@@ -26,14 +26,16 @@ def make_part(
     texture: Any = None,
     uv: ArrayLike | None = None,
 ) -> Part:
-    """Return a part; without normals, or with colours of faces, its faces are shaded flat.
+    """Return a part; its faces are shaded flat if it has no normals, or if it has one colour per face.
 
     Parameters
     ----------
     vertices, normals : (n, 3) arrays
+        Positions, m, and unit normals of the vertices.
     faces : (k, 3) array
+        Indices of the vertices of each triangle.
     colors : (4,), (n, 4) or (k, 4) array
-        RGBA from 0 to 255: one colour, or one for each vertex or face.
+        RGBA from 0 to 255: one colour, or one colour for each vertex or face.
     texture, uv
         As in :class:`Part`; a texture without ``uv`` is ignored.
 
@@ -65,7 +67,7 @@ def make_part(
             f"it has {len(points)} vertices, but {len(directions)} normals{uv}; the numbers must be equal"
         )
     if not np.isfinite(points).all():
-        raise ValueError("it has vertices that are not finite; export it again")
+        raise ValueError("it has vertices that are not finite; export the mesh again")
     tints = np.broadcast_to(tints, (len(points), 4))
     return Part(
         points, index, unit(np.nan_to_num(directions)), tints, None if places is None else texture, places
@@ -97,12 +99,12 @@ def _as_one(parts: list[Part]) -> Part:
 
 @dataclass
 class Budget:
-    """Number of further triangles that a file may contain."""
+    """Limit on the number of triangles in a file."""
 
     left: int = MOST_TRIANGLES
 
     def take(self, triangles: int) -> None:
-        """Subtract triangles; raise ValueError if there are too many."""
+        """Subtract a number of triangles from the remaining ones; raise ValueError if the limit is exceeded."""
         self.left -= triangles
         if self.left < 0:
-            raise ValueError(f"it has more than {MOST_TRIANGLES} triangles; simplify it")
+            raise ValueError(f"it has more than {MOST_TRIANGLES} triangles; simplify the mesh")

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from onorbit_rs.visuals.meshes.textures import Companions
 
 MOST_NODES = 100_000
-"""Largest number of nodes of a scene; n nodes that each refer to the next one twice expand to 2ⁿ."""
+"""Largest number of nodes in a scene; n nodes that each refer twice to the next node expand to 2ⁿ nodes."""
 
 _CHUNK = 65_536
 
 
 def read_collada(content: bytes, companions: Companions) -> list[Part]:
-    """Return the triangles of the scene.
+    """Return the triangles of the scene in a Collada file.
 
     Raises ValueError, or any exception of pycollada if the file is damaged.
     """
@@ -35,10 +35,10 @@ def read_collada(content: bytes, companions: Companions) -> list[Part]:
         document = collada.Collada(io.BytesIO(content), ignore=[collada.DaeError])
     scene = document.scene or next(iter(document.scenes), None)
     if scene is None:
-        raise ValueError("it has no <visual_scene>; export it again with its objects")
+        raise ValueError("it has no <visual_scene>; export the file again with its objects")
     known: dict[int, int] = {}
     if sum(_count(node, known) for node in scene.nodes) > MOST_NODES:
-        raise ValueError(f"its scene has more than {MOST_NODES} nodes; simplify it")
+        raise ValueError(f"its scene has more than {MOST_NODES} nodes; simplify the scene")
     meter = document.assetInfo.unitmeter or 1.0
     budget, parts = Budget(), []
     for geometry in scene.objects("geometry"):
@@ -56,7 +56,9 @@ def _check_kind(content: bytes) -> None:
     """Raise ValueError for other XML, and for document types, whose entities can expand without bound."""
 
     def refuse(*_: Any) -> None:
-        raise ValueError("it has a document type (<!DOCTYPE>), which is not allowed; remove it")
+        raise ValueError(
+            "it has a document type (<!DOCTYPE>), which is not allowed; remove the document type"
+        )
 
     names: list[str] = []
     parser = expat.ParserCreate()
@@ -81,7 +83,7 @@ def _without_lost_materials(content: bytes, known: set[str]) -> bytes:
 
 
 def _count(node: Any, known: dict[int, int]) -> int:
-    """Return the number of nodes drawn for a node, itself included; referenced nodes count each time."""
+    """Return the number of nodes drawn for a node, including the node; repeated references count each time."""
     target = getattr(node, "node", node)
     if id(target) not in known:
         known[id(target)] = 1 + sum(_count(child, known) for child in getattr(target, "children", ()))
@@ -117,7 +119,7 @@ def _part(triangles: Any, meter: float, companions: Companions) -> Part:
 
 
 def _material(material: Any, companions: Companions | None) -> tuple[Any, Any]:
-    """Return RGBA, 0 to 255, and texture of a material; emission replaces a black diffuse colour."""
+    """Return the RGBA colour, 0 to 255, and texture of a material; emission replaces black diffuse colours."""
     import collada
 
     effect = getattr(material, "effect", None)
@@ -137,7 +139,7 @@ def _material(material: Any, companions: Companions | None) -> tuple[Any, Any]:
 
 
 def _opacity(effect: Any) -> float:
-    """Return the opacity, by either mode of Collada; an invisible material is treated as an export error."""
+    """Return the opacity in either of Collada's modes; 1 for invisible materials, which are export errors."""
     import collada
 
     transparent, factor = effect.transparent, effect.transparency

@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     Bytes = NDArray[np.uint8]
 
 PLAIN = (184, 186, 191, 255)
-"""RGBA of surfaces without a colour in their file."""
+"""RGBA colour of surfaces whose file defines no colour."""
 
 _WITHIN = np.array([[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4]]) / [[3], [6], [6], [6]]
-"""Barycentric coordinates of points in a triangle, away from its edges."""
+"""Barycentric coordinates of the points at which a texture is sampled, away from the triangle's edges."""
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """Triangles that share a texture, or have none.
+    """Triangles with a common texture, or without a texture.
 
     ``vertices`` (n, 3), m; ``faces`` (k, 3), indices of vertices, counter-clockwise from outside;
     ``normals`` (n, 3), unit vectors; ``colors`` (n, 4), RGBA; ``texture`` (h, w, 3), RGB, multiplied by the
@@ -54,20 +54,20 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """The content of a mesh file; immutable."""
+    """Content of a mesh file; immutable."""
 
     parts: tuple[Part, ...]
 
     @cached_property
     def bounds(self) -> tuple[Floats, Floats]:
-        """Least and largest coordinates, (3,) each, m."""
+        """Smallest and largest coordinates of the vertices, (3,) each, m."""
         return (
             np.min([part.vertices.min(axis=0) for part in self.parts], axis=0),
             np.max([part.vertices.max(axis=0) for part in self.parts], axis=0),
         )
 
     def scaled(self, scale: Sequence[float]) -> Mesh:
-        """Return the mesh scaled by three factors; an odd number of negative ones mirrors it."""
+        """Return the mesh scaled by three factors; an odd number of negative factors mirrors the mesh."""
         factors = np.asarray(scale, dtype=np.float32)
         if (factors == 1.0).all():
             return self
@@ -87,7 +87,7 @@ class Mesh:
         ))  # fmt: skip
 
     def painted(self, rgba: Sequence[float]) -> Mesh:
-        """Return the mesh in one colour, RGBA from 0 to 1, which is multiplied with a texture."""
+        """Return the mesh in one colour, RGBA from 0 to 1, by which textures are multiplied."""
         color = np.clip(np.round(np.array(rgba) * 255.0), 0, 255).astype(np.uint8)
         return Mesh(tuple(
             replace(part, colors=np.broadcast_to(color, part.colors.shape)) for part in self.parts
@@ -95,7 +95,7 @@ class Mesh:
 
 
 def unit(vectors: Floats) -> Floats:
-    """Return the vectors (n, 3) scaled to length 1; zero stays zero."""
+    """Return the vectors (n, 3) scaled to length 1; zero vectors are unchanged."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
     scaled: Floats = np.divide(vectors, lengths, out=np.zeros_like(vectors), where=lengths > 0.0)
     return scaled

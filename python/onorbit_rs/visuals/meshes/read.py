@@ -1,4 +1,4 @@
-"""Reads mesh files, and keeps the last ones in memory while their files are unchanged."""
+"""Reads mesh files, and caches the most recent meshes while their files are unchanged."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ _KEPT = 128
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     """Return the content of a mesh file: Collada, glTF, OBJ, PLY or STL, by its ending.
 
-    Materials and textures are searched only near the file; a surface without its texture is plain.
+    Materials and textures are searched only near the file; surfaces whose texture is missing have one colour.
 
     Raises
     ------
     NotFoundError, ReadError
-        If the file does not exist, is too large, cannot be read (with the reason) or has no surface.
+        If the file does not exist, is too large, cannot be read or has no surface; the message states why.
     """
     check_regular(path, "mesh")
     about = Path(path).stat()
@@ -49,9 +49,9 @@ def _read(path: Path, _changed: int, _size: int) -> Mesh | ReadError:
             raise ValueError(f"its format is not supported; convert it to one of {', '.join(ENDINGS)}")
         content = read_bytes(path, LARGEST_MESH, "mesh")
         if not content:
-            raise ValueError("it is empty; export it again")
+            raise ValueError("it is empty; export the mesh again")
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of the libraries, about content that they skip
+            warnings.simplefilter("ignore")  # libraries warn about content that they skip
             companions = Companions(path)
             parts = (
                 read_collada(content, companions)
@@ -68,10 +68,10 @@ def _read(path: Path, _changed: int, _size: int) -> Mesh | ReadError:
 
 
 def _checked(parts: list[Part]) -> list[Part]:
-    """Return the parts that have a surface; raise ValueError if none has."""
+    """Return the parts that have a surface; raise ValueError if no part has a surface."""
     seen = [part for part in parts if len(part.faces) and _has_area(part)]
     if not seen:
-        raise ValueError("it has no triangles of nonzero area; export it with its surfaces")
+        raise ValueError("it has no triangles of nonzero area; export the mesh with its surfaces")
     return seen
 
 

@@ -1,4 +1,4 @@
-"""Images and materials that a mesh file refers to; only local files near it are read."""
+"""Images and materials to which a mesh file refers; only local files near the mesh are read."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ LARGEST_COMPANION = 64_000_000
 
 MOST_PIXELS = 64_000_000
 SIDE = 1024
-"""Larger textures are reduced to this number of pixels along their longer side."""
+"""Largest number of pixels along the longer side of a texture; larger textures are reduced."""
 
 _FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP")
 """Formats that Pillow decodes without other programs such as Ghostscript."""
 
 _UP = 4
-"""Number of folders, from that of the mesh upwards, in which its package is searched."""
+"""Number of folders, starting with the folder of the mesh and going up, in which its package is searched."""
 
 
 class Companions:
-    """The files that a mesh refers to, with the methods of a resolver of trimesh.
+    """Files to which a mesh refers; has the methods of a trimesh resolver.
 
-    Only files below the folder of its package (with ``package.xml`` or ``model.config``) are read; without a
-    package, those below the parent of its folder. Symbolic links are resolved first.
+    Only files in the package of the mesh (a folder with ``package.xml`` or ``model.config``) are read or, without
+    a package, files in the parent of its folder. Symbolic links are resolved first.
     """
 
     def __init__(self, mesh: Path) -> None:
@@ -44,11 +44,11 @@ class Companions:
         above = [self._folder, *self._folder.parents][:_UP]
         package = (folder for folder in above if _is_package(folder))
         self._root = next(package, self._folder.parent)
-        if self._root == self._root.parent:  # the whole disk
+        if self._root == self._root.parent:  # the root folder would allow the whole disk
             self._root = self._folder
 
     def get(self, name: str) -> bytes:
-        """Return the content of a file; raise FileNotFoundError if there is none within the package."""
+        """Return the content of a file; raise FileNotFoundError if the package does not contain the file."""
         for path in self._places(unquote(name.strip()).removeprefix("file://").replace("\\", "/")):
             try:
                 if path.resolve().is_relative_to(self._root) and path.is_file():
@@ -65,7 +65,7 @@ class Companions:
         return self
 
     def _places(self, name: str) -> Iterator[Path]:
-        if "://" in name:  # on the network
+        if "://" in name:  # an address on the network
             return
         yield self._folder / name
         last = name.rpartition("/")[2]

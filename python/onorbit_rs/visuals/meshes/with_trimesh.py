@@ -15,14 +15,14 @@ from onorbit_rs.visuals.meshes.textures import Companions, as_utf8, pixels
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-logging.getLogger("trimesh").addHandler(logging.NullHandler())  # it prints tracebacks about damaged files
+logging.getLogger("trimesh").addHandler(logging.NullHandler())  # trimesh prints tracebacks for damaged files
 
 _STL_HEADER, _STL_TRIANGLE = 84, 50
 """Sizes of the header and of a triangle in a binary STL file, bytes."""
 
 
 def read_with_trimesh(content: bytes, kind: str, companions: Companions) -> list[Part]:
-    """Return the triangles of a file.
+    """Return the triangles of an STL, OBJ, PLY or glTF file.
 
     Raises ValueError, or any exception of trimesh if the file is damaged.
     """
@@ -47,7 +47,7 @@ def read_with_trimesh(content: bytes, kind: str, companions: Companions) -> list
 
 
 def _stl(content: bytes) -> bytes:
-    """Return a file that trimesh accepts: bytes that exporters append after the last triangle are removed."""
+    """Return an STL file that trimesh accepts, without bytes that exporters append after the last triangle."""
     declared = int.from_bytes(content[_STL_HEADER - 4 : _STL_HEADER], "little")
     length = _STL_HEADER + _STL_TRIANGLE * declared
     if declared and length <= len(content):
@@ -56,7 +56,9 @@ def _stl(content: bytes) -> bytes:
         return as_utf8(content)
     there = max(len(content) - _STL_HEADER, 0) // _STL_TRIANGLE
     if there < declared:
-        raise ValueError(f"it is truncated: it contains {there} of its {declared} triangles")
+        raise ValueError(
+            f"it is truncated: it contains {there} of its {declared} triangles; export the mesh again"
+        )
     return content
 
 
@@ -66,14 +68,14 @@ def _part(mesh: Any, pose: NDArray[np.float64]) -> Part:
     normals = None
     if (
         "vertex_normals" in mesh._cache
-    ):  # only normals of the file; those that trimesh computes round all edges
+    ):  # only normals in the file; normals that trimesh computes would round all edges
         normals = mesh.vertex_normals @ np.linalg.inv(pose[:3, :3])
     colors, texture, uv = _appearance(mesh.visual)
     return make_part(vertices, faces, normals=normals, colors=colors, texture=texture, uv=uv)
 
 
 def _appearance(visual: Any) -> tuple[Any, Any, Any]:
-    """Return colours, texture and texture coordinates."""
+    """Return the colours, the texture and the texture coordinates of a trimesh visual."""
     if visual.kind == "vertex":
         return visual.vertex_colors, None, None
     if visual.kind == "face":
