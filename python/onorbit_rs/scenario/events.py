@@ -65,7 +65,7 @@ class Latch(Part):
     within: Envelope
     """Largest distance and angle between the frames."""
     slower_than: EnvelopeRates | None = None
-    """Largest speed as observed in the capturing frame, and largest relative angular rate. Default: unlimited."""
+    """Largest speed as observed in the capturing frame, and largest angular rate. Default: unlimited."""
     held_for: Annotated[Time, NotNegative] = 0.0
     """Time for which the conditions must hold without interruption."""
 

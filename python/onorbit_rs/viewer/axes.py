@@ -120,7 +120,7 @@ def log_compass(
     *,
     in_orbit: bool,
 ) -> None:
-    """Log the axes of I and L beside a robot; ``frames`` are the frames of its camera and of the axes of I."""
+    """Log the axes of I and L beside a robot; ``frames`` are the camera's frame and the inertial frame."""
     (follow, compass), (inertial, local) = frames, places
     if in_orbit:
         names = ("x L: out", "y L: along track", "z L: normal")

@@ -29,7 +29,7 @@ _SPACE = (12, 14, 20)
 
 _LARGE = ("arrows", "axes", "flight")
 _SOLID, _HIDDEN = ("robot", "target"), 0.02
-"""Entities that are omitted beside a short path, which they would hide."""
+"""Entities that would hide a short path, and the path length, in sizes of the robot, below which they do."""
 
 
 def layout(

@@ -38,7 +38,7 @@ def send_frame(
     translation: Floats,
     quat_xyzw: Floats,
 ) -> None:
-    """Send translations, (T, 3) or (3,), m, and quaternions, (T, 4) or (4,), from a child frame to its parent."""
+    """Send translation, (T, 3) or (3,), m, and quaternion, (T, 4) or (4,), of a child frame in its parent."""
     count = len(time.times)
     columns = rr.Transform3D.columns(
         translation=np.broadcast_to(np.asarray(translation, np.float32), (count, 3)),
@@ -91,7 +91,7 @@ def send_local_frame(recording: rr.RecordingStream, rows: TraceRows) -> None:
 def send_moving_frames(
     recording: rr.RecordingStream, rows: TraceRows, setting: Setting, compass: Floats
 ) -> None:
-    """Send the motion of the base and every joint; inertial axes are shown at ``compass``, m, in ``follow``."""
+    """Send the motion of base and joints; inertial axes are shown at ``compass``, (3,), m, in ``follow``."""
     q, time, base = rows["q"], rows.times, setting.frame_of(setting.base)
     quat_fb = q[:, QUATERNION] if rows.quat_lb is None else rows.quat_lb
     send_follow(recording, rows, setting.frame(FOLLOW), setting.frame(COMPASS), q[:, POSITION], compass)

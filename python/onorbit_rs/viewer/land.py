@@ -34,7 +34,7 @@ _PACKED = (
 
 
 def land() -> NDArray[np.bool_]:
-    """Return cells (90, 180), True on land; rows from the north pole to the south, columns east from -180°."""
+    """Return cells (90, 180), True on land; rows go from north to south, columns from -180° to the east."""
     bits = np.frombuffer(zlib.decompress(base64.b85decode(_PACKED)), np.uint8)
     return np.unpackbits(bits).reshape(_CELLS).astype(bool)
 

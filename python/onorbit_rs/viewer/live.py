@@ -47,7 +47,7 @@ class View(ABC):
     """A live view of a run of ``duration_s`` seconds; errors of the view never stop the run."""
 
     def __init__(self, recording: rr.RecordingStream, duration_s: float) -> None:
-        """Prepare for a run that has not started."""
+        """Prepare the view before the run starts."""
         self._recording, self._duration_s = recording, duration_s
         self._angles: dict[str, Floats] = {}
         self._is_lost = False
@@ -59,7 +59,7 @@ class View(ABC):
 
     @abstractmethod
     def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:
-        """Show new rows, given as the columns of a stepper from row :attr:`shown` on, and the events so far."""
+        """Show the columns of a stepper from row number :attr:`shown` on, and the events so far."""
 
     @abstractmethod
     def _show_rest(self, trace: Any) -> None:
@@ -70,7 +70,7 @@ class View(ABC):
         """Delete all references to the recording."""
 
     def take(self, columns: Mapping[str, Floats], events: Sequence[EventRecord] = ()) -> None:
-        """Show new rows, given as the columns of a stepper from row :attr:`shown` on, and the events so far."""
+        """Show the columns of a stepper from row number :attr:`shown` on, and the events so far."""
         with self._loses_view():
             self._show_columns(columns, events)
 
@@ -97,8 +97,8 @@ class View(ABC):
         except Exception:
             self._is_lost = True
             warnings.warn(
-                "the viewer was closed or stopped responding before it had received the whole run; open the recording "
-                "with onorbit show",
+                "the viewer was closed or stopped responding before it had received the whole run; a "
+                "run with --out DIR also saves a recording",
                 stacklevel=2,
             )
 
@@ -131,7 +131,7 @@ class LiveView(View):
     """Live view of a run with one robot."""
 
     def __init__(self, recording: rr.RecordingStream, setting: Setting, duration_s: float) -> None:
-        """Prepare for a run that has not started."""
+        """Prepare the view before the run starts."""
         super().__init__(recording, duration_s)
         self._setting = setting
         self._stage: Viewpoint | None = None
@@ -179,7 +179,7 @@ class LiveView(View):
 
 
 def send_paths_so_far(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
-    """Send the paths of the tool and of the robot on the orbit, from the last row of the previous update on."""
+    """Send the paths of tool and robot since the last row of the previous update."""
     if "reference_pose" in rows:
         send_trails(recording, rows, setting, MOST_ROWS, "desired")
     if "tool_pose" in rows:

@@ -54,7 +54,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_STEPS = 500_000
-"""Largest number of rows, which require 0.5 GB; longer traces are decimated evenly, including the last row."""
+"""Largest number of rows (0.5 GB); longer traces are decimated evenly, including the last row."""
 
 
 def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
@@ -152,7 +152,7 @@ def send_static(
 
 
 def log_craft(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> None:
-    """Log the shapes and the axes of one robot, whose positions depend on its first rows."""
+    """Log the shapes and the axes of one robot; the axes are placed according to the first rows."""
     send_fixed_frames(recording, setting)
     log_robot(recording, setting)
     log_all_axes(

@@ -89,7 +89,7 @@ def world_layout(
 
 
 def _contents(names: Sequence[str], alone: str = "") -> list[str]:
-    """Return the contents of a 3-D view of all systems; ``alone`` is the system that is shown with all parts."""
+    """Return the contents of a 3-D view of all systems; the system ``alone`` is shown with all parts."""
     found = ["$origin/**", "- $origin/lvlh/flight/**"]
     found += [f"- $origin/{name}/{part}/**" for name in names for part in _APART]
     found += [f"- $origin/{name}/{part}/**" for name in names if name != alone for part in _ALONE]

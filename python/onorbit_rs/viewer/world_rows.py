@@ -63,7 +63,7 @@ class WorldRows:
 
     @cached_property
     def all_times(self) -> TraceRows:
-        """Time and reference orbit of every row, sorted by time if the systems have rows at different times."""
+        """Time and reference orbit of the rows of all systems, at distinct times in ascending order."""
         parts = list(self.systems.values())
         names = [name for name in ("time", *_REFERENCE) if name in self.first]
         if all(np.array_equal(part["time"], self.first["time"]) for part in parts):

@@ -47,7 +47,7 @@ def _all(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
 
 
 def _relative(world: WorldRows, connection: Connection) -> Iterator[tuple[TraceRows, Series]]:
-    """Yield plots of the motion of the captured frame relative to the capturing frame, in axes of the latter."""
+    """Yield plots of the motion of the captured frame relative to the capturing frame and in its axes."""
     chosen = _shared(world, connection.systems)
     moving = []
     for (system, frame), rows in zip((connection.by, connection.of), chosen, strict=True):

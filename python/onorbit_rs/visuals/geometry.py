@@ -49,14 +49,14 @@ class Shape:
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
-    """Return the centre (3,) in W, m, and diameter, at least 0.1 m, of a sphere around a robot in all ``q``."""
+    """Return centre (3,) in W, m, and diameter, m, of a sphere around a robot in all ``q`` (k, nq)."""
     corners = corners_of(model, robot, q)
     center = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
     return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
 
 
 def corners_of(model: Model, robot: list[Shape], q: Floats) -> Floats:
-    """Return the corners (c, 3) in W, m, of the boxes around all shapes in all configurations q (k, nq)."""
+    """Return the corners (c, 3) in W, m, of the boxes around all shapes in all configurations (k, nq)."""
     return np.vstack([_corners(model, row, shape) for row in q for shape in robot])
 
 

@@ -72,7 +72,7 @@ def _drawable(visuals: Sequence[Visual]) -> tuple[list[Shape], list[Visual], lis
 
 
 def _stick_figure(model: Model, bare: set[str], solid: set[str]) -> Iterator[Shape]:
-    """Yield rods and spheres for bodies whose links have no shapes; for such a base, a box of equal inertia."""
+    """Yield rods and spheres for bodies whose links have no shapes; for a base, a box of equal inertia."""
     ends: dict[str, list[Floats]] = {body.name: [] for body in model.bodies}
     for joint in model.joints:
         ends[joint.parent].append(np.array(joint.pose)[:3, 3])

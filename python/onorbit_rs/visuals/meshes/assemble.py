@@ -104,7 +104,7 @@ class Budget:
     left: int = MOST_TRIANGLES
 
     def take(self, triangles: int) -> None:
-        """Subtract a number of triangles from the remaining ones; raise ValueError if the limit is exceeded."""
+        """Subtract triangles from the remaining number; raise ValueError if the limit is exceeded."""
         self.left -= triangles
         if self.left < 0:
             raise ValueError(f"it has more than {MOST_TRIANGLES} triangles; simplify the mesh")

@@ -83,7 +83,7 @@ def _without_lost_materials(content: bytes, known: set[str]) -> bytes:
 
 
 def _count(node: Any, known: dict[int, int]) -> int:
-    """Return the number of nodes drawn for a node, including the node; repeated references count each time."""
+    """Return the number of nodes drawn for a node, including itself; every reference to a node counts."""
     target = getattr(node, "node", node)
     if id(target) not in known:
         known[id(target)] = 1 + sum(_count(child, known) for child in getattr(target, "children", ()))
@@ -119,7 +119,7 @@ def _part(triangles: Any, meter: float, companions: Companions) -> Part:
 
 
 def _material(material: Any, companions: Companions | None) -> tuple[Any, Any]:
-    """Return the RGBA colour, 0 to 255, and texture of a material; emission replaces black diffuse colours."""
+    """Return RGBA, 0 to 255, and texture of a material; emission replaces a black diffuse colour."""
     import collada
 
     effect = getattr(material, "effect", None)
@@ -139,7 +139,7 @@ def _material(material: Any, companions: Companions | None) -> tuple[Any, Any]:
 
 
 def _opacity(effect: Any) -> float:
-    """Return the opacity in either of Collada's modes; 1 for invisible materials, which are export errors."""
+    """Return the opacity in either of Collada's modes; 1 for an invisible material, an export error."""
     import collada
 
     transparent, factor = effect.transparent, effect.transparency

@@ -27,14 +27,14 @@ _FORMATS = ("PNG", "JPEG", "BMP", "GIF", "TGA", "TIFF", "WEBP")
 """Formats that Pillow decodes without other programs such as Ghostscript."""
 
 _UP = 4
-"""Number of folders, starting with the folder of the mesh and going up, in which its package is searched."""
+"""Number of folders, from that of the mesh upwards, in which its package is searched."""
 
 
 class Companions:
     """Files to which a mesh refers; has the methods of a trimesh resolver.
 
-    Only files in the package of the mesh (a folder with ``package.xml`` or ``model.config``) are read or, without
-    a package, files in the parent of its folder. Symbolic links are resolved first.
+    Only files in the package of the mesh (a folder with ``package.xml`` or ``model.config``) are read or,
+    without a package, files in the parent of its folder. Symbolic links are resolved first.
     """
 
     def __init__(self, mesh: Path) -> None:

@@ -47,7 +47,7 @@ def read_with_trimesh(content: bytes, kind: str, companions: Companions) -> list
 
 
 def _stl(content: bytes) -> bytes:
-    """Return an STL file that trimesh accepts, without bytes that exporters append after the last triangle."""
+    """Return an STL file that trimesh accepts, without bytes appended after the last triangle."""
     declared = int.from_bytes(content[_STL_HEADER - 4 : _STL_HEADER], "little")
     length = _STL_HEADER + _STL_TRIANGLE * declared
     if declared and length <= len(content):
