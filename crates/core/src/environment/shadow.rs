@@ -9,10 +9,10 @@ const SUN_RADIUS: f64 = 6.957e8;
 /// Returns the fraction `ν` of the solar disc, from 0 to 1, that the Earth does not occult as seen from `r`.
 ///
 /// `r` and `sun` are positions from the Earth's centre, m, and `radius` is the radius of the Earth, m. With
-/// the apparent radii `a` of the Sun and `b` of the Earth and their angular separation `c`: `ν = 1` if `c ≥ a
-/// + b`, `ν = 0` if `c ≤ b - a` (umbra), `ν = 1 - b²/a²` if `c ≤ a - b` (annular eclipse), otherwise `ν = 1 -
-/// A/(π a²)` with the overlap `A` of two flat discs. The result is within 2e-3 of ray tracing to a sphere. `ν
-/// = 0` inside the Earth.
+/// the apparent radii `a` of the Sun and `b` of the Earth and their angular separation `c`: `ν = 1` if
+/// `c ≥ a + b`, `ν = 0` if `c ≤ b - a` (umbra), `ν = 1 - b²/a²` if `c ≤ a - b` (annular eclipse), otherwise
+/// `ν = 1 - A/(π a²)` with the overlap `A` of two flat discs. The result is within 2e-3 of ray tracing to a
+/// sphere. Inside the Earth, `ν = 0`.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.4.2.
 pub fn sunlit(r: &Vector3<f64>, sun: &Vector3<f64>, radius: f64) -> f64 {

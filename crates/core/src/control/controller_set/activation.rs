@@ -12,7 +12,23 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// Evaluates the goals, and stops and starts the controls for which this is due at `t`, s. Returns true
     /// if the set of active controls changed.
     pub(super) fn activate(&mut self, t: f64, model: &Model) -> Result<bool, ControlError> {
-        let Self { controls, states, same_instant, events, .. } = self;
+        let mut has_changed = self.stop_due(t);
+        for i in 0..self.controls.len() {
+            if self.states[i].is_waiting() && self.is_due(i, t) {
+                self.start(i, t)?;
+                has_changed = true;
+            }
+        }
+        if has_changed {
+            self.check_running(model, t)?;
+        }
+        Ok(has_changed)
+    }
+
+    /// Evaluates the goals at `t`, s, and stops the controls that end there. Returns true if the set of active
+    /// controls changed.
+    fn stop_due(&mut self, t: f64) -> bool {
+        let Self { controls, states, same_instant, .. } = self;
         let now = t + *same_instant;
         let mut has_changed = false;
         for (control, state) in controls.iter().zip(states.iter_mut()) {
@@ -31,48 +47,52 @@ impl<S: Scalar> ControllerSet<'_, S> {
                 has_changed = true;
             }
         }
-        for i in 0..controls.len() {
-            let is_due = match controls[i].begin {
-                Begin::At(start) => start <= now,
-                Begin::AfterEvent(event) => events.contains(&event),
-                Begin::After(before) => {
-                    let before = &states[before].memory;
-                    before.phase == Phase::Over || before.outcome.is_decided()
-                }
-            };
-            if states[i].is_waiting() && is_due {
-                match controls[i].begin {
-                    Begin::At(_) => {}
-                    Begin::After(before) => states[before].memory.phase = Phase::Over,
-                    // because the time of an event is not known in advance, the control replaces those that
-                    // drive its joints
-                    Begin::AfterEvent(_) => {
-                        let drives =
-                            |other: &Control| other.joints.iter().any(|j| controls[i].joints.contains(j));
-                        let replaced =
-                            states.iter_mut().zip(controls.iter()).filter(|(_, other)| drives(other));
-                        replaced
-                            .filter(|(state, _)| state.is_running())
-                            .for_each(|(state, _)| state.memory.phase = Phase::Over);
-                    }
-                }
-                let started = states[i].start(&controls[i], t, &self.q[BASE_NQ..]);
-                let Control { law, joints, .. } = &mut controls[i];
-                if let Some(law) = law.external_mut() {
-                    law.start(joints.iter().map(|&j| self.q[BASE_NQ + j]));
-                }
-                started.map_err(|source| ControlError::Reference { time: t, source })?;
-                has_changed = true;
+        has_changed
+    }
+
+    /// Returns true if the condition under which control `i` starts is met at `t`.
+    fn is_due(&self, i: usize, t: f64) -> bool {
+        match self.controls[i].begin {
+            Begin::At(start) => start <= t + self.same_instant,
+            Begin::AfterEvent(event) => self.events.contains(&event),
+            Begin::After(before) => {
+                let before = &self.states[before].memory;
+                before.phase == Phase::Over || before.outcome.is_decided()
             }
         }
-        if has_changed {
-            let running = |i: &usize| states[*i].is_running();
-            for i in (0..controls.len()).filter(running) {
-                for j in (0..i).filter(running) {
-                    check_disjoint(&controls[j], &controls[i], model, t)?;
-                }
+    }
+
+    /// Starts control `i` at `t`, and stops the controls that it replaces.
+    fn start(&mut self, i: usize, t: f64) -> Result<(), ControlError> {
+        let Self { controls, states, .. } = self;
+        match controls[i].begin {
+            Begin::At(_) => {}
+            Begin::After(before) => states[before].memory.phase = Phase::Over,
+            // because the time of an event is not known in advance, the control replaces those that drive its joints
+            Begin::AfterEvent(_) => {
+                let drives = |other: &Control| other.joints.iter().any(|j| controls[i].joints.contains(j));
+                let replaced = states.iter_mut().zip(controls.iter()).filter(|(_, other)| drives(other));
+                replaced
+                    .filter(|(state, _)| state.is_running())
+                    .for_each(|(state, _)| state.memory.phase = Phase::Over);
             }
         }
-        Ok(has_changed)
+        let started = states[i].start(&controls[i], t, &self.q[BASE_NQ..]);
+        let Control { law, joints, .. } = &mut controls[i];
+        if let Some(law) = law.external_mut() {
+            law.start(joints.iter().map(|&j| self.q[BASE_NQ + j]));
+        }
+        started.map_err(|source| ControlError::Reference { time: t, source })
+    }
+
+    /// Checks that no two running controls drive the same joint.
+    fn check_running(&self, model: &Model, t: f64) -> Result<(), ControlError> {
+        let running = |i: &usize| self.states[*i].is_running();
+        for i in (0..self.controls.len()).filter(running) {
+            for j in (0..i).filter(running) {
+                check_disjoint(&self.controls[j], &self.controls[i], model, t)?;
+            }
+        }
+        Ok(())
     }
 }
