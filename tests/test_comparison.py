@@ -224,7 +224,7 @@ def test_a_folder_whose_robot_file_is_missing_is_compared_with_a_note(tmp_path: 
     oo.run(other, tmp_path / "out")
     Path(other["robot"]["urdf"]).unlink()
     compared = oo.compare(one, tmp_path / "out")
-    assert any("cannot check whether their joints are equal" in note for note in compared.notes)
+    assert any("cannot check whether the joints of both robots are equal" in note for note in compared.notes)
 
 
 def test_the_row_after_an_impact_is_compared() -> None:

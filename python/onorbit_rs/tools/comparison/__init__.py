@@ -1,4 +1,4 @@
-"""Compares two runs: how much they differ and when they diverge."""
+"""Compares two runs: the size of their differences, and the time at which they diverge."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from onorbit_rs.tools.comparison.world import EventDifference, WorldComparison, 
 __all__ = ["TOLERANCE", "Comparison", "Difference", "EventDifference", "WorldComparison", "compare"]
 
 TOLERANCE = 1e-6
-"""Difference allowed, relative to the largest value or to 1 in the unit of the quantity."""
+"""Allowed difference, relative to the largest value of a quantity or to 1 if that is larger."""
 
 
 def compare(
@@ -27,7 +27,7 @@ def compare(
     ----------
     a, b : str, path, mapping, Scenario or Run
         The output folder of a run, a :class:`onorbit_rs.Run`, or a scenario as accepted by
-        :func:`onorbit_rs.run`, which is then run. Default of ``b``: the scenario of ``a`` on the other
+        :func:`onorbit_rs.run`, which is simulated. Default of ``b``: the scenario of ``a`` on the other
         engine (MuJoCo or the built-in equations of motion).
     tolerance : float
         Runs diverge where a difference exceeds this fraction of the quantity's largest value, or of 1 in
@@ -49,7 +49,7 @@ def compare(
     InputError
         If the tolerance is not positive and finite.
     DtypeError
-        If an argument has another type, such as a trace.
+        If an argument has an unsupported type, such as a trace.
     OnOrbitError
         As raised by :func:`onorbit_rs.run`, and for folders without a run.
     """
@@ -68,7 +68,7 @@ def compare(
         names = ", ".join(world.systems) if isinstance(world, RecordedWorld) else ""
         raise CompareError(
             f"{world.name} has the systems {names} and {other.name} has one robot; compare two runs with the "
-            "same systems, or two of one robot",
+            "same systems, or two runs of one robot",
             name="systems", got=1, expected=names,
         )  # fmt: skip
     return compared_robots(first, second, allowed, settings)

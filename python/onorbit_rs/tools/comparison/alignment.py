@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     Rows = dict[str, Floats]
 
 SAME_INSTANT = 1e-9
-"""Instants closer than this fraction of the mean step are equal."""
+"""Largest difference, as a fraction of the mean step, of two instants that are considered equal."""
 
 
 def aligned_rows(a: Recorded, b: Recorded) -> tuple[Rows, Rows, Floats, list[str]]:
     """Return the rows of both runs at common instants, these instants, and remarks.
 
-    Rows at equal instants are used unchanged. If these are fewer than half of the rows of the run with fewer
-    rows, the second run is interpolated at the instants of the first.
+    Rows at equal instants are used unchanged. If fewer than half of the rows of the shorter trace have equal
+    instants, the second run is interpolated at the instants of the first run.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def _equal_instants(time_a: Floats, time_b: Floats) -> tuple[NDArray[np.intp], N
 
 
 def _interpolated(rows: Rows, at: Floats) -> Rows:
-    """Interpolate quaternions by slerp, orbits by cubics, others linearly; torques are held constant."""
+    """Interpolate quaternions by slerp, orbits by cubics and the rest linearly; torques are held constant."""
     time = rows["time"]
     if len(time) == 1:
         return {name: np.repeat(values, len(at), axis=0) for name, values in rows.items()}
@@ -115,7 +115,7 @@ def _interpolated(rows: Rows, at: Floats) -> Rows:
 def _hermite(
     first: Floats, second: Floats, rate_a: Floats, rate_b: Floats, s: Floats, step: Floats
 ) -> Floats:
-    """Return the cubic Hermite interpolation; a line would deviate by `v² h² / 8 r`, 16 km for 120 s."""
+    """Return the cubic Hermite interpolation; the error of a line is `v² h² / 8 r`, 16 km for 120 s."""
     weight = s * s * (3.0 - 2.0 * s)
     rates = s * (1.0 - s) * ((1.0 - s) * rate_a - s * rate_b)
     return first + weight * (second - first) + step * rates

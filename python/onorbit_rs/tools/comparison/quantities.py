@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 Pick = Callable[["Rows"], "Floats"]
 
 Quantity = tuple[str, str, str, Pick]
-"""Name, unit, required column, and the function that picks the entries compared."""
+"""Name, unit, required column, and the function that selects the compared entries."""
 
 
 def _column(name: str, column: str, part: str | None = None) -> Quantity:
@@ -35,7 +35,7 @@ def _pose(name: str, column: str, unit: str) -> Quantity:
     return name, unit, column, lambda rows: rows[column]
 
 
-# the difference of two quaternions is the angle between them
+# the difference between two attitudes is the angle between their quaternions
 _QUANTITIES: tuple[Quantity, ...] = (
     _column("base position", "q", "position"),
     _pose("base attitude", "base_quat", "rad"),
@@ -50,7 +50,7 @@ _QUANTITIES: tuple[Quantity, ...] = (
     _column("kinetic energy", "kinetic_energy"),
 )
 _BY_ENTRY = ("joints", "joint rates", "joint torques")
-"""Quantities whose difference is the largest entry over the joints, not the length of the vector."""
+"""Quantities whose difference is the largest entry over the joints instead of the norm of the vector."""
 _ROUNDING = 64.0 * np.finfo(np.float64).eps
 """Rounding error of an inertial position, relative to the distance from the planet: 0.1 µm in low orbit."""
 
@@ -58,10 +58,10 @@ _ROUNDING = 64.0 * np.finfo(np.float64).eps
 def differences_in_quantities(
     a: Rows, b: Rows
 ) -> tuple[list[tuple[str, str, Floats, float, float]], list[str]]:
-    """Return name, unit, difference (T,), scale and error of each quantity, and notes on missing ones.
+    """Return name, unit, difference (T,), scale and error of each quantity, and notes on missing quantities.
 
     The scale is the largest value; for inertial positions it is the robot's distance from its reference,
-    because the orbital radius is no measure of how well two robots agree. The error is that of interpolation.
+    because the much larger orbital radius would hide differences. The error is that of interpolation.
     """
     found, missing = [], []
     for name, unit, column, pick in _QUANTITIES:
@@ -85,7 +85,7 @@ def differences_in_quantities(
 
 def _measured(name: str, column: str, first: Floats, second: Floats) -> tuple[Floats, float]:
     if column.endswith("quat"):
-        return angle_between(first, second), 0.0  # angles have no scale
+        return angle_between(first, second), 0.0  # angles are compared absolutely
     size = _largest_entry if name in _BY_ENTRY else _length
     with np.errstate(over="ignore", invalid="ignore"):  # diverged runs contain huge values
         sizes = np.concatenate([size(first), size(second)])

@@ -1,4 +1,4 @@
-"""Columns of a run to compare, read from its folder or from a new run."""
+"""Columns of a run to be compared, read from a folder, a run in memory, or a new simulation."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord
 
 Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | WorldScenario | Run
-"""The output folder of a run, a scenario as accepted by :func:`onorbit_rs.run`, or a run."""
+"""Output folder of a run, scenario as accepted by :func:`onorbit_rs.run`, or :class:`onorbit_rs.Run`."""
 
 
 @dataclass(frozen=True)
@@ -37,9 +37,9 @@ class Recorded:
     columns: dict[str, NDArray[np.float64]]
     scenario: Scenario
     run: Run | None = None
-    """The run, if it is in memory."""
+    """The run if it is in memory; None for a folder."""
     fingerprint: str | None = None
-    """Fingerprint of the robot at the time of the run; None for runs of earlier versions."""
+    """Fingerprint of the robot at the time of the run; None for runs by earlier versions."""
     system: str | None = None
     """Name of the system in a run with several systems."""
 
@@ -61,11 +61,11 @@ class Recorded:
             model = self.run.model if self.system is None else self.run.models[self.system]
             return list(model.joint_names)
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # these warnings were shown during the run
+            warnings.simplefilter("ignore")  # these warnings were issued during the run
             model = self.scenario.robot.build(self.scenario)
         if has_changed(model, self.fingerprint):
             raise ModelError(
-                f"{self.robot} was changed since {self.name} was recorded; restore it or run the "
+                f"{self.robot} was changed since {self.name} was recorded; restore the robot or run the "
                 "scenario again",
                 path=str(self.robot),
             )
@@ -88,7 +88,7 @@ def recorded(source: Source) -> Recorded | RecordedWorld:
     Raises
     ------
     DtypeError
-        If the source has another type, such as a trace.
+        If the source has an unsupported type, such as a trace.
     NotFoundError, ReadError
         If the folder contains no run, or its files cannot be read or were changed.
     OnOrbitError

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Difference:
-    """Difference of two runs in one quantity; ``values`` (T,) at the compared instants, in ``unit``."""
+    """Difference between two runs in one quantity: ``values`` (T,) in ``unit``, at the compared instants."""
 
     name: str
     unit: str
@@ -37,24 +37,24 @@ class Difference:
     """Time of the largest difference, s."""
     final: float
     allowed: float
-    """Difference allowed: the tolerance times the scale (at least 1), plus the error of interpolated rows.
+    """Allowed difference: the tolerance times the scale (at least 1), plus the interpolation error.
 
     The scale is the largest finite value of both runs; for inertial positions, the largest distance from
     the reference.
     """
     parts_at: float | None
-    """First time at which the difference exceeds ``allowed``, s; None if it never does."""
+    """First time at which the difference exceeds ``allowed``, s; None if this never happens."""
 
 
 @dataclass(frozen=True)
 class Comparison(Verdict):
-    """Differences of run ``b`` from run ``a``."""
+    """Differences between run ``b`` and run ``a``."""
 
     time: Floats
     """Instants at which the runs are compared, (T,), s."""
     differences: tuple[Difference, ...]
     notes: tuple[str, ...]
-    """Differing robots and settings, how times were matched, and quantities that were not compared."""
+    """Notes on differing robots and settings, on interpolated rows, and on quantities not compared."""
 
     @property
     def parts_at(self) -> float | None:
@@ -116,7 +116,7 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
     if a.columns["q"].shape[1] != b.columns["q"].shape[1]:
         joints = [run.columns["q"].shape[1] - BASE_NQ for run in (a, b)]
         raise CompareError(
-            f"the robot of {a.name} has {count(joints[0], 'joint', 'joints')} and that of {b.name} "
+            f"the robot of {a.name} has {count(joints[0], 'joint', 'joints')}, but that of {b.name} has "
             f"{joints[1]}; only runs of the same robot can be compared",
             name="robot", got=joints[1], expected=joints[0],
         )  # fmt: skip
@@ -130,12 +130,12 @@ def _same_robot(a: Recorded, b: Recorded) -> list[str]:
     try:
         names = a.joint_names(), b.joint_names()
     except OnOrbitError as error:  # the robot's file is missing, but the rows can be compared
-        return [*notes, f"cannot check whether their joints are equal: {error}"]
+        return [*notes, f"cannot check whether the joints of both robots are equal: {error}"]
     if names[0] != names[1]:
         joints_a, joints_b = map(", ".join, names)
         raise CompareError(
-            f"the robot of {a.name} has the joints {joints_a} and that of {b.name} {joints_b}; only runs of "
-            "the same robot can be compared",
+            f"the robot of {a.name} has the joints {joints_a}, but that of {b.name} has {joints_b}; only "
+            "runs of the same robot can be compared",
             name="robot", got=names[1], expected=names[0],
         )  # fmt: skip
     return notes

@@ -19,13 +19,13 @@ PARTS = (
     "controllers",
     "reference",
 )
-"""Sections of a scenario that are compared, besides the step settings."""
+"""Sections of a scenario that are compared, in addition to the settings of the integrator."""
 MOST = 6
-"""Number of differences that are listed individually."""
+"""Largest number of differences that are listed individually."""
 
 
 def differing_settings(a: Scenario | WorldScenario, b: Scenario | WorldScenario) -> list[str]:
-    """Return a note for each compared setting that differs, and the number of those beyond :data:`MOST`."""
+    """Return a note for each differing setting, at most :data:`MOST`, and the number of further ones."""
     first, second = (_compared_settings(scenario) for scenario in (a, b))
     found = [f"{where} differs: {_short(one)} and {_short(other)}"
              for where, one, other in _differences("", first, second)]  # fmt: skip
@@ -46,7 +46,7 @@ def _compared_settings(scenario: Scenario | WorldScenario) -> dict[str, Any]:
 
 
 def _differences(where: str, a: Any, b: Any) -> Iterator[tuple[str, Any, Any]]:
-    """Yield path and values of the entries that differ."""
+    """Yield the path and both values of every entry that differs."""
     if isinstance(a, dict) and isinstance(b, dict) and a.get("kind") == b.get("kind"):
         for name in (*a, *(name for name in b if name not in a)):
             yield from _differences(f"{where}.{name}" if where else name, a.get(name), b.get(name))

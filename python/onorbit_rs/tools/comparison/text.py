@@ -1,4 +1,4 @@
-"""Text of a comparison."""
+"""Text of a comparison of two runs, as printed by ``onorbit compare``."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ EVENTS_HEAD = ("event", "quantity", "first run", "second run", "difference", "al
 
 
 def as_text(compared: Comparison) -> str:
-    """Return a line for each quantity, the notes and the verdict."""
+    """Return the text of a comparison: a line for each quantity, the notes and the verdict."""
     lines = [f"{compared.b} against {compared.a}", *_quantities(compared)]
     lines += [f"note: {note}" for note in compared.notes]
     return "\n".join(map(printable, (*lines, _verdict(compared, rows_of(compared)))))
 
 
 def as_world_text(compared: WorldComparison) -> str:
-    """Return the lines of each system, of the events, the notes and the verdict."""
+    """Return the text of a comparison of worlds: systems, events, notes and verdict."""
     lines = [f"{compared.b} against {compared.a}"]
     for name, system in compared.systems.items():
         lines += [f"{name}:", *_quantities(system), *(f"note: {note}" for note in system.notes)]
@@ -37,20 +37,20 @@ def as_world_text(compared: WorldComparison) -> str:
 
 
 def rows_of(compared: Comparison) -> str:
-    """Return the number of compared rows and their times in words."""
+    """Return a description of the compared rows: their number and the first and last time."""
     rows = count(len(compared.time), "row", "rows")
     return f"{rows} from {compared.time[0]:g} to {compared.time[-1]:g} s"
 
 
 def rows_of_world(compared: WorldComparison) -> str:
-    """Return what was compared of a world in words."""
+    """Return a description of the compared systems, rows and events of a world."""
     names = ", ".join(f"{name} ({rows_of(system)})" for name, system in compared.systems.items())
     events = len({event.event for event in compared.events})
     return f"{names}; {count(events, 'event', 'events')}"
 
 
 def event_cells(event: EventDifference) -> tuple[str, ...]:
-    """Return the cells of the table of the events."""
+    """Return the cells of an event's row in the table of the events."""
     values = ("did not happen" if value is None else f"{value:.6g}" for value in (event.a, event.b))
     return (
         event.event, event.quantity, *values, f"{event.difference:.1e}", f"{event.allowed:.1e}", event.unit
@@ -68,7 +68,7 @@ def _quantities(compared: Comparison) -> Iterator[str]:
 
 
 def _aligned(table: Sequence[tuple[str, ...]], left: int) -> Iterator[str]:
-    """Yield the lines of a table; the first columns and the last one are left-aligned."""
+    """Yield the lines of a table; the first ``left`` columns and the last column are left-aligned."""
     widths = [max(map(len, column)) for column in zip(*table, strict=True)]
     for row in table:
         padded = [

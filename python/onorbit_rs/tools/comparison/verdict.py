@@ -37,12 +37,12 @@ class Verdict(ABC):
 
 
 def entry(entries: Mapping[str, Entry], name: str, kind: str) -> Entry:
-    """Return the entry with a name; ``kind`` says what the entries are.
+    """Return the entry with a name; ``kind`` describes the entries in messages.
 
     Raises
     ------
     CompareError
-        If there is no such entry; lists the names.
+        If no entry has this name; the message lists the known names.
     """
     if name not in entries:
         known = ", ".join(entries)

@@ -22,38 +22,38 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class EventDifference:
-    """Difference of two runs in one quantity of an event."""
+    """Difference between two runs in one quantity of an event."""
 
     event: str
     """Name of the event."""
     quantity: str
     unit: str
     a: float | None
-    """Value in the first run, the magnitude of a vector; None if the event did not happen in it."""
+    """Value (for vectors, the magnitude) in the first run; None if the event did not happen in that run."""
     b: float | None
     difference: float
-    """Difference, of vectors the magnitude of it; infinite if the event happened in one run only."""
+    """Difference (for vectors, its magnitude); infinite if the event happened in only one run."""
     allowed: float
-    """The tolerance times the larger value, or times 1 in the unit if that is larger."""
+    """Allowed difference: the tolerance times the larger value, or times 1 in the unit if that is larger."""
     time: float
-    """Time of the event in the run in which it is earlier, s."""
+    """Time of the event, s, in the run in which the event happened earlier."""
 
     @property
     def agrees(self) -> bool:
-        """True if the difference is allowed."""
+        """True if the difference does not exceed ``allowed``."""
         return self.difference <= self.allowed
 
 
 @dataclass(frozen=True)
 class WorldComparison(Verdict):
-    """Differences of run ``b`` of a world from run ``a``."""
+    """Differences between run ``b`` and run ``a`` of a world."""
 
     systems: Mapping[str, Comparison]
-    """Comparison of each system."""
+    """Comparison of each system, by name."""
     events: tuple[EventDifference, ...]
     """Differences of the events, five quantities each."""
     notes: tuple[str, ...]
-    """Differing settings, and events that were not compared."""
+    """Notes on differing settings and on events that were not compared."""
 
     @property
     def parts_at(self) -> float | None:
@@ -87,7 +87,7 @@ def compared_worlds(
     Raises
     ------
     CompareError
-        If their systems have different names, or as for the runs of one robot.
+        If the systems of the runs have different names, or as for :func:`compared_robots`.
     """
     if set(a.systems) != set(b.systems):
         names = [", ".join(world.systems) for world in (a, b)]
@@ -111,14 +111,14 @@ Pair = tuple["EventRecord | None", "EventRecord | None"]
 
 
 def _pairs(a: Sequence[EventRecord], b: Sequence[EventRecord]) -> Iterator[tuple[str, Pair]]:
-    """Yield the records of each event, in the order of the first run; an event happens once in a run."""
+    """Yield the name of each event and its records in both runs, in the order of the first run."""
     by_name = [{record.name: record for record in records} for records in (a, b)]
     for name in dict.fromkeys([*by_name[0], *by_name[1]]):
         yield name, (by_name[0].get(name), by_name[1].get(name))
 
 
 def _differences(name: str, pair: Pair, tolerance: float) -> Iterator[EventDifference]:
-    """Yield the differences of an event; only that of the time if it happened in one run only."""
+    """Yield the differences of an event; only the time is compared if it happened in one run only."""
     first, second = pair
     if first is None or second is None:
         a, b = (None if record is None else record.time for record in pair)
@@ -136,7 +136,7 @@ def _differences(name: str, pair: Pair, tolerance: float) -> Iterator[EventDiffe
 
 
 def _quantities(record: EventRecord) -> list[tuple[str, str, Any]]:
-    """Return name, unit and value of the compared quantities, vectors in W."""
+    """Return name, unit and value of the compared quantities of an event; vectors are in axes of W."""
     impulse = np.asarray(record.impulse)
     return [
         ("time", "s", np.array([record.time])),

@@ -32,7 +32,7 @@ def evaluate(value: object) -> float:
     Raises
     ------
     QuantityError
-        If it is anything else, or the result is not a finite number.
+        If the value is neither a number nor such text, or the result is not a finite number.
     """
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return _finite(value, float(value) if abs(value) < 1e308 else math.inf)
@@ -49,7 +49,7 @@ def evaluate(value: object) -> float:
 
 
 class _Arithmetic(Evaluator):
-    """Arithmetic of floats only, so that powers are bounded."""
+    """Evaluates arithmetic with floats only, so that the size of powers is bounded."""
 
     unary: ClassVar = {ast.UAdd: operator.pos, ast.USub: operator.neg}
     binary: ClassVar = {

@@ -1,6 +1,6 @@
 """Converts YAML files of OnOrbitROS to a scenario, with a note on the conversion of every line.
 
-Sources on the files and on the nodes that read them: github.com/OnOrbitROS/Simulation (``Orbit.cpp``,
+Sources for the file formats and the ROS nodes: github.com/OnOrbitROS/Simulation (``Orbit.cpp``,
 ``orbit_publisher_pkg/config``) and github.com/OnOrbitROS/robot_torso (``talos_control``).
 """
 
@@ -27,7 +27,7 @@ DURATION = 60.0
 
 @dataclass(frozen=True)
 class Conversion:
-    """Scenario that results from a conversion, with notes."""
+    """Scenario that results from a conversion, with notes on the converted lines."""
 
     scenario: dict[str, Any]
     """Plain data that :func:`onorbit_rs.scenario.load` accepts."""
@@ -43,17 +43,17 @@ def convert(
     keep_going: bool = False,
     beside: str | os.PathLike[str] | None = None,
 ) -> Conversion:
-    """Return one scenario from files of OnOrbitROS: orbit or fixed pose, controllers and robot, in any order.
+    """Return a scenario from files of OnOrbitROS: orbit or fixed pose, controllers and robot, in any order.
 
     Parameters
     ----------
     paths : sequence of paths
         YAML files, and at most one URDF or xacro.
     controller : str, optional
-        Name of the controller to convert, if a file has several. Default: all of them if they drive
-        different joints, otherwise the first.
+        Name of the controller to convert, if a file has several. Default: all controllers if they drive
+        different joints, otherwise the first controller.
     keep_going : bool
-        Whether an unknown key gives a note instead of an error.
+        Whether an unknown key causes a note instead of an error.
     beside : path, optional
         Folder of the new scenario; the path of the robot is relative to it.
 
@@ -66,7 +66,7 @@ def convert(
     NotFoundError, ReadError
         If a file is missing or cannot be read.
     ScenarioError
-        If keys are unknown, values are invalid or files are inconsistent; names file and line.
+        If keys are unknown, values are invalid or files are inconsistent; the message contains file and line.
     InputError
         If no file or more than one robot is given.
     """
@@ -100,7 +100,7 @@ def convert(
         comments |= source.comments
     if {"controller", "controllers"} & set(scenario) and not robots:
         raise scenario_error(
-            "a controller requires a robot; also give its URDF or xacro file", files[0], None
+            "a controller requires a robot; also give the robot's URDF or xacro file", files[0], None
         )
     scenario.setdefault("simulation", {"duration": DURATION})
     notes.sort(key=lambda note: (files.index(note.file), note.line or 0))
@@ -108,7 +108,7 @@ def convert(
 
 
 def _sources(files: Sequence[Path], keep_going: bool, notes: list[Note]) -> list[Source]:
-    """Return every mapping with parameters inside the namespaces and the wrappers of ROS 2."""
+    """Return every mapping with parameters in the files, without namespaces and ROS 2 wrappers."""
     found: list[Source] = []
     for file in files:
         data, lines = read_yaml(file)
@@ -122,7 +122,7 @@ def _sources(files: Sequence[Path], keep_going: bool, notes: list[Note]) -> list
 
 
 def _unwrapped(source: Source) -> list[Source]:
-    """Return the mappings inside a namespace, which has only mappings; controllers stay together."""
+    """Return the mappings inside a ROS namespace; a mapping with controllers is returned as a whole."""
     inner = source.data.values()
     is_namespace = all(isinstance(part, dict) for part in inner) and not _is_known(source.data)
     if not is_namespace or any(CONTROLLER_MARKS & set(part) or "type" in part for part in inner):

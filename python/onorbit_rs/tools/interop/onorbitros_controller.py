@@ -21,7 +21,7 @@ KEYS = (
 
 
 def is_of_task(part: dict[str, Any]) -> bool:
-    """Return whether a controller moves an end effector."""
+    """Return whether a controller is a task-space controller, which moves an end effector."""
     return "end_effector_link" in part or "kp_value" in part
 
 
@@ -32,9 +32,9 @@ def joints_of(part: dict[str, Any]) -> list[str]:
 
 
 def read_task_law(source: Source, law: Location) -> None:
-    """Convert a controller to ``tool``, ``reference`` and a law, whose keys are at ``law``.
+    """Convert a controller to ``tool``, ``reference`` and the keys of a control law.
 
-    ``law`` is empty for one of several controllers.
+    ``law`` is the location of the keys of the law; it is empty for an entry of ``controllers``.
     """
     source.refuse_unknown(KEYS)
     data = source.data
@@ -57,12 +57,14 @@ def read_task_law(source: Source, law: Location) -> None:
             source.note("joints", "no meaning", text)
         else:
             source.put(("joints",), data["joints"], "joints")
-            source.note("joints", "understood", "the joints that it drives")
+            source.note("joints", "understood", "the joints that the controller drives")
     if "base_link" in data:
         source.note("base_link", "no meaning", "the robot's root link is its free-floating base")
     if "goal_tolerance" in data:
         source.number("goal_tolerance")
-        source.note("goal_tolerance", "no meaning", "the law has no goal; the trace contains the errors")
+        source.note(
+            "goal_tolerance", "no meaning", "the control law has no goal; the trace contains the errors"
+        )
     _trajectory(source)
 
 

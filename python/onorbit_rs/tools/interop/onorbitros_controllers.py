@@ -1,4 +1,4 @@
-"""Selects the controllers of an OnOrbitROS namespace that become those of a scenario."""
+"""Selects the controllers of an OnOrbitROS namespace that are converted."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
 
 def read_controllers(source: Source, wanted: str | None) -> None:
-    """Convert the controller ``wanted``; if None, all if they drive different joints, else the first.
+    """Convert the controller ``wanted``; if None, all that can run together, otherwise the first.
 
-    A single controller of an end effector becomes ``tool``, ``controller`` and ``reference``; others become
-    ``controllers``.
+    A single controller of an end effector becomes ``tool``, ``controller`` and ``reference``; other or
+    several controllers become ``controllers``.
     """
     if is_of_task(source.data):
         read_task_law(source, ("controller",))
@@ -31,7 +31,9 @@ def read_controllers(source: Source, wanted: str | None) -> None:
         )  # fmt: skip
     if wanted is not None and wanted not in known:
         raise source.fail(known[0], f"no controller is named {wanted!r}{did_you_mean(wanted, known)}")
-    chosen, why = ([wanted], "another was chosen with --controller") if wanted else _together(parts, known)
+    chosen, why = (
+        ([wanted], "another controller was chosen with --controller") if wanted else _together(parts, known)
+    )
     for name in source.data:
         if name in chosen:
             source.note(name, "understood", "a controller" if len(chosen) > 1 else "the controller")
@@ -72,7 +74,7 @@ def _read_several(source: Source, names: list[str]) -> None:
             settings = source.result.setdefault("simulation", {})
             settings["duration"] = max(run["duration"], settings.get("duration", 0.0))
         for at, text in inside.comments.items():
-            if at[0] != "simulation":  # each part of an entry is on one line
+            if at[0] != "simulation":  # each key of an entry is on one line
                 source.comments.setdefault(("controllers", len(entries), at[0]), text)
         entries.append(inside.result)
     source.result["controllers"] = entries

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from onorbit_rs.tools.interop.source import Source
 
 MISSPELT = {"semi_major_axix": "semi_major_axis", "rate_argument_Of_perigee": "rate_argument_of_perigee"}
-"""Misspelt keys in the files of OnOrbitROS, which its node does not read."""
+"""Correct names of misspelt keys in the files of OnOrbitROS, which its node does not read."""
 
 DEFAULTS = {
     "semi_major_axis": 12000.0,
@@ -22,7 +22,7 @@ DEFAULTS = {
     "argument_of_perigee_ini": 0.0,
     "mean_anomaly_ini": math.radians(60.0),
 }
-"""Defaults of its node for parameters that are missing or text, km and rad."""
+"""Defaults of the OnOrbitROS node, km and rad, for parameters that are missing or text."""
 
 _KEYS = {
     "semi_major_axis": "semi_major_axis",
@@ -77,7 +77,7 @@ def read_orbit(source: Source) -> None:
 
 
 def _element(source: Source, name: str, key: str | None) -> float:
-    """Return the value of an element in the unit of OnOrbitROS; raise an error if another unit is likely."""
+    """Return an element in the unit of OnOrbitROS; raise an error for values that suggest another unit."""
     default = DEFAULTS[name]
     if key is None:
         source.note(name, "corrected", f"not given: OnOrbitROS' default, {default:.7g}")
@@ -136,7 +136,7 @@ def _since_perigee(source: Source, a_m: float) -> float:
 
 
 def _date(source: Source, name: str) -> datetime | None:
-    """Return a date as mktime interprets struct tm: months from 0; a day may be 0, a year 124 or 2024."""
+    """Return a date, read like C's ``struct tm``: months count from 0, and years may count from 1900."""
     nested = source.data.get(name)
     parts: dict[str, object] = dict(nested) if isinstance(nested, dict) else {}
     if nested is not None and not isinstance(nested, dict):
@@ -168,7 +168,7 @@ def _date(source: Source, name: str) -> datetime | None:
 def read_fixed_pose(source: Source) -> None:
     """Convert a pose to ``orbit: {kind: fixed_frame}``.
 
-    Its position is in km, and its quaternion rotates the local frame to the inertial frame.
+    OnOrbitROS gives the position in km; the quaternion rotates the local frame to the inertial frame.
     """
     position = [source.number(f"pos_{axis}", 0.0) * 1e3 for axis in "xyz"]
     names = [f"orientation_{axis}" for axis in "xyzw"]

@@ -20,7 +20,7 @@ GAINS = ("p", "i", "d", "i_clamp")
 
 
 def is_pid(part: dict[str, Any]) -> bool:
-    """Return whether a controller is one of ``effort_controllers`` with gains."""
+    """Return whether a controller has gains and a type of ROS Control's ``effort_controllers``."""
     kind = str(part.get("type")).partition("effort_controllers/")[2]
     return kind in _INTERFACES and ("gains" in part or "pid" in part)
 
@@ -57,13 +57,13 @@ def read_pid(source: Source) -> None:
 
 
 def _gains_of(source: Source, key: str, joint: str) -> dict[str, float]:
-    """Return the gains of a joint; the default is zero, as in ROS Control."""
+    """Return the gains of a joint; missing gains are zero, as in ROS Control."""
     table = source.data[key]
     if key == "gains" and isinstance(table, dict):
         table = table.get(joint)
     if not isinstance(table, dict):
         raise source.fail(
-            key, f"has no gains for {joint}; give p, and those of i, d and i_clamp that are not zero"
+            key, f"has no gains for {joint}; give p and, unless they are zero, i, d and i_clamp"
         )
     inside = source.inside(key)
     if key == "gains":

@@ -1,4 +1,4 @@
-"""A mapping in an OnOrbitROS file, the scenario part converted from it, and notes on its lines."""
+"""A mapping in an OnOrbitROS file, the part of a scenario converted from it, and notes on its lines."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Source:
         return scenario_error(message, self.file, self.lines.get(at), dotted(at))
 
     def refuse_unknown(self, known: Sequence[str]) -> None:
-        """Raise an error for keys that OnOrbitROS does not have; with ``keep_going``, add a note instead."""
+        """Raise an error for keys unknown to OnOrbitROS; with ``keep_going``, add a note instead."""
         for key in self.data:
             if key in known:
                 continue
@@ -88,7 +88,7 @@ class Source:
             raise self.fail(key, str(error)) from None
 
     def inside(self, key: str, *, apart: bool = False) -> Source:
-        """Return the mapping at ``key``; with ``apart``, it has its own ``result``."""
+        """Return the mapping at ``key``; if ``apart`` is True, its conversion has a separate ``result``."""
         result: dict[str, Any] = {} if apart else self.result
         comments: dict[Location, str] = {} if apart else self.comments
         at = (*self.at, key)

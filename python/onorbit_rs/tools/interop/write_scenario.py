@@ -22,7 +22,7 @@ def scenario_text(
     comments : mapping
         Comment of each entry, by its location.
     head : str
-        Comment at the top.
+        Comment at the top of the text.
     """
     lines = [f"# {line}".rstrip() for line in head.splitlines()]
     return "\n".join([*lines, "", *_lines(scenario, comments, ())]) + "\n"

@@ -1,4 +1,4 @@
-"""Drafts a first scenario for a robot, or for a robot that captures another, tested by trial runs."""
+"""Drafts a first scenario for a robot, or for a robot that captures another robot, and tests the draft."""
 
 from __future__ import annotations
 

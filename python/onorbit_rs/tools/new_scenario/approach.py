@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 _HANDLES = (r"grapple", r"handle", r"grasp", r"dock", r"berth")
-"""Patterns for names of frames by which a craft is captured, the most reliable first."""
+"""Patterns of the names of frames by which a spacecraft is captured, the most reliable first."""
 _FACING = 0.3
-"""Smallest cosine of the angle between the tool and the line from the handle to the target."""
+"""Smallest cosine of the angle between the tool axis and the line from the handle to the target."""
 _SEPARATION, _RECOIL = 0.02, 0.1
 """Speed of the craft after the release, m/s, unless the arm would recoil faster than ``_RECOIL``, m/s."""
 GAP_M = 0.1
@@ -36,21 +36,21 @@ class Approach:
     """Pose of the target relative to the tool, and the direction from which it approaches."""
 
     axis: list[float]
-    """Direction from the tool to the captured frame, axes of the tool."""
+    """Unit vector from the tool to the captured frame, in axes of the tool."""
     position: list[float]
     """Position of the target's base in the tool frame, m."""
     quaternion: list[float]
     """Attitude of the target's base relative to the tool, xyzw."""
     direction: list[float]
-    """Direction of the approach in axes of the target's base."""
+    """Unit vector of the approach in axes of the target's base."""
     angle: float
     """Angle between the tool and the captured frame, rad."""
     impulse: float
-    """Impulse of the spring, N s."""
+    """Impulse of the spring at the release, N s."""
 
 
 def find_handle(model: Model) -> str:
-    """Return the frame by which a craft is captured: one named as a handle, otherwise the base link."""
+    """Return the frame by which a spacecraft is captured: a frame named like a handle, or the base link."""
     names = list(dict.fromkeys([*model.frame_names, *model.body_names]))
     for words in _HANDLES:
         for name in names:
@@ -62,8 +62,8 @@ def find_handle(model: Model) -> str:
 def pointing(model: Model, frame: str) -> Floats:
     """Return the axis of a frame that points away from the robot, (3,), in axes of the frame.
 
-    It is the axis nearest to the line from the last joint to the frame, or from the centre of mass if no
-    joint moves the frame; z if both coincide.
+    The result is the coordinate axis nearest to the line from the last joint, or from the centre of mass if
+    no joint moves the frame, to the frame; it is z if the line has length zero.
     """
     q = model.neutral()
     pose = np.asarray(model.frame_pose(q, frame))
@@ -77,10 +77,10 @@ def pointing(model: Model, frame: str) -> Floats:
 
 
 def outwardness(model: Model, frame: str, q: Floats) -> Floats:
-    """Return how far a tool is, and points, away from the robot in each configuration, m.
+    """Return a measure (batch,), m, of how far a tool is from the robot and points away from the robot.
 
-    The distance from the centre of mass times the cosine of the angle between the tool and the line from
-    there, 0 if that is negative; ``q`` has the shape (batch, nq).
+    The measure is the tool's distance from the centre of mass, times the cosine of the angle between the tool
+    axis and the line from the centre of mass to the tool; 0 if negative. ``q`` has the shape (batch, nq).
     """
     axis, found = pointing(model, frame), []
     for row in q:
@@ -92,8 +92,8 @@ def outwardness(model: Model, frame: str, q: Floats) -> Floats:
 def approach(chaser: Model, tool: str, q: Floats, target: Model, handle: str, q_target: Floats) -> Approach:
     """Return a placement in which the target lies on the far side of its handle, as seen from the tool.
 
-    The axes of both frames are parallel if the target then lies in front of the tool; otherwise it is rotated
-    by a multiple of 90° about the axes of the tool.
+    If possible, the axes of both frames are parallel; otherwise the target is rotated by multiples of 90°
+    about the axes of the tool.
     """
     axis = pointing(chaser, tool)
     pose_wt = np.asarray(chaser.frame_pose(q, tool))
@@ -118,13 +118,13 @@ def approach(chaser: Model, tool: str, q: Floats, target: Model, handle: str, q_
 
 
 def _effective_mass(model: Model, frame: str, q: Floats, axis: Floats) -> float:
-    """Return `1 / (aᵀ J M⁻¹ Jᵀ a)` of the translation of a frame along the axis `a` in W, kg."""
+    """Return the effective mass `1 / (aᵀ J M⁻¹ Jᵀ a)`, kg, of a frame's motion along the axis `a` in W."""
     row = axis @ np.asarray(model.frame_jacobian(q, frame))[POSITION]
     return 1.0 / float(row @ np.linalg.solve(np.asarray(model.mass_matrix(q)), row))
 
 
 def _rotations() -> Iterator[Floats]:
-    """Yield the rotations that map axes to axes, apart from the identity."""
+    """Yield the rotations (3, 3), except the identity, that map coordinate axes to coordinate axes."""
     for order in itertools.permutations(range(3)):
         for signs in itertools.product((1.0, -1.0), repeat=3):
             rotation = _IDENTITY[list(order)] * np.array(signs)[:, None]
@@ -133,7 +133,7 @@ def _rotations() -> Iterator[Floats]:
 
 
 def _unit(vector: Floats) -> Floats:
-    """Return the direction of a vector; zero for one shorter than a millimetre."""
+    """Return the unit vector along a vector, or zero for a vector shorter than 1 mm."""
     length = float(np.linalg.norm(vector))
     direction: Floats = vector / length if length > 1e-3 else np.zeros(3)
     return direction

@@ -14,7 +14,7 @@ FULL_POSE_JOINTS = 6
 """Smallest number of joints that can control the full pose of a tool."""
 
 FINGER_JOINTS = 7
-"""Largest number of joints in a finger: a thumb has five, a finger with tendons two per knuckle."""
+"""Largest number of joints in a finger; a thumb has five, and tendon-driven fingers two per knuckle."""
 FINGER_FRACTION = 0.6
 """Largest extent of a finger as a fraction of the length of its arm."""
 
@@ -33,7 +33,7 @@ _NAMES = (
 
 @dataclass(frozen=True)
 class Arm:
-    """Tool frame and the joints between it and the base, in the order of the robot."""
+    """Tool frame, and the joints between base and tool in the order of the robot."""
 
     tool: str
     joints: list[str]
@@ -42,10 +42,9 @@ class Arm:
 def find_arm(model: Model, tool: str | None = None) -> Arm | None:
     """Return the arm that moves the frame ``tool``; without ``tool``, the arm of the most likely tool.
 
-    Frames are preferred by these criteria, in this order: six joints or more move them, they are on a link
-    that carries fingers, they have a common name for tools, more joints move them. Without ``tool``, frames
-    on fingers are considered only if no other frame moves. Returns None if nothing moves, or if no joint
-    moves ``tool``.
+    Tool frames are ranked by these criteria: six joints or more move the frame; its link carries fingers; its
+    name is common for tools; the number of joints that move the frame. Frames on fingers are considered only
+    if no other frame moves. Returns None if no frame moves, or if no joint moves ``tool``.
     """
     chains = _chains(model)
     fingers, palms = find_fingers(model)
@@ -71,10 +70,10 @@ def find_arm(model: Model, tool: str | None = None) -> Arm | None:
 
 
 def find_fingers(model: Model) -> tuple[set[str], set[str]]:
-    """Return the bodies that are parts of fingers, and those that carry the fingers (palms).
+    """Return the bodies that are parts of fingers, and the bodies that carry fingers (palms).
 
     A finger is a branch of at most ``FINGER_JOINTS`` joints, shorter than its arm and with fewer joints. A
-    palm carries fingers only: two or more, or a single one that is named as such (finger, gripper). The
+    palm carries only fingers: two or more, or a single finger whose name contains finger or gripper. The
     base is never a palm.
     """
     chains = _chains(model)
@@ -102,7 +101,7 @@ def find_fingers(model: Model) -> tuple[set[str], set[str]]:
 
 
 def _is_called_finger(joint: Joint) -> bool:
-    """Return True if the names indicate a joint that moves a finger as a whole, and not a gripper."""
+    """Return True if the names indicate a joint that moves a whole finger rather than a gripper."""
     name, parent, child = joint.name.lower(), joint.parent.lower(), joint.child.lower()
     is_finger = bool(_DRIVE.search(name) or _FINGER.search(child))
     return is_finger and not _WRIST.search(name) and not _PART_OF_FINGER.search(parent)
@@ -122,7 +121,7 @@ def _length(pose: list[list[float]]) -> float:
 
 
 def _travel(joint: Joint) -> float:
-    """Return the extent of a finger joint from the previous one, m: its offset and its range of travel."""
+    """Return the extent of a finger joint from the previous joint, m: its offset plus its range of travel."""
     is_sliding = joint.kind == "prismatic" and joint.lower is not None and joint.upper is not None
     travel = (joint.upper or 0.0) - (joint.lower or 0.0) if is_sliding else 0.0
     return _length(joint.pose) + travel

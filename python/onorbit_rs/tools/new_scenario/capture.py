@@ -1,4 +1,4 @@
-"""Drafts a scenario in which one craft captures another, and tests it."""
+"""Drafts and tests a scenario in which one spacecraft captures another."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class CaptureDraft:
-    """Text of a scenario with two craft, and the choices that it contains."""
+    """Text of a drafted scenario with two spacecraft, and the choices made for it."""
 
     text: str
     tool: str
     handle: str
     model: Model
-    """Both craft as one robot, at the pose of the start."""
+    """Both spacecraft as one robot, in their initial relative pose."""
     q: Floats
     """Initial configuration of ``model``, (nq,)."""
 
@@ -62,7 +62,7 @@ def draft_capture(
     Parameters
     ----------
     chaser, target : Source
-        The craft that captures and the craft that is captured.
+        The spacecraft that captures, and the spacecraft that is captured.
     tool : str, optional
         Frame of the chaser. Default: the most likely tool frame, or that of a handle.
     handle : str, optional
@@ -79,10 +79,10 @@ def draft_capture(
     Raises
     ------
     OnOrbitError
-        If a robot cannot be read, has no such frame, or no plan passes.
+        If a robot cannot be read or lacks a given frame, or if every trial run fails.
     """
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # they are repeated when the scenario is checked
+        warnings.simplefilter("ignore")  # the warnings are repeated when the scenario is checked
         models = chaser.model(), target.model()
         arm = find_arm(models[0], tool)
         tool = tool or (find_handle(models[0]) if arm is None else arm.tool)
@@ -109,7 +109,7 @@ def _stem(source: Source, model: Model) -> str:
 
 
 def _attached(models: tuple[Model, Model], plan: CapturePlan, q: list[Floats]) -> tuple[Model, Floats]:
-    """Return both craft as one robot at their initial pose, for a picture, and its configuration."""
+    """Return both spacecraft as one robot in their initial relative pose, and its configuration."""
     import numpy as np
 
     from onorbit_rs.common.coordinates import BASE_NQ
@@ -133,14 +133,15 @@ def _first_passing(models: tuple[Model, Model], plan: CapturePlan) -> CapturePla
         step = f"{1e3 * tried.time_step_s:g} ms"
         reasons.append(f"{reason} ({tried.integrator} with {step}, {100 * tried.speed:g} cm/s)")
     raise ScenarioError(
-        f"no plan for {plan.name} passed: {'; '.join(dict.fromkeys(reasons))}. Check inertias, damping and "
-        "limits with 'onorbit info'; change the files, or give other frames with --tool and --target-frame",
+        f"every trial run of {plan.name} failed: {'; '.join(dict.fromkeys(reasons))}. Check inertias, "
+        "damping and limits with 'onorbit info'; change the files, or give other frames with --tool and "
+        "--target-frame",
         file=None, path=None, line=None,
     )  # fmt: skip
 
 
 def _plans(models: tuple[Model, Model], plan: CapturePlan) -> Iterator[CapturePlan]:
-    """Yield plans with each speed, each with fixed, short fixed and adaptive steps."""
+    """Yield plans for every approach speed with fixed steps, short fixed steps and adaptive steps."""
     is_damped = any(fastest_damper(model)[1] > FAST for model in models)
     step = 1e-3 if plan.chaser_joints + plan.target_joints else 1e-2
     for speed in SPEEDS:
@@ -150,7 +151,7 @@ def _plans(models: tuple[Model, Model], plan: CapturePlan) -> Iterator[CapturePl
 
 
 def _failure(plan: CapturePlan, ends: float) -> str | None:
-    """Return why the trial run of a plan fails; None if it passes."""
+    """Return the reason why the trial run of a plan fails; None if the run passes."""
     try:
         built = build_world(WorldScenario(**yaml.safe_load(capture_text(plan, "trial"))))
         trace = cast("WorldTrace", built.simulation.run(plan.duration_s, progress=clock(ends)))

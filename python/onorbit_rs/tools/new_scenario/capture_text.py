@@ -1,4 +1,4 @@
-"""Text of a drafted scenario in which one craft captures another and releases it."""
+"""Text of a drafted scenario in which one spacecraft captures and releases another."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from onorbit_rs.tools.new_scenario.text import (
 )
 
 WITHIN_M = 0.01
-"""Largest distance of the frames at which the latch closes, m."""
+"""Largest distance between the frames at which the latch closes, m."""
 WITHIN_DEG = 2.0
 """Largest angle between parallel frames at which the latch closes, degrees."""
 
@@ -27,7 +27,7 @@ SPEEDS = (0.02, 0.01, 0.005)
 
 @dataclass(frozen=True)
 class CapturePlan:
-    """Contents of a drafted scenario that depend on the two craft."""
+    """Contents of a drafted scenario that depend on the two spacecraft."""
 
     name: str
     chaser: dict[str, Any] | str
@@ -36,7 +36,7 @@ class CapturePlan:
     handle: str
     approach: Approach
     home: dict[str, float] = field(default_factory=dict)
-    """Initial positions of the chaser's joints that are not zero, rad or m."""
+    """Nonzero initial positions of the chaser's joints by name, rad or m."""
     target_home: dict[str, float] = field(default_factory=dict)
     chaser_joints: int = 0
     target_joints: int = 0
@@ -127,11 +127,11 @@ simulation:
 {integrator}"""
 
 
-_LOADED = "high: the law does not know the mass of the captured target"
+_LOADED = "high, because the control law does not know the mass of the captured target"
 
 
 def _hold(joints: int, damping: int, remark: str = "") -> str:
-    """Return a controller that holds all joints of a craft; empty for a craft without joints."""
+    """Return the text of a controller that holds all joints; empty for a spacecraft without joints."""
     if joints == 0:
         return ""
     gain = keyed_line("kd", damping, f"1/s{', ' if remark else ''}{remark}", 6)
@@ -143,7 +143,7 @@ def _hold(joints: int, damping: int, remark: str = "") -> str:
 
 
 def _joints(home: dict[str, float]) -> str:
-    """Return the initial state of the chaser."""
+    """Return the text of the chaser's initial state."""
     if not home:
         return ""
     head = (
@@ -153,7 +153,7 @@ def _joints(home: dict[str, float]) -> str:
 
 
 def _positions(home: dict[str, float]) -> str:
-    """Return initial joint positions; empty if all are zero."""
+    """Return the text of initial joint positions; empty if all positions are zero."""
     if not home:
         return ""
     lines = "".join(f"        {flow(name)}: {value:g}\n" for name, value in home.items())

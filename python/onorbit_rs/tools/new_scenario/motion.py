@@ -1,4 +1,4 @@
-"""Initial pose of a drafted scenario, and motions to try from it."""
+"""Initial joint positions of a drafted scenario, and the arm motions that are tried from there."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ _BENT = 1.2
 _RANGE_FRACTION = 0.35
 """Largest deviation of a joint from the middle of its range, as a fraction of the range."""
 _GOOD_ENOUGH = 0.4
-"""Fraction of the best manipulability above which the neutral pose is used."""
+"""Ratio of the neutral pose's manipulability to the best one above which the neutral pose is used."""
 _REACH_FRACTION = 0.15
-"""Longest displacement of the tool as a fraction of the reach."""
+"""Longest displacement of the tool, as a fraction of the arm's reach."""
 _SPEED = 0.1
 """Average speed of the tool, m/s."""
 
@@ -36,9 +36,9 @@ _SPEED = 0.1
 def home(model: Model, arm: Arm, weight: Weight | None = None) -> dict[str, float]:
     """Return initial positions of the arm's joints, rad or m, rounded to 0.01.
 
-    The neutral pose is used if its manipulability (that of the generalized Jacobian) is high enough,
-    otherwise the best of a number of random poses. ``weight`` returns the factors by which the
-    manipulability of the configurations (batch, nq) is multiplied.
+    The neutral pose is used if its manipulability, computed from the generalized Jacobian, is high enough,
+    otherwise the best of several random poses. ``weight`` returns the factors (batch,) by which the
+    manipulability of configurations (batch, nq) is multiplied.
     """
     columns = [list(model.joint_names).index(name) for name in arm.joints]
     joints = [model.joints[column] for column in columns]
@@ -58,7 +58,7 @@ def home(model: Model, arm: Arm, weight: Weight | None = None) -> dict[str, floa
 
 
 def start_positions(model: Model, arm: Arm | None, weight: Weight | None = None) -> dict[str, float]:
-    """Return the start positions of the arm's joints, see :func:`home`, and of joints that cannot be zero."""
+    """Return initial positions of the arm's joints (see :func:`home`) and of joints that cannot be zero."""
     pose = {} if arm is None else home(model, arm, weight)
     for joint in model.joints:
         if (arm is None or joint.name not in arm.joints) and at_rest(joint) != 0.0:
@@ -67,13 +67,13 @@ def start_positions(model: Model, arm: Arm | None, weight: Weight | None = None)
 
 
 def within(joint: Joint, value: float) -> float:
-    """Return the position nearest to ``value`` that is 5 % of the range, at most 0.05, from the limits."""
+    """Return the position nearest to ``value`` that keeps 5 % of the range, at most 0.05, from the limits."""
     low, high = _limits(joint)
     return float(np.clip(value, low + 0.05 * min(high - low, 1.0), high - 0.05 * min(high - low, 1.0)))
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the position of a joint that is held: zero if possible, otherwise half open if prismatic."""
+    """Return the position of a held joint: zero, or near it if revolute and mid-range if prismatic."""
     near = within(joint, 0.0)
     return near if near == 0.0 or joint.kind != "prismatic" else sum(_limits(joint)) / 2.0
 
@@ -91,7 +91,7 @@ def _limits(joint: Joint) -> tuple[float, float]:
 
 
 def fastest_damper(model: Model) -> tuple[str, float]:
-    """Return the joint with the fastest damper and its decay rate `b (M⁻¹)ii`, 1/s; 0 without dampers."""
+    """Return the joint with the fastest damping, and its decay rate `b (M⁻¹)ii`, 1/s; 0 without damping."""
     inverse = np.linalg.inv(np.asarray(model.mass_matrix(model.neutral())))
     rates = {
         joint.name: joint.damping * inverse[BASE_NV + row, BASE_NV + row]
@@ -101,7 +101,7 @@ def fastest_damper(model: Model) -> tuple[str, float]:
 
 
 def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[list[float], float]]:
-    """Yield displacements of the tool in W (m), the longest first, with their durations (s).
+    """Yield displacements of the tool in W, m, the longest first, with their durations, s.
 
     Displacements that would rotate the base by more than ``GENTLE``, by the initial Jacobian, are omitted.
     """
@@ -111,7 +111,7 @@ def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[li
     shoulder = np.asarray(model.frame_pose(q, first.child))[:3, 3]
     reach = max(float(np.linalg.norm(tool - shoulder)), 0.05)
     arm_vector, rotations = tool - shoulder, rotation_per_metre(model, arm, q)
-    # across the arm before along it, since arms are often stretched; then the smallest rotation of the base
+    # perpendicular to the arm before parallel, since arms are often stretched; then by rotation of the base
     axes = [*np.eye(3)[np.argsort(np.abs(arm_vector), kind="stable")], smallest_rotation(rotations)]
     for fraction in (1.0, 0.5, 0.2, 0.1, 0.05):
         length = float(f"{fraction * _REACH_FRACTION * reach:.1g}")

@@ -21,7 +21,7 @@ GENTLE = 0.35
 
 
 def rotation_per_metre(model: Model, arm: Arm, q: Floats) -> Floats:
-    """Return the rotation of the base per displacement of the tool along the axes of W, (3, 3), rad/m.
+    """Return the base rotation per tool displacement along the axes of W, (3, 3), rad/m.
 
     With the joint rates `q̇ = Jg⁺ ẋ` and zero momentum, the twist of the base is `-Mbb⁻¹ Mbm q̇`.
     """
@@ -36,6 +36,6 @@ def rotation_per_metre(model: Model, arm: Arm, q: Floats) -> Floats:
 
 
 def smallest_rotation(rotations: Floats) -> Floats:
-    """Return the direction of the tool that rotates the base least, (3,): the last right singular vector."""
+    """Return the tool direction (3,) that rotates the base least: the last right singular vector."""
     direction: Floats = np.linalg.svd(rotations)[2][-1]
     return direction

@@ -1,4 +1,4 @@
-"""Robot for which a scenario is drafted."""
+"""Description of the robot for which a scenario is drafted."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Source:
-    """Bundled name, or a file with options for reading it; optionally attached to a bus."""
+    """Robot given by a bundled name, or by a file with its options; optionally attached to a bus."""
 
     robot: str
     package_paths: Sequence[Path] | None = None
     xacro_arguments: Mapping[str, str] | None = None
     xacro: bool = False
     bus: str | None = None
-    """A bundled name or a file; ``package_paths`` applies to it as well."""
+    """Bundled name or file of the bus; ``package_paths`` also applies to the bus."""
     at: str | None = None
-    """Frame of the bus to attach to. Optional if the bus has only one frame."""
+    """Frame of the bus to which the robot is attached; optional if the bus has a single frame."""
     prefix: str = ""
 
     def model(self) -> Model:
@@ -35,7 +35,7 @@ class Source:
         Raises
         ------
         OnOrbitError
-            If a robot cannot be read, the bus has no such frame, or names collide.
+            If a robot cannot be read, the bus lacks the frame, or both robots contain the same name.
         """
         how: dict[str, Any] = {
             "package_paths": self.package_paths, "xacro_arguments": self.xacro_arguments, "xacro": self.xacro,
@@ -71,7 +71,7 @@ class Source:
         if len(bus.frame_names) == 1:
             return bus.frame_names[0]
         raise FrameError(
-            f"give the frame of the bus to attach to with --at FRAME; the frames of {self.bus} are "
+            f"give the frame of the bus for the robot with --at FRAME; the frames of {self.bus} are "
             f"{', '.join(bus.frame_names)}",
             name=None, kind="frame", known=list(bus.frame_names), suggestion=None,
         )  # fmt: skip
@@ -80,7 +80,7 @@ class Source:
         return self.package_paths if self.bus is not None and robots.is_file(self.bus) else None
 
     def _robot(self, beside: Path | None) -> dict[str, Any] | str:
-        """Return the entry of the robot without its bus."""
+        """Return the ``robot`` entry for the robot without its bus."""
         if not robots.is_file(self.robot):
             return self.robot
         path = _path(Path(self.robot), beside)

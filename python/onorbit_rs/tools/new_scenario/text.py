@@ -29,9 +29,9 @@ class Plan:
     time_step_s: float = 1e-3
     integrator: str = "rk4"
     exceeding: list[str] = field(default_factory=list)
-    """Joints that exceed their effort limits at any speed of the motion."""
+    """Joints that exceed their effort limits however slow the motion is."""
     failures: list[str] = field(default_factory=list)
-    """Reasons why the joints are only held."""
+    """Reasons why the scenario only holds the joints; empty if the arm moves."""
 
 
 def draft_text(plan: Plan, command: str) -> str:
@@ -121,12 +121,12 @@ controllers:                    # each drives different joints; joints without o
 
 
 def _note(text: str, items: list[str]) -> str:
-    """Return comment lines that list the items; empty without items."""
+    """Return comment lines that list the items after a text; empty if there are no items."""
     lines = textwrap.wrap(f"{text}: {', '.join(items)}", 105, break_long_words=False)
     return "".join(f"# {line}\n" for line in lines if items)
 
 
-_EXCEEDING = "The efforts of these joints exceed their limits at any speed of the motion"
+_EXCEEDING = "The efforts of these joints exceed their limits however slow the motion is"
 _FAILED = "All joints are held, since trial runs of arm motions failed"
 
 
@@ -162,7 +162,7 @@ def _joint_law(plan: Plan) -> str:
 
 
 def _slowed(plan: Plan, key: str, value: str) -> str:
-    """Return the entry for the duration of the motion."""
+    """Return the line with the duration of the motion; a comment states if joint limits determine it."""
     entry = f"      {key}: {value}"
     return commented(entry, "long enough for the limits of the joints") if plan.is_slowed else f"{entry}\n"
 
@@ -240,5 +240,5 @@ _NO_WORDS = ("true", "false", "null", "yes", "no", "on", "off", "y", "n")
 
 
 def one_line(text: str) -> str:
-    """Return a text without line breaks."""
+    """Return the text with its line breaks replaced by spaces."""
     return " ".join(text.split())

@@ -27,19 +27,20 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Model, Trace
 
 NEAR_ENOUGH_M = 1e-3
-"""Largest distance of the tool from its line in a trial."""
+"""Largest allowed distance of the tool from its line in a trial run, m."""
 
 SLOWEST_S = 300.0
-"""Longest motion that is drafted; if limits require a longer one, a shorter displacement is tried."""
+"""Longest duration of a motion, s; if limits require a longer one, a shorter displacement is tried."""
 
 _ATTEMPTS = 4
 """Largest number of runs of one motion, each slower than the previous one."""
 _INERTIAL = 0.9
-"""Efforts are not inertial if a slower run leaves them above this fraction of their previous value."""
+"""Ratio of efforts after and before slowing a motion above which the efforts are not inertial."""
 FAST = 500.0
 """Decay rate, 1/s, for which a fixed step of 1 ms is half a time constant."""
 _FIRST_ESTIMATE_S, _OVERTIME = 2.0, 1.2
-"""After ``_FIRST_ESTIMATE_S``, a run is stopped if it would take ``_OVERTIME`` times the remaining time."""
+"""Wall-clock time, s, after which a run is stopped if it would take ``_OVERTIME`` times the remaining
+time."""
 _FIXED, _ADAPTIVE = "rk4", "dormand_prince"
 
 
@@ -51,7 +52,7 @@ class Trials:
     """
 
     def __init__(self, model: Model) -> None:
-        """Start with fixed steps, unless dampers are too fast for them."""
+        """Choose fixed steps, or adaptive steps if the dampers are too fast for fixed steps."""
         self._model = model
         self._damped, self._decay = fastest_damper(model)
         self._integrator = _ADAPTIVE if self._decay > FAST else _FIXED
@@ -59,9 +60,9 @@ class Trials:
         self._is_late = False
 
     def gentlest(self, plans: Iterable[Plan], seconds: float) -> Plan | None:
-        """Return the first passing plan that rotates the base by at most ``GENTLE``, else the gentlest.
+        """Return the first passing plan that rotates the base by at most ``GENTLE``, or the one closest to it.
 
-        Returns None if no plan passes within ``seconds`` of wall clock.
+        Returns None if no plan passes within ``seconds`` of wall-clock time.
         """
         ends = perf_counter() + seconds
         found: list[tuple[float, Plan]] = []
@@ -74,14 +75,14 @@ class Trials:
         return min(found, key=lambda one: one[0])[1] if found else None
 
     def failures(self) -> list[str]:
-        """Return the most frequent reasons for failures, and a damper too fast for motion, if any."""
+        """Return the most frequent reasons for failures, including a joint whose damping prevents motion."""
         reasons = [f"{what} ({count(times, 'run', 'runs')})" for what, times in self._failures.most_common(4)]
         if self._decay > FAST:
-            reasons.append(f"the damper of {self._damped} stops it within {1.0 / self._decay:.1g} s")
+            reasons.append(f"the damping of {self._damped} stops the joint within {1.0 / self._decay:.1g} s")
         return reasons
 
     def _slowed(self, plan: Plan, ends: float) -> tuple[float, Plan] | None:
-        """Return the rotation of the base in a run, rad, and the plan, slowed down to the joints' limits.
+        """Return the largest base rotation, rad, and the plan slowed down until joint limits are met.
 
         Returns None if the run fails, or if rate limits require a motion longer than ``SLOWEST_S``. Joints
         that exceed their effort limits at any speed, for example because of friction, are listed in the plan.
@@ -131,18 +132,18 @@ class Trials:
         return None
 
     def _is_within(self, trace: Trace, plan: Plan) -> bool:
-        """Return whether joints stay within their position limits and the tool near its line."""
+        """Return whether the joints stay within their position limits and the tool stays near its line."""
         beyond = trace.joint_limits_exceeded()
         self._failures.update(f"limits of {name}" for name in beyond)
         if plan.displacement is None or beyond:
             return not beyond
         is_near = np.linalg.norm(np.asarray(trace.position_error), axis=1).max() < NEAR_ENOUGH_M
-        self._failures.update([] if is_near else ["the tool leaves its line"])
+        self._failures.update([] if is_near else ["the tool deviates from its line"])
         return bool(is_near)
 
 
 class OverTimeError(Exception):
-    """The wall-clock time limit of a run was exceeded."""
+    """Raised if a trial run would exceed its limit of wall-clock time."""
 
 
 def _trace(plan: Plan, ends: float) -> Trace:

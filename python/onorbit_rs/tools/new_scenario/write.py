@@ -1,4 +1,4 @@
-"""Drafts a scenario for a robot and tests it."""
+"""Drafts and tests a scenario for a robot."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LONGEST_S = 30.0
 
 @dataclass(frozen=True)
 class Draft:
-    """Text of a scenario, and the choices that it contains."""
+    """Text of a drafted scenario, and the choices made for it."""
 
     text: str
     tool: str | None
@@ -49,7 +49,8 @@ def draft(
 ) -> Draft:
     """Return a commented scenario in which the robot's arm moves; its trial run passed the certificate.
 
-    Trials take at most ``LONGEST_S``. If no motion passes, all joints are held, and a comment gives reasons.
+    Trials take at most ``LONGEST_S``. If every trial of a motion fails, all joints are held, and a comment in
+    the scenario gives the reasons.
 
     Parameters
     ----------
@@ -69,11 +70,11 @@ def draft(
     Raises
     ------
     OnOrbitError
-        If the robot cannot be read, has no such frame, or no plan passes.
+        If the robot cannot be read or lacks the frame, or if every trial run fails.
     """
     source = Source(source) if isinstance(source, str) else source
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # they are repeated when the scenario is checked
+        warnings.simplefilter("ignore")  # the warnings are repeated when the scenario is checked
         model = source.model()
         if tool is not None:
             model.frame_pose(model.neutral(), tool)  # raises FrameError with the known frames
@@ -89,7 +90,7 @@ def draft(
 
 
 def _first_passing(model: Model, arm: Arm | None, plan: Plan) -> Plan:
-    """Return the first passing plan, trying one kind of motion after the other.
+    """Return the first passing plan; kinds of motion are tried one after another.
 
     Each kind may use half of the remaining time, so that simpler kinds are always tried.
     """
@@ -99,7 +100,7 @@ def _first_passing(model: Model, arm: Arm | None, plan: Plan) -> Plan:
         if found is not None:
             return found if found.arm else replace(found, failures=trials.failures() or [_NO_ROOM])
     raise ScenarioError(
-        f"no plan for {plan.name} passed, not even holding all joints for a second: "
+        f"every trial run of {plan.name} failed, including one that holds all joints for 1 s: "
         f"{', '.join(trials.failures())}. Check inertias, damping and limits with 'onorbit info'; "
         "change the file, or give another frame with --tool",
         file=None, path=None, line=None,

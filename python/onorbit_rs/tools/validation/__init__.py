@@ -82,8 +82,9 @@ def run(
     Parameters
     ----------
     cases : sequence of Case
+        Cases to run.
     threads : int, optional
-        Number of cases that run at a time; default: the number of cores.
+        Number of cases that run at the same time; default: the number of cores.
     each : callable
         Called with each completed case, in any order.
     """
@@ -94,7 +95,7 @@ def run(
             try:
                 for job in as_completed(jobs):
                     each(jobs[job])
-            except BaseException:  # on Ctrl-C the waiting cases are not started
+            except BaseException:  # on Ctrl-C, cases that wait are not started
                 pool.shutdown(cancel_futures=True)
                 raise
     return [job.result() for job in jobs]

@@ -22,7 +22,7 @@ from onorbit_rs.tools.validation.trees import Array, Part, Tree, build, deviatio
 
 SEEDS, STATES = range(200, 208), 4
 GATE = 1e-11
-"""Relative to the largest entry; the largest value observed is 3e-13."""
+"""Largest error allowed, relative to the largest entry; the largest error observed is 3e-13."""
 
 
 def turn(rpy: tuple[float, ...]) -> Array:
@@ -35,18 +35,18 @@ def turn(rpy: tuple[float, ...]) -> Array:
 
 
 def text(numbers: Any) -> str:
-    """Return numbers as text with all digits."""
+    """Return numbers as text in full precision."""
     return " ".join(repr(float(x)) for x in np.ravel(numbers))
 
 
 def add(parent: ElementTree.Element, tag: str, **attributes: Any) -> ElementTree.Element:
-    """Add an element; numbers are written with all digits."""
+    """Add an XML element; numbers are written in full precision."""
     texts = {name: x if isinstance(x, str) else text(x) for name, x in attributes.items()}
     return ElementTree.SubElement(parent, tag, texts)
 
 
 def mjcf(tree: Tree) -> str:
-    """Return the tree as MJCF with bodies, joints and rotors, without gravity and contacts."""
+    """Return the robot as MJCF (MuJoCo's XML format) with bodies, joints and rotors, without gravity."""
     root = ElementTree.Element("mujoco")
     add(root, "compiler", angle="radian", inertiafromgeom="false", boundmass=0)
     add(root, "option", gravity=np.zeros(3))
@@ -81,7 +81,7 @@ def tree_of(file: Path) -> Tree:
     for link in robot.iter("link"):
         inertial = link.find("inertial")
         if inertial is None:
-            continue  # the tool
+            continue  # the tool frame
         mass, inertia = inertial.find("mass"), inertial.find("inertia")
         assert mass is not None and inertia is not None
         entries = [[float(inertia.attrib["i" + "".join(sorted(a + b))]) for b in "xyz"] for a in "xyz"]
@@ -101,7 +101,7 @@ def tree_of(file: Path) -> Tree:
 
 
 class MujocoRobot:
-    """A tree in MuJoCo, with the joints in the order of ``joint_names``."""
+    """A robot in MuJoCo, with the joints in the order of ``joint_names``."""
 
     def __init__(self, tree: Tree, joint_names: list[str]) -> None:
         """Build MuJoCo's model from MJCF."""
@@ -133,7 +133,7 @@ class MujocoRobot:
 
 
 def compare(model: oo.Model, tree: Tree, seed: int) -> Any:
-    """Return the largest deviations of accelerations, by the full model and by the reduced model."""
+    """Return the largest relative deviations of accelerations of the full and of the reduced model."""
     robot = MujocoRobot(tree, model.joint_names)
     rng = np.random.default_rng(seed)
     found = []
@@ -151,13 +151,13 @@ def compare(model: oo.Model, tree: Tree, seed: int) -> Any:
 
 
 def trees() -> Any:
-    """Compare robots with branches, skew axes, rotors and joints of every kind."""
+    """Return the largest deviations for robots with branches, skew axes, rotors and all kinds of joints."""
     made = ((random_tree(seed), seed) for seed in SEEDS)
     return worst(compare(build(tree), tree, seed) for tree, seed in made)
 
 
 def bundled(name: str) -> Any:
-    """Compare a bundled robot."""
+    """Return the largest deviations for a bundled robot."""
     return compare(oo.robots.load(name), tree_of(oo.robots.path(name)), 1)
 
 

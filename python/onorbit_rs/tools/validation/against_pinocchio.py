@@ -1,4 +1,4 @@
-"""The kernels against Pinocchio, which parses the same URDF independently."""
+"""Compares dynamics algorithms with those of Pinocchio, which parses the same URDF independently."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ KERNELS = (
 
 
 def theirs(text: str, model: oo.Model, state: Any, tool: str) -> list[Any]:
-    """Return the results of Pinocchio's kernels, reordered to the joint order of ``model``."""
+    """Return the results of Pinocchio's algorithms, reordered to the joint order of ``model``."""
     pin: Any = importlib.import_module("pinocchio")
     robot = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
     robot.gravity.linear = GRAVITY
@@ -59,7 +59,7 @@ def theirs(text: str, model: oo.Model, state: Any, tool: str) -> list[Any]:
 
 
 def ours(model: oo.Model, state: Any, tool: str) -> list[Any]:
-    """Return the results of this package's kernels."""
+    """Return the results of this package's algorithms."""
     return [
         model.mass_matrix(state.q),
         model.bias_forces(state.q, state.v),
@@ -72,7 +72,7 @@ def ours(model: oo.Model, state: Any, tool: str) -> list[Any]:
 
 
 def compare(text: str, tool: str, seed: int) -> Any:
-    """Return the largest deviation of each kernel over several states, relative to its largest entry."""
+    """Return the largest deviation of each result over several states, relative to its largest entry."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         model = oo.Model.from_urdf_string(text)
@@ -86,17 +86,17 @@ def compare(text: str, tool: str, seed: int) -> Any:
 
 
 def trees() -> Any:
-    """Compare robots with branches, skew axes and joints of every kind."""
+    """Return the largest deviations for robots with branches, skew axes and all kinds of joints."""
     return worst(compare(urdf(random_tree(seed, rotors=False)), "tool", 1000 + seed) for seed in SEEDS)
 
 
 def bundled(name: str) -> Any:
-    """Compare a bundled robot."""
+    """Return the largest deviations for a bundled robot."""
     return compare(oo.robots.path(name).read_text(encoding="utf-8"), oo.robots.load(name).frame_names[-1], 1)
 
 
 def case(name: str, measure: Callable[[], Any]) -> Case:
-    """Return a case with one gate for each kernel."""
+    """Return a validation case with one gate for each algorithm."""
     gates = tuple(Gate(kernel, 1e-12) for kernel in KERNELS)
     return Case("engines", name, "Pinocchio", gates, measure, needs="pinocchio")
 

@@ -1,4 +1,4 @@
-"""SGP4 against the reference code, PyPI's ``sgp4``, over the time span of each published set."""
+"""Compares SGP4 with the reference code, PyPI's ``sgp4``, over the time span of each published set."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TIMES = 60
 
 
 def compare(elements: ElementSet) -> tuple[float, float]:
-    """Return the largest difference, km and km/s, and the number of differing error codes."""
+    """Return the largest difference, km and km/s, and the number of differing error codes of a set."""
     peer, orbit = Satrec.twoline2rv(elements.line1, elements.line2), elements.orbit()
     stop = elements.rows[-1][0]
     found, disagreements = [], 0
@@ -38,7 +38,7 @@ def compare(elements: ElementSet) -> tuple[float, float]:
 
 
 def published() -> list[tuple[str, Floats]]:
-    """Return satellite and rows (min, km, km/s) of each set of the report, from the package's files."""
+    """Return the satellite and rows (min, km, km/s) of each published set, from files of PyPI's ``sgp4``."""
     folder = resources.files("sgp4")
     lines = (folder / "SGP4-VER.TLE").read_text(encoding="utf-8").splitlines()
     blocks: list[list[list[float]]] = []

@@ -1,6 +1,6 @@
-"""The dynamics against SPART, a MATLAB toolbox for space robots, through its C version spartpy.
+"""Compares the dynamics with SPART, a MATLAB toolbox for space robots, through its C version spartpy.
 
-All branches start at the base and there are no fixed joints: for other robots, the inverse dynamics of
+The robots have no fixed joints, and all branches start at the base: for other robots, the inverse dynamics of
 spartpy 1.1.3 do not reproduce the forces given to its forward dynamics.
 """
 
@@ -29,12 +29,12 @@ BUNDLED = ("humanoid_torso", "humanoid_dual_arm")
 
 
 def spart(text: str) -> tuple[Any, list[str]]:
-    """Return SPART's robot of a URDF and the joint names in SPART's order.
+    """Return SPART's model of a robot, given as URDF text, and the joint names in SPART's order.
 
     Raises
     ------
     CannotRunError
-        If spartpy, which compiles its C code at the first call, cannot be built.
+        If spartpy, which compiles its C code at the first call, cannot be compiled.
     """
     spartpy, reader = importlib.import_module("SPARTpy"), importlib.import_module("SPARTpy.urdf2robot")
     with tempfile.TemporaryDirectory() as folder:
@@ -43,7 +43,7 @@ def spart(text: str) -> tuple[Any, list[str]]:
         robot, (_, names) = spartpy.SPART(str(file)), reader.urdf2robot(str(file))
     n = robot.robot.n_q
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # it prints that it compiles
+        with contextlib.redirect_stdout(io.StringIO()):  # spartpy prints a message when it compiles
             robot.kinematics(np.eye(3), np.zeros(3), np.zeros(n))
     except RuntimeError as error:
         raise CannotRunError(
@@ -53,7 +53,7 @@ def spart(text: str) -> tuple[Any, list[str]]:
 
 
 def with_inertia_alone(text: str) -> str:
-    """Remove links without inertia, which SPART does not accept."""
+    """Return the URDF text without massless links, which SPART does not accept."""
     robot = ElementTree.fromstring(text)
     bare = [link for link in robot.findall("link") if link.find("inertial") is None]
     names = {link.get("name") for link in bare}
@@ -65,14 +65,14 @@ def with_inertia_alone(text: str) -> str:
 
 
 def rates(model: oo.Model, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
-    """Return SPART's ``(u̇0, u̇m)``: r̈0 = R (v̇ + ẇ × c + w × (v + w × c)), c the base's centre of mass."""
+    """Return SPART's ``(u̇0, u̇m)`` with `r̈0 = R (v̇ + ẇ × c + w × (v + w × c))`, `c` the base's mass centre."""
     com, w = np.array(model.bodies[0].com), v[ANGULAR]
     inner = a[LINEAR] + np.cross(a[ANGULAR], com) + np.cross(w, v[LINEAR] + np.cross(w, com))
     return np.concatenate([a[ANGULAR], matrix_from_quaternion(q[QUATERNION]) @ inner]), a[JOINTS_V]
 
 
 def forces(model: oo.Model, q: Array, tau: Array) -> tuple[Array, Array]:
-    """Return SPART's ``(tau0, taum)``: moment about the base's centre of mass, force in inertial axes."""
+    """Return SPART's ``(tau0, taum)``; ``tau0``: moment about the base's mass centre, then force."""
     com = np.array(model.bodies[0].com)
     moment = tau[ANGULAR] - np.cross(com, tau[LINEAR])
     return np.concatenate([moment, matrix_from_quaternion(q[QUATERNION]) @ tau[LINEAR]]), tau[JOINTS_V]

@@ -1,4 +1,4 @@
-"""Radiation pressure and drag in orbit: GMAT, nyx, textbooks."""
+"""Compares radiation pressure and drag in orbit with GMAT, nyx and textbooks."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ NYX_LOW = (293.379260, 90.482624, 252.626454)
 
 
 def circle_or_ellipse(name: str) -> oo.Kepler:
-    """Return the initial orbit."""
+    """Return the initial orbit of a case of radiation pressure by its name."""
     a_km, e, i_deg = GMAT[name][0]
     return oo.Kepler(
         semi_major_axis=a_km * 1e3, eccentricity=e, inclination=np.radians(i_deg), mean_anomaly=0.0, mu=MU
@@ -50,7 +50,7 @@ def after_24_days(orbit: oo.Orbit, **settings: Any) -> Any:
 
 
 def displacement(name: str) -> float:
-    """Return the displacement by radiation pressure in 24 days, m."""
+    """Return the displacement that radiation pressure causes in 24 days, m."""
     undisturbed, _ = circle_or_ellipse(name).state(DAYS_24)
     return float(np.linalg.norm(np.array(GMAT[name][1]) * 1e3 - undisturbed))
 
@@ -77,9 +77,9 @@ BALLOON_NODE = np.array([-0.035, -0.07, -0.1])  # degrees, after 200, 400 and 60
 
 
 def balloon(days: int) -> Any:
-    """Return the changes of eccentricity, inclination, node and periapsis (degrees) every 200 days.
+    """Return the changes of eccentricity, and of inclination, node and periapsis, degrees, every 200 days.
 
-    The balloon has C_R A/m = 4 m²/kg.
+    The balloon satellite has C_R A/m = 4 m²/kg.
     """
     orbit = oo.Kepler(
         semi_major_axis=10_085.44e3, eccentricity=0.025422, inclination=np.radians(88.3924),
@@ -104,7 +104,7 @@ def balloon(days: int) -> Any:
 
 
 def balloon_node() -> tuple[float]:
-    """Return the relative error of the node, which does not oscillate as the other elements do."""
+    """Return the relative error of the node; the other elements oscillate and are not compared."""
     return (float(abs(balloon(200)[0, 2] / BALLOON_NODE[0] - 1.0)),)
 
 
@@ -112,7 +112,7 @@ AIR, AIR_RATE = 7.248e-11, 0.0  # kg/m³ at 250 km, Vallado's table; rad/s, the 
 
 
 def decay() -> tuple[float, float]:
-    """Return the relative errors of the losses of height and semi-major axis in 1e5 s."""
+    """Return the relative errors of the decrease in altitude and in semi-major axis after 1e5 s."""
     radius, ratio, mu = 6_378_136.6 + 250e3, np.pi / 400.0, oo.MU_EARTH
     body = oo.Model.rigid_body(1.0, 0.4 * np.eye(3))
     ball = oo.Cannonball(ratio, drag_coefficient=2.2)

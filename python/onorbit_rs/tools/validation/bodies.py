@@ -1,4 +1,4 @@
-"""Jointed bodies: accelerations and poses from the tests of other libraries."""
+"""Compares accelerations and poses of articulated bodies with the tests of other libraries."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ GRAVITY = 9.81  # m/s², downwards along y
 
 X, Y, Z = np.eye(3).tolist()
 Link = tuple[str, Any, Any, Any]
-"""Parent, axis and position of the joint, centre of mass (None for a link without mass)."""
+"""Parent, axis and position of the joint, and centre of mass (None for a massless link)."""
 
 # q̈ from rest under gravity; unit masses, unit moments about each centre of mass
 CHAINS: dict[str, tuple[list[Link], list[float], list[float]]] = {
@@ -66,9 +66,9 @@ def chain(name: str) -> tuple[float]:
 
 
 def free_link() -> tuple[float]:
-    """Return the largest error of the acceleration of a link on a floating base for a joint torque of 1.
+    """Return the largest error of the acceleration of a link on a floating base for a joint torque of 1 N m.
 
-    RBDL's result with gravity is `(0, -8.81, 0, -1, 0, 0, 2)` in its order Tx, Ty, Tz, Rz, Ry, Rx, joint.
+    RBDL's result with gravity is `(0, -8.81, 0, -1, 0, 0, 2)` in RBDL's order Tx, Ty, Tz, Rz, Ry, Rx, joint.
     """
     builder = oo.ModelBuilder("rbdl", base="base", mass=1.0, com=X, inertia=np.eye(3))
     builder.add_link("link", parent="base", joint="hinge", xyz=[2, 0, 0], mass=1.0, com=X, inertia=np.eye(3))
@@ -124,7 +124,7 @@ IIWA_ROTATION = [
 
 
 def iiwa() -> tuple[float, float]:
-    """Return the largest errors of the flange's position, m, and of the entries of its rotation matrix."""
+    """Return the largest errors of the flange's position, m, and of its rotation matrix."""
     builder = oo.ModelBuilder("iiwa", base="0", mass=1.0, com=[0, 0, 0], inertia=np.eye(3))
     for number, (xyz, quarters) in enumerate(IIWA, 1):
         builder.add_link(

@@ -1,4 +1,4 @@
-"""Captures and releases of two craft: closed forms, and Gauss's principle for random robots."""
+"""Captures and releases of two spacecraft: closed forms, and Gauss's principle for random robots."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SEEDS = range(12)
 
 
 def rigid(name: str, mass: float, inertia: Sequence[float], q: Sequence[float], v: Any) -> oo.System:
-    """Return a rigid craft at a position with identity attitude."""
+    """Return a rigid spacecraft at the position ``q``, with identity attitude and velocity ``v``."""
     model = oo.Model.rigid_body(mass, np.diag(inertia))
     return oo.System(name, model, [*q, 0.0, 0.0, 0.0, 1.0], v)
 
@@ -32,14 +32,14 @@ def run(
     orbit: oo.Orbit | None = None,
     **settings: Any,
 ) -> oo.WorldTrace:
-    """Return the trace of a world."""
+    """Return the trace of a world with these systems and events."""
     trace = oo.Simulation(oo.World(systems, orbit=orbit, events=events), **settings).run(duration)
     assert isinstance(trace, oo.WorldTrace)
     return trace
 
 
 def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecord, Array, Array]:
-    """Let the first craft capture the second at t = 0; return the record and both velocities after it."""
+    """Simulate a capture of the second craft at t = 0; return its record and both velocities after it."""
     systems = [
         oo.System(name, craft.model, craft.q, craft.v)
         for name, craft in zip("ab", (first, second), strict=True)
@@ -53,7 +53,7 @@ def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecor
 
 
 def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
-    """Return the momentum (6,) about a point of W, and the sums of the sizes of the momenta of the links."""
+    """Return the momentum (6,) about a point in W, and the sums of the magnitudes of the links' momenta."""
     total, scales = np.zeros(6), np.zeros(2)
     for body in craft.model.bodies:
         pose = craft.model.frame_pose(craft.q, body.name)
@@ -75,7 +75,7 @@ LOST, RATE = 0.667209466941, [0.00571429, -0.00148964, 0.00445122]  # J, rad/s
 
 
 def two_craft() -> tuple[float, ...]:
-    """Return the errors of the energy lost, the common rate, the momentum and the gap of two rigid craft."""
+    """Return the errors of energy lost, common rate, momentum and gap after two rigid craft connect."""
     first, second = rigid("a", *FIRST, [0, 0, 0], np.zeros(6)), rigid("b", *SECOND, POSITION, VELOCITY)
     event = oo.Capture("grasp", "a/base", "b/base", at=0.0)
     trace = run([first, second], [event], 100.0, time_step=0.01)
@@ -121,9 +121,9 @@ def random_pair(seed: int) -> tuple[Craft, Craft]:
 
 
 def against_gauss(first: Craft, second: Craft, **settings: Any) -> tuple[float, ...]:
-    """Return the errors of a capture against Gauss's principle, relative to the largest of each quantity.
+    """Return the errors of a capture against Gauss's principle, relative to each quantity's largest value.
 
-    They are those of the velocity, the energy lost, the impulse, the momentum and the relative twist.
+    The quantities are velocity, energy lost, impulse, momentum and relative twist.
     """
     record, v_a, v_b = capture(first, second, **settings)
     expected, point = impact(first, second), first.pose[:3, 3]
@@ -145,12 +145,12 @@ def against_gauss(first: Craft, second: Craft, **settings: Any) -> tuple[float, 
 
 
 def random_trees() -> Any:
-    """Capture random robots by random frames."""
+    """Return the largest errors of captures of random robots by random frames."""
     return worst(against_gauss(*random_pair(seed)) for seed in SEEDS)
 
 
 def straight(count: int, *, tip: float = 2.0, rotor: float = 0.0, **joints: Any) -> oo.Model:
-    """Return an arm along x on a base of 100 kg, with a frame `tip`; its joint axes are z and y."""
+    """Return an arm along x on a base of 100 kg, with a frame `tip`; joint axes alternate between z and y."""
     builder = oo.ModelBuilder("arm", base="base", mass=100.0, com=[0, 0, 0], inertia=np.diag([20, 25, 30.0]))
     parent = "base"
     for i in range(count):
@@ -166,19 +166,19 @@ def straight(count: int, *, tip: float = 2.0, rotor: float = 0.0, **joints: Any)
 
 
 def arm_and_target(model: oo.Model, joints: Any, rates: Any = 0.0) -> tuple[Craft, Craft]:
-    """Return an arm that turns slowly and a random robot that its tip captures."""
+    """Return an arm with slow joint motion, and a random robot at its tip, which the arm captures."""
     q, v = model.neutral(), np.zeros(model.nv)
     q[JOINTS_Q], v[:BASE_NV], v[JOINTS_V] = joints, [0.01, -0.02, 0.03, 0.05, -0.04, 0.02], rates
     return Craft(model, q, v, "tip"), random_craft(1001)
 
 
 def singular() -> tuple[float, ...]:
-    """Capture by a straight arm, whose tip the joints cannot move along the arm."""
+    """Return the errors of a capture by a straight (singular) arm, whose tip cannot move along the arm."""
     return against_gauss(*arm_and_target(straight(5), 0.0, 0.1))
 
 
 def massless() -> Any:
-    """Capture by a gripper without mass on a joint with a rotor, and of such a gripper."""
+    """Return the errors of captures by and of a massless gripper on a joint with a rotor."""
     first, second = arm_and_target(straight(5, tip=0.0, rotor=0.2), 0.3, 0.1)
     return worst([against_gauss(first, second), against_gauss(second, first)])
 
@@ -207,7 +207,7 @@ RESTITUTION = 0.5
 
 
 def stuck() -> tuple[float, ...]:
-    """Capture by an arm whose joints stick: friction is bounded and gives no impulse."""
+    """Return the errors of a capture by an arm with sticking joints; bounded friction gives no impulse."""
     return against_gauss(*arm_and_target(straight(5, friction=STICKING), 0.3))
 
 

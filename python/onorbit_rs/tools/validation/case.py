@@ -16,11 +16,11 @@ from onorbit_rs.common.printable import json_value
 INSTALL = {
     "pinocchio": "pip install pin", "mujoco": "pip install mujoco-core", "SPARTpy": "pip install spartpy",
 }  # fmt: skip
-"""Commands that install the engines with which some cases compare; they are optional."""
+"""Commands that install the optional engines with which some cases compare."""
 
 
 class CannotRunError(Exception):
-    """Raised if an engine that a case needs does not work on this machine; the case is then skipped."""
+    """Raised if an engine required by a case does not work on this machine; the case is then skipped."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Gate:
 class Check:
     """One error and its gate.
 
-    If the case was skipped, ``passed`` and ``error`` have the value None; if it raised an error, only
-    ``error`` has.
+    ``passed`` and ``error`` are None if the case was skipped. If the case raised an error, ``passed`` is
+    False and ``error`` is None.
     """
 
     quantity: str
@@ -52,7 +52,7 @@ class Check:
 
     @property
     def ratio(self) -> float:
-        """Error divided by the gate; infinite without a valid error."""
+        """Error divided by the gate; infinite if the error is missing or NaN."""
         if self.error is None or self.error != self.error:
             return float("inf")
         return 0.0 if self.error == 0.0 else self.error / self.gate if self.gate else float("inf")
@@ -88,7 +88,7 @@ class Verdict:
 
 @dataclass(frozen=True)
 class Case:
-    """A published result or a conservation law, and the errors allowed when it is reproduced.
+    """A published result or a conservation law, and the largest errors allowed in its reproduction.
 
     ``measure`` runs the case through the public API and returns one error per gate. If the module
     ``needs`` is not installed, the case is skipped.
@@ -110,7 +110,7 @@ class Case:
             pairs = list(zip(self.gates, errors, strict=True))
         except CannotRunError as reason:
             return self._without_errors(None, str(reason))
-        except Exception as error:  # the other cases still run
+        except Exception as error:  # an error of one case does not stop the others
             return self._without_errors(False, f"{type(error).__name__}: {error}")
         # NaN <= limit is false
         checks = [
@@ -134,7 +134,7 @@ def worst(errors: Iterable[Any]) -> Any:
     Raises
     ------
     ValueError
-        If there are no errors, because an empty comparison must not pass.
+        If ``errors`` is empty, because an empty comparison must not pass.
     """
     found = np.array(list(errors), dtype=np.float64)
     if not found.size:

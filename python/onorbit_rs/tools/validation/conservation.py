@@ -16,7 +16,7 @@ STEP = 1e-3  # s
 
 
 def humanoid() -> tuple[oo.Model, Any]:
-    """Return the torso with one arm and its configuration at the start of the paper's reach."""
+    """Return the torso with one arm, and its initial configuration in the paper's experiment."""
     model = oo.robots.load("humanoid_torso")
     q = model.neutral()
     q[JOINTS_Q] = ARM
@@ -85,7 +85,7 @@ def jacobi(model: oo.Model, orbit: oo.Kepler, trace: oo.Trace, rows: slice) -> A
 
 
 def in_orbit() -> tuple[float]:
-    """Return the drift of Jacobi's integral of a robot 37 m from its reference, per kinetic energy."""
+    """Return the drift of Jacobi's integral, relative to kinetic energy, 37 m from the reference."""
     model, q = humanoid()
     q[:3] = [20.0, -30.0, 10.0]  # far enough for tides to matter
     orbit = oo.Kepler(semi_major_axis=RADIUS, inclination=np.radians(51.6), mean_anomaly=0.0)
@@ -100,7 +100,7 @@ SLIDER_MASS, FRICTION, SPEED = 2.0, 3.0, 1.5  # kg, N, m/s
 
 
 def stopped_by_friction() -> tuple[float, float]:
-    """Return the error of a slider's stopping distance `v²/2a` and its motion after the stop, both m.
+    """Return the error of a slider's stopping distance `v²/2a`, and its motion after the stop, m.
 
     The slider moves on a base that is a million times heavier.
     """

@@ -21,7 +21,7 @@ SOFA = np.array(
 
 
 def orientation() -> tuple[float]:
-    """Return the angle between both orientations, arcseconds."""
+    """Return the angle between the computed and the published orientation, arcseconds."""
     earth = oo.Earth(EPOCH, ut1_minus_utc=UT1_MINUS_UTC, polar_motion=POLE)
     off = earth.rotation(0.0) @ SOFA.T
     axis = np.array([off[2, 1] - off[1, 2], off[0, 2] - off[2, 0], off[1, 0] - off[0, 1]]) / 2.0

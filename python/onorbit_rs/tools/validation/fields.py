@@ -8,11 +8,11 @@ import onorbit_rs as oo
 from onorbit_rs.tools.validation.case import table
 
 MU, RADIUS = 3.986004415e14, 6_378_136.3
-"""Constants of GGM02C, JGM-3 and EGM96, m³/s² and m."""
+"""Gravitational parameters, m³/s², and radii, m, of GGM02C, JGM-3 and EGM96."""
 
 
 def field(name: str, degree: int, order: int | None = None) -> oo.GravityField:
-    """Return a field up to a degree and order.
+    """Return a gravity field up to a degree and an order.
 
     ``ggm02c`` (Center for Space Research, University of Texas, 2004): degree 8, zero-tide. ``jgm3`` (Tapley
     and others, 1996): degree 12, tide-free as in GMAT. The bundled field from ICGEM includes the permanent

@@ -1,7 +1,7 @@
 """Velocities after a capture by Gauss's principle, solved densely from the mass matrices of single robots.
 
-Nothing here uses a tree of several robots: the six rows of relative twist at one common point are
-constraints on the velocities of the single trees.
+The module does not combine robots to one tree: the six components of the relative twist at a common point are
+constraints on the velocities of the separate trees.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from onorbit_rs.tools.validation.trees import Array
 
 @dataclass(frozen=True)
 class Craft:
-    """A robot in motion and the frame by which it captures or is captured."""
+    """A robot with its configuration and velocity, and the frame by which it captures or is captured."""
 
     model: oo.Model
     q: Array
@@ -39,7 +39,7 @@ class Craft:
 
 @dataclass(frozen=True)
 class Impact:
-    """Velocities (nv,) of both robots after a capture, impulse on the second one, and energy lost.
+    """Velocities (nv,) of both robots after a capture, impulse on the second robot, and energy lost.
 
     The impulse (6,) is in N s, then N m s about the origin of the capturing frame, in W axes.
     """
@@ -50,7 +50,7 @@ class Impact:
 
 
 def mass_matrix(crafts: Sequence[Craft]) -> Array:
-    """Return the mass matrix of several robots: the blocks of each on the diagonal."""
+    """Return the block-diagonal mass matrix of several robots."""
     count = sum(craft.model.nv for craft in crafts)
     whole, at = np.zeros((count, count)), 0
     for craft in crafts:
@@ -60,9 +60,10 @@ def mass_matrix(crafts: Sequence[Craft]) -> Array:
 
 
 def relative_twist(crafts: Sequence[Craft], first: int, second: int, gap: Array | float = 0.0) -> Array:
-    """Return the rows (6, nv) of the twist of the frame of `second` relative to that of `first`.
+    """Return the Jacobian (6, nv) of the twist of the frame of `second` relative to the frame of `first`.
 
-    The twists are taken at the origin of the first frame; `gap`, (3,), m, shifts the point of the first.
+    The twists are taken at the origin of the first frame; `gap`, (3,), m, shifts this point for the first
+    robot.
     """
     point = crafts[first].pose[:3, 3]
     blocks = [np.zeros((6, craft.model.nv)) for craft in crafts]
@@ -96,8 +97,8 @@ def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: boo
     """Return the closest velocities without relative twist, in the metric of the kinetic energy.
 
     `v⁺ = v⁻ − M⁻¹ Jᵀ Λ J v⁻`, `Λ = (J M⁻¹ Jᵀ)⁻¹`, energy lost `½ (J v⁻)ᵀ Λ (J v⁻)`, impulse on the second
-    robot `−Λ J v⁻`. Two options are errors, as controls: with a `gap` the impulse on the first robot acts at
-    another point; without `joints` it changes the velocities of the bases only.
+    robot `−Λ J v⁻`. Two options give wrong results for negative controls: with a `gap`, the impulse on the
+    first robot acts at another point; without `joints`, it changes the velocities of the bases only.
     """
     crafts = (first, second)
     before, rows = np.concatenate([first.v, second.v]), relative_twist(crafts, 0, 1)
@@ -113,7 +114,7 @@ def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: boo
 def impact_at_stop(first: Craft, second: Craft, joint: int, restitution: float) -> tuple[Array, Array]:
     """Return the velocities after a capture that pushes a joint of the first robot into its stop.
 
-    The stop reverses the rate that the capture gave the joint, times the restitution, and the two stay
+    The stop reverses the joint rate after the capture, times the restitution, while the robots stay
     connected.
     """
     crafts = (first, second)

@@ -1,4 +1,4 @@
-"""Gravity field, Sun and Moon over one or two days: GMAT and MONTE."""
+"""Compares the gravity field, the Sun and the Moon over one or two days with GMAT and MONTE."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ NYX = "via nyx-space/nyx, tests"
 
 
 def earth_2000() -> oo.Earth:
-    """Return the Earth at the epoch of these cases."""
+    """Return the Earth with the epoch of the cases of one day."""
     pole = (0.0433 * ARCSECOND, 0.3778 * ARCSECOND)
     return oo.Earth("2000-01-01T12:00:00 TAI", ut1_minus_utc=0.3554, polar_motion=pole)
 
@@ -35,12 +35,12 @@ def after_a_day(field: oo.GravityField, earth: oo.Earth, mu: float = MU) -> Any:
 
 
 def gmat_jgm3(degree: int, order: int, expected: Any) -> tuple[float]:
-    """Return the distance from GMAT, m; it is caused by GMAT's nutation model of 1980."""
+    """Return the distance from GMAT's position, m, which is caused by GMAT's nutation model of 1980."""
     return (float(np.linalg.norm(after_a_day(field("jgm3", degree, order), earth_2000()) - expected)),)
 
 
 def monte_j2() -> tuple[float]:
-    """Return the distance from MONTE, about the pole of J2000, m; MONTE's Earth radius is not stated."""
+    """Return the distance from MONTE's position, m; pole of J2000; MONTE's Earth radius is not published."""
     zonal = oo.GravityField.zonal(j=[-MONTE_C20 * np.sqrt(5.0)], mu=MONTE_MU, radius=RADIUS)
     reached = after_a_day(zonal, oo.Earth(rotation="about_z"), MONTE_MU)
     return (float(np.linalg.norm(reached - MONTE_J2)),)
@@ -64,14 +64,14 @@ EGM96_S2 = [0.0, 0.119528012031e-8, -0.140016683654e-5]
 
 
 def egm96() -> oo.GravityField:
-    """Return EGM96 to degree and order 2."""
+    """Return the gravity field EGM96 up to degree and order 2."""
     c, s = np.zeros((3, 3)), np.zeros((3, 3))
     c[2], s[2] = EGM96_C2, EGM96_S2
     return oo.GravityField.from_coefficients(c, s, mu=MU, radius=RADIUS)
 
 
 def sun_and_moon(bodies: tuple[str, ...] = ("sun", "moon")) -> tuple[float]:
-    """Return the largest distance from GMAT, m, with the IERS values of UT1 and the pole."""
+    """Return the largest distance from GMAT's positions, m, with UT1 and polar motion of the IERS."""
     pole = np.array([0.0463, 0.4939]) * ARCSECOND
     earth = oo.Earth(ISS_EPOCH, ut1_minus_utc=-0.0446, polar_motion=pole)
     r, v = (np.array(x) * 1e3 for x in ISS_START)

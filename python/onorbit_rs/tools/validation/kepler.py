@@ -1,4 +1,4 @@
-"""Two-body motion from textbooks and GMAT, in the units of the sources, km and km/s."""
+"""Compares two-body motion with textbooks and GMAT, in the units of the sources, km and km/s."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from onorbit_rs.tools.validation.case import Case, Gate
 
 
 class Flight(NamedTuple):
-    """Motion from ``r0, v0`` to ``r, v`` in ``dt``; km, km/s, s. The source's precision is in m and m/s."""
+    """Motion from ``r0, v0`` to ``r, v`` in ``dt``; km, km/s and s; the precision is in m and m/s."""
 
     source: str
     mu: float

@@ -1,8 +1,9 @@
-"""NASA's orbital check-cases: one rigid body, 8 h at 1 s, through ``Simulation``.
+"""NASA's orbital check-cases: simulations of one rigid body over 8 h with steps of 1 s.
 
 ``nasa_states.csv`` holds the numbers of NASA/TM-2015-218675 (JEOD's SIM_dyncomp verification logs): position
 and velocity of the centre of mass in inertial axes, the rotation ``T`` from inertial to body components, and
-rates in body axes. An independent DOP853 integration agrees to 5e-6 m, 6e-8 m/s, 1.4e-13 rad/s, 2e-9 degrees.
+rates in body axes. An independent integration with DOP853 agrees with them to 5e-6 m, 6e-8 m/s, 1.4e-13
+rad/s, 2e-9 degrees.
 """
 
 from __future__ import annotations
@@ -32,17 +33,17 @@ BURN = oo.BodyWrench("base", force=[0, -29000.0, 0], start=1000.0, end=1048.0)
 
 
 def iss() -> oo.Model:
-    """Return the space station."""
+    """Return the check-cases' model of the International Space Station."""
     return oo.Model.rigid_body(400_000.0, ISS_INERTIA)
 
 
 def cylinder() -> oo.Model:
-    """Return the cylinder, whose long axis is x."""
+    """Return the check-cases' cylinder, whose long axis is x."""
     return oo.Model.rigid_body(1000.0, np.diag([500.0, 12250.0, 12250.0]))
 
 
 def sphere() -> oo.Model:
-    """Return the sphere of 1 kg."""
+    """Return the check-cases' sphere of 1 kg."""
     return oo.Model.rigid_body(1.0, 0.4 * np.eye(3))
 
 
@@ -57,7 +58,7 @@ def turning_air() -> oo.Earth:
 
 
 def air() -> list[Any]:
-    """Return the drag of run 6A in air of constant density."""
+    """Return the environment of run 6A: drag in air of constant density."""
     ball = oo.Cannonball(1.0, drag_coefficient=0.02)
     return [oo.Drag(oo.ConstantAtmosphere(1.4e-12), surfaces=ball)]
 
@@ -67,7 +68,7 @@ ELLIPTICAL = ((-4315967.74, 960356.20, 5167269.53), (129.091037, -7491.513855, 1
 
 
 def pitched(orbit: Any, degrees: float) -> Any:
-    """Return T of a body pitched from the frame with z down and y opposite to the angular momentum."""
+    """Return the rotation ``T`` of a body pitched from the frame ``nadir``, whose z points to the planet."""
     r, v = orbit
     z = -np.array(r) / np.linalg.norm(r)
     y = -np.cross(r, v)
@@ -78,7 +79,7 @@ def pitched(orbit: Any, degrees: float) -> Any:
 
 @dataclass(frozen=True)
 class CheckCase:
-    """A check-case: body, orbit, environment, pitch (degrees, from the frame with z down), body rate."""
+    """A check-case: body, orbit, environment, initial pitch (degrees, from ``nadir``) and body rate."""
 
     title: str
     model: Callable[[], oo.Model]
@@ -125,7 +126,7 @@ class Row(NamedTuple):
 
 
 def rows(run: str) -> list[Row]:
-    """Return the rows of one run, by time."""
+    """Return the rows of one run in NASA's table, sorted by time."""
     found = []
     for row in table("nasa_states"):
         name, *values = row.values()
@@ -150,7 +151,7 @@ def simulate(run: str, case: CheckCase | None = None, duration: float = HOURS_8)
 
 
 def errors(run: str, case: CheckCase | None = None) -> Any:
-    """Return the largest errors over the rows (for six runs only the end): m, m/s, rad/s, degrees."""
+    """Return the largest errors over the rows (six runs have only a final row): m, m/s, rad/s, degrees."""
     trace = simulate(run, case)
     assert trace.position_eci is not None and trace.velocity_eci is not None
     found = []
@@ -167,7 +168,7 @@ def errors(run: str, case: CheckCase | None = None) -> Any:
 
 
 def gates(case: CheckCase) -> tuple[Gate, ...]:
-    """Return the gates of a run; for run 3A they are the differences between NASA's simulators."""
+    """Return the gates of a run; the gates of run 3A are the differences between NASA's simulators."""
     velocity = 1e-7 if case.position_gate < 1.0 else 1.5e-3
     return (
         Gate("position", case.position_gate, "m"), Gate("velocity", velocity, "m/s"),
@@ -183,7 +184,7 @@ GRADIENT = {
 
 
 def gradient(run: str) -> tuple[float]:
-    """Return the largest error of the gravity-gradient acceleration in NASA's state after 8 h, rad/s²."""
+    """Return the largest error of the angular acceleration by the gravity gradient after 8 h, rad/s²."""
     end, q, v = rows(run)[-1], np.zeros(7), np.zeros(6)
     q[3:], v[3:] = quaternion_from_matrix(end.attitude.T), end.rate
     trace = oo.Simulation(

@@ -29,14 +29,14 @@ def robot() -> tuple[oo.Model, Any, Any]:
 
 
 def end(integrator: Any, steps: int) -> Any:
-    """Return the configuration after the duration."""
+    """Return the configuration (nq,) of the robot after a run with this number of steps."""
     model, q, v = robot()
     settings: Any = {"integrator": integrator, "time_step": DURATION / steps, "record_every": steps}
     return oo.Simulation(model, q, v, **settings).run(DURATION).q[-1]
 
 
 def orders(integrator: str) -> tuple[float, float, float]:
-    """Return the deviations of the orders in position, attitude and joints from the method's order."""
+    """Return the deviations of measured orders (position, attitude, joints) from the method's order."""
     model, *_ = robot()
     exact = end("rk4", 8000)
 
@@ -55,7 +55,7 @@ TUMBLING = [0.1, 0.0, -0.2, 0.7, 0.9, -0.4]
 
 
 def adaptive() -> tuple[float]:
-    """Return the largest attitude error over one and a half turns, divided by the tolerance."""
+    """Return the largest attitude error over one and a half revolutions, divided by the tolerance."""
     body = oo.Model.rigid_body(10.0, np.diag([1.0, 2.0, 2.5]))
 
     def run(**settings: Any) -> Any:
@@ -74,7 +74,7 @@ PATHS = {"positions": 4.0, "positions and velocities": 6.0}
 
 
 def path(given: str) -> tuple[float]:
-    """Interpolate points of an ellipse; return the deviation of the measured order from the spline's."""
+    """Return the deviation of the measured order of an interpolated ellipse from the order of the spline."""
     orbit = oo.Kepler(semi_major_axis=8e6, eccentricity=0.15, inclination=0.9, raan=0.3, mean_anomaly=0.0)
     between = np.linspace(0.0, 2000.0, 998)
 

@@ -26,13 +26,13 @@ def mean_motion() -> float:
 
 
 def transition() -> tuple[float, float]:
-    """Return the errors of the final state, m and m/s."""
+    """Return the errors of position, m, and velocity, m/s, after 300 s of free flight."""
     end = oo.relative.hill_transition(mean_motion(), FLIGHT_S) @ START - np.array(END)
     return float(np.abs(end[:3]).max()), float(np.abs(end[3:]).max())
 
 
 def intercept() -> tuple[float]:
-    """Return the error of the intercept velocity, m/s."""
+    """Return the error of the velocity, m/s, with which a target is reached after 300 s."""
     found = oo.relative.intercept_velocity(mean_motion(), FROM, FLIGHT_S)
     return (float(np.abs(found - np.array(INTERCEPT)).max()),)
 
@@ -44,7 +44,7 @@ def ellipse() -> tuple[float, float]:
     """Simulate a point 100 m above its target and 0.2 m/s slower for two revolutions.
 
     Returns the distance from Hill's closed form, m, which is of second order in the separation, and the
-    relative deviation of the ellipse's length from twice its height.
+    relative deviation of the ratio of the ellipse's axes from 2.
     """
     chief = oo.Kepler(semi_major_axis=ALTITUDE_RADIUS, inclination=np.radians(51.6))
     n = np.sqrt(oo.MU_EARTH / ALTITUDE_RADIUS**3)

@@ -18,7 +18,7 @@ BRICK_START, BRICK_END = [10.0, 20.0, 30.0], [12.618390776, -17.397474762, 31.11
 
 
 def brick() -> tuple[float]:
-    """Return the error of the rate after 30 s, deg/s."""
+    """Return the largest error of the tumbling brick's angular velocity after 30 s, deg/s."""
     body = oo.Model.rigid_body(1.0, np.diag(BRICK))
     v = np.concatenate([np.zeros(3), np.radians(BRICK_START)])
     trace = oo.Simulation(body, body.neutral(), v, time_step=1e-3, record_every=1000).run(30.0)
@@ -32,8 +32,8 @@ SPIN = np.array([0.3, 0.0, 1.1])  # rad/s
 def top() -> tuple[float, float]:
     """Return the errors of the top's rate, rad/s, and of the direction of its axis, rad, after 100 s.
 
-    In body axes the rate rotates about the axis at `λ = (C/A - 1) ω₃`; in inertial axes the axis rotates
-    about the angular momentum at `|L|/A`.
+    In body axes, the angular velocity rotates about the symmetry axis at `λ = (C/A - 1) ω₃`; in inertial
+    axes, the symmetry axis rotates about the angular momentum at `|L|/A`.
     """
     a, _, c = TOP
     body = oo.Model.rigid_body(1.0, np.diag(TOP))
@@ -58,7 +58,7 @@ TILT = 1e-3  # rad
 
 
 def libration(axis: int, period_s: float) -> tuple[float]:
-    """Return the relative error of the period; axis 2 librates in the orbital plane, axis 1 out of it."""
+    """Return the relative error of the period of the libration about axis 2 (in plane) or 1 (out of plane)."""
     cylinder = oo.Model.rigid_body(1000.0, np.diag(CYLINDER))
     a = oo.Kepler.from_state(*TYPICAL, mu=MU).semi_major_axis
     orbit = oo.Kepler(semi_major_axis=a, inclination=0.9, raan=0.3, mu=MU)

@@ -1,4 +1,4 @@
-"""Motion to a nominal pose after a capture: closed forms of two bodies at rest."""
+"""Seating, the motion to a nominal pose after a capture: closed forms of two bodies at rest."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from onorbit_rs.tools.validation.capture import rigid, run
 from onorbit_rs.tools.validation.case import Case, Gate
 
 DURATION = 3.0  # s
-SEAT = DURATION  # of the simulation; the closed forms have the constants above it
+SEAT = DURATION  # used by the simulation; the closed forms use the constants above
 MASSES = (90.0, 10.0)  # kg
 PULL = 1.0  # m
 INERTIAS, TURN = (6.0, 2.0), 1.2  # kg m2 about the axis of the turn, rad
-TURNED = INERTIAS[1]  # of the simulation
+TURNED = INERTIAS[1]  # used by the simulation
 
 
 def pulled() -> tuple[float, float, float, float]:
-    """Return the errors of the final places, of the energy in the middle and of momentum and work.
+    """Return the errors of the final positions, of the energy halfway, of momentum and of work.
 
-    Two bodies are pulled together along the line through their centres of mass, which keep their common one.
-    In the middle, the relative speed is 15/8 of the mean: `T = ½ m1 m2/(m1 + m2) v²`.
+    Two bodies are pulled together along the line through their centres of mass; the common centre of mass
+    stays at rest. Halfway, the relative speed `v` is 15/8 of its mean: `T = ½ m1 m2/(m1 + m2) v²`.
     """
     systems = [rigid("a", MASSES[0], [9, 9, 9], [0, 0, 0], np.zeros(6)),
                rigid("b", MASSES[1], [1, 1, 1], [2, 0, 0], np.zeros(6))]  # fmt: skip
@@ -48,7 +48,7 @@ def pulled() -> tuple[float, float, float, float]:
 def turned() -> tuple[float, float]:
     """Return the errors of the final attitude of the first body and of the relative attitude.
 
-    A turn about the common axis is shared in proportion to the inertias: `θ1 = −θ I2/(I1 + I2)`.
+    The bodies share a rotation `θ` about the common axis according to their inertias: `θ1 = −θ I2/(I1 + I2)`.
     """
     first, second = INERTIAS
     systems = [rigid("a", 50.0, [4, 4, first], [0, 0, 0], np.zeros(6)),

@@ -43,7 +43,7 @@ def elements(r: Any, v: Any, mu: float) -> Any:
 
 
 def curtis() -> tuple[float, float]:
-    """Return the relative errors of the rates of node and periapsis."""
+    """Return the relative errors of the drift rates of the node and the periapsis."""
     field = oo.GravityField.zonal(j=[CURTIS_J2], mu=CURTIS_MU, radius=CURTIS_RADIUS)
     orbit = oo.Numerical(*CURTIS_STATE, environment=[field], mu=CURTIS_MU)
     ends = elements(*orbit.state(np.array([0.0, HOURS * 3600.0])), CURTIS_MU)[:, 2:]
@@ -53,7 +53,7 @@ def curtis() -> tuple[float, float]:
 
 
 def j3(inclination: float) -> tuple[float, float]:
-    """Return the errors of the changes that J3 causes in eccentricity and inclination."""
+    """Return the errors of the changes in eccentricity and inclination, rad, that J3 causes in ten days."""
     kepler = oo.Kepler(
         semi_major_axis=8970.667e3, eccentricity=0.25, inclination=inclination, raan=1.047,
         argument_of_periapsis=1.0, true_anomaly=0.0, mu=QI_MU,
@@ -71,7 +71,7 @@ def j3(inclination: float) -> tuple[float, float]:
 
 
 def j3_gates(inclination: float) -> tuple[Gate, ...]:
-    """Return gates of 10 %, as in poliastro's tests, plus the last printed digit."""
+    """Return gates of 10 % of the published changes, as in poliastro's tests, plus the last printed digit."""
     i, e = QI[inclination]
     return (Gate("eccentricity", 0.1 * e + 1e-7), Gate("inclination", 0.1 * i + 1e-7, "rad"))
 

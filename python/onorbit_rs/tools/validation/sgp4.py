@@ -19,7 +19,7 @@ CODES = [1, 1, 6, 6, 4, 3, 6]
 
 
 class ElementSet(NamedTuple):
-    """Two lines, the report's times (start, stop and step, min) and rows of the report's output."""
+    """Two lines, the times of the report (start, stop and step, min), and rows of its output."""
 
     regime: str
     span: tuple[float, float, float]
@@ -28,13 +28,13 @@ class ElementSet(NamedTuple):
     rows: list[list[float]]
 
     def orbit(self) -> oo.Sgp4:
-        """Return the orbit. Sets that provoke errors have wrong checksums."""
+        """Return the orbit; checksums are ignored, since sets that provoke errors have wrong checksums."""
         is_sound = self.regime != "refused"
         return oo.Sgp4(self.line1, self.line2, gravity=GRAVITY, check_checksum=is_sound)
 
 
 def sets() -> list[ElementSet]:
-    """Return all 33 sets with the first, middle and last row of each."""
+    """Return all 33 element sets of the report, each with its first, middle and last row."""
     rows: dict[int, list[list[float]]] = {}
     for row in table("sgp4_states"):
         number, *values = row.values()

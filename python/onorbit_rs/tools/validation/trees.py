@@ -21,7 +21,7 @@ TOOL = "tool"
 
 @dataclass(frozen=True)
 class Part:
-    """A link and its parent joint, which the base lacks. The inertia is about ``com`` in link axes."""
+    """A link and its parent joint (None for the base); the inertia is about ``com``, in link axes."""
 
     name: str
     mass: float
@@ -38,7 +38,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Tree:
-    """A robot: its parts, base first, and a tool frame with an offset from its link."""
+    """A robot: its parts, with the base first, and a tool frame at an offset from its link."""
 
     parts: list[Part]
     tool_link: str
@@ -57,7 +57,7 @@ class Tree:
 
 @dataclass(frozen=True)
 class State:
-    """Arguments of the kernels; ``external`` holds wrenches by frame, about its origin and in its axes."""
+    """Arguments of the algorithms; ``external`` contains wrenches by frame, at its origin, in its axes."""
 
     q: Array
     v: Array
@@ -92,7 +92,7 @@ def random_tree(seed: int, links: int = 12, rotors: bool = True) -> Tree:
 
 
 def _inertial(rng: np.random.Generator) -> tuple[float, list[float], list[list[float]]]:
-    """Return mass, centre and inertia of a cloud of points, which are therefore physically possible."""
+    """Return mass, centre of mass and inertia of a cloud of point masses, which are physically consistent."""
     mass = float(rng.uniform(0.5, 5.0))
     points = rng.normal(scale=0.2, size=(6, 3))
     points -= points.mean(axis=0)
@@ -108,7 +108,9 @@ def random_state(model: oo.Model, rng: np.random.Generator, frames: int = 4) -> 
     q[QUATERNION] /= np.linalg.norm(q[QUATERNION])
     v, a, tau = rng.uniform(-2.0, 2.0, (3, model.nv))
     names = [str(name) for name in rng.choice(model.frame_names, frames, replace=False)]
-    loaded = dict.fromkeys([*names, model.frame_names[-1]])  # a set has another order in every process
+    loaded = dict.fromkeys(
+        [*names, model.frame_names[-1]]
+    )  # unlike a set, a dict has the same order in every process
     external = {name: rng.uniform(-3.0, 3.0, 6) for name in loaded}
     return State(q, v, a, tau, external)
 
@@ -143,7 +145,7 @@ def urdf(tree: Tree) -> str:
         ElementTree.SubElement(inertial, "inertia", entries)
     for part in tree.parts[1:]:
         assert part.parent is not None
-        axis = np.array(part.axis) / np.linalg.norm(part.axis)  # other readers do not normalise
+        axis = np.array(part.axis) / np.linalg.norm(part.axis)  # other URDF readers do not normalize axes
         _joint(robot, part.joint, part.kind, part.parent, part.name, part.xyz, part.rpy, axis.tolist())
     ElementTree.SubElement(robot, "link", name=TOOL)
     _joint(robot, "tool_mount", "fixed", tree.tool_link, TOOL, tree.tool_xyz, tree.tool_rpy, None)
@@ -182,7 +184,7 @@ def deviation(ours: Any, theirs: Any) -> float:
     ours, theirs = np.asarray(ours), np.asarray(theirs)
     assert ours.shape == theirs.shape, (ours.shape, theirs.shape)
     if not theirs.size:
-        return 0.0  # a Jacobian of no joints
+        return 0.0  # for example the Jacobian of a robot without joints
     off, size = float(np.abs(ours - theirs).max()), float(np.abs(theirs).max())
     if size == 0.0:
         return off if off == 0.0 or np.isnan(off) else float("inf")

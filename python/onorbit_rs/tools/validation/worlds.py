@@ -1,4 +1,4 @@
-"""Worlds of several craft: groups, latches, chains of captures, and motion before and after events."""
+"""Worlds of several spacecraft: groups, latches, chains of captures, and motion between events."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NAMES = "abcd"
 
 
 def system(name: str, craft: Craft) -> oo.System:
-    """Return the system of a craft."""
+    """Return a system with the robot and the state of a craft."""
     return oo.System(name, craft.model, craft.q, craft.v)
 
 
@@ -44,7 +44,7 @@ ALONE_STEP = STEP
 
 
 def free_again() -> tuple[float, float]:
-    """Return the largest errors of q and v after a release, against separate runs from that state."""
+    """Return the largest errors of q and v after a release, against separate runs from the state then."""
     crafts = [slow(2002), slow(2003)]
     systems = [system(name, craft) for name, craft in zip(NAMES, crafts, strict=False)]
     events: list[oo.Capture | oo.Release] = [
@@ -66,20 +66,20 @@ RELEASE = 0.5  # s
 
 
 def at_row(trace: oo.WorldTrace, crafts: Sequence[Craft], row: int) -> list[Craft]:
-    """Return the crafts in their states of a row."""
+    """Return the crafts with their states in one row of a trace."""
     return [
         Craft(craft.model, trace[name].q[row], trace[name].v[row], craft.frame)
         for name, craft in zip(NAMES, crafts, strict=False)
     ]
 
 
-CHAIN = (("b", "c"), ("d", "a"), ("c", "d"))  # each captures the other
+CHAIN = (("b", "c"), ("d", "a"), ("c", "d"))  # the first captures the second
 
 
 def chain() -> tuple[float, float, float]:
     """Return the errors of velocity, energy and momentum of three captures that connect four robots.
 
-    The frames of the earlier captures remain connected, so each capture is a projection with the rows of all.
+    Earlier connections persist, so each capture is a projection with the constraints of all captures so far.
     """
     crafts = [slow(2010 + i) for i in range(4)]
     events = [
@@ -105,7 +105,7 @@ def chain() -> tuple[float, float, float]:
     return (errors[0], errors[1], errors[2])
 
 
-KEPT = 3  # captures whose rows are taken into account
+KEPT = 3  # number of captures whose constraints are taken into account
 
 
 def joined(crafts: Sequence[Craft]) -> Array:
@@ -114,7 +114,7 @@ def joined(crafts: Sequence[Craft]) -> Array:
 
 
 def change(before: Sequence[Craft], after: Sequence[Craft]) -> float:
-    """Return the change of momentum relative to the sums of the sizes of the momenta of the links."""
+    """Return the change of momentum, relative to the sums of the magnitudes of the links' momenta."""
     point = before[0].pose[:3, 3]
     old, new = ([momentum(craft, craft.v, point) for craft in crafts] for crafts in (before, after))
     difference = sum(m for m, _ in new) - sum(m for m, _ in old)
@@ -142,7 +142,7 @@ SPINS = (0.02, -0.015)  # rad/s about the common axis
 
 
 def latch_by_angle() -> tuple[float]:
-    """Return the error of the time at which two craft that turn about one axis are within an angle."""
+    """Return the error of the time at which a latch closes by angle; both craft rotate about one axis."""
     systems = [
         rigid("a", 40.0, [3, 4, 5], [0, 0, 0], [0, 0, 0, 0, 0, SPINS[0]]),
         rigid("b", 20.0, [1, 2, 2], [0, 0, 1.0], [0, 0, 0, 0, 0, -0.015]),
@@ -158,9 +158,9 @@ RADIUS = 6_778e3  # m
 
 
 def on_orbit() -> tuple[float, float, float]:
-    """Return the errors of a capture on a circular orbit: centre of mass, momentum at the event, momentum.
+    """Return errors of a capture on a circular orbit: centre of mass, momentum at the event and afterwards.
 
-    The common centre of mass moves by the Clohessy-Wiltshire equations, connected or not.
+    The common centre of mass obeys the Clohessy-Wiltshire equations before and after the capture.
     """
     orbit = oo.Kepler(semi_major_axis=RADIUS, inclination=0.9, mean_anomaly=0.3)
     start = [[0.0, 0.0, 0.0], [2.5, 0.0, 0.0]]
@@ -193,7 +193,7 @@ WEIGHTS = (1000.0, 500.0)  # kg
 
 
 def clohessy_wiltshire(orbit: oo.Kepler, r: Array, v: Array, t: Array) -> Array:
-    """Return the positions (T, 3) in axes that do not turn, relative to a circular orbit."""
+    """Return positions (T, 3), m, relative to a circular orbit, in inertial axes."""
     place, speed = orbit.state(0.0)
     n = np.linalg.norm(np.cross(place, speed)) / RADIUS**2
     radial, normal = place / RADIUS, np.cross(place, speed)
