@@ -93,6 +93,9 @@ from onorbit_rs.simulation.controller import Controller
 if TYPE_CHECKING:
     from onorbit_rs import engines, layouts, ros2
     from onorbit_rs.scenario import Scenario, WorldScenario
+    from onorbit_rs.simulation.command_format import read_commands
+    from onorbit_rs.simulation.commands import CommandLog
+    from onorbit_rs.simulation.replay import replay_commands
     from onorbit_rs.simulation.run import Run, resume, run
     from onorbit_rs.tools.comparison import Comparison, compare
 
@@ -106,6 +109,7 @@ __all__ = [
     "Checkpoint",
     "Circle",
     "Column",
+    "CommandLog",
     "Comparison",
     "Compliance",
     "ComputedTorque",
@@ -171,7 +175,9 @@ __all__ = [
     "exceptions",
     "layouts",
     "propagate",
+    "read_commands",
     "relative",
+    "replay_commands",
     "resume",
     "robots",
     "rollout",
@@ -184,7 +190,9 @@ __version__: str = build_info()["version"]
 
 _LAZY = {
     "Comparison": "tools.comparison", "compare": "tools.comparison", "Scenario": "scenario",
-    "WorldScenario": "scenario", "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
+    "WorldScenario": "scenario", "CommandLog": "simulation.commands",
+    "read_commands": "simulation.command_format", "replay_commands": "simulation.replay",
+    "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
 }  # fmt: skip
 """Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
 _LAZY_MODULES = ("engines", "layouts", "ros2", "scenario")

@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, fields, raise};
 use crate::stepper::PyStepper;
 use crate::torques::torques;
 use nalgebra::Vector3;
-use onorbit_core::control::{ExternalCommand, JointTrajectory, Setpoint};
+use onorbit_core::control::{ExternalCommand, Interface, JointTrajectory, Setpoint};
 use onorbit_core::simulation::{WrenchAxes, WrenchCommand};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -61,10 +61,24 @@ impl PyStepper {
     /// Returns the names of the joints of each external control of a system.
     pub(crate) fn external_of(&self, py: Python<'_>, system: usize) -> PyResult<Py<PyDict>> {
         let names = PyDict::new(py);
-        for (control, joints) in self.with(py, |stepper| stepper.external(system))? {
-            names.set_item(control, joints)?;
+        for control in self.with(py, |stepper| stepper.external(system))? {
+            names.set_item(control.name, control.joints)?;
         }
         Ok(names.unbind())
+    }
+
+    /// Returns what the gains of each external control of a system track.
+    pub(crate) fn interfaces_of(&self, py: Python<'_>, system: usize) -> PyResult<Py<PyDict>> {
+        let interfaces = PyDict::new(py);
+        for control in self.with(py, |stepper| stepper.external(system))? {
+            let interface = match control.interface {
+                Interface::Position => "position",
+                Interface::Velocity => "velocity",
+                Interface::Effort => "effort",
+            };
+            interfaces.set_item(control.name, interface)?;
+        }
+        Ok(interfaces.unbind())
     }
 }
 

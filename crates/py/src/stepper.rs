@@ -130,8 +130,7 @@ impl PyStepper {
 
     /// Send a command to the joints of an :class:`External` controller.
     ///
-    /// It takes effect at the next update of the controllers (``control_period``), at the current time if that is one,
-    /// and is held until the next command. A command that has not taken effect yet is replaced.
+    /// It takes effect at the next update of the controllers (``control_period``), or now if one is due, and is held.
     ///
     /// Parameters
     /// ----------
@@ -148,11 +147,9 @@ impl PyStepper {
     ///
     /// Raises
     /// ------
-    /// ControlError
-    ///     If there is no such control, it is not :class:`External`, it has ended, the command is empty, or a gain that
-    ///     the command requires is zero; the run is unchanged.
-    /// ShapeError, InputError
-    ///     If an array has the wrong length or holds numbers that are not finite; the run is unchanged.
+    /// ControlError, ShapeError, InputError
+    ///     If there is no such :class:`External` control, it has ended, a gain that the command requires is zero, or an
+    ///     array is missing, has the wrong length or is not finite; the run is unchanged.
     #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None))]
     fn send(
         &self,
@@ -192,7 +189,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     As :meth:`send`, and if times do not increase or the trajectory ends before the current time.
+    ///     As :meth:`send`; also if times do not increase, or the trajectory is over.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -210,9 +207,8 @@ impl PyStepper {
 
     /// Apply a wrench to a body from the current time until the next wrench on it.
     ///
-    /// The current time becomes the end of a step. The wrench counts in ``impulse`` and ``work`` as effects of the
-    /// environment do; with ``record_wrenches`` it is ``trace.wrenches["wrench_command"]`` in runs with an
-    /// :class:`External` controller.
+    /// The current time becomes the end of a step. With ``record_wrenches``, the wrench is
+    /// ``trace.wrenches["wrench_command"]`` in runs with an :class:`External` controller.
     ///
     /// Parameters
     /// ----------
@@ -227,10 +223,8 @@ impl PyStepper {
     ///
     /// Raises
     /// ------
-    /// FrameError, InputError, ShapeError
-    ///     If there is no such body, or a number is not finite; the run is unchanged.
-    /// EngineError
-    ///     If another physics engine moves the robot.
+    /// FrameError, InputError, ShapeError, EngineError
+    ///     If there is no such body, a number is not finite, or the engine is another one; the run is unchanged.
     #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
     fn wrench(
         &self,
@@ -249,6 +243,13 @@ impl PyStepper {
     fn external(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         let system = self.only("external")?;
         self.external_of(py, system)
+    }
+
+    /// What the gains of each :class:`External` controller track: ``position``, ``velocity`` or (none) ``effort``.
+    #[getter]
+    fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
+        let system = self.only("interfaces")?;
+        self.interfaces_of(py, system)
     }
 
     /// Trigger an event that happens on command, at the current time.

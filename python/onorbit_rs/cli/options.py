@@ -29,6 +29,10 @@ ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing 
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON only.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
 ViewOption = Annotated[bool, typer.Option("--view", help="Show the run in the viewer while it is computed.")]
+CommandsOption = Annotated[
+    Path | None,
+    typer.Option("--commands", metavar="FILE", help="Commands at given times, one JSON object per line."),
+]
 CheckpointOption = Annotated[
     float | None,
     typer.Option(metavar="SECONDS", help="Wall-clock time between checkpoints in DIR, s; default: 30."),

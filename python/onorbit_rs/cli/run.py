@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from onorbit_rs.cli.exit_codes import fail, ignore_closed_pipe
 from onorbit_rs.cli.options import (
     CheckpointOption,
+    CommandsOption,
     FolderArgument,
     ForceOption,
     JsonOption,
@@ -31,6 +32,7 @@ def run(
     as_json: JsonOption = False,
     view: ViewOption = False,
     checkpoint_every: CheckpointOption = None,
+    commands: CommandsOption = None,
 ) -> None:
     """Run a scenario and certify its momentum and energy.
 
@@ -46,7 +48,9 @@ def run(
         )  # fmt: skip
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
-        lambda: run_scenario(scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=every),
+        lambda: run_scenario(
+            scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=every, commands=commands
+        ),
         quiet=quiet,
         as_json=as_json,
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
-from onorbit_rs.scenario.control import JointLaw, JointPidController
+from onorbit_rs.scenario.control import ExternalController, JointLaw, JointPidController
 from onorbit_rs.scenario.control.selection import joint_columns, joint_group
 
 if TYPE_CHECKING:
@@ -112,6 +112,8 @@ def single_errors(trace: Trace, built: Built) -> Summary:
     has_positions = not isinstance(law, JointPidController) or law.interface == "position"
     if not isinstance(law, JointLaw) or not has_positions or not built.model.joints:
         return {}
+    if isinstance(law, ExternalController):
+        return joint_errors("tracking", np.asarray(trace.tracking["control"]), built)
     joints = np.asarray(trace.q)[:, JOINTS_Q]
     desired = joints[0]  # without a reference, the joints are held at their initial positions
     if isinstance(built.reference, _core.JointReference):

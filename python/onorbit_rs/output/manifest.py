@@ -15,10 +15,10 @@ from onorbit_rs.exceptions import IntegrityError, ReadError
 from onorbit_rs.output.sealed import sealed, unsealed
 
 MANIFEST = "manifest.json"
-SUMMARY, TRACE, SCENARIO, RECORDING, REPORT = (
-    "summary.json", "trace.npz", "scenario.yaml", "run.rrd", "report.html",
+SUMMARY, TRACE, SCENARIO, COMMANDS, RECORDING, REPORT = (
+    "summary.json", "trace.npz", "scenario.yaml", "commands.jsonl", "run.rrd", "report.html",
 )  # fmt: skip
-RESULTS = (SUMMARY, TRACE, SCENARIO, RECORDING, REPORT)
+RESULTS = (SUMMARY, TRACE, SCENARIO, COMMANDS, RECORDING, REPORT)
 """Files of a run and its report other than figures, in the order in which ``--force`` removes them."""
 FIGURES, CHECKPOINT = "figures", "checkpoint"
 STATE = "state.json"

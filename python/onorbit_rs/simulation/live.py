@@ -1,20 +1,22 @@
-"""Simulates a run while a viewer shows it."""
+"""Simulates a run while a viewer shows it, or while it is given commands."""
 
 from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.exceptions import ControlError, RunInterrupted
 from onorbit_rs.scenario.build_world import BuiltWorld
+from onorbit_rs.simulation.replay import Queue
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Checkpoint, Stepper, Trace, WorldTrace
     from onorbit_rs.common.progress import ProgressCallback
     from onorbit_rs.output import CheckpointWriter
     from onorbit_rs.scenario.build import Built
+    from onorbit_rs.simulation.command_format import Command
     from onorbit_rs.viewer.live import View
 
 CHECKPOINT_EVERY = 30.0
@@ -30,11 +32,15 @@ def watched(
     checkpoint: CheckpointWriter | None = None,
     checkpoint_every: float = CHECKPOINT_EVERY,
     resume: Checkpoint | None = None,
+    *,
+    view: bool = True,
+    commands: Sequence[Command] = (),
 ) -> Trace | WorldTrace:
-    """Simulate a scenario while a viewer shows it; if the viewer is not available, issue a warning."""
-    duration = built.scenario.simulation.duration
-    live = _opened(built, duration)
-    if live is None:
+    """Simulate a scenario, give it commands at their times, and show it in a viewer if one is available."""
+    settings = built.scenario.simulation
+    duration = settings.duration
+    live = _opened(built, duration) if view else None
+    if live is None and not commands:
         return built.simulation.run(
             duration, progress=progress, checkpoint=checkpoint, checkpoint_every=checkpoint_every,
             resume=resume,
@@ -44,10 +50,12 @@ def watched(
     trace = None
     try:
         stepper = built.simulation.start(duration=duration, resume=resume)
-        _advance(stepper, duration, progress, live, saver)
+        queue = Queue(commands, stepper.time, step=settings.time_step)
+        _advance(stepper, duration, progress, live, saver, queue)
         trace = stepper.finish()
     finally:
-        live.finish(trace)
+        if live is not None:
+            live.finish(trace)
     return trace
 
 
@@ -63,18 +71,25 @@ def _opened(built: Built | BuiltWorld, duration: float) -> View | None:
 
 
 def _advance(
-    stepper: Stepper, duration: float, progress: ProgressCallback | None, live: View, saver: _Saver
+    stepper: Stepper,
+    duration: float,
+    progress: ProgressCallback | None,
+    live: View | None,
+    saver: _Saver,
+    queue: Queue,
 ) -> None:
-    """Advance to the end in slices of wall-clock time; show and save the new rows in between."""
+    """Advance to the end in slices of wall-clock time; in between, give commands, and show and save rows."""
     from onorbit_rs.viewer.live import UPDATE_EVERY_S
 
     last = time.monotonic()
     try:
+        queue.apply_due(stepper)
         while stepper.time < duration:
-            stepper.advance_to(duration, wall_s=_SLICE_S)
+            stepper.advance_to(queue.next_time(duration), wall_s=_SLICE_S)
+            queue.apply_due(stepper)
             if progress is not None:
                 progress(stepper.time, duration)
-            if time.monotonic() - last >= UPDATE_EVERY_S:
+            if live is not None and time.monotonic() - last >= UPDATE_EVERY_S:
                 last = time.monotonic()
                 live.take(stepper.columns(live.shown), stepper.events)
             saver.save_if_due(stepper)

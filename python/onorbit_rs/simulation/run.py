@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,8 +34,12 @@ from onorbit_rs.output.robot import CHANGED, was_changed
 from onorbit_rs.scenario import Scenario, WorldScenario, load
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.scenario.build_world import BuiltWorld, build_world
+from onorbit_rs.simulation.command_files import saved_commands, warnings_without, write_commands
+from onorbit_rs.simulation.command_format import Command, in_order, read_commands
+from onorbit_rs.simulation.command_format import checked as checked_command
 from onorbit_rs.simulation.finish import finished, keep_failed, keep_stopped
 from onorbit_rs.simulation.live import CHECKPOINT_EVERY, watched
+from onorbit_rs.simulation.replay import check_commands
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Trace, WorldTrace
@@ -121,6 +125,7 @@ def run(
     quiet: bool = False,
     view: bool = False,
     checkpoint_every: float = CHECKPOINT_EVERY,
+    commands: str | os.PathLike[str] | Iterable[Mapping[str, Any]] | None = None,
 ) -> Run:
     """Run a scenario and, with ``out``, write its output folder.
 
@@ -138,6 +143,9 @@ def run(
         Show the run in the viewer while it is simulated; without a display, a warning is issued.
     checkpoint_every : float
         Wall-clock time between two checkpoints in ``out``, s; :func:`resume` continues from the last one.
+    commands : str, path or iterable of mapping, optional
+        Commands to joints and bodies, and triggers of events, at given times: a file of
+        :class:`CommandLog`, or its entries. They are checked before the run, and stored in ``out``.
 
     Returns
     -------
@@ -147,8 +155,8 @@ def run(
     ------
     OnOrbitError
         Before the run starts: for an invalid scenario (``ScenarioError``), a missing file
-        (``NotFoundError``), or a folder that is not empty, not writable or in use by another process
-        (``OutputFolderError``).
+        (``NotFoundError``), a command that does not fit (``InputError``, ``ControlError``, …), or a folder
+        that is not empty, not writable or in use by another process (``OutputFolderError``).
     SimulationError
         If the run diverges; the trace before the divergence is in the error and in ``out``.
     RunInterrupted
@@ -156,13 +164,19 @@ def run(
     """
     every = _checked_period(checkpoint_every)
     checked = load(scenario)
-    built = _built(checked)
+    given = _given(commands)
+    built = _with_warnings(_built(checked), given)
+    check_commands(built.simulation, given, checked.simulation.duration)
     if out is None:
-        return _simulate(built, None, quiet=quiet, view=view)
+        return _simulate(built, None, quiet=quiet, view=view, commands=given)
     with OutputFolder.claim(out, force=force) as folder:
         write_scenario(folder, checked)
+        if given:
+            write_commands(folder, given)
         writer = CheckpointWriter(folder, _digest(checked))
-        return _simulate(built, folder, quiet=quiet, view=view, checkpoint=writer, checkpoint_every=every)
+        return _simulate(
+            built, folder, quiet=quiet, view=view, commands=given, checkpoint=writer, checkpoint_every=every
+        )
 
 
 def resume(
@@ -209,14 +223,38 @@ def resume(
         digest = _digest(scenario)
         saved = read_checkpoint(path, digest)
         writer = CheckpointWriter(folder, digest, after=saved)
+        given = saved_commands(folder)
         return _simulate(
-            _built(scenario), folder, quiet=quiet, view=view,
+            _with_warnings(_built(scenario), given), folder, quiet=quiet, view=view, commands=given,
             checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
         )  # fmt: skip
 
 
 def _built(scenario: Scenario | WorldScenario) -> Built | BuiltWorld:
     return build_world(scenario) if isinstance(scenario, WorldScenario) else build(scenario)
+
+
+def _given(
+    commands: str | os.PathLike[str] | Iterable[Mapping[str, Any]] | None,
+) -> list[Command]:
+    """Return the commands of a file, or checked entries."""
+    if commands is None:
+        return []
+    if isinstance(commands, str | os.PathLike):
+        return read_commands(commands)
+    entries = enumerate(commands)
+    return in_order(
+        entry if isinstance(entry, Command) else checked_command(entry, f"commands[{index}]")
+        for index, entry in entries
+    )
+
+
+def _with_warnings(built: Built | BuiltWorld, commands: list[Command]) -> Built | BuiltWorld:
+    """Warn of controllers that follow commands in a run without commands."""
+    messages = tuple(warnings_without(built.scenario)) if not commands else ()
+    for message in messages:
+        warnings.warn(message, stacklevel=3)
+    return replace(built, warnings=(*built.warnings, *messages)) if messages else built
 
 
 def _checked_period(checkpoint_every: float) -> float:
@@ -241,6 +279,7 @@ def _simulate(
     *,
     quiet: bool,
     view: bool = False,
+    commands: Sequence[Command] = (),
     **checkpoints: Any,
 ) -> Run:
     """Simulate and write the results, including those of a run that was stopped or failed."""
@@ -248,8 +287,8 @@ def _simulate(
     try:
         with progress_bar(scenario.name, duration, quiet=quiet) as progress:
             trace: Trace | WorldTrace
-            if view:
-                trace = watched(built, progress.move, **checkpoints)
+            if view or commands:
+                trace = watched(built, progress.move, **checkpoints, view=view, commands=commands)
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
             summary = finished(trace, built, folder, progress.tell)

@@ -1,6 +1,6 @@
 //! Joint-space control that follows commands from outside of the run.
 
-use super::control_law::{ControlLaw, EffortInput, EffortWork, JointCommand};
+use super::control_law::{ControlLaw, EffortInput, EffortWork, Interface, JointCommand};
 use super::error::ControlError;
 use super::external_command::{ExternalCommand, Setpoint};
 use super::joint_computed_torque::JointComputedTorque;
@@ -61,6 +61,15 @@ impl External {
         Self { law, timeout: None, on_timeout: OnTimeout::Hold, memory: ExternalMemory::default() }
     }
 
+    /// Returns what the gains track: positions, or rates, or else efforts.
+    pub fn interface(&self) -> Interface {
+        match (self.law.kp.is_positive(), self.law.kd.is_positive()) {
+            (true, _) => Interface::Position,
+            (false, true) => Interface::Velocity,
+            (false, false) => Interface::Effort,
+        }
+    }
+
     /// Checks the gains and the timeout for a group of `count` joints.
     ///
     /// # Errors
@@ -119,10 +128,10 @@ impl External {
     /// Sets what the law does before its first command, at the positions `q` of the group.
     pub(super) fn start(&mut self, q: impl Iterator<Item = f64>) {
         let zeros = |q: Vec<f64>| vec![0.0; q.len()];
-        let setpoint = match (self.law.kp.is_positive(), self.law.kd.is_positive()) {
-            (true, _) => Setpoint::position(q.collect()),
-            (false, true) => Setpoint::velocity(zeros(q.collect())),
-            (false, false) => Setpoint::default(),
+        let setpoint = match External::interface(self) {
+            Interface::Position => Setpoint::position(q.collect()),
+            Interface::Velocity => Setpoint::velocity(zeros(q.collect())),
+            Interface::Effort => Setpoint::default(),
         };
         self.memory.current = ExternalCommand::Setpoint(setpoint);
     }

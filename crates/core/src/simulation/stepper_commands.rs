@@ -2,11 +2,12 @@
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
+use super::external_control::ExternalControl;
 use super::members::Place;
 use super::run_state::RunState;
 use super::stepper::Stepper;
 use super::wrench_commands::WrenchCommand;
-use crate::control::ExternalCommand;
+use crate::control::{Control, External, ExternalCommand, Interface};
 use crate::spatial::Scalar;
 
 impl Stepper<'_> {
@@ -46,8 +47,8 @@ impl Stepper<'_> {
         self.ended_by(result)
     }
 
-    /// Returns the controls of a system that follow commands from outside of the run, and their joints.
-    pub fn external(&self, system: usize) -> Vec<(String, Vec<String>)> {
+    /// Returns the controls of a system that follow commands from outside of the run.
+    pub fn external(&self, system: usize) -> Vec<ExternalControl> {
         let (group, system) = self.places[system];
         self.groups[group].run.external(system)
     }
@@ -107,12 +108,16 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(self.systems[system].controllers.set.send(control, command, time)?)
     }
 
-    /// Returns the controls of a system that follow commands, and their joints.
-    pub(super) fn external(&self, system: usize) -> Vec<(String, Vec<String>)> {
+    /// Returns the controls of a system that follow commands.
+    pub(super) fn external(&self, system: usize) -> Vec<ExternalControl> {
         let joints = &self.layout.systems()[system].joints;
         let controls = self.systems[system].controllers.set.external();
-        let named = |j: &usize| joints[*j].clone();
-        controls.map(|control| (control.name.clone(), control.joints.iter().map(named).collect())).collect()
+        let external = |control: &Control| ExternalControl {
+            name: control.name.clone(),
+            joints: control.joints.iter().map(|&j| joints[j].clone()).collect(),
+            interface: control.law.external().map_or(Interface::Effort, External::interface),
+        };
+        controls.map(external).collect()
     }
 
     pub(super) fn check_wrench(

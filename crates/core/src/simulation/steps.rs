@@ -3,6 +3,7 @@
 use super::attached::AttachedControl;
 use super::checkpoint::GroupCheckpoint;
 use super::error::SimulationError;
+use super::external_control::ExternalControl;
 use super::recording::{EventRecord, GroupRecording};
 use super::run_state::RunState;
 use super::trace::Trace;
@@ -33,8 +34,8 @@ pub(super) trait Steps: Send {
         wrench: &WrenchCommand,
     ) -> Result<(), SimulationError>;
     fn wrench(&mut self, system: usize, frame: usize, wrench: WrenchCommand) -> Result<(), SimulationError>;
-    /// Returns the controls that follow commands from outside, and their joints.
-    fn external(&self, system: usize) -> Vec<(String, Vec<String>)>;
+    /// Returns the controls that follow commands from outside.
+    fn external(&self, system: usize) -> Vec<ExternalControl>;
     /// Returns the names of the events.
     fn events(&self) -> Vec<String>;
     /// Returns the events that have happened.
@@ -116,7 +117,7 @@ impl<S: Scalar> Steps for RunState<'_, S> {
         RunState::wrench(self, system, frame, wrench)
     }
 
-    fn external(&self, system: usize) -> Vec<(String, Vec<String>)> {
+    fn external(&self, system: usize) -> Vec<ExternalControl> {
         RunState::external(self, system)
     }
 

@@ -220,4 +220,11 @@ impl PySystemStepper {
     fn external(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         self.stepper.get().external_of(py, self.system)
     }
+
+    /// What the gains of each :class:`External` controller of this system track, by the name of the control: ``position``,
+    /// ``velocity`` or, without gains, ``effort``.
+    #[getter]
+    fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
+        self.stepper.get().interfaces_of(py, self.system)
+    }
 }

@@ -11,6 +11,7 @@ from pydantic import Field
 
 from onorbit_rs.scenario.control.compliance import ComplianceControl, ComplianceController
 from onorbit_rs.scenario.control.computed_torque import ComputedTorqueControl, ComputedTorqueController
+from onorbit_rs.scenario.control.external import ExternalControl, ExternalController
 from onorbit_rs.scenario.control.joint_computed_torque import (
     JointComputedTorqueControl,
     JointComputedTorqueController,
@@ -24,6 +25,7 @@ __all__ = [
     "AnyControl",
     "AnyController",
     "Controller",
+    "ExternalController",
     "JointLaw",
     "JointPidController",
     "PythonController",
@@ -34,11 +36,17 @@ AnyController = (
     | JointComputedTorqueController
     | JointPidController
     | ComplianceController
+    | ExternalController
     | PythonController
 )
 Controller = Annotated[AnyController, Field(discriminator="kind"), of_kind(AnyController)]
 
 _Controls = (
-    ComputedTorqueControl | ComplianceControl | JointComputedTorqueControl | JointPidControl | PythonControl
+    ComputedTorqueControl
+    | ComplianceControl
+    | JointComputedTorqueControl
+    | JointPidControl
+    | ExternalControl
+    | PythonControl
 )
 AnyControl = Annotated[_Controls, Field(discriminator="kind"), of_kind(_Controls)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.scenario.control.external import ExternalController
 from onorbit_rs.scenario.control.law import JointLaw, TaskLaw
 from onorbit_rs.scenario.control.selection import tool_of
 from onorbit_rs.scenario.errors import inconsistent
@@ -79,6 +80,8 @@ def _check_frame(reference: Any, systems: list[str], at: Location) -> None:
 def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at: Location) -> Any:
     """Return the reference of a control law or the default; raise an error if it does not suit the law."""
     kind, is_task = law.kind, isinstance(reference, TaskReference)
+    if isinstance(law, ExternalController):
+        return _without_reference(law, reference, at)
     if isinstance(law, JointLaw):
         if is_task:
             raise inconsistent(
@@ -109,3 +112,18 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
             (*at, "reference", "frame"), "frame lvlh requires an orbit; add 'orbit' or use another frame"
         )
     return reference
+
+
+def _without_reference(law: ExternalController, reference: Any, at: Location) -> None:
+    """Raise an error if joints that follow commands have a reference, a goal or a shift of a reference."""
+    for key, given in [
+        ("reference", reference is not None),
+        ("goal", getattr(law, "goal", None) is not None),
+        ("starts_at_present", getattr(law, "starts_at_present", False)),
+    ]:
+        if given:
+            raise inconsistent(
+                (*at, key),
+                f"the controller external gets its motion from commands, so it has no '{key}'; remove it, or "
+                "use the controller joint_computed_torque",
+            )

@@ -1,0 +1,132 @@
+"""Commands from outside of a run: gives them to a stepper, and logs them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
+
+from onorbit_rs.common.files import output_errors
+from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.simulation.command_format import SETPOINT, Command, as_line, checked, invalid
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Stepper, SystemStepper
+
+
+def apply(stepper: Stepper, entry: Mapping[str, Any]) -> None:
+    """Give a stepper the command of an entry, at the current time of the stepper.
+
+    Parameters
+    ----------
+    stepper : Stepper
+    entry : mapping
+        Command; ``time`` is ignored.
+
+    Raises
+    ------
+    InputError
+        If the entry has unknown or missing keys, or wrong values; the run is unchanged.
+    OnOrbitError
+        The errors of the method of the stepper, which leave the run unchanged.
+    """
+    give(stepper, checked({"time": stepper.time, **entry}))
+
+
+def give(stepper: Stepper, entry: Command) -> None:
+    """Give a stepper the command of a checked entry; errors name its place in the file."""
+    try:
+        if "trigger" in entry:
+            stepper.trigger(entry["trigger"])
+            return
+        target: Stepper | SystemStepper = stepper[entry["system"]] if "system" in entry else stepper
+        if "body" in entry:
+            target.wrench(entry["body"], entry.get("force"), entry.get("torque"), entry.get("frame", "world"))
+        elif "trajectory" in entry:
+            path = dict(entry["trajectory"])
+            target.send_trajectory(entry["control"], path.pop("times"), path.pop("positions"), **path)
+        else:
+            target.send(entry["control"], **_setpoint(target, entry))
+    except AttributeError as error:  # a world of several systems
+        raise invalid(entry.where, f"'system' is missing: {error}") from None
+    except OnOrbitError as error:
+        if entry.where:
+            error.message = f"{entry.where}: {error.message}"
+        raise
+
+
+def _setpoint(target: Stepper | SystemStepper, entry: Command) -> dict[str, Any]:
+    """Return the arguments of a constant command."""
+    if "values" in entry:
+        return {target.interfaces.get(entry["control"], "effort"): entry["values"]}
+    return {name: entry[name] for name in SETPOINT if name in entry}
+
+
+class CommandLog:
+    """Log of the commands that a program gives to a run, from which ``onorbit run --commands`` repeats it.
+
+    It is a context manager that closes its file.
+
+    Parameters
+    ----------
+    file : str or path, optional
+        File to which every command is written at once, one JSON object per line; it is replaced.
+
+    Attributes
+    ----------
+    entries : list of dict
+        Commands so far.
+    """
+
+    def __init__(self, file: str | os.PathLike[str] | None = None) -> None:
+        """Start an empty log."""
+        self.entries: list[Command] = []
+        self._path = None if file is None else Path(file)
+        self._stream = None
+        if self._path is not None:
+            with output_errors(self._path):
+                self._stream = self._path.open("w", encoding="utf-8")
+
+    def apply(self, stepper: Stepper, entry: Mapping[str, Any]) -> None:
+        """Give a stepper a command, and add it to the log with the current time of the stepper.
+
+        Parameters
+        ----------
+        stepper : Stepper
+        entry : mapping
+            Command; its ``time`` is that of the stepper.
+
+        Raises
+        ------
+        OnOrbitError
+            As :func:`apply`; the command is then not logged.
+        """
+        command = checked({**entry, "time": stepper.time})
+        give(stepper, command)
+        self.entries.append(command)
+        if self._stream is not None and self._path is not None:
+            with output_errors(self._path):
+                self._stream.write(as_line(command))
+                self._stream.flush()
+
+    def close(self) -> None:
+        """Close the file."""
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None
+
+    def __enter__(self) -> Self:
+        """Return the log."""
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Close the file."""
+        self.close()
+
+    def __len__(self) -> int:
+        """Return the number of commands."""
+        return len(self.entries)

@@ -1,0 +1,97 @@
+"""Repeats the commands of a log over a run, with the bits of the run in which they were given."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.exceptions import InputError
+from onorbit_rs.simulation.command_format import Command, checked, in_order
+from onorbit_rs.simulation.commands import give
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Simulation, Stepper
+
+_SAME_INSTANT = 1e-9
+"""Fraction of a step by which two instants may differ and count as the same, as in the engine."""
+
+
+def replay_commands(
+    stepper: Stepper, entries: Iterable[Mapping[str, Any]], until: float | None = None
+) -> None:
+    """Advance a run and give it the commands of a log at their times.
+
+    Parameters
+    ----------
+    stepper : Stepper
+        Run; commands before its current time are left out.
+    entries : iterable of mapping
+        Commands in the order of their times, such as those of :func:`read_commands`.
+    until : float, optional
+        Time to which the run is advanced after the last command, s; default: the time of the last command.
+
+    Raises
+    ------
+    InputError
+        If an entry is invalid or times decrease; no command is then given.
+    OnOrbitError
+        The errors of the stepper.
+    """
+    queue = Queue(entries, stepper.time)
+    while queue.commands:
+        if queue.commands[0].time > stepper.time:
+            stepper.advance_to(queue.commands[0].time)
+        queue.apply_next(stepper)
+    if until is not None and until > stepper.time:
+        stepper.advance_to(until)
+
+
+class Queue:
+    """Commands that a run has not been given yet."""
+
+    def __init__(self, entries: Iterable[Mapping[str, Any]], start: float, *, step: float = 0.0) -> None:
+        """Keep the commands from the time ``start``, s, on; the steps of the run have the length ``step``, s.
+
+        A command at the time of a checkpoint may have been given before it was saved. Giving it again changes
+        nothing, because no step lies in between.
+        """
+        commands = in_order(entry if isinstance(entry, Command) else checked(entry) for entry in entries)
+        self._tolerance = max(_SAME_INSTANT * step, 1e-15 * start)
+        self.commands = deque(entry for entry in commands if entry.time >= start - self._tolerance)
+
+    def next_time(self, end: float) -> float:
+        """Return the time of the next command, at most ``end``, s."""
+        return min(self.commands[0].time, end) if self.commands else end
+
+    def apply_due(self, stepper: Stepper) -> None:
+        """Give the run the commands whose time it has reached."""
+        tolerance = max(self._tolerance, 1e-15 * stepper.time)
+        while self.commands and self.commands[0].time <= stepper.time + tolerance:
+            self.apply_next(stepper)
+
+    def apply_next(self, stepper: Stepper) -> None:
+        """Give the run the next command."""
+        give(stepper, self.commands.popleft())
+
+
+def check_commands(simulation: Simulation, commands: Sequence[Command], duration: float) -> None:
+    """Raise an error if a command does not fit a run, before it starts: all are given to it at time zero."""
+    stepper = simulation.start()
+    for command in commands:
+        if command.time > duration:
+            message = (
+                f"time {command.time:g} s is after the end of the run, {duration:g} s; remove the command"
+            )
+            raise InputError(
+                f"{command.where}: {message}", name="commands", got=command.time, expected=duration
+            )
+        give(stepper, command)
+        path = command.get("trajectory")
+        end = None if path is None or "start" not in path else path["start"] + path["times"][-1]
+        if end is not None and end < command.time:
+            raise InputError(
+                f"{command.where}: the trajectory ends at t = {end:g} s, before the time of the command, "
+                f"{command.time:g} s; give a later 'start'",
+                name="commands", got=end, expected=command.time,
+            )  # fmt: skip
