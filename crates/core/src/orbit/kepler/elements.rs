@@ -111,7 +111,7 @@ impl Kepler {
     ///
     /// Node and periapsis are in [0, 2π). The mean anomaly of an ellipse is in [-π, π], which keeps its
     /// digits near the periapsis. For a circular orbit the periapsis, and for an equatorial orbit the node,
-    /// are determined by rounding errors (the x axis if there are none), but their sums with the phase are
+    /// are determined by rounding errors (the x axis without rounding errors), but their sums with the phase are
     /// accurate. Near a parabola the size is the semi-latus rectum and the phase is the time of periapsis.
     pub fn elements(&self) -> Elements {
         let w_i = self.p_i.cross(&self.q_i);
