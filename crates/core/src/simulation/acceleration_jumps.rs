@@ -1,20 +1,22 @@
-//! Jumps of the joint accelerations between the last stage of one step and the first stage of the next: a measure of
-//! motion that the steps do not resolve.
+//! Jumps of the joint accelerations from the last stage of one step to the first stage of the next. They
+//! measure motion that the steps do not resolve.
 
 use super::integrator::StepEnds;
 use crate::model::BASE_NV;
 use crate::spatial::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Velocity changes `h |Δq̈|/6` below this fraction of the largest rate of a joint are ignored; step doubling
-/// measures such errors.
+/// Fraction of the largest rate of a joint below which velocity changes `h |Δq̈|/6` are ignored. Step
+/// doubling measures such small errors.
 const SMALL: f64 = 1e-6;
 
-/// Sums of the acceleration jumps of each joint over all steps; step doubling measures only some of the steps.
+/// Sums of the acceleration jumps of each joint over all steps. Step doubling, by contrast, measures only
+/// some of the steps.
 ///
-/// The last stage of a Runge-Kutta step is evaluated at a prediction of the end of the step, the first stage of the
-/// next step at the end itself. `h |Δq̈|/6` is the difference from a third-order solution. For an oscillation with `z
-/// = ω h` it is `z⁴/72`, and the error of a step is `z⁵/120 = 1.75 (z⁴/72)^(5/4)`.
+/// The last stage of a Runge-Kutta step is evaluated at a prediction of the state at the end of the step, and
+/// the first stage of the next step at that state itself. The resulting difference `h |Δq̈|/6`, with the step
+/// `h`, is the difference from a third-order solution. For an oscillation with `z = ω h` it is `z⁴/72`, and
+/// the error of a step is `z⁵/120 = 1.75 (z⁴/72)^(5/4)`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct AccelerationJumps {
     /// Joint accelerations in the last stage of the previous step, rad/s² (m/s²).
@@ -35,13 +37,13 @@ impl AccelerationJumps {
         Self { ended: zeros.clone(), command: zeros.clone(), h: 0.0, jumps: zeros.clone(), fastest: zeros }
     }
 
-    /// Returns the lengths of the vectors, each of which equals the number of joints unless a checkpoint is damaged.
+    /// Returns the lengths of the vectors. Each equals the number of joints, unless a checkpoint is damaged.
     pub(super) fn joints(&self) -> [usize; 4] {
         [&self.ended, &self.command, &self.jumps, &self.fastest].map(Vec::len)
     }
 
-    /// Adds a step of length `h`; `is_smooth` is true if neither an event nor an impact occurs at the start of the
-    /// step.
+    /// Adds a step of length `h`, s. `is_smooth` is true if neither an event nor an impact occurs at the
+    /// start of the step.
     #[inline]
     pub(super) fn add_step<S: Scalar>(
         &mut self,

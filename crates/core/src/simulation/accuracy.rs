@@ -1,4 +1,4 @@
-//! Measures the accuracy of the steps during a run, for the certificate of the run.
+//! Measurement of the accuracy of steps during a run, for the certificate of the run.
 
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
@@ -16,20 +16,20 @@ use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
-/// Error estimates for the native fixed-step integrators. An adaptive integrator estimates its errors itself, and the
-/// errors of an external engine are not estimated.
+/// Error estimates for the fixed-step integrators of the native engine. An adaptive integrator estimates its
+/// errors itself; the errors of an external engine are not estimated.
 pub(super) struct Accuracy<S> {
     doubling: Option<StepDoubling<S>>,
-    /// Checks of every step, one entry per tree; empty if every step is a row.
+    /// Checks that are evaluated at every step, one entry per tree; empty if every step is recorded.
     every_step: Vec<EveryStep>,
     /// True if the base rows of inverse dynamics are checked for the current step.
     is_recorded: bool,
 }
 
 impl<S: Scalar> Accuracy<S> {
-    /// Returns the measurements of trees before their first step. `doubles` is true if step doubling measures the errors
-    /// of steps, `checks` if the checks of the certificate are evaluated at every step; `steps` is the planned number of
-    /// steps.
+    /// Creates the measurements of trees before their first step. `doubles` is true if step doubling measures
+    /// the errors of steps, and `checks` is true if the checks of the certificate are evaluated at every
+    /// step. `steps` is the planned number of steps.
     pub(super) fn of(
         trees: &[Tree<'_, S>],
         state: &State<S>,
@@ -43,7 +43,8 @@ impl<S: Scalar> Accuracy<S> {
         Ok(Self { doubling, every_step, is_recorded: false })
     }
 
-    /// Returns what [`Accuracy::of`] needs to make the same measurements of other trees.
+    /// Returns the arguments `doubles` and `checks` of [`Accuracy::of`], with which other trees are measured
+    /// in the same way.
     pub(super) fn measures(&self) -> (bool, bool) {
         (self.doubling.is_some(), !self.every_step.is_empty())
     }
@@ -54,7 +55,7 @@ impl<S: Scalar> Accuracy<S> {
         (errors, self.every_step.get(number).map(EveryStep::save))
     }
 
-    /// Restores what [`Accuracy::save`] returned for a tree.
+    /// Restores, for a tree, the values that [`Accuracy::save`] returned.
     pub(super) fn restore(&mut self, number: usize, (errors, checks): (Option<Errors>, Option<SavedChecks>)) {
         if let (Some(doubling), Some(errors)) = (&mut self.doubling, errors) {
             doubling.errors[number] = errors;
@@ -64,8 +65,8 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Completes the checks of the last step, which ended at time `t`, s. Expects a state with projected base twists,
-    /// whose kinematics are in `equations`.
+    /// Completes the checks of the last step, which ended at time `t`, s. Requires projected base twists in
+    /// `state`, and its kinematics in `equations`.
     pub(super) fn end_step(&mut self, t: f64, state: &State<S>, equations: &Equations<'_, S>) {
         for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, &equations.trees)) {
             every_step.end(t, state, tree);
@@ -79,7 +80,7 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Starts the measurements of step number `step` over `interval`, s, before the step is taken.
+    /// Starts the measurements of step number `step` over `interval`, s, before that step is computed.
     pub(super) fn start_step(
         &mut self,
         step: usize,
@@ -98,14 +99,14 @@ impl<S: Scalar> Accuracy<S> {
             every_step.start(interval.0, state, tree);
         }
         if let (Some(doubling), Some(integration)) = (&mut self.doubling, mover.integration()) {
-            // if step doubling fails, the step itself fails too and reports the error
+            // if step doubling fails, the step fails too and reports the error
             let _ = doubling.probe(step, interval, state, equations, integration);
         }
         Ok(())
     }
 
-    /// Measures the step taken over `interval` to `state`; `is_smooth` is true if neither an event nor an impact
-    /// occurs at the start of the step.
+    /// Measures the step taken over `interval` to `state`; `is_smooth` is true if neither an event nor an
+    /// impact occurs at the start of the step.
     pub(super) fn measure_step(
         &mut self,
         interval: (f64, f64),
@@ -135,8 +136,8 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Records the end of a step whose base rows are checked. Writes the state at the end, with projected base
-    /// twists, and its accelerations to the buffers `(end, stages)`.
+    /// Records the end of a step whose base rows are checked. Writes the state at the end, with projected
+    /// base twists, and its accelerations to the buffers `(end, stages)`.
     fn record_end(
         &mut self,
         interval: (f64, f64),
@@ -156,7 +157,8 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Completes the last row of the checks of each tree with the acceleration of the first stage.
+    /// Adds the acceleration of the first stage to the last row of the checks of each tree, which completes
+    /// the row.
     fn complete_rows(
         &mut self,
         equations: &Equations<'_, S>,
@@ -169,8 +171,8 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Returns the error estimates of a tree after `steps` steps. `rotation_error` is the accumulated attitude error of
-    /// an adaptive integrator, rad; `None` for a fixed-step integrator.
+    /// Returns the error estimates of a tree after `steps` steps. `rotation_error` is the accumulated
+    /// attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator.
     pub(super) fn estimates(&self, number: usize, steps: usize, rotation_error: Option<f64>) -> Estimates {
         let checks = self.every_step.get(number).map(EveryStep::checks);
         let Some(doubling) = &self.doubling else {
@@ -182,7 +184,7 @@ impl<S: Scalar> Accuracy<S> {
     }
 }
 
-/// Returns pairs of the state of each tree and the tree.
+/// Returns the state of each tree paired with the tree.
 fn pairs<'a, 's, S>(
     state: &'a State<S>,
     trees: &'a [Tree<'s, S>],

@@ -1,25 +1,26 @@
-//! Controls that follow a frame to which their own frame is rigidly connected: their torques cannot reduce their errors.
+//! Detection of controls whose frame is rigidly connected to the frame that they follow, so that their
+//! torques cannot reduce their errors.
 
 use super::events::Attached;
 use super::run_state::RunState;
 use crate::spatial::Scalar;
 use crate::world::{FrameIndex, Weld};
 
-/// A control whose frame is rigidly connected to the frame that its reference follows.
+/// Control whose frame is rigidly connected to the frame that its reference follows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AttachedControl {
     /// Name of the control.
     pub control: String,
-    /// Path of the frame that it drives, `SYSTEM/FRAME`.
+    /// Path of the frame that the control moves, `SYSTEM/FRAME`.
     pub frame: String,
-    /// Path of the frame that it follows.
+    /// Path of the frame that the control follows, `SYSTEM/FRAME`.
     pub followed: String,
-    /// Name of the capture that connects the frames.
+    /// Name of the capture that connects the two frames.
     pub capture: String,
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Finds the running controls whose frames have become rigidly connected to those that they follow.
+    /// Finds the active controls whose frames have become rigidly connected to the frames that they follow.
     pub(super) fn find_attached(&mut self) {
         let welds = &self.connections.active.welds;
         if welds.is_empty() || self.moving_frames.is_empty() {
@@ -62,7 +63,7 @@ impl<S: Scalar> RunState<'_, S> {
         found.contains(&body(b))
     }
 
-    /// Returns the controls found so far.
+    /// Returns the controls that have been found so far.
     pub(super) fn attached_controls(&self) -> Vec<AttachedControl> {
         let named = self.events.attached.iter().map(|attached| {
             let run = &self.systems[attached.frame.system];

@@ -1,4 +1,4 @@
-//! Converts between the states of systems in base axes and the blocks of body states in W on which effects operate.
+//! Conversion between the states of systems in base axes and the blocks of body states in W that effects use.
 
 use crate::dynamics::{BodyData, Data, base_rotation};
 use crate::environment::{Bodies, BodyMotion, BodyState, Wrenches, on_lanes};
@@ -6,15 +6,16 @@ use crate::model::{Model, Node};
 use crate::spatial::{Force, Mat3, Motion, Real, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// Parts of a system that loads read and write, with the kinematics of its configuration in `data`.
+/// Parts of a system that loads read and write. `data` holds the kinematics of its configuration.
 pub(super) struct LoadedSystem<'a, S> {
     pub(super) data: &'a mut Data<S>,
     pub(super) q: &'a [S],
-    /// Velocity of the frame relative to which `data` holds velocities, W axes, m/s.
+    /// Velocity, W axes, m/s, of the frame to which the velocities in `data` are relative.
     pub(super) frame_velocity: Vec3<S>,
 }
 
-/// Returns the bodies of systems, given by their numbers in the world and their models, all at rest and with their origins
+/// Creates the bodies of systems, given by their numbers in the world and their models, at rest with their
+/// origins at the origin of W.
 /// at the origin of W.
 pub(super) fn bodies_of(numbers: &[usize], models: &[&Model]) -> Bodies {
     let at_rest = |node: &Node| BodyState {
@@ -73,8 +74,8 @@ impl<S: Scalar> LoadedSystem<'_, S> {
         );
     }
 
-    /// Writes the wrenches on the system at position `system` of the run to `data`, in base axes and about the origins of
-    /// the bodies.
+    /// Writes the wrenches on the system at position `system` of the run to `data`, in base axes and about
+    /// the origins of the bodies.
     pub(super) fn scatter_wrenches(&mut self, system: usize, wrenches: &Wrenches) {
         on_lanes!(self.data.bodies.len(), L => self.scatter_lanes::<L>(system, wrenches));
     }
@@ -116,7 +117,7 @@ fn broadcast<S: Scalar, L: Real>(v: &Vec3<S>) -> Vec3<L> {
     v.map(|x| L::of(x.value()))
 }
 
-/// Returns a function that maps lane `i` to body `first + i`; lanes past the end repeat the last body.
+/// Returns a function that maps lane `i` to body `first + i`. Lanes after the last body repeat that body.
 #[inline(always)]
 fn bodies_from<'a, S>(data: &'a Data<S>, first: usize) -> impl Fn(usize) -> &'a BodyData<S> {
     let bodies = &data.bodies[first..];

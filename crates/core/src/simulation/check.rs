@@ -1,4 +1,4 @@
-//! Checks of a simulation before it runs.
+//! Checks of a simulation before it starts.
 
 use super::check_references::{check_control_references, check_reference};
 use super::error::SimulationError;
@@ -10,18 +10,18 @@ use crate::environment::BodyIndex;
 use crate::model::{BASE_NQ, Model};
 use crate::world::{Action, Event, Seat, System, WorldError, check_events, check_names};
 
-/// Range of accepted time steps, s; a value outside this range is probably given in a wrong unit.
+/// Accepted time steps, s. A value outside this range was probably given in a wrong unit.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
 
 impl Simulation {
-    /// Checks all settings that can be checked before a run.
+    /// Checks all settings that can be checked before the run.
     ///
     /// # Errors
-    /// A [`SimulationError`] for the first invalid setting: an initial state of the wrong length, outside its range or
-    /// with a quaternion that does not have unit norm; a joint that starts beyond its limits when these are enforced; a
-    /// time step, tolerance or other number outside its range; an effect or a gravity field without the orbit that it
-    /// requires; an Earth whose epoch or axes differ from those of the orbit; invalid controls; a reference that has no
-    /// tool or starts too far from it.
+    /// A [`SimulationError`] for the first invalid setting: an initial state of the wrong length, outside its
+    /// range or with a quaternion that does not have unit norm; a joint that starts beyond its limits when
+    /// these are enforced; a time step, tolerance or other number outside its range; an effect or a gravity
+    /// field without the orbit that it requires; an Earth whose epoch or axes differ from those of the orbit;
+    /// invalid controls; a reference that has no tool or starts too far from it.
     pub fn check(&self) -> Result<(), SimulationError> {
         self.systems.iter().try_for_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;
@@ -64,7 +64,8 @@ impl Simulation {
         self.systems.iter().try_for_each(check_system)
     }
 
-    /// Rejects settings that only the native equations of motion support: they need the tree of connected systems.
+    /// Rejects settings that only the native engine supports, because they need the tree of connected
+    /// systems.
     fn check_engine(&self) -> Result<(), SimulationError> {
         let cannot = |name: &str, what, remedy| {
             Err(SimulationError::EngineOfWorld { name: name.to_owned(), what, remedy })
@@ -88,8 +89,8 @@ impl Simulation {
         }
     }
 
-    /// Rejects effects that act on none of the systems, and two effects that would count twice on a body, including the
-    /// gravity that an orbit around a planet adds.
+    /// Rejects effects that act on none of the systems, and effects that would count twice on a body. The
+    /// gravity that an orbit around a planet adds is included.
     fn check_effects(&self) -> Result<(), SimulationError> {
         let (effects, count) = (self.all_effects(), self.systems.len());
         for (k, effect) in effects.iter().enumerate() {
@@ -107,7 +108,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Returns all bodies of all systems.
+    /// Returns the indices of all bodies of all systems.
     fn bodies(&self) -> impl Iterator<Item = BodyIndex> {
         let bodies = |(system, declared): (usize, &System)| {
             (0..declared.model.nodes().len()).map(move |body| BodyIndex { system, body })
@@ -115,7 +116,7 @@ impl Simulation {
         self.systems.iter().enumerate().flat_map(bodies)
     }
 
-    /// Returns the name of a body, after the name of its system if there are several.
+    /// Returns the name of a body, preceded by the name of its system if there are several systems.
     fn body_path(&self, BodyIndex { system, body }: BodyIndex) -> String {
         let System { name, model, .. } = &self.systems[system];
         let body = &model.body_frame(body).name;
@@ -123,7 +124,7 @@ impl Simulation {
     }
 }
 
-/// Checks that the motions to nominal poses are long enough for the resolution of the schedule.
+/// Checks that seating motions are long enough to be resolved by the schedule.
 fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> {
     for Event { name, action, .. } in events {
         let Action::Capture { seat: Some(Seat { duration, .. }), .. } = action else { continue };
@@ -136,7 +137,7 @@ fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> 
     Ok(())
 }
 
-/// Checks the controls and the reference of a system.
+/// Checks the controls of a system and its reference.
 fn check_system(system: &System) -> Result<(), SimulationError> {
     check_system_controls(system)?;
     match (system.tool, &system.reference) {
@@ -148,7 +149,7 @@ fn check_system(system: &System) -> Result<(), SimulationError> {
     }
 }
 
-/// Checks the controls of a system, the frames that they track and the initial values of their references.
+/// Checks the controls of a system, the frames that they track, and the initial values of their references.
 fn check_system_controls(system: &System) -> Result<(), SimulationError> {
     let System { model, q, controls, .. } = system;
     let count = model.frames().len();
@@ -168,7 +169,7 @@ fn check_system_controls(system: &System) -> Result<(), SimulationError> {
     check_control_references(model, q, controls, system.reference_start_tolerance)
 }
 
-/// Checks the restitution, and checks that the joints start within their limits.
+/// Checks the coefficient of restitution, and that the joints start within their limits.
 fn check_stops(system: &System) -> Result<(), SimulationError> {
     let Some(restitution) = system.stops else { return Ok(()) };
     if !(0.0..=1.0).contains(&restitution) {

@@ -1,4 +1,4 @@
-//! Checks that references start at the initial pose or joint positions of the robot.
+//! Checks that references start at the initial pose or at the initial joint positions of the robot.
 
 use super::error::SimulationError;
 use crate::control::{Begin, Control, Interface};
@@ -7,7 +7,8 @@ use crate::model::{BASE_NQ, Model};
 use crate::reference::{TaskReference, joint_start_offset};
 use crate::spatial::Vec3;
 
-/// Checks that a reference starts within `tolerance` (m, rad) of the pose of frame `frame` at configuration `q`.
+/// Checks that a reference starts within `tolerance` (m, rad) of the pose of frame `frame` at configuration
+/// `q`.
 pub(super) fn check_reference(
     model: &Model,
     q: &[f64],
@@ -31,9 +32,9 @@ pub(super) fn check_reference(
     Ok(())
 }
 
-/// Checks the references of the controls that are active from the start of the run. References of frames must start
-/// within `tolerance` (m, rad) of the frame, and those of joint positions within the second entry of `tolerance`
-/// (rad, or m for prismatic joints) of the joint positions.
+/// Checks the references of those controls that are active from the start of the run. References of frames
+/// must start within `tolerance` (m, rad) of the frame. References of joint positions must start within the
+/// second entry of `tolerance` (rad, or m for prismatic joints) of the initial positions.
 pub(super) fn check_control_references(
     model: &Model,
     q: &[f64],

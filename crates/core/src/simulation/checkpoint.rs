@@ -1,4 +1,4 @@
-//! Checkpoints: the state of a run between two steps, from which the run can resume with bit-identical results.
+//! Checkpoints: states of a run between two steps, from which the run can resume with bit-identical results.
 
 use super::checkpoint_error::CheckpointError;
 use super::connections::SavedMembers;
@@ -22,18 +22,18 @@ use crate::spatial::InstructionSet;
 use crate::world::{Layout, SystemPlace};
 use serde::{Deserialize, Serialize};
 
-/// Largest number of steps of a run; twice as many can be counted without overflow.
+/// Largest number of steps of a run; counting up to twice this number does not overflow.
 const MOST_STEPS: usize = usize::MAX / 2;
 
-/// State of a run that its trace does not contain. A run that resumes from a checkpoint and the rows recorded before
-/// it gives results that are bit-identical to those of an uninterrupted run.
+/// State of a run that its trace does not contain. A run that resumes from a checkpoint, together with the
+/// rows recorded before it, gives results that are bit-identical to those of an uninterrupted run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// Version of this library; another version may round differently.
+    /// Version of this library. Other versions may round differently.
     version: String,
-    /// Instruction set of the run; another instruction set rounds differently.
+    /// Instruction set of the run. Other instruction sets round differently.
     instruction_set: String,
-    /// One entry per group of systems.
+    /// One checkpoint per group of systems.
     groups: Vec<GroupCheckpoint>,
 }
 
@@ -45,13 +45,13 @@ pub(super) struct GroupCheckpoint {
     pub(super) schedule: Schedule,
     pub(super) progress: Progress,
     pub(super) local_reference: Option<LocalReference>,
-    /// Wrenches from outside of the run.
+    /// Commanded wrenches from outside the run.
     #[serde(default, skip_serializing_if = "WrenchCommands::is_empty")]
     pub(super) wrenches: WrenchCommands,
     pub(super) controllers: SavedControllers,
 }
 
-/// State of everything that a step changes, except the controllers.
+/// Everything that a step changes, except the controllers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Progress {
     /// Steps taken so far.
@@ -68,7 +68,7 @@ pub(super) struct Progress {
     pub(super) world: WorldProgress,
 }
 
-/// Quantities of one tree that a step changes, except its state.
+/// Quantities of a tree, other than its state, that a step changes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TreeProgress {
     pub(super) modes: SavedModes,
@@ -76,7 +76,7 @@ pub(super) struct TreeProgress {
     pub(super) checks: Option<SavedChecks>,
 }
 
-/// Quantities of one system that a step changes, except its state and its controllers.
+/// Quantities of a system, other than its state and its controllers, that a step changes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SystemProgress {
     /// Rows recorded so far.
@@ -97,7 +97,7 @@ pub(super) struct WorldProgress {
     pub(super) balance: GroupBalance,
 }
 
-/// State of the controllers and torques of a run.
+/// State of the controllers and joint torques of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedControllers {
     /// True if the controllers have been updated at the current cut.
@@ -106,7 +106,7 @@ pub(super) struct SavedControllers {
     pub(super) systems: Vec<SystemControllers>,
 }
 
-/// State of the controllers and torques of one system.
+/// State of the controllers and joint torques of one system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SystemControllers {
     /// Joint torques that are held during the current step, `(n,)`, N m (N).
@@ -115,12 +115,13 @@ pub(super) struct SystemControllers {
     pub(super) commanded: Vec<Option<f64>>,
     /// Accelerations requested for joints whose friction is compensated, `(n,)`, rad/s² (m/s²).
     pub(super) requested: Vec<Option<f64>>,
-    /// Torques and requested accelerations before an update that a trial step made at the current cut.
+    /// Torques and requested accelerations before a trial step updated the controllers at the current cut;
+    /// `None` without such an update.
     pub(super) held: Option<(Vec<f64>, Vec<Option<f64>>)>,
     pub(super) controls: Vec<ControlMemory>,
 }
 
-/// Returns the name of the instruction set that a single run uses; it never uses the widest SIMD lanes.
+/// Returns the name of the instruction set used for single runs, which never use the widest SIMD lanes.
 fn own_instruction_set() -> &'static str {
     InstructionSet::current().min(InstructionSet::Fused).name()
 }
@@ -148,7 +149,7 @@ impl Checkpoint {
         first.map_or(0, |system| system.rows)
     }
 
-    /// Returns the checkpoint as JSON; reading it back gives bit-identical numbers.
+    /// Returns the checkpoint as JSON. Reading the text again gives bit-identical numbers.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).expect("numbers, strings and lists can be written")
     }
@@ -156,8 +157,8 @@ impl Checkpoint {
     /// Reads a checkpoint from the output of [`Checkpoint::to_json`].
     ///
     /// # Errors
-    /// [`CheckpointError::Unreadable`] if `text` is damaged, and [`CheckpointError::OtherVersion`] if another version
-    /// wrote it.
+    /// [`CheckpointError::Unreadable`] if `text` is damaged, and [`CheckpointError::OtherVersion`] if a
+    /// different version wrote it.
     pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
         let own = env!("CARGO_PKG_VERSION");
         let unreadable = |error: serde_json::Error| CheckpointError::Unreadable { reason: error.to_string() };
@@ -170,7 +171,8 @@ impl Checkpoint {
         }
     }
 
-    /// Returns the checkpoints of `count` groups, for a run that resumes on this machine.
+    /// Returns the checkpoints of `count` groups for a run that resumes on this machine, after checking
+    /// version and instruction set.
     pub(super) fn into_groups(self, count: usize) -> Result<Vec<GroupCheckpoint>, CheckpointError> {
         let own = own_instruction_set();
         if self.instruction_set != own {
@@ -183,8 +185,8 @@ impl Checkpoint {
 }
 
 impl GroupCheckpoint {
-    /// Checks that a run with this layout, this schedule, these numbers of recorded rows and this number of events can
-    /// resume from the checkpoint.
+    /// Checks that a run can resume from the checkpoint, given the layout of its state, its schedule, the
+    /// numbers of recorded rows and the number of events.
     pub(super) fn check(
         &self,
         layout: &Layout,
@@ -255,7 +257,7 @@ impl GroupCheckpoint {
             .try_for_each(|(saved, place)| saved.check_sizes(place))
     }
 
-    /// Checks that the states of the trees have the sizes of `expected`.
+    /// Checks that the states of the trees have the same sizes as `expected`.
     pub(super) fn check_trees<S>(&self, expected: &State<S>) -> Result<(), CheckpointError> {
         let progress = &self.progress;
         check_each([("trees", progress.trees.len(), expected.trees.len())])?;

@@ -3,7 +3,7 @@
 use crate::number_text::short;
 use thiserror::Error;
 
-/// A checkpoint from which a run cannot resume.
+/// Reason why a run cannot resume from a checkpoint.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum CheckpointError {
@@ -20,17 +20,17 @@ pub enum CheckpointError {
     )]
     OtherInstructionSet { found: String, own: String },
     #[error(
-        "the checkpoint needs the {expected} rows recorded before it, but {got} are given; pass all of them"
+        "the checkpoint needs the {expected} rows recorded before it, but {got} are given; pass all of these rows"
     )]
     MissingRows { got: usize, expected: usize },
     #[error(
         "the checkpoint belongs to another scenario (size of {name}: {got} in the checkpoint, {expected} in this \
-         simulation); resume with the original one"
+         simulation); resume with the original scenario"
     )]
     OtherSize { name: &'static str, got: usize, expected: usize },
     #[error(
         "the checkpoint is of a run {duration} with steps of {step} s, but this run differs in {what}: the checkpoint \
-         belongs to another scenario; resume with the original one",
+         belongs to another scenario; resume with the original scenario",
         duration = duration.map_or("without a planned end".to_owned(), |end| format!("of {} s", short(end))),
         step = short(*step)
     )]

@@ -1,4 +1,4 @@
-//! Checks that the connections of a checkpoint are those of systems and events of the run.
+//! Checks that the connections in a checkpoint belong to systems and events of the run.
 
 use super::checkpoint::{WorldProgress, check_each};
 use super::checkpoint_error::CheckpointError;
@@ -7,7 +7,7 @@ use crate::spatial::Scalar;
 use crate::world::FrameIndex;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Checks that connections and records refer to systems, frames and events that exist.
+    /// Checks that connections and event records refer to existing systems, frames and events.
     pub(super) fn check_connections(&self, world: &WorldProgress) -> Result<(), CheckpointError> {
         let (count, active) = (self.systems.len(), &world.members.active);
         let is_frame = |at: FrameIndex| at.system < count && at.frame < self.model(at.system).frames().len();
@@ -25,7 +25,8 @@ impl<S: Scalar> RunState<'_, S> {
         Err(CheckpointError::Unreadable { reason: reason.to_owned() })
     }
 
-    /// Checks the sizes of the states of systems that share trees. Expects these systems to be restored.
+    /// Checks the sizes of the states of systems that share trees. Requires that these systems have been
+    /// restored.
     pub(super) fn check_members(&self, world: &WorldProgress) -> Result<(), CheckpointError> {
         let parts = &self.equations.members.parts;
         check_each([("systems that share trees", world.members.parts.len(), parts.len())])?;

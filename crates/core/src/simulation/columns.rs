@@ -1,7 +1,7 @@
-//! The table of the recorded quantities: name, path, shape, unit, frame and meaning of each, described once.
+//! Table of the recorded quantities, with the name, path, shape, unit, frame and meaning of each.
 //!
 //! The recorder, the Python bindings, `trace.npz` and its reader, the viewer, the figures and the
-//! documentation read this table.
+//! documentation use this table.
 
 use crate::model::{BASE_NQ, BASE_NV, Model};
 use std::fmt;
@@ -13,7 +13,7 @@ pub enum Length {
     Rows,
     /// One entry per event, `K`.
     Events,
-    /// A constant length, the same for every robot.
+    /// Constant length, equal for all robots.
     Fixed(usize),
     /// Number of coordinates of the robot, `nq`.
     Nq,
@@ -23,12 +23,12 @@ pub enum Length {
     Joints,
     /// Number of bodies of the robot.
     Bodies,
-    /// Number of tracking errors of a control, `k`: 6 for a task, otherwise one per joint.
+    /// Number of components of the tracking error of a control, `k`: 6 for a task, otherwise one per joint.
     Errors,
 }
 
 impl Length {
-    /// Returns the length for a robot; 1 where the robot does not determine it.
+    /// Returns the length for the robot `model`, or 1 if the robot does not determine it.
     fn of(self, model: &Model) -> usize {
         match self {
             Self::Fixed(length) => length,
@@ -56,12 +56,12 @@ impl fmt::Display for Length {
     }
 }
 
-/// Condition under which a column is recorded.
+/// Condition under which a quantity is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// Every run has the column.
+    /// In every run.
     Always,
-    /// A controller compensates Coulomb friction, and the native equations of motion are used.
+    /// A controller compensates Coulomb friction, and the native engine is used.
     FrictionCompensation,
     /// The run has a tool.
     Tool,
@@ -78,7 +78,7 @@ pub enum Condition {
 }
 
 impl Condition {
-    /// Returns the condition in words.
+    /// Returns the text that describes the condition in the documentation.
     pub fn text(self) -> &'static str {
         match self {
             Self::Always => "always",
@@ -93,7 +93,7 @@ impl Condition {
     }
 }
 
-/// A range of the last axis of a column.
+/// Part of the last axis of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
     /// Name of the part.
@@ -104,7 +104,7 @@ pub struct Part {
     pub end: Option<usize>,
 }
 
-/// Description of one recorded quantity.
+/// Description of a recorded quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Name of the attribute of a trace.
@@ -113,8 +113,8 @@ pub struct Column {
     pub path: &'static str,
     /// Length of each axis.
     pub shape: &'static [Length],
-    /// Unit of the values; if there are parts, the units of the parts in order, separated by semicolons. `1` for
-    /// dimensionless values.
+    /// Unit of the values. If there are parts, the units of the parts are listed in order, separated by
+    /// semicolons. The unit of dimensionless values is `1`.
     pub unit: &'static str,
     /// Frame in which the values are expressed; empty if they do not depend on a frame.
     pub frame: &'static str,
@@ -192,7 +192,7 @@ macro_rules! length {
 macro_rules! table {
     ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
         $meaning:literal;)+) => {
-        /// Columns that are fields of a trace, in the order of the fields.
+        /// Columns that are fields of a trace, in the order of these fields.
         pub static COLUMNS: &[Column] = &[
             $(column!($name, stringify!($name), ($($axis),+), $unit, $frame, $condition, $parts, $meaning)),+
         ];
@@ -218,10 +218,10 @@ macro_rules! column {
     };
 }
 
-/// Passes the rows of the table to a macro, which declares a field, a getter or a description for each. A row holds
-/// name, shape, unit, frame, condition, parts and meaning.
+/// Passes the rows of the table to a macro that declares a field, a getter or a description for each row. A
+/// row consists of name, shape, unit, frame, condition, parts and meaning.
 ///
-/// The path of each of these columns is its name.
+/// The path of each of these columns equals its name.
 #[macro_export]
 macro_rules! trace_columns {
     ($then:ident) => {
@@ -243,7 +243,7 @@ macro_rules! trace_columns {
                 "Time integral of the external forces and of their moments about the centre of mass.";
             kinetic_energy (T), "J", "W", Always, WHOLE, "Kinetic energy.";
             work (T), "J", "W", Always, WHOLE,
-                "Work done on the robot by motors and external wrenches, less dissipated.";
+                "Work done on the robot by motors and external wrenches, minus the energy dissipated in the joints.";
             dissipated (T), "J", "", Always, WHOLE,
                 "Energy lost in the damping, friction and stops of the joints.";
             center_of_mass (T, 3), "m", "W", Always, WHOLE, "Position of the centre of mass of the system.";
@@ -272,12 +272,12 @@ pub static TRACKING: Column = column!(
     tracking,
     "tracking_*",
     (T, k),
-    "m and rad, or those of the joints",
+    "m and rad, or rad and m of the joints",
     "W",
     Controls,
     WHOLE,
-    "Desired minus actual: position and rotation vector of a task (axes of B where its reference is relative \
-     to the base), else one number per joint; zero while the control is inactive."
+    "Desired minus actual: position and rotation vector of a task (axes of B if its reference is relative \
+     to the base), otherwise one number per joint; zero while the control is inactive."
 );
 
 /// Wrenches of the environment, one column per effect.
@@ -292,7 +292,7 @@ pub static WRENCHES: Column = column!(
     "Force of an effect on each body, and its torque about the body's centre of mass."
 );
 
-/// Times at which the run changed to another reference orbit.
+/// Times at which the run changed to a new reference orbit.
 pub static REREFERENCED: Column = column!(
     rereferenced,
     "rereferenced",
@@ -302,10 +302,10 @@ pub static REREFERENCED: Column = column!(
     Always,
     WHOLE,
     "Times at which the robot had drifted too far from its reference orbit for accurate integration, which \
-     continued about a new one; the rows stay in W."
+     continued about a new orbit; recorded quantities still refer to W."
 );
 
-/// Returns the description of every recorded quantity.
+/// Returns the descriptions of all recorded quantities.
 pub fn columns() -> impl Iterator<Item = &'static Column> {
     COLUMNS.iter().chain([&TRACKING, &WRENCHES, &REREFERENCED])
 }

@@ -8,21 +8,22 @@ use serde::{Deserialize, Serialize};
 /// Active connections of the systems of a run.
 #[derive(Debug, Default)]
 pub(super) struct Connections {
-    /// Models of the systems, with the names of the systems as prefixes; empty if the run has no events.
+    /// Models of the systems, with the names of the systems as prefixes of all names; empty if the run has no
+    /// events.
     prefixed: Vec<Model>,
     pub(super) active: ActiveWelds,
 }
 
-/// Active welds, and the roots of the trees that they connect.
+/// Active welds, and the roots of the trees into which they connect systems.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct ActiveWelds {
     pub(super) welds: Vec<Weld>,
-    /// Roots of the trees with several members, and of those that had several.
+    /// Roots of the trees that have, or have had, several members.
     pub(super) roots: Vec<usize>,
 }
 
 impl Connections {
-    /// Returns the connections of systems with these names and models before any event.
+    /// Creates the connections of systems, given by name and model, before any event.
     pub(super) fn new<'m>(
         systems: impl Iterator<Item = (&'m str, &'m Model)>,
         has_events: bool,
@@ -32,7 +33,8 @@ impl Connections {
         Ok(Self { prefixed: prefixed.collect::<Result<_, _>>()?, active: ActiveWelds::default() })
     }
 
-    /// Returns the systems that are connected to a system, itself included, in the order of their numbers.
+    /// Returns the systems that are connected to a system, including that system, in ascending order of their
+    /// numbers.
     pub(super) fn connected_to(&self, system: usize) -> Vec<usize> {
         let (mut found, mut next) = (vec![system], 0);
         while let Some(&system) = found.get(next) {
@@ -48,7 +50,8 @@ impl Connections {
         found
     }
 
-    /// Removes a weld. Of its two systems, the one whose tree has lost its root becomes the root of this tree.
+    /// Removes a weld. Of the two systems that it connected, the one whose tree has no root any more becomes
+    /// the root of its tree.
     pub(super) fn remove(&mut self, weld: usize) {
         let Weld { by, of, .. } = self.active.welds.remove(weld);
         for system in [by.system, of.system] {
@@ -73,13 +76,13 @@ impl Connections {
         self.active.roots.iter().copied().find(|root| tree.contains(root))
     }
 
-    /// Returns the trees for the active connections.
+    /// Assembles the trees for the active connections.
     pub(super) fn assemble(&self) -> Result<Vec<Assembly>, ModelError> {
         assemble(&self.prefixed, &self.active.welds, &self.active.roots)
     }
 
-    /// Returns the tree of a system and of those of the systems `knows` that are connected to it through them, rooted at
-    /// the system: its model and its members; `None` if no known system is connected.
+    /// Returns the model and the members of the tree that consists of a system, its root, and those of the
+    /// systems `knows` that are connected to it through each other; `None` if no known system is connected.
     pub(super) fn known_tree(
         &self,
         system: usize,
@@ -88,7 +91,7 @@ impl Connections {
         let is_known = |other: usize| other == system || knows.contains(&other);
         let welds =
             self.active.welds.iter().filter(|weld| is_known(weld.by.system) && is_known(weld.of.system));
-        // the motion of a seating is not known in advance
+        // controllers do not know a seating motion in advance
         let welds: Vec<Weld> = welds.map(|weld| Weld { seating: None, ..weld.clone() }).collect();
         if welds.is_empty() {
             return Ok(None);
@@ -102,13 +105,13 @@ impl Connections {
         self.prefixed[system].frames().iter().map(|frame| tree.frame(&frame.name)).collect()
     }
 
-    /// Returns the name that a frame has in every tree.
+    /// Returns the name of a frame in the models of trees.
     pub(super) fn frame_name(&self, place: FrameIndex) -> &str {
         &self.prefixed[place.system].frames()[place.frame].name
     }
 }
 
-/// State of the connections for checkpoints.
+/// State of the connections, for checkpoints.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedMembers {
     pub(super) active: ActiveWelds,

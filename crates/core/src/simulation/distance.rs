@@ -1,29 +1,31 @@
-//! Systems that start far from the reference orbit, where coordinates in W lose digits.
+//! Detection of systems that start far from the reference orbit, where coordinates in W lose digits.
 
 use super::settings::Simulation;
 use crate::world::groups;
 
-/// Largest spacing of the positions that `f64` represents which is acceptable, m. A distance of 4500 km reaches it. It is
-/// a tenth of the error of a long orbit at the tightest tolerance, and far below what sensors of relative motion resolve.
+/// Largest acceptable spacing of adjacent `f64` positions, m, which is reached at a distance of 4500 km. It
+/// is a tenth of the error of a long orbit at the tightest tolerance, and far below the resolution of sensors
+/// of relative motion.
 const FINEST: f64 = 1e-9;
 
-/// A system that starts far from the reference orbit.
+/// System that starts far from the reference orbit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FarSystem {
     /// Number of the system.
     pub system: usize,
     /// Distance of its base from the reference orbit, m.
     pub distance: f64,
-    /// Spacing of the positions that can be represented there, m.
+    /// Spacing of adjacent `f64` positions at this distance, m.
     pub resolution: f64,
-    /// True if the system keeps the reference orbit because events may connect it to others, and starts beyond the distance
-    /// at which a single system changes to a local one.
+    /// True if the system starts beyond the distance at which a single system changes to a local reference
+    /// orbit, but cannot do so because events may connect it to other systems.
     pub keeps_reference: bool,
 }
 
 impl Simulation {
-    /// Returns the systems that start so far from the reference orbit that digits of their positions are lost, and those
-    /// beyond [`Simulation::rereference_beyond`] that nevertheless keep the reference orbit.
+    /// Returns the systems that start so far from the reference orbit that their positions lose digits, and
+    /// the systems that start beyond [`Simulation::rereference_beyond`] but cannot change to a local
+    /// reference orbit.
     pub fn far_systems(&self) -> Vec<FarSystem> {
         let groups = groups(self.systems.len(), &self.events, &self.links());
         let is_grouped =

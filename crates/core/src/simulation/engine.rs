@@ -1,80 +1,81 @@
-//! External physics engines in place of the native equations of motion.
+//! External physics engines, which replace the native engine.
 
 use super::error::SimulationError;
 use crate::environment::BodyIndex;
 use crate::model::Model;
 use crate::spatial::{Mat3, Vec3};
 
-/// External physics engine that moves the systems. Controllers, schedule, events, trace and certificate are the same as
-/// in a run with the native equations of motion.
+/// External physics engine that moves the systems. Controllers, schedule, events, trace and certificate are
+/// the same as in a run with the native engine.
 pub trait Engine: Send {
-    /// Moves all systems over one step and writes to `output` the state at the end of the step, the acceleration at its
-    /// start, and the impulse and work during the step. The output must depend on the input alone, so that a run can
-    /// resume from a checkpoint.
+    /// Advances all systems by one step. Writes to `output` the state at the end of the step, the
+    /// acceleration at its start, and the impulse and work during the step. The output must depend only on
+    /// the input, so that a run can resume from a checkpoint.
     ///
-    /// A step of zero length requests the acceleration only.
+    /// A step of zero length is a request for the acceleration only.
     ///
     /// # Errors
-    /// Any error ends the run.
+    /// Any error ends the run and is reported unchanged.
     fn step(&mut self, input: &StepInput<'_>, output: &mut StepOutput) -> Result<(), SimulationError>;
 }
 
-/// Input of a step: its interval, the initial states and the torques, each of all systems one after another, and the
-/// connections.
+/// Input of a step: interval, initial states, torques and connections. States and torques are those of all
+/// systems, one system after another.
 #[derive(Clone, Copy, Debug)]
 pub struct StepInput<'a> {
     /// Start and end of the step, s.
     pub interval: (f64, f64),
-    /// Configurations at the start, `(nq,)` of each system, m and rad.
+    /// Configurations at the start of the step, `(nq,)` of each system, m and rad.
     pub q: &'a [f64],
-    /// Velocities at the start, `(nv,)` of each system, m/s and rad/s.
+    /// Velocities at the start of the step, `(nv,)` of each system, m/s and rad/s.
     pub v: &'a [f64],
     /// Joint torques, constant during the step, `(n,)` of each system, N m (N).
     pub tau: &'a [f64],
-    /// Connections during the step.
+    /// Connections that hold during the step.
     pub welds: &'a [BodyWeld],
 }
 
 /// Rigid connection of two bodies of different systems.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyWeld {
-    /// The two bodies, that of the capturing frame first.
+    /// The two bodies, beginning with the body of the capturing frame.
     pub bodies: [BodyIndex; 2],
     /// Origin of the captured frame in the axes of each body, m.
     pub points: [Vec3<f64>; 2],
-    /// Rotation from the axes of the second body to those of the first.
+    /// Rotation from axes of the second body to axes of the first body.
     pub rotation: Mat3<f64>,
 }
 
 /// Result of a step.
 #[derive(Clone, Debug)]
 pub struct StepOutput {
-    /// Configurations at the end, `(nq,)` of each system, m and rad.
+    /// Configurations at the end of the step, `(nq,)` of each system, m and rad.
     pub q: Vec<f64>,
-    /// Velocities at the end, `(nv,)` of each system, m/s and rad/s.
+    /// Velocities at the end of the step, `(nv,)` of each system, m/s and rad/s.
     pub v: Vec<f64>,
-    /// Accelerations at the start, `(nv,)` of each system, m/s² and rad/s².
+    /// Accelerations at the start of the step, `(nv,)` of each system, m/s² and rad/s².
     pub acceleration: Vec<f64>,
     /// Impulse and work of each system.
     pub systems: Vec<Exchange>,
-    /// Time integral over the step of the moments of the external forces, acting at the centres of mass of the systems,
-    /// about the common centre of mass, W axes, N m s; zero for one system.
+    /// Time integral over the step of the moments about the common centre of mass of the external forces,
+    /// taken to act at the centres of mass of the systems, W axes, N m s; zero for a single system.
     pub orbital: [f64; 3],
 }
 
-/// What a system receives during a step.
+/// Impulse and work that a system receives during a step.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Exchange {
-    /// Time integral over the step of the external forces and of their moments about the centre of mass of the system,
-    /// W axes, N s and N m s.
+    /// Time integral over the step of the external forces and of their moments about the centre of mass of
+    /// the system, W axes, N s and N m s.
     pub impulse: [f64; 6],
-    /// Work done by motors and external wrenches during the step minus the energy that the joints dissipate, J.
+    /// Work done by motors and external wrenches during the step minus the energy that the joints dissipate,
+    /// J.
     pub work: f64,
     /// Energy that the joints dissipate during the step, J.
     pub dissipated: f64,
-    /// Impulse of the connections to other systems, as `impulse`.
+    /// Impulse that the connections to other systems exert on the system; components as in `impulse`.
     pub weld_impulse: [f64; 6],
-    /// Work of the connections on the system, J.
+    /// Work that the connections do on the system, J.
     pub weld_work: f64,
 }
 

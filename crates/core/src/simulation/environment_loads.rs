@@ -1,4 +1,4 @@
-//! Computes the wrenches of the environment effects on the bodies of all systems.
+//! Computation of the wrenches that environment effects exert on the bodies of all systems.
 
 use super::body_states::{LoadedSystem, bodies_of};
 use super::error::SimulationError;
@@ -21,22 +21,24 @@ use nalgebra::Vector3;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Environment effects on all systems of a run, the reference orbit, and the workspace to evaluate the effects.
+/// Environment effects on all systems of a run, reference orbit, and workspace for the evaluation of the
+/// effects.
 #[derive(Debug)]
 pub(super) struct EnvironmentLoads {
     effects: Vec<Arc<dyn Effect>>,
-    /// Wrenches from outside of the run.
+    /// Commanded wrenches from outside the run.
     pub(super) commands: WrenchCommands,
     reads_velocities: bool,
     /// Orbit on which the origin of W moves.
     reference: Option<Arc<dyn Orbit>>,
-    /// Reference orbit in free fall that replaces `reference` once the robot has drifted far from it.
+    /// Reference orbit in free fall that replaces `reference` after the robot has drifted far from it; `None`
+    /// before.
     local_reference: Option<LocalReference>,
-    /// States of the current reference orbit, about which the robot is integrated: `reference` or the local reference
+    /// Cached states of the current reference orbit, which is either `reference` or the local reference
     /// orbit.
     cache: ReferenceCache,
     gravity: Option<Arc<Gravity>>,
-    /// True if the current reference orbit is integrated in exactly the gravity field of the run.
+    /// True if the current reference orbit is in free fall in exactly the gravity field of the run.
     in_free_fall: bool,
     earth: Option<Arc<Earth>>,
     gravity_mode: GravityMode,
@@ -44,12 +46,13 @@ pub(super) struct EnvironmentLoads {
     interval: (f64, f64),
     bodies: Bodies,
     wrenches: Wrenches,
-    /// Wrenches of the effects that also act on the reference orbit; used only in `Carried` mode.
+    /// Wrenches of the effects that also act on the reference orbit. Used only in `Carried` mode.
     common: Wrenches,
 }
 
 impl EnvironmentLoads {
-    /// Returns the loads of `effects` on the bodies of systems, given by their models and their numbers in the world.
+    /// Creates the loads of `effects` on the bodies of systems, given by their models and their numbers in
+    /// the world.
     pub(super) fn new(
         (numbers, models): (&[usize], &[&Model]),
         effects: Vec<Arc<dyn Effect>>,
@@ -77,12 +80,12 @@ impl EnvironmentLoads {
         }
     }
 
-    /// Returns the local reference orbit about which the robot is integrated; `None` if there is none.
+    /// Returns the local reference orbit about which the robot is integrated, if there is one.
     pub(super) fn local_reference(&self) -> Option<&LocalReference> {
         self.local_reference.as_ref()
     }
 
-    /// Changes the current reference orbit to `local`, an orbit in free fall.
+    /// Makes `local`, an orbit in free fall, the current reference orbit.
     pub(super) fn set_local_reference(&mut self, local: LocalReference) -> Result<(), SimulationError> {
         let (Some(gravity), Some(&time)) = (&self.gravity, local.times.last()) else { return Ok(()) };
         let orbit = Numerical::new(local.position.into(), local.velocity.into(), time, Arc::clone(gravity));
@@ -93,8 +96,8 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W; `None` without a local
-    /// reference orbit.
+    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W; `None` if
+    /// there is no local reference orbit.
     pub(super) fn shift(&mut self, t: f64, mass: f64) -> Result<Option<Shift>, SimulationError> {
         if self.local_reference.is_none() {
             return Ok(None);
@@ -107,8 +110,8 @@ impl EnvironmentLoads {
         Ok(Some(Shift::between(local, &state, &reference, rate, mass)))
     }
 
-    /// Returns the state of the current reference orbit at `t`, s, with the time derivative of its position as
-    /// velocity; `None` without an orbit.
+    /// Returns the state of the current reference orbit at `t`, s, in which the velocity is the time
+    /// derivative of the position; `None` without an orbit.
     pub(super) fn origin_state(&self, t: f64) -> Result<Option<OrbitState>, SimulationError> {
         let found = self.cache.orbit().map(|orbit| state_and_rate(orbit, t)).transpose()?;
         Ok(found.map(|(state, velocity)| OrbitState { velocity, ..state }))
@@ -119,8 +122,8 @@ impl EnvironmentLoads {
         Ok(self.cache.at(t, self.interval.1)?.state)
     }
 
-    /// Returns the gravity that the reference orbit does not follow, `g(r_ref) - r̈_ref` at `t`, m/s²; `None` without
-    /// a planet.
+    /// Returns the gravity that the reference orbit does not follow, `g(r_ref) - r̈_ref`, at `t`, s, in m/s²;
+    /// `None` without a planet.
     pub(super) fn reference_residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
         let Some(state) = self.reference_state(t)? else { return Ok(None) };
         let in_free_fall = self.in_free_fall;
@@ -129,8 +132,8 @@ impl EnvironmentLoads {
             .map_err(|source| SimulationError::Environment { time: t, source })
     }
 
-    /// Writes the sum of the wrenches of the effects with these indices on `self.bodies` at `t`, s, to
-    /// `self.wrenches`.
+    /// Writes to `self.wrenches` the sum of the wrenches of the effects with these indices on `self.bodies`
+    /// at `t`, s.
     fn sum_effects(&mut self, t: f64, effects: Range<usize>) -> Result<(), SimulationError> {
         let is_carried = self.gravity_mode == GravityMode::Carried;
         self.wrenches.clear();
@@ -142,7 +145,7 @@ impl EnvironmentLoads {
         let gravity = self.gravity.as_deref();
         let reference = state.as_ref().map(|state| Reference { state, gravity, in_free_fall });
         let mut scene = Scene::new(self.interval, t, &self.bodies, ephemeris);
-        // assigned in place because the scene is large
+        // assigned in place, because the scene is large
         (scene.reference, scene.earth) = (reference, self.earth.as_deref());
         for effect in &self.effects[effects] {
             let is_common = is_carried && effect.acts_on_reference();
@@ -158,7 +161,7 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Adds the common wrenches minus the part that accelerates the robot as a whole.
+    /// Adds the common wrenches less the part that accelerates the robot as a whole.
     fn add_relative_to_reference(&mut self) -> Result<(), EnvironmentError> {
         let total: Vector3<f64> = self.common.iter().map(|wrench| wrench.force).sum();
         let acceleration = total / self.bodies.iter().map(|(_, body)| body.mass).sum::<f64>();
@@ -181,8 +184,8 @@ impl EnvironmentLoads {
         self.effects.len()
     }
 
-    /// Returns the wrench of one effect on each body at `t`, s, for the body states gathered last; those after the last
-    /// effect are the commanded wrenches.
+    /// Returns the wrench of one effect on each body at `t`, s, for the body states gathered last. The index
+    /// after the last effect selects the commanded wrenches.
     pub(super) fn wrenches_of(&mut self, effect: usize, t: f64) -> Result<&Wrenches, SimulationError> {
         let count = self.effects.len();
         self.sum_effects(t, effect.min(count)..(effect + 1).min(count))?;
@@ -193,13 +196,13 @@ impl EnvironmentLoads {
     }
 }
 
-/// Returns true if an orbit is integrated in exactly this gravity field.
+/// Returns true if an orbit is in free fall in exactly this gravity field.
 fn obeys(orbit: &dyn Orbit, gravity: Option<&Arc<Gravity>>) -> bool {
     orbit.gravity().zip(gravity).is_some_and(|(own, all)| Arc::ptr_eq(own, all))
 }
 
-/// Returns the state of an orbit at `t`, s, and the time derivative of its position, m/s, which may differ from the
-/// velocity in the state.
+/// Returns the state of an orbit at `t`, s, and the time derivative of its position, m/s, which may differ
+/// from the velocity in that state.
 fn state_and_rate(orbit: &dyn Orbit, t: f64) -> Result<(OrbitState, Vector3<f64>), SimulationError> {
     let with_rate = |state| orbit.rate_of_position(t, &state).map(|rate| (state, rate));
     orbit.state(t).and_then(with_rate).map_err(|source| SimulationError::Orbit { time: t, source })

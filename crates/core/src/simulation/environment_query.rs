@@ -1,4 +1,4 @@
-//! Evaluates the environment of a run at any state of its systems, for external engines.
+//! Evaluation of the environment of a run at any state of its systems, for external engines.
 
 use super::body_states::LoadedSystem;
 use super::environment_loads::EnvironmentLoads;
@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::spatial::Vec3;
 use std::sync::Arc;
 
-/// Evaluates the environment at any state of the systems.
+/// Environment of a run, which can be evaluated at any state of the systems.
 #[derive(Debug)]
 pub struct EnvironmentQuery {
     systems: Vec<(Arc<Model>, Data<f64>)>,
@@ -17,7 +17,7 @@ pub struct EnvironmentQuery {
 }
 
 impl Simulation {
-    /// Returns a query of the environment of the run, for an [`Engine`](super::Engine).
+    /// Creates a query of the environment of this run, for an [`Engine`](super::Engine).
     pub fn outside(&self) -> EnvironmentQuery {
         let models = self.systems.iter().map(|system| Arc::clone(&system.model));
         let systems = models.map(|model| (Arc::clone(&model), Data::new(&model))).collect();
@@ -26,12 +26,12 @@ impl Simulation {
 }
 
 impl EnvironmentQuery {
-    /// Writes to `out`, `(bodies, 6)`, the wrench on each body at time `t`, s, and state `(q, v)` within the step
-    /// `interval`, s: the force, N, through the centre of mass of the body and the torque, N m, about it, W axes.
-    /// `q`, `v` and `out` are those of all systems, one after another.
+    /// Computes the wrench on each body at time `t`, s, and state `(q, v)`, within the step `interval`, s.
+    /// `out`, `(bodies, 6)`, receives the force, N, through the centre of mass of the body and the torque, N
+    /// m, about it, in W axes. `q`, `v` and `out` hold the values of all systems, one system after another.
     ///
     /// # Errors
-    /// Errors of the orbit and of the effects.
+    /// The errors of the orbit and of the effects.
     pub fn wrenches(
         &mut self,
         t: f64,

@@ -1,5 +1,5 @@
-//! Equations of motion of all trees of a run: computes the time derivatives of the state from state, loads and
-//! joint torques.
+//! Equations of motion of all trees of a run, which give the time derivatives of the state from the state,
+//! the loads and the joint torques.
 
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
@@ -12,20 +12,20 @@ use crate::spatial::{Real, Vec3};
 
 /// Equations of motion of all trees under external loads and constant joint torques.
 ///
-/// Every evaluation first computes the kinematics of all trees, then the loads once for all of them, then the rates
-/// of each.
+/// Every evaluation computes first the kinematics of all trees, then the loads for all trees together, and
+/// then the time derivatives for each tree.
 pub(crate) struct EquationsOfMotion<'a, S, W> {
     /// The trees, in the order of the run.
     pub(crate) trees: Vec<Tree<'a, S>>,
     /// Places of the systems in the trees.
     pub(crate) members: Members<'a, S>,
-    /// Latches that have not closed.
+    /// Latches that have not yet closed.
     pub(super) latches: Vec<Latch>,
     pub(crate) loads: W,
 }
 
 impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
-    /// Returns the equations of motion of systems each of which is one of `trees`.
+    /// Creates the equations of motion of systems, each of which is one of `trees`.
     pub(crate) fn new(trees: Vec<Tree<'a, S>>, loads: W) -> Self {
         Self { members: Members::alone(trees.len()), trees, latches: Vec::new(), loads }
     }
@@ -44,14 +44,14 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Restores kinematics and loads at the start of a step, which a trial step has overwritten.
+    /// Restores the kinematics and loads at the start of a step after a trial step has overwritten them.
     pub(super) fn restore(&mut self, start: &[Data<S>]) {
         for (tree, start) in self.trees.iter_mut().zip(start) {
             tree.restore(start);
         }
     }
 
-    /// Computes the external wrenches on all trees at time `t`, s, in a step over `interval`, s. Expects the
+    /// Computes the external wrenches on all trees at time `t`, s, in a step over `interval`, s. Requires the
     /// kinematics of `state` in the trees.
     pub(crate) fn apply_loads(
         &mut self,
@@ -62,7 +62,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.loads.apply(&mut self.trees, &mut self.members, state, t, interval)
     }
 
-    /// Computes the rates at `state`. Expects its kinematics and loads in the trees.
+    /// Computes the time derivatives of `state`. Requires its kinematics and loads in the trees.
     pub(crate) fn rates(&mut self, state: &State<S>, rate: &mut Rate<S>) {
         let is_loaded = self.loads.is_active();
         for ((tree, state), rate) in self.trees.iter_mut().zip(&state.trees).zip(&mut rate.trees) {
@@ -73,8 +73,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Returns the moment of the external forces, acting at the centres of mass of the trees, about the common centre of
-    /// mass: `Σ (c_i − c) × F_i`, W axes, N m.
+    /// Returns the moment about the common centre of mass of the external forces, taken to act at the centres
+    /// of mass `c_i` of the trees: `Σ (c_i − c) × F_i`, W axes, N m.
     fn orbital_moment(&self, state: &State<S>, rate: &Rate<S>) -> Vec3<S> {
         let trees = || self.trees.iter().zip(&state.trees);
         let centers: Vec<_> = trees().map(|(tree, state)| center_of_mass(&tree.data, &state.q)).collect();
@@ -89,7 +89,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         moments.fold(Vec3::zero(), |sum, moment| sum + moment)
     }
 
-    /// Computes the kinematics, loads and rates of a stage after the first.
+    /// Computes the kinematics, the loads and the time derivatives for a stage after the first.
     pub(crate) fn evaluate(
         &mut self,
         t: f64,
@@ -105,13 +105,13 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         Ok(())
     }
 
-    /// Returns true if a joint of any tree has friction or stops, or a latch may close.
+    /// Returns true if a joint of any tree has friction or stops, or if a latch may close.
     pub(crate) fn has_modes(&self) -> bool {
         !self.latches.is_empty() || self.trees.iter().any(|tree| tree.modes.is_active())
     }
 
-    /// Returns the smallest margin of the latches at `state` to their next change; writes the kinematics of `state`,
-    /// relative to W, to the trees if there are latches.
+    /// Returns the smallest margin of any latch, at `state`, to its next change. If there are latches, writes
+    /// the kinematics of `state` relative to W to the trees.
     pub(super) fn latch_margin(&mut self, state: &State<S>) -> f64 {
         if self.latches.is_empty() {
             return f64::INFINITY;
@@ -126,8 +126,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.trees.iter().any(|tree| tree.modes.locked().is_some())
     }
 
-    /// Determines the modes of all joints for the step that starts at `state`. Expects its kinematics and loads in
-    /// the trees.
+    /// Determines the modes of all joints for the step that starts at `state`. Requires its kinematics and
+    /// loads in the trees.
     pub(crate) fn solve_modes(&mut self, state: &State<S>) {
         for (tree, state) in self.trees.iter_mut().zip(&state.trees) {
             tree.solve_modes(&state.q, &state.v);

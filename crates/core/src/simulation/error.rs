@@ -46,19 +46,19 @@ pub enum SimulationError {
     #[error("restitution is {value}; it must be between 0 and 1", value = short(*value))]
     Restitution { value: f64 },
     #[error(
-        "joint '{joint}' starts at {value}; it must lie within its limits, {lower} to {upper}, or \
-         enforce_limits must be false",
+        "joint '{joint}' starts at {value}; start it within its limits, {lower} to {upper}, or \
+         set enforce_limits to false",
         value = unlike(*value, &[*lower, *upper]), lower = short(*lower), upper = short(*upper)
     )]
     OutsideLimits { joint: String, value: f64, lower: f64, upper: f64 },
     #[error(
-        "at t = {time} s even a step of {step} s exceeds the tolerance; increase tolerance, or reduce gains \
+        "at t = {time} s, even a step of {step} s exceeds the tolerance; increase tolerance, or reduce gains \
          and stiff effects",
         time = short(*time), step = short(*step)
     )]
     StepTooSmall { time: f64, step: f64 },
     #[error(
-        "at t = {time} s the motion is so fast that the tolerance requires steps of {step} s, although the controllers act \
+        "at t = {time} s, the motion is so fast that the tolerance requires steps of {step} s, although the controllers act \
          every {period} s; reduce gains or the control period, or end controls that cannot reach their references",
         time = short(*time), step = short(*step), period = short(*period)
     )]
@@ -70,7 +70,7 @@ pub enum SimulationError {
     #[error("{effect} requires an orbit around a planet; set orbit, or mu of a custom path")]
     NeedsOrbit { effect: String },
     #[error(
-        "{effect} is given twice for body '{body}' and would count twice; remove one, or assign it to other \
+        "{effect} is given twice for body '{body}' and would count twice; remove one of the two, or assign one to other \
          bodies"
     )]
     EffectTwice { effect: String, body: String },
@@ -102,7 +102,7 @@ pub enum SimulationError {
     TooManyRows { rows: usize },
     #[error(
         "the run diverged at t = {time} s: the state is not finite; reduce time_step, initial rates, gains or joint \
-         damping (the last finite state is in the error's q and v)",
+         damping (the attributes q and v of the error hold the last finite state)",
         time = short(*time)
     )]
     Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },
@@ -112,8 +112,8 @@ pub enum SimulationError {
     )]
     PastTime { t: f64, time: f64 },
     #[error(
-        "t is {t} s, but the planned end of the run is {end} s; start it with a longer duration, or without \
-         one",
+        "t is {t} s, but the planned end of the run is {end} s; start the run with a longer duration, or without \
+         a planned end",
         t = unlike(*t, &[*end]), end = short(*end)
     )]
     AfterEnd { t: f64, end: f64 },
@@ -134,7 +134,7 @@ pub enum SimulationError {
     Gravity(#[from] GravityError),
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// Error of an external engine, unchanged.
+    /// Error that an external engine reported, unchanged.
     #[error(transparent)]
     Engine(Box<dyn std::error::Error + Send + Sync>),
     #[error(
@@ -149,15 +149,13 @@ pub enum SimulationError {
     World(#[from] WorldError),
     #[error(transparent)]
     Model(#[from] ModelError),
-    #[error(
-        "an external engine does not support {what} ('{name}'); {remedy}, or use the native equations of motion"
-    )]
+    #[error("an external engine does not support {what} ('{name}'); {remedy}, or use the native engine")]
     EngineOfWorld {
-        /// Event or system.
+        /// Name of the event or system.
         name: String,
-        /// Setting that only the native equations of motion support.
+        /// Setting that only the native engine supports.
         what: &'static str,
-        /// What to change instead.
+        /// Remedy: what to change instead.
         remedy: &'static str,
     },
 }
@@ -171,7 +169,7 @@ impl From<ControlError> for SimulationError {
     }
 }
 
-/// A run that ended early, with the rows recorded until then.
+/// Run that ended early, with the rows recorded until then.
 #[derive(Error)]
 #[error("{error}")]
 pub struct RunFailure {
@@ -186,21 +184,21 @@ impl SimulationError {
     /// Checks that a time is positive and finite.
     ///
     /// # Errors
-    /// [`SimulationError::NotPositive`].
+    /// [`SimulationError::NotPositive`] for any other value.
     pub fn check_positive(name: &'static str, value: f64) -> Result<(), Self> {
         if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Self::NotPositive { name, value }) }
     }
 }
 
 impl RunFailure {
-    /// Returns the failure of a run that could not start and thus has no rows.
+    /// Creates the failure of a run that could not start and therefore has no rows.
     pub(super) fn at_start(error: SimulationError) -> Self {
         Self { error, recording: Box::default() }
     }
 }
 
 impl std::fmt::Debug for RunFailure {
-    /// Writes the error and the number of rows instead of the rows, of which there can be millions.
+    /// Writes the error and the number of recorded rows. The rows are omitted, because there may be millions.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("RunFailure")
             .field("error", &self.error)

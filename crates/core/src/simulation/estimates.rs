@@ -1,4 +1,4 @@
-//! Error estimates of a system over a run in which its tree may change.
+//! Error estimates of a system over a run during which its tree may change.
 
 use super::certificate::PairChecks;
 use super::trace::{CoordinateDrift, Trace};
@@ -9,14 +9,15 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Estimates {
     /// Attitude error, rad.
     pub(super) turn: Option<f64>,
-    /// Differences between steps and halved steps: of the base's origin, then of every joint.
+    /// Differences between a step and two half steps: of the base's origin, then of every joint.
     pub(super) drifts: Vec<CoordinateDrift>,
-    /// Checks that need every step.
+    /// Results of the checks that need every step.
     pub(super) checks: Option<PairChecks>,
 }
 
 impl Estimates {
-    /// Returns the estimates of a system from those of its tree; `joints` are its joints in the tree.
+    /// Extracts the estimates of a system from those of its tree; `joints` are the indices of its joints in
+    /// the tree.
     pub(super) fn of_part(self, joints: &[usize]) -> Self {
         if self.drifts.is_empty() {
             return self;
@@ -25,7 +26,7 @@ impl Estimates {
         Self { drifts: coordinates.map(|i| self.drifts[i]).collect(), ..self }
     }
 
-    /// Returns the estimates of an interval that follows another one.
+    /// Combines the estimates of two successive intervals: `before`, and this one.
     pub(super) fn after(self, before: &Self) -> Self {
         let sum = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a + b);
         let drifts = self.drifts.iter().zip(&before.drifts);

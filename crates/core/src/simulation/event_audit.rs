@@ -1,4 +1,4 @@
-//! Audit of captures and releases: momentum, energy and relative motion before and after them.
+//! Audit of captures and releases: momentum, energy and relative motion before and after each event.
 
 use super::equations::EquationsOfMotion;
 use super::recording::{EventKind, EventRecord};
@@ -8,13 +8,13 @@ use crate::model::Model;
 use crate::spatial::{Force, Motion, Scalar, Vec3};
 use crate::world::{Balance, FrameIndex, energy, energy_of_change};
 
-/// State of a system in `f64`.
+/// State of a system, in `f64`.
 pub(super) struct Snapshot {
     q: Vec<f64>,
     v: Vec<f64>,
 }
 
-/// A capture or a release that has been applied to the current state.
+/// Capture or release that has been applied to the current state.
 pub(super) struct Applied<'s> {
     /// Number of the event.
     pub(super) number: usize,
@@ -25,11 +25,11 @@ pub(super) struct Applied<'s> {
     pub(super) frames: [FrameIndex; 2],
     /// States of all systems before the event.
     pub(super) before: &'s [Snapshot],
-    /// Systems whose change of momentum is the impulse of the event.
+    /// Systems whose change of momentum equals the impulse of the event.
     pub(super) pushed: &'s [usize],
-    /// Point about which the impulse is given, in W, m.
+    /// Point in W about which the impulse is stated, m.
     pub(super) point: Vec3<f64>,
-    /// Work of the spring of a release, J.
+    /// Work done by the spring of a release, J.
     pub(super) spring_work: f64,
 }
 
@@ -39,19 +39,19 @@ struct Sums {
     balances: [Balance; 2],
     /// Kinetic energies, J.
     energies: [f64; 2],
-    /// Kinetic energy of the change of the velocities, J.
+    /// Kinetic energy that corresponds to the changes of the velocities, J.
     energy_of_change: f64,
-    /// Change of the momentum of some systems.
+    /// Change of the momentum of the systems `pushed`.
     impulse: Force<f64>,
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns the record of an event that has been applied.
+    /// Returns the record of an event that has been applied to the current state.
     pub(super) fn audit(&self, event: &Applied<'_>) -> EventRecord {
         let after = self.snapshots();
         let Sums { balances, energies, energy_of_change, impulse } = self.sums(event, &after);
         let difference = energies[0] - energies[1];
-        // joints whose rates are given do work during the impulse, which neither sum contains
+        // joints with given rates do work during the impulse that neither of the sums contains
         let is_driven = self.equations.trees.iter().any(|tree| !tree.modes.given().is_empty());
         let (energy_lost, expected) = match event.kind {
             _ if is_driven => (difference, difference),
@@ -75,7 +75,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns the sums over all systems before an event and in the states `after` it.
+    /// Returns the sums over all systems before an event and in the states `after` the event.
     fn sums(&self, event: &Applied<'_>, after: &[Snapshot]) -> Sums {
         let mut sums = Sums::default();
         for system in 0..self.systems.len() {
@@ -95,7 +95,8 @@ impl<S: Scalar> RunState<'_, S> {
         sums
     }
 
-    /// Returns the relative velocities of the frames after a capture, relative to those before it.
+    /// Returns the relative velocities of the two frames after a capture, as fractions of those before the
+    /// capture.
     fn twist_left(&self, event: &Applied<'_>, after: &[Snapshot]) -> [f64; 2] {
         if event.kind != EventKind::Capture || self.mover.is_external() {
             return [0.0; 2]; // an external engine removes the relative velocity during the next steps
@@ -110,7 +111,7 @@ impl<S: Scalar> RunState<'_, S> {
         &members.system(system, trees, &self.state.trees).1.model
     }
 
-    /// Returns the states of all systems. Expects the states of the parts.
+    /// Returns the states of all systems. Requires up-to-date states of the parts of trees.
     pub(super) fn snapshots(&self) -> Vec<Snapshot> {
         let EquationsOfMotion { trees, members, .. } = &self.equations;
         let snapshot = |system| {
@@ -132,7 +133,7 @@ impl<S: Scalar> RunState<'_, S> {
         (frame_pose(model, &data, q, place.frame), frame_velocity(model, &data, q, place.frame))
     }
 
-    /// Returns the twist of the second frame relative to the first, at the origin of the second.
+    /// Returns the twist of the second frame relative to the first, at the origin of the second frame.
     fn relative_twist(&self, [by, of]: [FrameIndex; 2], states: &[Snapshot]) -> Motion<f64> {
         let (pose_by, twist_by) = self.pose_and_twist(by, states);
         let (pose_of, twist_of) = self.pose_and_twist(of, states);
@@ -140,8 +141,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 }
 
-/// Returns the magnitude of a velocity after an event relative to that before it, or to 1 m/s (1 rad/s) if that is
-/// larger.
+/// Returns the magnitude of a velocity after an event relative to the magnitude before it, or relative to 1
+/// m/s (1 rad/s) if that is larger.
 fn relative_to(before: Vec3<f64>, after: Vec3<f64>) -> f64 {
     after.norm() / before.norm().max(1.0)
 }

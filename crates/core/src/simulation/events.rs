@@ -1,4 +1,4 @@
-//! Events of a run: which are due, and what they change.
+//! Events of a run, and when they are due.
 
 use super::error::SimulationError;
 use super::recording::EventRecord;
@@ -9,15 +9,17 @@ use serde::{Deserialize, Serialize};
 /// Progress of one event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EventState {
-    /// Time at which the event happened, s. A release of what is not connected happens without effect.
+    /// Time at which the event happened, s. Releasing frames that are not connected has no effect, but counts
+    /// as well.
     pub(super) happened: Option<f64>,
-    /// Time at which the event is due, s, once it is known.
+    /// Time at which the event is due, s; `None` while it is unknown.
     pub(super) due: Option<f64>,
     /// True while the conditions of a latch hold.
     pub(super) is_held: bool,
 }
 
-/// Control whose frame a capture has rigidly connected to the frame that it follows; all numbers are those of the group.
+/// Control whose frame a capture has rigidly connected to the frame that the control follows. All numbers are
+/// those within the group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Attached {
     pub(super) control: usize,
@@ -26,7 +28,7 @@ pub(super) struct Attached {
     pub(super) capture: usize,
 }
 
-/// Events of a group of systems, with their progress.
+/// Events of a group of systems, with the progress of each.
 #[derive(Debug, Default)]
 pub(super) struct Events {
     pub(super) list: Vec<Event>,
@@ -34,18 +36,18 @@ pub(super) struct Events {
     pub(super) numbers: Vec<usize>,
     pub(super) states: Vec<EventState>,
     pub(super) records: Vec<EventRecord>,
-    /// Controls that follow a frame to which their own frame has been connected.
+    /// Controls that follow a frame to which their own frame has been rigidly connected.
     pub(super) attached: Vec<Attached>,
 }
 
 impl Events {
-    /// Returns the events at the start of a run.
+    /// Creates the events at the start of a run.
     pub(super) fn new(list: Vec<Event>, numbers: Vec<usize>) -> Self {
         let states = list.iter().map(|event| EventState { due: event.when.time(), ..EventState::default() });
         Self { states: states.collect(), list, numbers, records: Vec::new(), attached: Vec::new() }
     }
 
-    /// Returns the first event, in the order of declaration, that is due at `t`, s.
+    /// Returns the first event in the order of declaration that is due at `t`, s.
     pub(super) fn next_due(&self, t: f64, schedule: &Schedule) -> Option<usize> {
         let is_due = |state: &EventState| {
             state.happened.is_none() && state.due.is_some_and(|due| !schedule.is_later(due, t))
@@ -53,7 +55,7 @@ impl Events {
         self.states.iter().position(is_due)
     }
 
-    /// Notes that an event happened at `t`, s: the events that wait for it become due.
+    /// Records that an event happened at `t`, s, after which the events that wait for it have a due time.
     pub(super) fn happen(&mut self, number: usize, t: f64) {
         self.states[number].happened = Some(t);
         for (event, state) in self.list.iter().zip(&mut self.states) {
@@ -65,7 +67,7 @@ impl Events {
         }
     }
 
-    /// Returns the times at which events that have not happened are due, s.
+    /// Returns the times, s, at which events that have not yet happened are due.
     pub(super) fn due_times(&self) -> Vec<f64> {
         let open = self.states.iter().filter(|state| state.happened.is_none());
         open.filter_map(|state| state.due).collect()
@@ -77,7 +79,7 @@ impl Events {
         states.filter(|(state, _)| state.happened.is_some()).map(|(_, number)| *number).collect()
     }
 
-    /// Returns the number of the event with this name; `None` if this group has no such event.
+    /// Returns the number of the event `name`; `None` if this group has no such event.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         self.list.iter().position(|event| event.name == name)
     }
@@ -88,7 +90,7 @@ impl Events {
         let reason = match event.when {
             _ if state.happened.is_some() => "it has already happened",
             When::OnCommand => return Ok(()),
-            _ => "it does not happen on command; set on_command",
+            _ => "it does not happen on command; declare it with on_command",
         };
         Err(WorldError::NotTriggered { name: event.name.clone(), reason }.into())
     }

@@ -1,4 +1,5 @@
-//! Evaluates the checks of the certificate for one system at every step of a run that does not record every step.
+//! Checks of the certificate for one system, evaluated at every step of a run that does not record every
+//! step.
 
 use super::certificate::{BaseMotion, MassMotion, PairChecks, Stream, Sums};
 use super::environment_loads::EnvironmentLoads;
@@ -22,14 +23,14 @@ struct End {
 /// Checks of one system during a run.
 pub(super) struct EveryStep {
     stream: Stream,
-    /// Motion at the start of the current step; after the step it also contains the accelerations and forces at both
-    /// ends of the step.
+    /// Motion at the start of the current step. After the step, it also contains the accelerations and forces
+    /// at both ends of the step.
     start: Option<End>,
-    /// Trace rows at both ends of the last step in which the equations of motion of the base were checked.
+    /// Trace rows at both ends of the last step for which the base rows of inverse dynamics were checked.
     rows: Recorder,
 }
 
-/// State of [`EveryStep`] between two steps.
+/// State of [`EveryStep`] between two steps, for checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedChecks {
     sums: Sums,
@@ -61,8 +62,8 @@ impl EveryStep {
         self.start = None;
     }
 
-    /// Adds the step that ends at `state`, whose base twist is projected onto the momentum and whose kinematics are
-    /// in `system`.
+    /// Adds the step that ends at `state`. Requires a base twist that is projected onto the momentum, and the
+    /// kinematics of `state` in `system`.
     pub(super) fn end<S: Scalar>(&mut self, t: f64, state: &TreeState<S>, system: &Tree<'_, S>) {
         if let Some(start) = self.start.take().filter(|start| start.base.time < t) {
             let mut now = End::of(t, state, system);
@@ -74,12 +75,14 @@ impl EveryStep {
         }
     }
 
-    /// Stores the start of a step, before it is taken. Expects kinematics of `state` in `system`.
+    /// Stores the start of a step before the step is computed. Requires the kinematics of `state` in
+    /// `system`.
     pub(super) fn start<S: Scalar>(&mut self, t: f64, state: &TreeState<S>, system: &Tree<'_, S>) {
         self.start = Some(End::of(t, state, system));
     }
 
-    /// Adds the accelerations and forces at both ends of the step, taken from its first and last stages.
+    /// Adds the accelerations and forces at both ends of the step, which are those of its first and last
+    /// stages.
     pub(super) fn add_stages(&mut self, step: &StepEnds<'_, impl Scalar>) {
         let Some(End { base, whole }) = &mut self.start else { return };
         let first = &step.first.acceleration;
@@ -91,7 +94,7 @@ impl EveryStep {
         whole.force_before = value(step.last.wrench.linear);
     }
 
-    /// Records the start of a step whose base rows are checked. Expects kinematics and loads in `system`.
+    /// Records the start of a step whose base rows are checked. Requires kinematics and loads in `system`.
     pub(super) fn record_start<S: Scalar>(
         &mut self,
         t: f64,
@@ -103,8 +106,8 @@ impl EveryStep {
         self.record_end(t, state, system, loads)
     }
 
-    /// Records the end of the same step. Expects a state with a projected base twist, and its kinematics and loads in
-    /// `system`.
+    /// Records the end of the same step. Requires a base twist that is projected onto the momentum, and the
+    /// kinematics and loads of the state in `system`.
     pub(super) fn record_end<S: Scalar>(
         &mut self,
         t: f64,
@@ -116,13 +119,13 @@ impl EveryStep {
         self.rows.record_wrenches(&system.model, loads, t)
     }
 
-    /// Completes the row at the start of the step with the acceleration of the first stage.
+    /// Adds the acceleration of the first stage to the row at the start of the step, which completes the row.
     pub(super) fn complete_start<S: Scalar>(&mut self, model: &Model, first: &FirstStage<S>) {
         self.rows.record_acceleration(model, &first.acceleration);
     }
 
-    /// Completes the row at the end of the step with the acceleration of the first stage there, and checks the base
-    /// rows.
+    /// Adds the acceleration of the first stage of the next step to the row at the end of the step, and
+    /// checks the base rows.
     pub(super) fn complete_end<S: Scalar>(&mut self, model: &Model, first: &FirstStage<S>) {
         self.rows.record_acceleration(model, &first.acceleration);
         self.stream.add_rows(model, &self.rows.trace);
@@ -130,8 +133,8 @@ impl EveryStep {
 }
 
 impl End {
-    /// Returns the motion at `state`, whose base twist is projected onto the momentum, without accelerations and
-    /// forces.
+    /// Returns the motion at `state`, whose base twist must be projected onto the momentum, without
+    /// accelerations and forces.
     fn of<S: Scalar>(time: f64, state: &TreeState<S>, system: &Tree<'_, S>) -> Self {
         let attitude = Quat { v: value(Vec3::from_slice(&state.q[3..])), w: state.q[6].value() };
         let rate = value(Vec3::from_slice(&state.v[3..]));

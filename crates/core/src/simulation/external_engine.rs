@@ -1,4 +1,4 @@
-//! The external engine of a run, with buffers for its input and output.
+//! External engine of a run, with buffers for its input and output.
 
 use super::engine::{BodyWeld, Engine, StepInput, StepOutput};
 use super::error::SimulationError;
@@ -10,16 +10,16 @@ use crate::model::Model;
 use crate::spatial::{Force, Scalar, Vec3};
 use std::ops::Range;
 
-/// Largest deviation from 1 of the norm of the quaternion that an engine returns.
+/// Largest accepted deviation from 1 of the norm of a quaternion that an engine returns.
 const UNIT: f64 = 1e-9;
 
-/// External engine of a run; its systems are the trees of the run, connected or not.
+/// External engine of a run. Each system, whether connected or not, is a tree of the run.
 pub(super) struct ExternalEngine<'a> {
     engine: &'a mut dyn Engine,
     q: Vec<f64>,
     v: Vec<f64>,
     tau: Vec<f64>,
-    /// Ranges of each system in the lists of all configurations and of all velocities.
+    /// Index ranges of each system in the vectors of all configurations and of all velocities.
     ranges: Vec<[Range<usize>; 2]>,
     pub(super) welds: Vec<BodyWeld>,
     output: StepOutput,
@@ -41,20 +41,21 @@ impl<'a> ExternalEngine<'a> {
         Self { engine, q, v, tau, ranges, welds: Vec::new(), output, has_output: false }
     }
 
-    /// Returns the acceleration of a system at the start of the last step, `(nv,)`; `None` if the engine failed.
+    /// Returns the acceleration of a system at the start of the last step, `(nv,)`; `None` if that step
+    /// failed.
     pub(super) fn first_acceleration(&self, system: usize) -> Option<&[f64]> {
         let [_, range] = &self.ranges[system];
         self.has_output.then(|| &self.output.acceleration[range.clone()])
     }
 
-    /// Returns the work done on a system in the last step minus the energy that its joints dissipated, J.
+    /// Returns the work done on a system in the last step less the energy that its joints dissipated, J.
     pub(super) fn work_of_step(&self, system: usize) -> f64 {
         let done = &self.output.systems[system];
         done.work + done.weld_work
     }
 
-    /// Removes from the amounts of a group what the connections exchanged between its systems in the last step. The
-    /// work of the connections remains: it is the energy that they absorb.
+    /// Subtracts from the totals of a group the impulses that the connections exchanged between its systems
+    /// in the last step. The work of the connections is kept: it is the energy that they absorb.
     pub(super) fn remove_exchanged(&self, ledger: &mut Ledger) {
         for done in &self.output.systems {
             let impulse = Force::from_slice(&done.weld_impulse);
@@ -64,7 +65,7 @@ impl<'a> ExternalEngine<'a> {
         }
     }
 
-    /// Moves `state` over `interval` with the torques of the trees.
+    /// Advances `state` over `interval` with the joint torques of the trees.
     pub(super) fn advance<S: Scalar>(
         &mut self,
         trees: &[Tree<'_, S>],

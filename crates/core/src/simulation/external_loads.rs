@@ -7,8 +7,8 @@ use super::tree::Tree;
 
 /// External wrenches on the bodies of all trees of a run.
 pub(crate) trait ExternalLoads<S> {
-    /// Writes the external wrench on each body at time `t`, s, in a step over `interval`, s, to the data of
-    /// `trees`. Expects the kinematics of `state` in the trees.
+    /// Writes to the data of `trees` the external wrench on each body at time `t`, s, in a step over
+    /// `interval`, s. Requires the kinematics of `state` in the trees.
     fn apply(
         &mut self,
         trees: &mut [Tree<'_, S>],
@@ -18,11 +18,11 @@ pub(crate) trait ExternalLoads<S> {
         interval: (f64, f64),
     ) -> Result<(), SimulationError>;
 
-    /// Returns true if there are loads; otherwise the wrenches on all bodies stay zero.
+    /// Returns true if there are loads. Otherwise the wrenches on all bodies remain zero.
     fn is_active(&self) -> bool;
 }
 
-/// No external loads.
+/// Absence of external loads.
 pub(crate) struct NoLoads;
 
 impl<S> ExternalLoads<S> for NoLoads {

@@ -1,4 +1,4 @@
-//! Passes the connections of the systems to the external engine, which holds them by its own constraints.
+//! Connections passed to the external engine, which maintains them by its own constraints.
 
 use super::engine::BodyWeld;
 use super::error::SimulationError;
@@ -18,7 +18,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns a connection of two frames as that of their bodies.
+    /// Converts a connection of two frames to a connection of their bodies.
     fn body_weld(&self, weld: &Weld) -> BodyWeld {
         let [by, of] = [weld.by, weld.of].map(|place| &self.model(place.system).frames()[place.frame]);
         let rot_by_of = Quat::from_xyzw(&weld.pose.rotation).matrix();
@@ -31,12 +31,13 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Adds a row for the current state before an event, with the accelerations of the external engine there.
+    /// Adds a row for the current state before an event, with the accelerations that the external engine
+    /// returns.
     pub(super) fn record_before_event(&mut self, t: f64) -> Result<(), SimulationError> {
         self.record(t)?;
         let Self { state, equations, mover, systems, row_states, .. } = self;
         let mut copy = state.clone();
-        let asked = mover.advance(equations, &mut copy, (t, t)); // a step of zero length
+        let asked = mover.advance(equations, &mut copy, (t, t)); // requests only the acceleration
         complete_rows(systems, mover, equations, row_states);
         asked.map(|_| ())
     }

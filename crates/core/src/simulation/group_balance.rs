@@ -1,21 +1,23 @@
-//! Certificate of a group of several systems: its momentum and its energy, through all events.
+//! Certificate of a group of several systems: its momentum and energy over the whole run, including all
+//! events.
 
 use super::certificate::{Check, ENERGY, MOMENTUM};
 use crate::dynamics::Momentum;
 use serde::{Deserialize, Serialize};
 
-/// Errors of the momentum and the energy of a group of several systems, accumulated over the rows of a run.
+/// Errors of the momentum and of the energy of a group of several systems, accumulated over the rows of a
+/// run.
 ///
-/// The checks are `max |P − P₀ − ∫F dt|` and `max |L − L₀ − ∫T dt|`, the latter about the centre of mass of the group,
-/// relative to the largest sums of the magnitudes of the momenta of the bodies, and `max |T − T₀ − W|` relative to the
-/// sum of `|ΔW|` and the largest kinetic energy.
+/// The checks are `max |P − P₀ − ∫F dt|` and `max |L − L₀ − ∫T dt|`, the latter about the centre of mass of
+/// the group, relative to the largest sums of the magnitudes of the momenta of the bodies, and `max |T − T₀ −
+/// W|` relative to the sum of `Σ |ΔW|` and the largest kinetic energy `T`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupBalance {
     /// Numbers of the systems.
     pub systems: Vec<usize>,
-    /// `P − ∫F dt`, `L − ∫T dt` and `T − W` in the first row; `None` before it.
+    /// Values of `P − ∫F dt`, `L − ∫T dt` and `T − W` in the first row; `None` before that row.
     first: Option<(Momentum<f64>, f64)>,
-    /// Work in the last row, J.
+    /// Work `W` in the last row, J.
     work: f64,
     /// Largest errors of the linear and of the angular momentum, N s and N m s.
     drift: [f64; 2],
@@ -37,15 +39,16 @@ pub(super) struct GroupRow {
     pub(super) impulse: Momentum<f64>,
     /// Kinetic energy, J.
     pub(super) kinetic_energy: f64,
-    /// Work done on the group by motors, external wrenches and springs, less the energy lost in joints and captures, J.
+    /// Work done on the group by motors, external wrenches and springs, less the energy lost in joints and
+    /// captures, J.
     pub(super) work: f64,
-    /// Sums of the magnitudes of the momenta of the bodies: linear, N s, relative to the centre of mass of the group, and
-    /// angular about it, N m s.
+    /// Sums of the magnitudes of the momenta of the bodies: linear, N s, relative to the centre of mass of
+    /// the group, and angular about it, N m s.
     pub(super) scales: [f64; 2],
 }
 
 impl GroupBalance {
-    /// Adds a row.
+    /// Adds a row to the balance.
     pub(super) fn add(&mut self, row: &GroupRow) {
         let open = Momentum {
             linear: row.momentum.linear - row.impulse.linear,
@@ -68,7 +71,7 @@ impl GroupBalance {
         self.largest_energy = self.largest_energy.max(row.kinetic_energy);
     }
 
-    /// Returns the balance with the numbers of its systems.
+    /// Returns the balance with the numbers of its systems set.
     pub(super) fn of_systems(self, systems: &[usize]) -> Self {
         Self { systems: systems.to_vec(), ..self }
     }

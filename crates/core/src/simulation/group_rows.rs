@@ -11,7 +11,7 @@ use crate::spatial::{Scalar, Vec3};
 use crate::world::Balance;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns the amounts of the group at a state: those of the current trees and those of the trees before them.
+    /// Returns the totals of the group at a state: those of the current trees plus those of previous trees.
     pub(super) fn totals(&self, state: &State<S>) -> Ledger {
         let mut all = self.ledger;
         for tree in &state.trees {
@@ -24,7 +24,7 @@ impl<S: Scalar> RunState<'_, S> {
         all
     }
 
-    /// Adds a row of the balance for the state of the last rows of the systems.
+    /// Adds a row to the balance, for the state of the last recorded rows of the systems.
     pub(super) fn add_group_row(&mut self, is_within_step: bool) {
         if self.systems.len() < 2 {
             return;

@@ -1,4 +1,4 @@
-//! Momentum and energy of several systems, from the rows of their traces.
+//! Momentum and energy of several systems, computed from the rows of their traces.
 
 use super::trace::Trace;
 use crate::dynamics::Momentum;
@@ -39,7 +39,7 @@ pub(super) struct GroupSum {
 }
 
 impl GroupSum {
-    /// Returns the sum over systems.
+    /// Computes the sums over the systems.
     pub(super) fn of(systems: &[SystemRow<'_>]) -> Self {
         let (mut mass, mut linear, mut first_moment) = (0.0, Vec3::zero(), Vec3::zero());
         for system in systems {

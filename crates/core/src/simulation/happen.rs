@@ -1,4 +1,4 @@
-//! Events at a cut: captures and releases.
+//! Application of events at a cut: captures and releases.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -11,8 +11,9 @@ use crate::spatial::{Force, Quat, Scalar, Vec3};
 use crate::world::{Action, FrameIndex, RigidPose, Seat, Seating, Weld, WorldError, impulse_response};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Applies the events that are due at `t`, s, in the order of their declaration. There is one row before them and
-    /// one after them. Expects kinematics with projected base twists in the equations of motion.
+    /// Applies the events that are due at `t`, s, in the order of their declaration. One row is recorded
+    /// before them and one after them. Requires kinematics with projected base twists in the equations of
+    /// motion.
     pub(super) fn happen(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         if self.events.list.is_empty() {
             return Ok(());
@@ -49,7 +50,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns true if an event changes anything: the release of what is not connected does not.
+    /// Returns true if an event changes anything. The release of frames that are not connected does not.
     fn has_effect(&self, number: usize) -> bool {
         match self.events.list[number].action {
             Action::Capture { .. } => true,
@@ -71,7 +72,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(record)
     }
 
-    /// Compiles new trees for the connections whose seating has ended by `t`, s: they are rigid at the nominal pose.
+    /// Assembles new trees without the joints of seating motions that have ended by `t`, s; the frames are
+    /// then rigidly connected at the nominal pose.
     fn end_seatings(&mut self, t: f64) -> Result<(), SimulationError> {
         let (schedule, welds) = (&self.schedule, &mut self.connections.active.welds);
         let mut has_ended = false;
@@ -85,7 +87,8 @@ impl<S: Scalar> RunState<'_, S> {
         if has_ended { self.keep_balance(|run| run.recompile(t)) } else { Ok(()) }
     }
 
-    /// Calls `change`, which compiles new trees, and keeps the balance of the group: the new trees count from zero.
+    /// Calls `change`, which assembles new trees, and preserves the balance of the group, because the
+    /// integrals of new trees start at zero.
     fn keep_balance<T>(
         &mut self,
         change: impl FnOnce(&mut Self) -> Result<T, SimulationError>,
@@ -103,7 +106,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(changed)
     }
 
-    /// Connects two frames rigidly at their current relative pose, or from there in the motion `seat` to a nominal pose.
+    /// Connects two frames: rigidly at their current relative pose or, with `seat`, by a motion from that
+    /// pose to a nominal pose.
     fn capture(
         &mut self,
         number: usize,
@@ -140,7 +144,7 @@ impl<S: Scalar> RunState<'_, S> {
         }))
     }
 
-    /// Removes a connection; `impulse` acts on the system of the captured frame.
+    /// Removes a connection, and applies `impulse` to the system of the captured frame.
     fn release(
         &mut self,
         number: usize,
@@ -166,9 +170,9 @@ impl<S: Scalar> RunState<'_, S> {
         }))
     }
 
-    /// Applies an impulse, given in the axes of the first frame at its origin, to the tree of the second frame, and the
-    /// opposite one to the tree of the first. Returns the work of the impulses, J: `½ Σ iᵀ (u⁻ + u⁺)` with the twists `u`
-    /// of the frames.
+    /// Applies an impulse to the tree of the second frame and the opposite impulse to the tree of the first.
+    /// The impulse is given at the origin and in the axes of the first frame. Returns the work of the
+    /// impulses, J: `½ Σ iᵀ (u⁻ + u⁺)` with the twists `u` of the frames before and after.
     fn push_apart(&mut self, frames: [FrameIndex; 2], impulse: [f64; 6], states: &[Snapshot]) -> f64 {
         let [(pose_by, twist_by), (pose_of, twist_of)] =
             frames.map(|place| self.pose_and_twist(place, states));

@@ -1,18 +1,19 @@
-//! Check of the base's rotations against those that its angular velocities imply.
+//! Check of the base's rotations against the rotations that its angular velocities imply.
 
 use super::error_measures::{relative, worst};
 use super::trace_row::BaseMotion;
 use crate::spatial::{Quat, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
-/// Bound of the rounding of the attitude in one step of the integrator, in units of ε: a product of two unit
-/// quaternions and its normalisation.
+/// Bound of the rounding error of the attitude in one step of the integrator, in units of ε. It covers a
+/// product of two unit quaternions and its normalisation.
 const QUATERNION: f64 = 8.0;
-/// Bound of the relative rounding of a rotation, in units of ε: in the exponential of the step, in the rates at both
-/// ends of the step, and in this check.
+/// Bound of the relative rounding error of a rotation, in units of ε. It covers the exponential of the step,
+/// the rates at both ends of the step, and this check.
 const TURN: f64 = 16.0;
 
-/// Sum of small rotation vectors in W, rad, and the square of the largest magnitude of its partial sums, rad².
+/// Sum of small rotation vectors in W, rad, and the square of the largest magnitude of its partial sums,
+/// rad².
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Drift {
     sum: Vec3<f64>,
@@ -30,36 +31,41 @@ impl Drift {
     }
 }
 
-/// Sums of the attitude check over the intervals so far.
+/// Sums of the attitude check over all intervals so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Attitude {
     residual: Drift,
     commutator: Drift,
     resolution: Drift,
-    /// Bound of the part of the residual that is rounding, rad.
+    /// Bound of the rounding error contained in the residual, rad.
     rounding: f64,
-    /// Bound of the parabola's error over intervals that end with a jump, rad.
+    /// Bound of the error of the parabola over intervals that end with a jump of the angular acceleration,
+    /// rad.
     unresolved: f64,
-    /// Difference between the cubic and the parabola divided by `h⁴`, rad/s⁴, in the last interval without a jump.
+    /// Difference between the cubic and the parabola, divided by `h⁴`, rad/s⁴, in the last interval without a
+    /// jump.
     snap: f64,
     /// Sum of `h⁴` over the intervals since the last interval without a jump, s⁴.
     since: f64,
 }
 
-/// Safety factor on the snap of the neighbouring intervals for an interval that ends with a jump.
+/// Safety factor for an interval that ends with a jump, whose snap is taken from the neighbouring intervals.
 const JUMP: f64 = 4.0;
 
 impl Attitude {
-    /// Adds an interval. With `Ṙ = R [ω×]`, `log(R₀ᵀ R₁) = ∫ω dt + ½ ∫∫ ω(s) × ω(t) ds dt + …` (`s < t`, Magnus)
-    /// becomes
+    /// Adds an interval. With `Ṙ = R [ω×]`, the Magnus expansion
+    /// `log(R₀ᵀ R₁) = ∫ω dt + ½ ∫∫ ω(s) × ω(t) ds dt + …` (`s < t`) becomes
     ///
     /// `h (ω₀ + ω₁)/2 + h²/12 (ω̇₀⁺ − ω̇₁⁻) + h²/12 ω₀ × ω₁ + O(h⁵)`.
     ///
-    /// The first two terms are the integral of the cubic through the data. The third one is the commutator, which a
-    /// composition of `exp(∫ω dt)` lacks however accurate the rates are. Where a wrench jumps at the second row,
-    /// `ω̇₁⁻` may be unknown; it then follows from the parabola through the other data: `ω̇₁⁻ = 2 (ω₁ − ω₀)/h −
-    /// ω̇₀⁺`. The value with the smaller residual is used. The error of the parabola is `d h⁴/72` with the third
-    /// derivative `d` of the rates; it is estimated from the neighbouring intervals.
+    /// The first two terms are the integral of the cubic through the data. The third term is the commutator,
+    /// which is missing if attitudes are composed from `exp(∫ω dt)`, however accurate the rates are. If a
+    /// wrench jumps at the second row, `ω̇₁⁻` may be unknown. It is then taken from the parabola through the
+    /// other data:
+    /// `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. The error of the parabola
+    /// is
+    /// `d h⁴/72` with the third derivative `d` of the rates, which is estimated from the neighbouring
+    /// intervals.
     #[inline]
     pub(super) fn add(&mut self, before: &BaseMotion, now: &BaseMotion) {
         let h = now.time - before.time;
@@ -89,10 +95,11 @@ impl Attitude {
         self.rounding += f64::EPSILON * (TURN * moved + QUATERNION);
     }
 
-    /// Returns the residual divided by the sum of the commutator and the interpolation error of the rates.
+    /// Returns the ratio of the residual to the sum of the commutator and the interpolation error of the
+    /// rates.
     ///
-    /// If both vanish, residuals within the bounds of rounding and of jumps still pass `gate`, and larger ones do
-    /// not.
+    /// If that sum is zero, a residual within the bounds of rounding errors and jumps still passes `gate`,
+    /// and a larger residual fails.
     pub(super) fn consistency(&self, gate: f64) -> f64 {
         let bounds = self.rounding + self.unresolved + JUMP * self.since * self.snap;
         let scale = self.commutator.largest() + self.resolution.largest() + bounds / gate;
@@ -103,7 +110,7 @@ impl Attitude {
 /// Returns the rotation vector from attitude `q0` to `q1`, rad, accurate to a few ε of its length.
 ///
 /// `q₀* q₁ = q₀* (q₁ − q₀) + |q₀|²`: the vector part follows from the difference, which is exact for
-/// neighbouring attitudes, without cancellation. The norms of the quaternions cancel in the angle.
+/// neighbouring attitudes, so there is no cancellation. The norms of the quaternions cancel in the angle.
 fn turn_between(q0: Quat<f64>, q1: Quat<f64>) -> Vec3<f64> {
     let w = q0.v.dot(q1.v) + q0.w * q1.w;
     let q1 = if w < 0.0 { Quat { v: -q1.v, w: -q1.w } } else { q1 };
@@ -119,7 +126,8 @@ mod tests {
 
     #[test]
     fn small_turns_keep_their_digits_whatever_the_attitude() {
-        // q₁ = q₀ + q₀ (θ/2, 0) − |θ|²/8 q₀, exact to rounding of q₁ itself: 1e-16 of the turn times 1/|θ|
+        // q₁ = q₀ + q₀ (θ/2, 0) − |θ|²/8 q₀ has the rounding error of q₁, which is 1e-16/|θ| relative to the
+        // rotation
         for angle in [1e-2, 1e-5, 1e-8] {
             let q0 = exp_so3(Vec3::new(0.7, -1.9, 0.4)).normalized();
             let theta = Vec3::new(0.6, 0.0, -0.8) * angle;
@@ -134,7 +142,8 @@ mod tests {
 
     #[test]
     fn neighbours_on_a_grid_of_exact_numbers_give_the_exact_turn() {
-        // attitudes with 26 bits each, so that every product is exact: the turn is known to its last digit
+        // attitudes with 26 bits each, for which every product is exact, so that the rotation is known to the
+        // last digit
         let exact = |x: f64| (x * 67_108_864.0).round() / 67_108_864.0;
         let q0 = Quat { v: Vec3::new(exact(0.1), exact(-0.7), exact(0.3)), w: exact(0.64) };
         let ulp = 1.0 / 67_108_864.0;

@@ -1,11 +1,12 @@
-//! Checks the change of momentum against the impulse and the change of energy against the work.
+//! Checks of the change of momentum against the impulse and of the change of energy against the work.
 
 use super::error_measures::{relative, worst};
 use super::trace_row::TraceRow;
 use crate::dynamics::Momentum;
 use crate::spatial::Vec3;
 
-/// Largest errors of the balances since the first row, and the scales to which they are relative.
+/// Largest errors of the balances since the first row, and the scales relative to which the errors are
+/// stated.
 #[derive(Default)]
 pub(super) struct Balance {
     first: Option<First>,
@@ -26,7 +27,7 @@ pub(super) struct Balance {
     duration: f64,
 }
 
-/// Values in the first row.
+/// Quantities in the first row.
 #[derive(Clone, Copy)]
 struct First {
     time: f64,
@@ -70,24 +71,26 @@ impl Balance {
         self.size
     }
 
-    /// Returns the relative drift of linear momentum. The scale is the momentum of the bodies relative to the centre
-    /// of mass (for a single body, that of its spin) or, if larger, the total momentum, which determines the rounding.
+    /// Returns the drift of linear momentum relative to a scale. The scale is the momentum of the bodies
+    /// relative to the centre of mass (for a single body, the momentum scale of its spin) or, if larger, the
+    /// total momentum, which determines the rounding error.
     pub(super) fn linear(&self) -> f64 {
         let relative_momentum = if self.relative_momentum > 0.0 { self.relative_momentum } else { self.spin };
         relative(self.linear, relative_momentum.max(self.momentum))
     }
 
-    /// Returns the relative drift of angular momentum. The scale is `Σ |Lₖ|` or, if larger, the rounding of the moments
-    /// of the linear momenta.
+    /// Returns the drift of angular momentum relative to a scale. The scale is `Σ |Lₖ|` or, if larger, the
+    /// rounding error of the moments of the linear momenta.
     pub(super) fn angular(&self) -> f64 {
         const ROUNDING: f64 = 1e-4;
         let moments = ROUNDING * self.size * self.momentum.max(self.relative_momentum);
         relative(self.angular, self.angular_scale.max(moments))
     }
 
-    /// Returns the relative error of the energy balance. The scale is the sum of the magnitudes of the work done, the
-    /// energy relative to the centre of mass, and a fraction of the energy in W that covers its rounding. It is at
-    /// least the energy of a motion by a millionth of the robot's size during the run.
+    /// Returns the error of the energy balance relative to a scale. The scale is the sum of the magnitudes of
+    /// the work done, the energy relative to the centre of mass, and a fraction of the energy in W that
+    /// covers its rounding error. The scale is at least the energy of a motion by a millionth of the robot's
+    /// size during the run.
     pub(super) fn energy(&self, work_done: f64) -> f64 {
         const ROUNDING: f64 = 1e-3;
         const REST: f64 = 1e-6;

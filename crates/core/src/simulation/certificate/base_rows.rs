@@ -1,5 +1,5 @@
-//! Checks the base rows of inverse dynamics, with accelerations from differences of the recorded velocities, against
-//! the external wrenches.
+//! Check of the base rows of inverse dynamics, with accelerations from differences of the recorded
+//! velocities, against the external wrenches.
 
 use super::error_measures::{relative, worst};
 use super::trace_row::TraceRow;
@@ -8,12 +8,12 @@ use crate::model::{BASE_NV, Model, difference, integrate};
 use crate::spatial::{Force, Motion, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Bound of the relative rounding of the momentum of a row, in units of ε: in the sums over the bodies, in the
-/// rotation to W and in the twist.
+/// Bound of the relative rounding error of the momentum in a row, in units of ε. It covers the sums over the
+/// bodies, the rotation to W and the twist.
 const ROUNDING: f64 = 40.0;
 
-/// Largest residuals beyond rounding so far, and their scales; the entries of each pair are linear (N) and angular (N
-/// m).
+/// Largest residuals so far after subtraction of the rounding bounds, and the scales of the residuals. Each
+/// pair has a linear entry (N) and an angular entry (N m).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Residuals {
     residual: [f64; 2],
@@ -42,8 +42,9 @@ impl BaseRows {
         }
     }
 
-    /// Adds an interval: `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` at the middle of the interval; the base rows of `f`,
-    /// in W axes and about the centre of mass, equal the mean wrench `ΔJ/h` up to `O(h²)`.
+    /// Adds an interval of length `h`. `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` is the inverse dynamics at the
+    /// configuration `q_m` in the middle of the interval. Its base rows, in W axes and about the centre of
+    /// mass, equal the mean wrench `ΔJ/h` up to `O(h²)`.
     pub(super) fn add(&mut self, model: &Model, before: &TraceRow<'_>, now: &TraceRow<'_>) {
         let h = now.time - before.time;
         let [q, v, a] = &mut self.middle;
@@ -90,9 +91,9 @@ impl BaseRows {
         sum
     }
 
-    /// Returns bounds of the rounding in the two residuals of one step. They contain the rounding of momenta and
-    /// impulses, relative to their magnitudes and divided by `h`, and that of the moments `v × m v`, which are zero
-    /// apart from rounding.
+    /// Returns bounds of the rounding errors of the two residuals of one step. They comprise the rounding
+    /// errors of momenta and impulses, relative to their magnitudes and divided by `h`, and the rounding
+    /// errors of the moments `v × m v`, whose exact value is zero.
     fn rounding(&self, model: &Model, h: f64, rows: [&TraceRow<'_>; 2]) -> [f64; 2] {
         let (mut linear, mut angular, mut moments) = (0.0, 0.0, 0.0);
         for body in &self.data.bodies {
@@ -112,18 +113,19 @@ impl BaseRows {
 }
 
 impl Residuals {
-    /// Returns the largest residual beyond rounding, relative to the inertial forces.
+    /// Returns the largest residual in excess of its rounding bound, relative to the inertial forces.
     ///
-    /// Moments below a billionth of the moment of the forces about a lever arm of `size`, the radius of gyration of
-    /// the robot, m, count as rounding.
+    /// Moments are treated as rounding errors if they are below a billionth of the moment of the forces about
+    /// a lever arm of `size`, the radius of gyration of the robot, m.
     pub(super) fn residual(&self, size: f64) -> f64 {
         let [linear, angular] = self.scale;
         let angular = angular.max(1e-9 * size * linear);
         worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
-    /// Returns the largest residual that passes: the truncation error of the differences at the largest rates of the
-    /// run, limited so that the check fails if a wrench as large as the inertial forces is missing.
+    /// Returns the largest residual that passes. It is the truncation error of the differences at the largest
+    /// rates of the run, limited so that the check fails if a wrench as large as the inertial forces is
+    /// missing.
     pub(super) fn gate(&self) -> f64 {
         (1e-6 + self.truncation).min(0.1)
     }
@@ -135,8 +137,8 @@ fn about_base(body: &BodyData<f64>) -> (Motion<f64>, Force<f64>) {
     (body.velocity.referred_to(-body.pos_b), momentum)
 }
 
-/// Returns `h² (w² + ẇ)`, with the sums `w` and `ẇ` of the magnitudes of all rates and of all angular and joint
-/// accelerations; `w` bounds the angular velocity of every body.
+/// Returns `h² (w² + ẇ)`. `w` is the sum of the magnitudes of all rates and bounds the angular velocity of
+/// every body; `ẇ` is the sum of the magnitudes of all angular and joint accelerations.
 fn truncation(h: f64, v: &[f64], a: &[f64]) -> f64 {
     let fastest =
         |x: &[f64]| Vec3::from_slice(&x[3..]).norm() + x[BASE_NV..].iter().map(|x| x.abs()).sum::<f64>();

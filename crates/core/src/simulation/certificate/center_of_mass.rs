@@ -1,29 +1,30 @@
-//! Checks the path of the centre of mass against the integral of the momentum.
+//! Check of the path of the centre of mass against the integral of the momentum.
 
 use super::error_measures::{relative, worst};
 use super::trace_row::MassMotion;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Bound of the relative rounding of the position in one step, in units of ε.
+/// Bound of the relative rounding error of the position in one step, in units of ε.
 const ROUNDING: f64 = 4.0;
 
-/// Gap between the recorded centre of mass and the position that the integral of the momentum gives.
+/// Gap between the recorded centre of mass and the position obtained by integrating the momentum.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct CenterOfMass {
     gap: Vec3<f64>,
     /// Square of the largest gap, m².
     largest: f64,
     path: f64,
-    /// Bound of the rounding in the gap, m: each step rounds the position relative to its magnitude.
+    /// Bound of the rounding error contained in the gap, m; in each step the position is rounded relative to
+    /// its magnitude.
     rounding: f64,
 }
 
 impl CenterOfMass {
-    /// Adds an interval: `Δc = h (P₀ + P₁)/2m + h²/12m (F₀⁺ − F₁⁻)`, of fourth order.
+    /// Adds an interval with `Δc = h (P₀ + P₁)/2m + h²/12m (F₀⁺ − F₁⁻)`, which is of fourth order.
     ///
-    /// `F₁⁻` is the force at the second row. Where a wrench jumps there, it follows from the impulse `J` and the
-    /// first force: `F₁⁻ = 2J/h − F₀`. The value with the smaller gap is used.
+    /// `F₁⁻` is the force just before the second row. If a wrench jumps there, `F₁⁻` is computed from the
+    /// impulse `J` and the force at the first row: `F₁⁻ = 2J/h − F₀`. The value with the smaller gap is used.
     #[inline]
     pub(super) fn add(&mut self, before: &MassMotion, now: &MassMotion) {
         let h = now.time - before.time;
@@ -42,13 +43,13 @@ impl CenterOfMass {
         self.rounding += ROUNDING * f64::EPSILON * size;
     }
 
-    /// Returns the length of the path, m.
+    /// Returns the length of the path of the centre of mass, m.
     pub(super) fn path(&self) -> f64 {
         self.path
     }
 
-    /// Returns the largest gap divided by the sum of the path and the `size` of the robot, m. A gap within the bound
-    /// of rounding passes `gate`.
+    /// Returns the largest gap divided by the sum of the path and the `size` of the robot, m. A gap within
+    /// the bound of rounding errors passes `gate`.
     pub(super) fn error(&self, size: f64, gate: f64) -> f64 {
         relative(self.largest.sqrt(), self.path + size + self.rounding / gate)
     }

@@ -1,4 +1,4 @@
-//! Computes a certificate from a trace.
+//! Computation of a certificate from a trace.
 
 use super::attitude::Attitude;
 use super::balance::Balance;
@@ -10,7 +10,8 @@ use super::trace_row::{RowReader, TraceRow};
 use crate::model::Model;
 use crate::simulation::trace::Trace;
 
-/// Computes the certificate of a run of `model` from its trace alone; all errors are zero if the trace has no rows.
+/// Computes the certificate of a run of `model` from its trace alone. If the trace has no rows, all errors
+/// are zero.
 pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     let mut reader = RowReader::new(model, trace);
     let mut balance = Balance::default();
@@ -21,7 +22,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     for k in 0..reader.rows() {
         let now = reader.row(k);
         balance.add(&now);
-        // an impact has two rows at the same time, without a step between them
+        // an impact is recorded as two rows at the same time, without a step between them
         if let Some(before) = last.as_ref().filter(|before: &&TraceRow<'_>| before.time < now.time) {
             center.add(&before.mass_motion(), &now.mass_motion());
             if trace.rows_suffice {
@@ -31,7 +32,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         }
         last = Some(now);
     }
-    // without external forces the check of the centre of mass does not depend on the spacing of the rows
+    // without external forces, the check of the centre of mass does not depend on the spacing of the rows
     let is_free = trace.impulse.iter().all(|x| *x == 0.0);
     let doubling = StepDoubling { model, trace, size: balance.size(), gate: JOINT_STEP_DOUBLING };
     let center_error = center.error(balance.size(), CENTER);

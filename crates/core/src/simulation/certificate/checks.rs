@@ -1,71 +1,74 @@
-//! The certificate, its checks and their gates.
+//! Certificate, its checks and their gates.
 
 use serde::{Deserialize, Serialize};
 
-/// Largest relative drift of momentum that passes: the rounding of millions of steps.
+/// Largest relative drift of momentum that passes, which allows for the rounding errors of millions of steps.
 pub(crate) const MOMENTUM: f64 = 1e-11;
-/// Largest relative error of the energy balance that passes: that of a fourth-order integrator that resolves the
-/// motion.
+/// Largest relative error of the energy balance that passes. It corresponds to a fourth-order integrator that
+/// resolves the motion.
 pub(crate) const ENERGY: f64 = 1e-6;
-/// Largest relative distance of the centre of mass from the integral of its momentum that still passes.
+/// Largest relative distance between the centre of mass and the integral of its momentum that passes.
 pub(super) const CENTER: f64 = 1e-7;
 /// Largest attitude error estimated by step doubling that passes, rad.
 pub(super) const STEP_DOUBLING: f64 = 1e-6;
-/// Largest joint error estimated by step doubling that passes. Errors of angles are in rad, those of displacements
-/// relative to the robot's size, and those of rates relative to the largest rate of the joint.
+/// Largest joint error estimated by step doubling that passes. Errors of angles are in rad, errors of
+/// displacements are relative to the robot's size, and errors of rates are relative to the largest rate of
+/// the joint.
 ///
-/// The target is an error of 1e-3 of a joint's travel. Even a motion that is not chaotic may amplify the errors of
-/// its steps tenfold by the end, and the probes may miss half of them.
+/// The aim is an error of at most 1e-3 of a joint's travel. Even a motion that is not chaotic may amplify the
+/// errors of steps by a factor of ten by the end of the run, and the probes may miss half of the errors.
 pub(super) const JOINT_STEP_DOUBLING: f64 = 5e-5;
-/// Largest position error of the base's origin estimated by step doubling that passes, relative to the path of the
-/// centre of mass plus the robot's size.
+/// Largest position error of the base's origin estimated by step doubling that passes, relative to the length
+/// of the path of the centre of mass plus the robot's size.
 pub(super) const ORIGIN_STEP_DOUBLING: f64 = 1e-4;
-/// Largest fraction of the commutator that may be missing from the attitude; without integration on the group
-/// it is 1.
+/// Largest fraction of the commutator that may be missing from the attitude. The fraction is 1 for an
+/// integrator that does not integrate on the rotation group.
 pub(super) const ATTITUDE: f64 = 0.1;
 
-/// Errors of a trace with respect to the laws of mechanics, each relative to a nonzero scale unless a unit is given.
+/// Errors of a trace with respect to the laws of mechanics. Each is relative to a nonzero scale, unless a
+/// unit is stated.
 ///
-/// An integrator that integrates momentum conserves both momenta by construction; the other values are independent
-/// checks. Checks that compare neighbouring steps are evaluated during the run if not every step is a row or if captures may
-/// connect the system with others. They are
-/// `None` for an adaptive integrator, whose rows are interpolated, and for sparse rows of an external engine.
+/// An integrator that integrates momentum conserves both momenta by construction; the other values are
+/// independent checks. Checks that compare successive steps are evaluated during the run if only some steps
+/// are recorded or if captures may connect the system to others. They are `None` for an adaptive integrator,
+/// whose rows are interpolated, and for an external engine if not every step is recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
-    /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` relative to the peak of `Σ mₖ |vₖ − v_com|` (of the spin for
-    /// a single body) or, if larger, of `|P|`.
+    /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` relative to the largest value of `Σ mₖ |vₖ − v_com|`
+    /// (for a single body, of the momentum scale of its spin) or, if larger, of `|P|`.
     pub linear_momentum_drift_rel: f64,
-    /// Drift of angular momentum: `max |L − L₀ − ∫T dt|` relative to the peak of `Σ |Lₖ|`, all about the system's
-    /// centre of mass.
+    /// Drift of angular momentum: `max |L − L₀ − ∫T dt|` relative to the largest value of `Σ |Lₖ|`, all about
+    /// the system's centre of mass.
     pub angular_momentum_drift_rel: f64,
-    /// Error of the energy balance: `max |E − E₀ − W|` relative to the sum of `Σ |ΔW|` and the peak of the energy in
-    /// the centre-of-mass frame. The scale is at least the energy of a motion by a millionth of the robot's size
-    /// during the run.
+    /// Error of the energy balance: `max |E − E₀ − W|` relative to the sum of `Σ |ΔW|` and the largest energy
+    /// in the centre-of-mass frame. The scale is at least the energy of a motion by a millionth of the
+    /// robot's size during the run.
     pub energy_balance_error_rel: f64,
-    /// Largest distance of the centre of mass from the integral of `P/m`, relative to the length of its path plus the
-    /// robot's size.
+    /// Largest distance between the centre of mass and the integral of `P/m`, relative to the length of its
+    /// path plus the robot's size.
     pub center_of_mass_error_rel: Option<f64>,
-    /// Difference between the base rows of inverse dynamics, computed from differences of the recorded velocities,
-    /// and the mean external wrench, relative to the inertial forces of the bodies.
+    /// Difference between the base rows of inverse dynamics, computed from differences of the recorded
+    /// velocities, and the mean external wrench, relative to the inertial forces of the bodies.
     pub base_rows_residual_rel: Option<f64>,
-    /// Largest `base_rows_residual_rel` that passes: the truncation error of a central difference, `O(dt²)`.
+    /// Largest value of `base_rows_residual_rel` that passes: the truncation error of a central difference,
+    /// `O(dt²)`.
     pub base_rows_gate: f64,
-    /// Difference between the recorded rotations and those computed from the recorded angular velocities, relative to
-    /// the accumulated commutator: 1 for attitudes composed without the commutator, far smaller for integration on
-    /// the rotation group.
+    /// Difference between the recorded rotations and those computed from the recorded angular velocities,
+    /// relative to the accumulated commutator. The value is 1 for attitudes composed without the commutator,
+    /// and far smaller for integration on the rotation group.
     pub attitude_consistency: Option<f64>,
-    /// Difference between the attitudes after steps and after halved steps, summed over the run, rad.
+    /// Difference between the attitudes after a step and after two half steps, summed over the run, rad.
     pub attitude_step_doubling_rad: Option<f64>,
-    /// Difference between the positions and rates after steps and after halved steps, summed over the run, of the
-    /// joint with the largest value. Angles are in rad, displacements relative to the robot's size, and rates
-    /// relative to the joint's largest rate.
+    /// Difference between the positions and rates after a step and after two half steps, summed over the run,
+    /// for the joint with the largest value. Angles are in rad, displacements relative to the robot's size,
+    /// and rates relative to the joint's largest rate.
     pub joint_step_doubling_rel: Option<f64>,
-    /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass plus the
-    /// robot's size.
+    /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass
+    /// plus the robot's size.
     pub position_step_doubling_rel: Option<f64>,
 }
 
-/// Results of the checks that compare neighbouring steps, evaluated during the run; see [`Certificate`].
+/// Results of the checks that compare successive steps, evaluated during the run; see [`Certificate`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PairChecks {
     /// Value of [`Certificate::center_of_mass_error_rel`].
@@ -79,7 +82,8 @@ pub struct PairChecks {
 }
 
 impl PairChecks {
-    /// Returns the larger errors of two intervals; of the base rows, those that are closer to their gate.
+    /// Returns the larger error of each check in two intervals. For the base rows, this is the error closer
+    /// to its gate.
     pub(crate) fn worse(&self, other: &Self) -> Self {
         let ratio = |checks: &Self| checks.base_rows_residual_rel * (1.0 / checks.base_rows_gate);
         let rows = if ratio(self) >= ratio(other) { self } else { other };
@@ -91,7 +95,7 @@ impl PairChecks {
     }
 }
 
-/// One check of a certificate.
+/// Check of a certificate: a value and its gate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Check {
     /// Name of the field of [`Certificate`].
@@ -103,7 +107,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Returns true if the value is at most its gate; false for NaN.
+    /// Returns true if the value does not exceed its gate; NaN fails.
     pub fn passed(&self) -> bool {
         self.value <= self.gate
     }

@@ -1,11 +1,11 @@
-//! Step-doubling errors of the joints and of the base's origin, relative to their scales.
+//! Step-doubling errors of the joints and of the base's origin, relative to the scales of the motion.
 
 use super::error_measures::{relative, worst};
 use crate::model::{Axis, Model};
 use crate::simulation::trace::Trace;
 
-/// Displacement during the whole run below which a joint counts as at rest, in rad or as a fraction of the robot's
-/// size.
+/// Displacement during the whole run below which a joint is treated as at rest, in rad or as a fraction of
+/// the robot's size.
 const REST: f64 = 1e-6;
 
 /// Results of the step-doubling probes of a run.
@@ -19,29 +19,29 @@ pub(super) struct StepDoubling<'a> {
 }
 
 impl StepDoubling<'_> {
-    /// Returns the largest error of any joint: the error of its position or, relative to its largest rate, that of
-    /// its rate, estimated from the halved steps and from the jumps of its acceleration. `None` without step doubling
-    /// or joints.
+    /// Returns the largest error of any joint, which is the error of its position or, relative to its largest
+    /// rate, of its rate. Errors are estimated from half steps and from the jumps of the joint accelerations.
+    /// Returns `None` without step doubling or without joints.
     ///
-    /// The balances of the whole robot do not reveal errors of light links. Here each error is relative to the motion
-    /// of its joint.
+    /// The balances of the whole robot do not reveal errors of light links; here, the error of each joint is
+    /// relative to the motion of that joint.
     pub(super) fn joints(&self) -> Option<f64> {
         let joints = self.trace.step_doubling.get(1..).filter(|joints| !joints.is_empty())?;
         let duration = self.duration();
         let off = joints.iter().zip(&self.model.nodes()[1..]).map(|(drift, node)| {
             let unit = if node.axis == Axis::Prismatic { self.size } else { 1.0 };
-            // a rate error that passes the gate at rest moves the joint by less than REST
+            // the rate error of a joint at rest passes the gate if it moves the joint by less than REST
             let creep = REST * unit / (self.gate * duration.max(f64::MIN_POSITIVE));
             let fastest = drift.fastest + creep;
-            // the error of a step from the jump after it, see `acceleration_jumps.rs`
+            // error of a step estimated from the jump after the step, see `acceleration_jumps.rs`
             let jumps = 1.75 * relative(drift.jumps, fastest.powf(1.25));
             worst(worst(relative(drift.position, unit), relative(drift.rate, fastest)), jumps)
         });
         Some(off.fold(0.0, worst))
     }
 
-    /// Returns the position error of the base's origin relative to the `path` of the centre of mass, m, plus the
-    /// robot's size. The velocity error contributes after multiplication by the duration of the run.
+    /// Returns the position error of the base's origin relative to the `path` of the centre of mass, m, plus
+    /// the robot's size. The error of the velocity, multiplied by the duration of the run, is included.
     pub(super) fn origin(&self, path: f64) -> Option<f64> {
         let origin = self.trace.step_doubling.first()?;
         Some(relative(origin.position + origin.rate * self.duration(), path + self.size))

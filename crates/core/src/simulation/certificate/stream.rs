@@ -1,4 +1,4 @@
-//! Checks that compare neighbouring steps, accumulated during the run.
+//! Checks that compare successive steps, accumulated during the run.
 
 use super::attitude::Attitude;
 use super::base_rows::{BaseRows, Residuals};
@@ -9,10 +9,10 @@ use crate::model::Model;
 use crate::simulation::trace::Trace;
 use serde::{Deserialize, Serialize};
 
-/// Checks that compare neighbouring steps of a run that does not record every step.
+/// Checks that compare successive steps, for a run that does not record every step.
 ///
-/// The checks of the attitude and the centre of mass, which are sums over the run, use every step. The check of the
-/// base rows, which is a maximum, uses the steps for which [`Stream::add_rows`] is called.
+/// The checks of the attitude and of the centre of mass are sums over the run and use every step. The check
+/// of the base rows is a maximum and uses only the steps for which [`Stream::add_rows`] is called.
 pub(in crate::simulation) struct Stream {
     attitude: Attitude,
     center: CenterOfMass,
@@ -58,7 +58,7 @@ impl Stream {
         self.base_rows.add(model, &before, &now);
     }
 
-    /// Returns the results of all steps so far.
+    /// Returns the results for all steps so far.
     pub(in crate::simulation) fn checks(&self) -> PairChecks {
         PairChecks {
             center_of_mass_error_rel: self.center.error(self.size, CENTER),

@@ -1,4 +1,4 @@
-//! One row of a trace, with forces and scales computed from the equations of motion.
+//! Row of a trace, with forces and scales computed from the equations of motion.
 
 use crate::dynamics::{
     Data, Momentum, base_rotation, composite_momentum, inverse_dynamics, kinematics,
@@ -9,7 +9,7 @@ use crate::simulation::trace::Trace;
 use crate::spatial::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Rotation of the base at one end of an interval; rates in base axes, rad/s and rad/s².
+/// Rotational motion of the base at one end of an interval; rates are in base axes, rad/s and rad/s².
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) time: f64,
@@ -19,7 +19,7 @@ pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) change_before: Vec3<f64>,
     /// Angular acceleration just after this instant.
     pub(in crate::simulation) change_after: Vec3<f64>,
-    /// Sum of the magnitudes of the rates of base and joints: the scale of their rounding.
+    /// Sum of the magnitudes of the rates of base and joints, which is the scale of their rounding errors.
     pub(in crate::simulation) rates: f64,
     /// Sum of the magnitudes of the time derivatives of these rates, plus the square of `rates`.
     pub(in crate::simulation) changes: f64,
@@ -28,8 +28,8 @@ pub(in crate::simulation) struct BaseMotion {
 }
 
 impl BaseMotion {
-    /// Returns the motion of the base from configuration, velocity, acceleration just after the instant and
-    /// angular acceleration just before it.
+    /// Computes the motion of the base from configuration, velocity, the acceleration just after the instant,
+    /// and the angular acceleration just before it.
     #[inline]
     pub(in crate::simulation) fn new(
         time: f64,
@@ -56,15 +56,15 @@ pub(in crate::simulation) struct MassMotion {
     pub(in crate::simulation) center: Vec3<f64>,
     /// Linear momentum, kg m/s.
     pub(in crate::simulation) momentum: Vec3<f64>,
-    /// Time integral of the external forces so far, N s.
+    /// Time integral of the external forces since the start of the run, N s.
     pub(in crate::simulation) impulse: Vec3<f64>,
-    /// External force just before this instant if it is known, otherwise the force just after this instant, N.
+    /// External force, N, just before this instant if it is known, otherwise just after this instant.
     pub(in crate::simulation) force_before: Vec3<f64>,
     /// External force just after this instant, N.
     pub(in crate::simulation) force_after: Vec3<f64>,
 }
 
-/// One row of a trace; vectors are in W axes unless stated otherwise.
+/// Row of a trace. Vectors are in W axes unless stated otherwise.
 pub(super) struct TraceRow<'a> {
     pub(super) time: f64,
     pub(super) base: BaseMotion,
@@ -76,7 +76,7 @@ pub(super) struct TraceRow<'a> {
     pub(super) kinetic_energy: f64,
     pub(super) work: f64,
     pub(super) center_of_mass: Vec3<f64>,
-    /// External force just after this row, from the base rows of inverse dynamics.
+    /// External force just after this row, computed from the base rows of inverse dynamics, N.
     pub(super) force: Vec3<f64>,
     pub(super) mass: f64,
     /// Momentum of the bodies relative to the centre of mass, `Σ mₖ |vₖ − v_com|`, kg m/s.
@@ -104,7 +104,7 @@ impl TraceRow<'_> {
     }
 }
 
-/// Reads the rows of a trace.
+/// Reader of the rows of a trace.
 pub(super) struct RowReader<'a> {
     model: &'a Model,
     trace: &'a Trace,
@@ -165,9 +165,9 @@ impl<'a> RowReader<'a> {
         now
     }
 
-    /// Returns the jump of the angular acceleration of the base, `ω̇⁻ − ω̇⁺`: the base part of `M⁻¹ (τ⁻ − τ⁺)` for
-    /// efforts that jump at row `k`. Joints that friction or a stop holds at rest before and after the row are
-    /// locked.
+    /// Returns the jump of the angular acceleration of the base, `ω̇⁻ − ω̇⁺`, for efforts `τ` that jump at
+    /// row `k`: the base part of `M⁻¹ (τ⁻ − τ⁺)`. Joints that friction or a stop holds at rest before and
+    /// after the row are locked.
     fn angular_jump(&mut self, k: usize, q: &[f64]) -> Vec3<f64> {
         let n = self.model.joint_count();
         if k == 0 || n == 0 {
@@ -182,7 +182,7 @@ impl<'a> RowReader<'a> {
         if self.forces[BASE_NV..].iter().all(|jump| *jump == 0.0) {
             return Vec3::zero();
         }
-        // at zero velocity the bias vanishes and the acceleration is M⁻¹ Δτ
+        // at zero velocity the bias forces vanish, so the acceleration is M⁻¹ Δτ
         let Self { model, data, at_rest, forces, locked, jump, .. } = self;
         kinematics(model, data, q, at_rest);
         data.clear_external();
@@ -206,13 +206,13 @@ impl<'a> RowReader<'a> {
         }
     }
 
-    /// Returns true if a joint is at rest on exactly one side of a row.
+    /// Returns true if a joint is at rest either just before or just after a row, but not both.
     fn starts_or_stops(&self, row: usize, j: usize) -> bool {
         row > 0 && (self.direction(row - 1, j) == 0.0) != (self.direction(row, j) == 0.0)
     }
 
-    /// Returns true if friction or a stop can hold the joint and it is at rest in the intervals before and
-    /// after a row.
+    /// Returns true if friction or a stop can hold the joint and the joint is at rest in the intervals before
+    /// and after a row.
     fn is_held(&self, row: usize, j: usize) -> bool {
         let joint = &self.model.joints()[j];
         let can_be_held = joint.static_friction > 0.0 || joint.limits.position.is_some();

@@ -1,4 +1,4 @@
-//! Dormand and Prince's embedded pair 5(4) on SO(3) × ℝⁿ, with step-size control.
+//! Embedded Runge-Kutta pair 5(4) of Dormand and Prince on SO(3) × ℝⁿ, with step-size control.
 
 use super::settings::StepSettings;
 use super::stages::{Stages, combine};
@@ -13,17 +13,19 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Real, Vec3, dexp_inv_exact};
 
-/// Smallest and largest factor by which the step size may change from one step to the next.
+/// Smallest and largest factor by which the step size may change between successive steps.
 const CHANGE: (f64, f64) = (0.2, 5.0);
 
-/// Fraction of the control period below which a step is short, and the number of consecutive short steps after which the
-/// run is given up: unstable controllers accelerate joints without bound, and each control period would take hours.
+/// Fraction of the control period below which a step is short, and number of consecutive short steps after
+/// which the run ends with an error. Unstable controllers accelerate joints without bound; each control
+/// period would then take hours.
 const SHORT: (f64, usize) = (1e-5, 1000);
 
-/// Error of a step, relative to the tolerance, above which the tolerance determines its length.
+/// Error of a step, relative to the tolerance, above which the tolerance is considered to determine the step
+/// size.
 const LIMITING: f64 = 1e-2;
 
-/// Stages of a step and the control of its size.
+/// Stages of a step and the step-size control.
 #[derive(Clone, Debug)]
 pub(super) struct DormandPrince<S> {
     k: Vec<Rate<S>>,
@@ -36,7 +38,7 @@ pub(super) struct DormandPrince<S> {
 }
 
 impl<S: Real> DormandPrince<S> {
-    /// Returns the method for the settings of a run.
+    /// Creates the method with the settings of a run.
     pub(super) fn new(rate: &Rate<S>, settings: &StepSettings) -> Self {
         let StepSettings { tolerance, duration, control_period, .. } = *settings;
         let tolerance = Tolerance::new(tolerance, duration);
@@ -44,8 +46,8 @@ impl<S: Real> DormandPrince<S> {
         Self { k: vec![rate.clone(); 7], tolerance, control, span: (0.0, 0.0), control_period }
     }
 
-    /// Takes a step: `y' = y ⊕ h Σ b_i k_i`, with the attitude as the rotation vector `θ` since the start of the
-    /// step, `θ̇ = dexp⁻¹(θ) ω`. Expects the first stage in `stages`.
+    /// Computes a step: `y' = y ⊕ h Σ b_i k_i`. The attitude is represented by the rotation vector `θ` since
+    /// the start of the step, `θ̇ = dexp⁻¹(θ) ω`. Requires the first stage in `stages`.
     pub(super) fn step(
         &mut self,
         stages: &mut Stages<S>,
@@ -74,15 +76,16 @@ impl<S: Real> DormandPrince<S> {
                 );
             }
         }
-        state.copy_from(trial); // the seventh stage is evaluated at the end of the step
+        state.copy_from(trial); // the seventh stage was evaluated at the end of the step
         Ok(())
     }
 
-    /// Takes a step from the start of `interval` that ends at its end or earlier, so that the error is within the
-    /// tolerance, and returns the time reached, s. Expects kinematics and loads at the start in `equations`.
+    /// Computes a step from the start of `interval` to its end, or to an earlier time if the error would
+    /// otherwise exceed the tolerance. Returns the time reached, s. Requires kinematics and loads at the
+    /// start in `equations`.
     ///
-    /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04`, with the errors `ε` of this and `ε₋₁` of the last
-    /// accepted step, relative to the tolerance.
+    /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04`, where `ε` and `ε₋₁` are the errors of
+    /// this step and of the last accepted step, relative to the tolerance.
     ///
     /// Source: Hairer and Wanner, Solving Ordinary Differential Equations II, 1996, IV.2.
     pub(super) fn adaptive_step(
@@ -97,7 +100,7 @@ impl<S: Real> DormandPrince<S> {
         let mut h = self.initial_step(stages, equations).min(longest_step(stages)).min(whole);
         let mut was_rejected = false;
         loop {
-            // two equal steps instead of a very short last one
+            // two equal steps avoid a very short last step
             let end = match whole - h {
                 rest if rest <= 1e-9 * whole => interval.1,
                 rest if rest < h => start + 0.5 * whole,
@@ -135,8 +138,9 @@ impl<S: Real> DormandPrince<S> {
         }
     }
 
-    /// Returns the first step size to try, s: the one that step control proposed or, in the first step, `ε^⅕ / (ω +
-    /// √ω̇)` with the tolerance `ε`, the largest rate `ω` and the largest acceleration `ω̇`.
+    /// Returns the first step size to try, s. It is the size that step control has proposed or, in the first
+    /// step, `ε^⅕ / (ω + √ω̇)` with the tolerance `ε`, the largest rate `ω` and the largest acceleration
+    /// `ω̇`.
     fn initial_step(
         &mut self,
         stages: &Stages<S>,
@@ -155,7 +159,8 @@ impl<S: Real> DormandPrince<S> {
         steps.fold(f64::INFINITY, f64::min)
     }
 
-    /// Writes the state at `t` within the last step; its base twist is not yet projected onto the momentum.
+    /// Writes the state at `t`, s, within the last step. Its base twist is not yet projected onto the
+    /// momentum.
     pub(super) fn interpolate(&self, stages: &mut Stages<S>, t: f64, state: &mut State<S>) {
         let Stages { start, sum, first, .. } = stages;
         let h = self.span.1 - self.span.0;
@@ -170,14 +175,15 @@ impl<S: Real> DormandPrince<S> {
     }
 }
 
-/// Returns the largest rate (of the first lane) of base and joints; `size` is the scale of lengths, m.
+/// Returns the largest rate of base and joints in the first lane, rad/s; `size` is the length, m, by which
+/// linear rates are divided.
 fn fastest<S: Real>(v: &[S], size: f64) -> f64 {
     let linear = Vec3::from_slice(v).norm().lane(0) / size;
     let angular = Vec3::from_slice(&v[3..]).norm().lane(0);
     v[BASE_NV..].iter().map(|x| x.lane(0).abs()).fold(linear.max(angular), f64::max)
 }
 
-/// Returns the longest step, s, for which the rotation vectors of all bases stay well below a full turn.
+/// Returns the longest step, s, during which the rotation vectors of all bases stay well below a full turn.
 fn longest_step<S: Real>(stages: &Stages<S>) -> f64 {
     let longest = |start: &TreeState<S>| LARGEST_ROTATION / Vec3::from_slice(&start.v[3..]).norm().lane(0);
     stages.start.trees.iter().map(longest).fold(f64::INFINITY, f64::min)
@@ -198,8 +204,8 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
     use std::borrow::Cow;
 
-    /// Returns the configuration of a tumbling spacecraft after 8 s; `weight` is that of attitude and angular rate in
-    /// the error.
+    /// Returns the configuration of a tumbling spacecraft after 8 s; `weight` is the weight of attitude and
+    /// angular rate in the error norm.
     fn tumble(tolerance: f64, weight: f64) -> Vec<f64> {
         let inertia = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
         let model = Model::rigid_body(10.0, inertia).unwrap();

@@ -18,7 +18,7 @@ pub(crate) struct Integration<S> {
     pub(crate) stages: Stages<S>,
     /// Motion of each base over the stages of RK4.
     bases: Vec<BaseStages<S>>,
-    /// Further stages and step control of the adaptive integrator.
+    /// Additional stages and step control of the adaptive integrator.
     dormand_prince: Option<Box<DormandPrince<S>>>,
 }
 
@@ -31,8 +31,8 @@ impl<S: Real> Integration<S> {
         Self { integrator: settings.integrator, stages, bases, dormand_prince }
     }
 
-    /// Moves `state` from the start of `interval` to its end, or as far as the tolerance allows, and returns the
-    /// time reached. Expects kinematics and loads at the start in `equations`.
+    /// Advances `state` from the start of `interval` to its end, or as far as the tolerance allows. Returns
+    /// the time reached, s. Requires kinematics and loads at the start in `equations`.
     pub(crate) fn advance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -45,8 +45,8 @@ impl<S: Real> Integration<S> {
         }
     }
 
-    /// Moves `state` over the whole of `interval` in one step. Expects kinematics and loads at its start in
-    /// `equations`.
+    /// Advances `state` over the whole of `interval` in one step. Requires kinematics and loads at the start
+    /// in `equations`.
     pub(crate) fn step(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -65,15 +65,15 @@ impl<S: Real> Integration<S> {
         Ok(())
     }
 
-    /// Writes the state at `t` within the last step of the adaptive integrator; its base twist is not yet projected
-    /// onto the momentum. Fixed-step integrators have no dense output and leave `state` as it is.
+    /// Writes the state at `t`, s, within the last step of the adaptive integrator. Its base twist is not yet
+    /// projected onto the momentum. Fixed-step integrators have no dense output and leave `state` unchanged.
     pub(crate) fn interpolate(&mut self, t: f64, state: &mut State<S>) {
         if let Some(method) = &self.dormand_prince {
             method.interpolate(&mut self.stages, t, state);
         }
     }
 
-    /// Returns true if the tolerance determines the length of the steps.
+    /// Returns true if the tolerance determines the length of steps.
     pub(crate) fn is_adaptive(&self) -> bool {
         self.dormand_prince.is_some()
     }
@@ -83,7 +83,7 @@ impl<S: Real> Integration<S> {
         self.dormand_prince.as_ref().map(|method| &method.control)
     }
 
-    /// Continues with the step size of another step control, whose trees differed.
+    /// Takes over the step size of a step control that was used with different trees.
     pub(crate) fn continue_from(&mut self, before: StepControl) {
         if let Some(method) = &mut self.dormand_prince {
             (method.control.step, method.control.error) = (before.step, before.error);

@@ -1,4 +1,4 @@
-//! Classical Runge-Kutta of fourth order on SO(3) × ℝⁿ.
+//! Classical fourth-order Runge-Kutta method on SO(3) × ℝⁿ.
 
 use super::stages::Stages;
 use crate::simulation::equations::EquationsOfMotion;
@@ -8,13 +8,13 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Real, Vec3, dexp_inv};
 
-/// Nodes `c` (fractions of the step) and weights `b` of the second to fourth stages.
+/// Nodes `c`, as fractions of the step, and weights `b` of the second to fourth stages.
 const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
 
 /// Nyström weights `ā` of the base's origin at the stages: `p_i = p₀ + c h ṗ₀ + h² Σ ā_ij p̈_j`.
 ///
-/// Conditions up to order four: `Σ_j ā_ij = c_i²/2`, `Σ b_i ā_ij c_j = 1/24`; the last stage is exact for an
-/// acceleration that is linear in time.
+/// The order conditions are satisfied up to order four: `Σ_j ā_ij = c_i²/2`, `Σ b_i ā_ij c_j = 1/24`. The
+/// last stage is exact for an acceleration that is linear in time.
 const NYSTROM: [[f64; 3]; 3] =
     [[0.125, 0.0, 0.0], [1.0 / 24.0, 1.0 / 12.0, 0.0], [1.0 / 6.0, 0.0, 1.0 / 3.0]];
 
@@ -37,11 +37,11 @@ impl<S: Real> BaseStages<S> {
     }
 }
 
-/// Takes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude. Expects the first
-/// stage in `stages`.
+/// Computes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude. Requires
+/// the first stage in `stages`.
 ///
-/// The position of the base's origin is integrated from its acceleration with Nyström weights instead, which reduces
-/// the error of the position far from the reference orbit, where differential gravity is strong.
+/// The position of the base's origin is instead integrated from its acceleration with Nyström weights. This
+/// reduces the position error far from the reference orbit, where differential gravity is strong.
 pub(super) fn rk4<S: Real>(
     stages: &mut Stages<S>,
     bases: &mut [BaseStages<S>],
@@ -91,7 +91,7 @@ pub(super) fn rk4<S: Real>(
     Ok(())
 }
 
-/// Computes the rates of the rotation vectors at a stage, `dexp⁻¹(θ) ω`.
+/// Computes the time derivatives of the rotation vectors at a stage, `dexp⁻¹(θ) ω`.
 #[inline(always)]
 fn to_rotation_vector<S: Real>(bases: &[BaseStages<S>], trial: &State<S>, rate: &mut Rate<S>) {
     for ((base, trial), rate) in bases.iter().zip(&trial.trees).zip(&mut rate.trees) {

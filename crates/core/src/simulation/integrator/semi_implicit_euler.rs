@@ -1,4 +1,4 @@
-//! Semi-implicit Euler, first order.
+//! Semi-implicit Euler method, of first order.
 
 use super::stages::Stages;
 use crate::model::integrate;
@@ -7,8 +7,8 @@ use crate::simulation::external_loads::ExternalLoads;
 use crate::simulation::state::State;
 use crate::spatial::{Real, Vec3};
 
-/// Takes a step: `v' = v + h a(q, v)`, `q' = q ⊕ h v'`, for each tree in the frame of its step. Expects the first
-/// stage in `stages`.
+/// Computes a step: `v' = v + h a(q, v)`, `q' = q ⊕ h v'`, for each tree in the moving frame of its step.
+/// Requires the first stage in `stages`.
 pub(super) fn semi_implicit_euler<S: Real>(
     stages: &mut Stages<S>,
     equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
