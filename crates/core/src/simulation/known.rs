@@ -1,4 +1,4 @@
-//! Trees of connected systems that the controllers of a system know.
+//! Trees of connected systems whose models the controllers of a system know.
 
 use super::error::SimulationError;
 use super::members::Place;
@@ -9,7 +9,8 @@ use crate::model::{BASE_NQ, BASE_NV};
 use crate::spatial::Scalar;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Compiles, for every system that knows others, the tree of those to which it is connected.
+    /// Assembles, for every system that knows other systems, the tree of the systems to which it is
+    /// connected.
     pub(super) fn find_known(&mut self) -> Result<(), SimulationError> {
         let Self { systems, connections, .. } = self;
         for (number, run) in systems.iter_mut().enumerate().filter(|(_, run)| !run.knows.is_empty()) {
@@ -25,8 +26,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Brings the tree that the controllers of a system know to the states of its systems. The external wrenches are
-    /// added if the controllers compensate them. Expects the states of the parts.
+    /// Sets the tree known to the controllers of a system to the states of its systems. Adds the external
+    /// wrenches if the controllers compensate them. Requires the states of the parts.
     pub(super) fn update_known(&mut self, number: usize) {
         let members = &self.equations.members;
         let RunSystem { controllers, known_members, .. } = &mut self.systems[number];

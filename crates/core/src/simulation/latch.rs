@@ -6,15 +6,15 @@ use crate::dynamics::{frame_pose, frame_velocity};
 use crate::spatial::{Real, log_rotation};
 use crate::world::Envelope;
 
-/// Tolerance, relative to the envelope, within which its conditions hold.
+/// Tolerance, as a fraction of the bounds of the envelope, within which the conditions hold.
 const ROUNDING: f64 = 1e-9;
 
-/// A latch that has not closed.
+/// Latch that has not closed.
 #[derive(Clone, Debug)]
 pub(crate) struct Latch {
     /// Number of the event.
     pub(super) event: usize,
-    /// Tree and frame of the capturing and of the captured frame.
+    /// Tree and frame index of the capturing frame and of the captured frame.
     pub(super) frames: [(usize, usize); 2],
     pub(super) envelope: Envelope,
     /// True while the conditions hold.
@@ -22,11 +22,12 @@ pub(crate) struct Latch {
 }
 
 impl Latch {
-    /// Returns the margin of the condition that is closest to its bound, relative to the bound: positive inside the
-    /// envelope. Expects the kinematics of `states`, relative to W, in `trees`.
+    /// Returns the relative margin of the condition that is closest to its bound; it is positive inside the
+    /// envelope. Requires the kinematics of `states`, relative to W, in `trees`.
     ///
-    /// `min(1 − d/d_max, 1 − θ/θ_max, 1 − v/v_max, 1 − ω/ω_max)`, with the velocity of the captured frame's origin as
-    /// observed in the capturing frame, `v = |v_b − v_a − ω_a × (p_b − p_a)|`, and `ω = |ω_b − ω_a|`.
+    /// `min(1 − d/d_max, 1 − θ/θ_max, 1 − v/v_max, 1 − ω/ω_max)`, with the velocity of the captured frame's
+    /// origin as observed in the capturing frame, `v = |v_b − v_a − ω_a × (p_b − p_a)|`, and `ω = |ω_b −
+    /// ω_a|`.
     pub(super) fn inside<S: Real>(&self, trees: &[Tree<'_, S>], states: &[TreeState<S>]) -> f64 {
         let [by, of] = self.frames.map(|(tree, frame)| {
             let (tree, q) = (&trees[tree], &states[tree].q);
@@ -40,12 +41,12 @@ impl Latch {
         values.iter().zip(bounds).map(|(value, bound)| 1.0 - value / bound).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns true if the conditions hold, within rounding.
+    /// Returns true if the conditions hold within the tolerance for rounding.
     pub(super) fn holds(inside: f64) -> bool {
         inside >= -ROUNDING
     }
 
-    /// Returns the margin to the next change of the latch: negative if it should already have changed.
+    /// Returns the margin to the next change of the latch. It is negative if the change is overdue.
     pub(super) fn margin(&self, inside: f64) -> f64 {
         if self.is_held { inside + 2.0 * ROUNDING } else { -inside }
     }

@@ -1,9 +1,9 @@
 //! Local reference orbit of a robot that drifts far from the reference orbit of the run.
 //!
-//! The frame `W'` has the axes of W, and its origin follows an orbit in free fall that starts at the robot's centre
-//! of mass, so that the integrated coordinates become small. With the vector `s = R' − R` from the origin of W to
-//! that of `W'`, `p = p' + s` and `ṗ = ṗ' + ṡ`, and in W an additional force `m s̈` acts on every body. The rows of
-//! the trace remain relative to W.
+//! The axes of the frame `W'` are those of W, and its origin follows an orbit in free fall that starts at the
+//! robot's centre of mass, so that the integrated coordinates become small. With the vector `s = R' − R` from
+//! the origin of W to the origin of `W'`, `p = p' + s` and `ṗ = ṗ' + ṡ`, and in W an additional force `m s̈`
+//! acts on every body. The rows of the trace remain relative to W.
 
 use super::trace::Trace;
 use crate::dynamics::base_rotation;
@@ -12,23 +12,23 @@ use crate::orbit::OrbitState;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 
-/// Local reference orbit, with the quantities that transform rows from `W'` to W.
+/// Local reference orbit, with the quantities needed to transform rows from `W'` to W.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LocalReference {
-    /// Position of the robot's centre of mass at the change, axes of I, m.
+    /// Position of the robot's centre of mass at the change of reference, axes of I, m.
     pub(super) position: [f64; 3],
-    /// Velocity of the robot's centre of mass at the change, axes of I, m/s.
+    /// Velocity of the robot's centre of mass at the change of reference, axes of I, m/s.
     pub(super) velocity: [f64; 3],
-    /// Linear momentum removed by the changes of reference so far, kg m/s.
+    /// Linear momentum that all changes of reference so far have removed, kg m/s.
     pub(super) momentum_taken: [f64; 3],
-    /// Work in W minus work in `W'`, without the energy due to the velocity of the frame, J.
+    /// Work in W less work in `W'`, without the energy due to the velocity of the frame, J.
     pub(super) work_ahead: f64,
-    /// Times of this change and of all changes before it, s.
+    /// Times of all changes of reference up to this one, s.
     pub(super) times: Vec<f64>,
 }
 
-/// Transformation of a row from `W'` to W at one instant: the vector `s` (m) with its first and second time
-/// derivatives, and the mass of the robot (kg).
+/// Transformation of a row from `W'` to W at one instant. It consists of the vector `s` (m), its first and
+/// second time derivatives, and the mass of the robot (kg).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shift {
     /// State of the reference orbit of W.
@@ -42,8 +42,8 @@ pub(super) struct Shift {
 }
 
 impl Shift {
-    /// Returns the transformation for the states `state` of the local reference orbit and `reference` of the
-    /// reference orbit of W; `rate` is the time derivative of the position of the latter, m/s.
+    /// Computes the transformation from the states `state` of the local reference orbit and `reference` of
+    /// the reference orbit of W; `rate` is the time derivative of the position of the latter, m/s.
     pub(super) fn between(
         local: &LocalReference,
         state: &OrbitState,
@@ -67,7 +67,7 @@ impl Shift {
         let (nq, nv) = (model.nq(), model.nv());
         let Self { position, velocity, mass, momentum_taken, work_ahead, .. } = self;
         let momentum = Vector3::from_column_slice(last(&mut trace.momentum, 6, 3));
-        // T = T' + P'·ṡ + m ṡ²/2, and likewise for the work
+        // T = T' + P'·ṡ + m ṡ²/2; the work changes by the same amount
         let energy = momentum.dot(velocity) + 0.5 * mass * velocity.norm_squared();
         last(&mut trace.kinetic_energy, 1, 1)[0] += energy;
         last(&mut trace.work, 1, 1)[0] += energy + work_ahead;

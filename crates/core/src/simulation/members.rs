@@ -1,6 +1,7 @@
-//! Systems as members of the integrated trees: a system is the only member of a tree, or a part of a larger one.
+//! Systems as members of the integrated trees. A system is either the only member of a tree or a part of a
+//! larger tree.
 //!
-//! Integration uses the coordinates of trees; controllers, loads and rows use those of systems.
+//! Integration uses the coordinates of trees; controllers, loads and rows use the coordinates of systems.
 
 use super::body_states::LoadedSystem;
 use super::tree::Tree;
@@ -14,39 +15,39 @@ use serde::{Deserialize, Serialize};
 /// Place of a system in the list of trees or in the list of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Place {
-    /// The system is the only member of this tree and has its coordinates.
+    /// The system is the only member of this tree, so both have the same coordinates.
     Tree(usize),
-    /// The system is this part of a tree with several members.
+    /// The system is this part, which belongs to a tree with several members.
     Part(usize),
 }
 
-/// Places of all systems of a run, and the systems that share a tree with others.
+/// Places of all systems of a run, and the systems that share a tree with other systems.
 pub(crate) struct Members<'a, S> {
     /// One entry per system.
     pub(super) places: Vec<Place>,
     pub(super) parts: Vec<Part<'a, S>>,
 }
 
-/// A system that shares its tree with other systems.
+/// System that shares its tree with other systems.
 pub(crate) struct Part<'a, S> {
     /// Number of the tree.
     pub(super) tree: usize,
-    /// Number of the system among the members of the tree.
+    /// Index of the system among the members of the tree.
     share: usize,
     pub(super) member: Member,
     /// State in the coordinates of the system.
     pub(super) state: TreeState<S>,
     /// Kinematics, commanded torques and modes in the coordinates of the system.
     pub(super) own: Tree<'a, S>,
-    /// Sign of the base quaternion: it makes the quaternion continuous when the system joins the tree.
+    /// Sign of the base quaternion with which the quaternion is continuous when the system joins the tree.
     pub(super) sign: f64,
-    /// Work minus kinetic energy when the system joined the tree, J.
+    /// Work less kinetic energy at the instant at which the system joined the tree, J.
     work_ahead: S,
     /// Energy dissipated in the joints of the system before it joined the tree, J.
     dissipated_before: S,
 }
 
-/// State of a part for checkpoints.
+/// State of a part, for checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SavedPart {
     pub(super) state: TreeState<f64>,
@@ -56,7 +57,7 @@ pub(super) struct SavedPart {
 }
 
 impl<S: Real> Members<'_, S> {
-    /// Returns the places of systems that share no tree.
+    /// Creates the places of systems that share no tree.
     pub(crate) fn alone(count: usize) -> Self {
         Self { places: (0..count).map(Place::Tree).collect(), parts: Vec::new() }
     }
@@ -69,7 +70,7 @@ impl<S: Real> Members<'_, S> {
         }
     }
 
-    /// Returns the state and the tree, in the coordinates of the system, of a system.
+    /// Returns the state of a system and its tree, both in the coordinates of the system.
     pub(super) fn system<'m>(
         &'m self,
         number: usize,
@@ -96,15 +97,16 @@ impl<S: Scalar> Members<'_, S> {
 }
 
 impl<'a, S: Scalar> Part<'a, S> {
-    /// Returns the part that a system with this state becomes; `tree` and `share` are the number of the tree and that of
-    /// the member. `state` and `own` are those at the instant at which the system joins the tree, before any impulse.
+    /// Creates the part that a system becomes; `tree` is the number of the tree and `share` the index of the
+    /// member. `state` and `own` are those at the instant at which the system joins the tree, before any
+    /// impulse.
     pub(super) fn new(
         (tree, share): (usize, usize),
         member: Member,
         mut state: TreeState<S>,
         own: Tree<'a, S>,
     ) -> Self {
-        state.center = None; // it is the tree whose centre of mass follows the momentum
+        state.center = None; // only the centre of mass of the tree is integrated
         state.clock = None;
         let energy = momentum_energy_com(&own.model, &own.data, &state.q, &state.v).1;
         let (work_ahead, dissipated_before) = (state.work - energy, state.dissipated);
@@ -134,7 +136,8 @@ impl<'a, S: Scalar> Part<'a, S> {
         self.own.update_stage_kinematics(&mut self.state);
     }
 
-    /// Makes the quaternion of the base continuous with `before`, (x, y, z, w). Expects the kinematics of the tree.
+    /// Chooses the sign of the base quaternion so that it is continuous with `before`, (x, y, z, w). Requires
+    /// the kinematics of the tree.
     pub(super) fn choose_sign(&mut self, before: &[S]) {
         let dot: f64 = before.iter().zip(&self.state.q[3..]).map(|(a, b)| a.value() * b.value()).sum();
         if dot < 0.0 {
@@ -143,8 +146,9 @@ impl<'a, S: Scalar> Part<'a, S> {
         }
     }
 
-    /// Computes the impulse and the work of the system, which include those of its connections: its momentum and its
-    /// kinetic energy minus their initial values. Expects the state and the kinematics of the system relative to W.
+    /// Computes the impulse and the work of the system as the changes of its momentum and of its kinetic
+    /// energy since their initial values; they include those of its connections. Requires the state and the
+    /// kinematics of the system relative to W.
     pub(super) fn update_balance(&mut self) {
         let (h, energy, _) =
             momentum_energy_com(&self.own.model, &self.own.data, &self.state.q, &self.state.v);
@@ -153,7 +157,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         self.state.work = energy + self.work_ahead;
     }
 
-    /// Returns what [`Part::restore`] needs to continue from the current state.
+    /// Returns the state from which [`Part::restore`] continues.
     pub(super) fn save(&self) -> SavedPart {
         SavedPart {
             state: self.state.map(|x| x.value()),
@@ -170,7 +174,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         self.dissipated_before = S::of(saved.dissipated_before);
     }
 
-    /// Returns the parts of the system that loads read and write.
+    /// Returns those parts of the system that loads read and write.
     pub(super) fn loaded(&mut self) -> LoadedSystem<'_, S> {
         self.own.loaded(&self.state.q)
     }
@@ -180,7 +184,8 @@ impl<'a, S: Scalar> Part<'a, S> {
         self.add_wrenches(&self.member, &mut tree.data);
     }
 
-    /// Adds the external wrenches on the bodies of the system to those in a tree in which `member` is its place.
+    /// Adds the external wrenches on the bodies of the system to those in `tree`, in which `member` is the
+    /// place of the system.
     pub(super) fn add_wrenches<T: Scalar>(&self, member: &Member, tree: &mut Data<T>) {
         let base = &member.bodies[0];
         let rot_bp = tree.bodies[base.body].rot_bk * Mat3::of(&base.rot_kb);
@@ -193,7 +198,8 @@ impl<'a, S: Scalar> Part<'a, S> {
         }
     }
 
-    /// Passes the commanded torques, and the accelerations requested for joints with friction, to the tree.
+    /// Passes the commanded torques and the accelerations requested for joints with friction compensation to
+    /// the tree.
     pub(super) fn drive(&self, tree: &mut Tree<'_, S>) {
         for (own, &joint) in self.member.joints.iter().enumerate() {
             tree.command[joint] = self.own.command[own];
@@ -201,12 +207,13 @@ impl<'a, S: Scalar> Part<'a, S> {
         }
     }
 
-    /// Takes the modes of the joints from the tree.
+    /// Copies the modes of the joints from the tree.
     pub(super) fn take_modes(&mut self, tree: &Tree<'_, S>) {
         self.own.modes.take(&tree.modes, &self.member.joints);
     }
 
-    /// Returns the acceleration of the system, `(nv,)`, from the state (W) and the acceleration of its tree.
+    /// Returns the acceleration of the system, `(nv,)`, from the acceleration `a` of its tree at `state`,
+    /// relative to W.
     pub(super) fn acceleration(&self, tree: &Tree<'_, S>, state: &TreeState<S>, a: &[S]) -> Vec<S> {
         let ([q, v], a) = (state.values(), a.iter().map(|x| x.value()).collect::<Vec<f64>>());
         let mut data = Data::<f64>::new(&tree.model);
@@ -218,7 +225,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         let mut write = |start: usize, vector: Vec3<f64>| {
             vector.map(|x| S::of(*x)).write(&mut own[start..]);
         };
-        // the acceleration of a twist in axes fixed to the body is its spatial acceleration
+        // the derivative of a twist in body-fixed axes is the spatial acceleration
         write(0, rot_bp.transpose_mul(body.acceleration.at(body.rot_bk * base.pos_kb)));
         write(3, rot_bp.transpose_mul(body.acceleration.angular));
         for (joint, &in_tree) in self.member.joints.iter().enumerate() {
@@ -228,8 +235,8 @@ impl<'a, S: Scalar> Part<'a, S> {
     }
 }
 
-/// Returns the attitude in W of a body at a place in a tree: the product of the rotations along the path from the base.
-/// It is continuous in the joint positions, unlike a quaternion computed from a rotation matrix.
+/// Returns the attitude in W of a body at a place in a tree: the product of the rotations along the path from
+/// the base. Unlike a quaternion computed from a rotation matrix, it is continuous in the joint positions.
 fn attitude_of<S: Real>(tree: &Model, q: &[S], place: &BodyPlace) -> Quat<S> {
     let constant = |q: Quat<f64>| Quat { v: Vec3::of(&q.v), w: S::of(q.w) };
     let mut attitude = constant(place.quaternion());

@@ -1,4 +1,4 @@
-//! Moves the trees over a step with the native equations of motion or with an external engine.
+//! Advance of the trees over a step, by the native engine or by an external engine.
 
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
@@ -14,16 +14,16 @@ use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
-/// The native integrator or an external engine; the order of execution in a step is the same for both. With an
-/// external engine every system remains a separate tree, also while it is connected.
+/// Native integrator or external engine. The order of execution in a step is the same for both. With an
+/// external engine, every system remains a separate tree even while it is connected to others.
 pub(super) enum Mover<'a, S> {
     Native(StepMethod<S>),
     External(ExternalEngine<'a>),
 }
 
 impl<S: Scalar> Mover<'_, S> {
-    /// Computes the kinematics of `state`. A native base twist is projected onto the momentum; that of an external
-    /// engine is not changed.
+    /// Computes the kinematics of `state`. With the native engine, base twists are projected onto the
+    /// momentum; with an external engine, they do not change.
     pub(super) fn kinematics(&self, equations: &mut Equations<'_, S>, state: &mut State<S>) {
         match self {
             Self::Native(_) => equations.project_momentum(state),
@@ -31,7 +31,7 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Applies the impacts of joints that reach their stops; an external engine has its own stops.
+    /// Applies the impacts of joints that reach their stops. An external engine has its own stops instead.
     pub(super) fn resolve_impacts(&self, equations: &mut Equations<'_, S>, state: &mut State<S>) {
         if let Self::Native(method) = self {
             method.resolve_impacts(equations, state);
@@ -71,7 +71,7 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Moves `state` from the start of `interval` towards its end and returns the time reached.
+    /// Advances `state` from the start of `interval` towards its end. Returns the time reached, s.
     pub(super) fn advance(
         &mut self,
         equations: &mut Equations<'_, S>,
@@ -84,7 +84,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`; `None` for an external engine.
+    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`; `None` if an external
+    /// engine returned none.
     pub(super) fn first_acceleration(&self, number: usize) -> Option<&[S]> {
         match self {
             Self::Native(method) => Some(&method.integration.stages.first[number].acceleration),
@@ -92,8 +93,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Adds the acceleration at the start of the last step to the row of a tree; removes the row if an external
-    /// engine returned no acceleration.
+    /// Adds the acceleration at the start of the last step to the row of a tree. If an external engine
+    /// returned no acceleration, removes the row instead.
     pub(super) fn complete_row(&self, number: usize, recorder: &mut Recorder, model: &Model) {
         match self {
             Self::Native(method) => {
@@ -106,7 +107,7 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the work done on a tree in the last step, J; `state` is its state at the end of the step.
+    /// Returns the work done on a tree in the last step, J; `state` is the state at the end of the step.
     pub(super) fn work_of_step(&self, number: usize, state: &TreeState<S>) -> f64 {
         match self {
             Self::Native(method) => (state.work - method.integration.stages.start.trees[number].work).value(),
@@ -114,7 +115,7 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the integrator of the native equations of motion; `None` for an external engine.
+    /// Returns the integrator of the native engine; `None` for an external engine.
     pub(super) fn integration(&mut self) -> Option<&mut Integration<S>> {
         match self {
             Self::Native(method) => Some(&mut method.integration),
@@ -122,8 +123,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns what [`Mover::restore`] needs to return to the current step: the state of the adaptive step control
-    /// (`None` without it) and the number of consecutive idle steps.
+    /// Returns the state from which [`Mover::restore`] returns to the current step: the adaptive step control
+    /// (`None` for other methods) and the number of consecutive idle steps.
     pub(super) fn save(&self) -> (Option<StepControl>, usize) {
         match self {
             Self::Native(method) => (method.integration.control().cloned(), method.idle_steps),
@@ -131,7 +132,7 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Restores the step control and the number of idle steps that [`Mover::save`] returned.
+    /// Restores the step control and the number of idle steps returned by [`Mover::save`].
     pub(super) fn restore(&mut self, (control, idle_steps): (Option<StepControl>, usize)) {
         if let Self::Native(method) = self {
             method.idle_steps = idle_steps;
@@ -141,7 +142,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the number of the first tree that is not finite, in `state` or in the last stage of the integrator.
+    /// Returns the number of the first tree whose state is not finite, in `state` or in the last stage of the
+    /// integrator.
     pub(super) fn first_diverged(&self, state: &State<S>) -> Option<usize> {
         state.trees.iter().enumerate().position(|(number, state)| match self {
             Self::Native(method) => !state.is_finite() || !method.integration.stages.is_finite(number),
@@ -149,8 +151,8 @@ impl<S: Scalar> Mover<'_, S> {
         })
     }
 
-    /// Returns the configuration and the velocity of a tree in its last finite state: `state` or, if that is not
-    /// finite, the state at the start of the step.
+    /// Returns the configuration and the velocity in the last finite state of a tree. This is `state` or, if
+    /// that is not finite, the state at the start of the step.
     pub(super) fn last_finite(&self, number: usize, state: &State<S>) -> [Vec<f64>; 2] {
         let current = &state.trees[number];
         match self {

@@ -11,7 +11,8 @@ use crate::reference::TaskSample;
 use crate::spatial::Scalar;
 use crate::world::WorldError;
 
-/// Returns the motion in W of a frame of a tree. Its acceleration is that without motor torques and environment.
+/// Returns the motion in W of a frame of a tree. The acceleration is computed without motor torques and
+/// environment.
 fn motion(model: &Model, q: &[f64], v: &[f64], frame: usize) -> TaskSample<f64> {
     let mut data = Data::<f64>::new(model);
     kinematics(model, &mut data, q, v);
@@ -23,10 +24,11 @@ fn motion(model: &Model, q: &[f64], v: &[f64], frame: usize) -> TaskSample<f64> 
 }
 
 impl Simulation {
-    /// Sets the motion of the frames of references at the initial state.
+    /// Sets the motion of the frames in which references are given, at the initial state.
     ///
     /// # Errors
-    /// [`WorldError::ReferenceFrame`] for a frame of the system itself, or one that does not exist.
+    /// [`WorldError::ReferenceFrame`] for a frame that does not exist or belongs to the system of the
+    /// reference itself.
     pub(super) fn place_moving_frames(&self) -> Result<(), SimulationError> {
         for (number, system) in self.systems.iter().enumerate() {
             for moving in system.moving_frames() {
@@ -42,8 +44,8 @@ impl Simulation {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Sets the motion of the frames of references at the current state, or at that of the row buffer if
-    /// `is_within_step`.
+    /// Sets the motion of the frames in which references are given, at the current state or, if
+    /// `is_within_step`, at the state in the row buffer.
     pub(super) fn update_moving_frames(&self, is_within_step: bool) {
         let state = if is_within_step { &self.row_buffers.0 } else { &self.state };
         for (place, moving) in &self.moving_frames {

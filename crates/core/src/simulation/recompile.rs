@@ -1,4 +1,4 @@
-//! Compiles the trees of a run for its active connections.
+//! Assembly of the trees of a run for its active connections.
 
 use super::accuracy::Accuracy;
 use super::connections::SavedMembers;
@@ -19,7 +19,7 @@ use crate::world::{
 };
 use std::borrow::Cow;
 
-/// A system between two compilations: its state and its kinematics in its own coordinates.
+/// System between two assemblies: its state and its kinematics in its own coordinates.
 struct Loose<'a, S> {
     state: TreeState<S>,
     own: Tree<'a, S>,
@@ -27,10 +27,11 @@ struct Loose<'a, S> {
 }
 
 impl<'a, S: Scalar> RunState<'a, S> {
-    /// Compiles the trees for the active connections at `t`, s. Trees whose members do not change stay as they are. The others
-    /// take over the states of their members, whose momenta they keep. Expects the kinematics of the state, relative
-    /// to W, in the trees, and the states of the parts; afterwards the new trees hold their kinematics. An external engine
-    /// gets the connections instead, and its trees stay the systems.
+    /// Assembles the trees for the active connections at `t`, s. Trees whose members do not change are kept.
+    /// The other trees are given the states of their members and preserve their momenta. Requires the
+    /// kinematics of the state, relative to W, in the trees, and the states of the parts; afterwards the new
+    /// trees hold their kinematics. With an external engine, the connections are passed to the engine, and
+    /// each system remains a tree.
     pub(super) fn recompile(&mut self, t: f64) -> Result<(), SimulationError> {
         if self.mover.is_external() {
             self.pass_welds();
@@ -69,7 +70,7 @@ impl<'a, S: Scalar> RunState<'a, S> {
         self.resize()
     }
 
-    /// Allocates everything whose dimensions depend on the trees.
+    /// Allocates all buffers whose dimensions depend on the trees.
     fn resize(&mut self) -> Result<(), SimulationError> {
         if let Mover::Native(method) = &mut self.mover {
             let control = method.integration.control().cloned();
@@ -85,7 +86,7 @@ impl<'a, S: Scalar> RunState<'a, S> {
         self.find_known()
     }
 
-    /// Finds the latches that have not closed and whose frames are in different trees.
+    /// Finds the latches that are not closed and whose frames are in different trees.
     pub(super) fn find_latches(&mut self) {
         let mut latches = Vec::new();
         for (event, (declared, state)) in self.events.list.iter().zip(&self.events.states).enumerate() {
@@ -115,7 +116,7 @@ impl<'a, S: Scalar> RunState<'a, S> {
     }
 }
 
-/// Returns the momentum of systems, the angular part about `center` in W.
+/// Returns the momentum of systems, with the angular part about `center` in W.
 fn momentum_of<S: Scalar>(systems: &[Moving<'_>], center: Vec3<S>) -> Momentum<S> {
     let point = center.map(|x| x.value());
     let balances = systems.iter().map(|system| Balance::of(system.model, system.q, system.v, point));
@@ -124,8 +125,8 @@ fn momentum_of<S: Scalar>(systems: &[Moving<'_>], center: Vec3<S>) -> Momentum<S
     Momentum { linear: lift(total.linear), angular: lift(total.angular) }
 }
 
-/// Lets the centres of mass of several trees follow their momenta; a single tree does not need it. Expects the kinematics
-/// of the states.
+/// Makes the centres of mass of several trees follow their momenta, which is not necessary for a single tree.
+/// Requires the kinematics of the states.
 pub(super) fn follow_centers<S: Real>(trees: &[Tree<'_, S>], states: &mut [TreeState<S>]) {
     let is_needed = states.len() > 1;
     for (tree, state) in trees.iter().zip(states) {
@@ -134,7 +135,7 @@ pub(super) fn follow_centers<S: Real>(trees: &[Tree<'_, S>], states: &mut [TreeS
     }
 }
 
-/// Trees before a compilation.
+/// Trees before an assembly.
 struct Old<'a, S> {
     trees: Vec<Option<Tree<'a, S>>>,
     states: Vec<Option<TreeState<S>>>,
@@ -145,7 +146,8 @@ struct Old<'a, S> {
 }
 
 impl<'a, S: Scalar> Old<'a, S> {
-    /// Returns the number of the tree that has exactly these members and given joints; `None` if there is none.
+    /// Returns the number of the tree that has exactly these members and given joints; `None` if there is
+    /// none.
     fn unchanged(&self, members: &[Member], given: &[GivenJoint]) -> Option<usize> {
         let tree = |system: usize| match self.places[system] {
             Place::Part(part) => self.parts[part].as_ref().map(|part| part.tree),
@@ -157,7 +159,8 @@ impl<'a, S: Scalar> Old<'a, S> {
         (is_same && has_given && self.sizes[first] == members.len()).then_some(first)
     }
 
-    /// Takes a tree with several members, which gets the number `to`.
+    /// Returns a tree with several members, which receives the number `to`, and removes it from the old
+    /// trees.
     fn take_tree(
         &mut self,
         number: usize,
@@ -175,7 +178,7 @@ impl<'a, S: Scalar> Old<'a, S> {
         taken.expect("every tree is taken once")
     }
 
-    /// Takes a system out of its tree.
+    /// Removes a system from its tree and returns it.
     fn take(&mut self, system: usize) -> Loose<'a, S> {
         match self.places[system] {
             Place::Tree(tree) => {
@@ -192,7 +195,8 @@ impl<'a, S: Scalar> Old<'a, S> {
     }
 }
 
-/// Joins systems at `t`, s, to a tree with this model and these given joints, which gets the number `number`.
+/// Joins systems at `t`, s, to a tree with the given model and given joints, which receives the number
+/// `number`.
 fn join<'a, S: Scalar>(
     (model, members, given): (Model, Vec<Member>, Vec<GivenJoint>),
     (number, t): (usize, f64),

@@ -1,4 +1,4 @@
-//! Rows of a run: at the starts of steps, within steps, at impacts and at the end.
+//! Rows of a run: at the start of steps, within steps, at impacts and at the end.
 
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
@@ -12,8 +12,9 @@ use super::tree_state::TreeState;
 use crate::spatial::Scalar;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns true if a row is due at the start of `interval`. If every step is recorded, this includes the steps
-    /// that start at an event, so that discontinuities coincide with rows. A capture or a release always has a row.
+    /// Returns true if a row is due at the start of `interval`. If every step is recorded, this includes
+    /// steps that start at an event, so that discontinuities coincide with rows. Captures and releases are
+    /// always recorded.
     pub(super) fn is_row_due(&self, interval: &Interval) -> bool {
         let is_due = |step: usize| step.is_multiple_of(self.record_every);
         interval.start < self.records_before
@@ -25,7 +26,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.add_rows(t, false)
     }
 
-    /// Adds the rows whose times lie within the last step, before the current cut.
+    /// Adds the rows whose times are within the last step and before the current cut.
     pub(super) fn record_within_step(&mut self) -> Result<(), SimulationError> {
         while let Some((step, t)) = self.schedule.next_grid_step_passed() {
             if t >= self.records_before {
@@ -38,7 +39,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds a row at `t` within the last step, from the dense output of the adaptive integrator.
+    /// Adds a row at `t`, s, within the last step, from the dense output of the adaptive integrator.
     pub(super) fn record_within(&mut self, t: f64) -> Result<(), SimulationError> {
         let Self { equations, mover, row_buffers: (state, _), .. } = self;
         if let Some(integration) = mover.integration() {
@@ -51,8 +52,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Applies the impacts of joints that reach their stops. If every step is recorded, there is one row before the
-    /// impacts and one after them, at the same time.
+    /// Applies the impacts of joints that reach their stops. If every step is recorded, adds one row before
+    /// and one row after the impacts, at the same time.
     pub(super) fn impacts(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         let mut pairs = self.equations.trees.iter().zip(&self.state.trees);
         if !pairs.any(|(system, state)| system.modes.is_active() && system.first_impact(state).is_some()) {
@@ -80,7 +81,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds the last row: the state at the current cut, with the torques that would be held in a further step.
+    /// Adds the last row: the state at the current cut, with the torques that would be held in a further
+    /// step.
     pub(super) fn record_end(&mut self) -> Result<(), SimulationError> {
         let t = self.schedule.now();
         let following = self.schedule.following().map(|(interval, _)| interval.end);
@@ -91,7 +93,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.record(t)?;
         if self.mover.is_external() {
             let Self { state, equations, mover, systems, row_states, .. } = self;
-            let asked = mover.advance(equations, state, (t, t)); // a step of zero length
+            let asked = mover.advance(equations, state, (t, t)); // requests only the acceleration
             complete_rows(systems, mover, equations, row_states);
             return asked.map(|_| ());
         }
@@ -99,8 +101,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds a row of every system, without its acceleration, for the current state, or for that of the row buffer if
-    /// `is_within_step`. Expects its kinematics in the equations of motion.
+    /// Adds a row of every system, without the acceleration, for the current state or, if `is_within_step`,
+    /// for the state in the row buffer. Requires the kinematics of that state in the equations of motion.
     fn add_rows(&mut self, t: f64, is_within_step: bool) -> Result<(), SimulationError> {
         self.update_moving_frames(is_within_step);
         let Self { systems, equations, state, row_buffers, row_states, .. } = self;
@@ -120,8 +122,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Completes the last rows with the accelerations at the current state, or at that of the row buffer if
-    /// `is_within_step`. Expects its kinematics and loads in the equations of motion.
+    /// Completes the last rows with the accelerations at the current state or, if `is_within_step`, at the
+    /// state in the row buffer. Requires the kinematics and loads of that state in the equations of motion.
     fn add_accelerations(&mut self, is_within_step: bool) {
         let Self { systems, equations, state, row_buffers: (buffer, stages), row_states, .. } = self;
         stages.evaluate_first(equations, if is_within_step { buffer } else { state });
@@ -141,8 +143,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 }
 
-/// Adds the accelerations to the rows at the start of the last step; `row_states` are the states of the trees in these
-/// rows, if systems share trees.
+/// Adds the accelerations to the rows at the start of the last step. If systems share trees, `row_states` are
+/// the states of the trees in these rows.
 pub(super) fn complete_rows<S: Scalar>(
     systems: &mut [RunSystem<'_, S>],
     mover: &Mover<'_, S>,

@@ -1,4 +1,4 @@
-//! The recorder, which adds rows to the trace of one system.
+//! Recorder, which adds rows to the trace of one system.
 
 use super::checkpoint_error::CheckpointError;
 use super::columns::{COLUMNS, Column, Condition, WRENCHES};
@@ -30,13 +30,14 @@ pub(super) struct RecordOptions {
     pub(super) has_orbit: bool,
     /// True if a controller compensates Coulomb friction.
     pub(super) compensates_friction: bool,
-    /// True if the run records the part of gravity that the reference orbit does not follow, which is omitted in
-    /// `Carried` mode.
+    /// True if the run records the part of gravity that the reference orbit does not follow, which `Carried`
+    /// mode omits from the motion.
     pub(super) records_residual: bool,
 }
 
 impl RecordOptions {
-    /// Returns the number of values per row that the run records in `column`; 0 if the column does not apply.
+    /// Returns the number of values per row that the run records in `column`, or 0 if the column does not
+    /// apply.
     fn width(&self, column: &Column, model: &Model) -> usize {
         let is_recorded = match column.condition {
             Condition::Always => true,
@@ -51,13 +52,14 @@ impl RecordOptions {
     }
 }
 
-/// Adds rows to a trace without allocating.
+/// Recorder that adds rows to a trace without allocating memory.
 pub(super) struct Recorder {
     pub(super) trace: Trace,
     /// Number of the system in the run.
     number: usize,
     options: RecordOptions,
-    /// Transformation of the last row to W; `None` unless the row was integrated about a local reference orbit.
+    /// Transformation of the last row to W; `None` if the row was not integrated about a local reference
+    /// orbit.
     shift: Option<Shift>,
     /// Number of values per row of each column.
     widths: Vec<usize>,
@@ -87,7 +89,7 @@ impl Recorder {
         Ok(Self { trace, number, options, shift: None, widths })
     }
 
-    /// Adds the rows recorded before a checkpoint to the trace, which is still empty.
+    /// Adds the rows recorded before a checkpoint to the trace, which must be empty.
     pub(super) fn resume(&mut self, mut rows: Trace) -> Result<(), CheckpointError> {
         let count = rows.rows();
         if count == 0 && rows.columns().all(|(_, column)| column.is_empty()) {
@@ -116,8 +118,8 @@ impl Recorder {
         Ok(())
     }
 
-    /// Adds a row for a state whose kinematics are in `system`. [`Recorder::record_acceleration`] completes
-    /// it.
+    /// Adds a row for a state whose kinematics are in `system`. [`Recorder::record_acceleration`] must then
+    /// complete the row.
     pub(super) fn record_state<S: Scalar>(
         &mut self,
         t: f64,
@@ -204,7 +206,7 @@ impl Recorder {
                     let desired = desired.lift();
                     if is_relative { relative_to_base(q, &desired) } else { desired }
                 });
-                // without an active reference the desired pose is the actual one
+                // without an active reference, the desired pose is set to the actual pose
                 let actual = || TaskSample::at_rest(pose.rot_wf, pose.pos_w);
                 push_tracking(trace, &desired.unwrap_or_else(actual), &pose);
             }
@@ -240,7 +242,7 @@ impl Recorder {
     }
 }
 
-/// Returns the pose in W of a sample that is given relative to the base.
+/// Converts a sample that is relative to the base to the pose in W.
 #[inline(always)]
 fn relative_to_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
     let rot_wb = base_rotation(q);

@@ -1,4 +1,4 @@
-//! Result of a run: the traces of its systems, the events, and the balances of groups of systems.
+//! Result of a run: the traces of its systems, its events, and the balances of groups of systems.
 
 use super::certificate::Check;
 use super::group_balance::GroupBalance;
@@ -18,7 +18,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Returns the trace of the only system of a run of one robot.
+    /// Returns the trace of the only system of a run with one robot.
     ///
     /// # Panics
     /// If the run has several systems.
@@ -44,7 +44,7 @@ pub enum EventKind {
 }
 
 impl EventKind {
-    /// Returns the name of the kind.
+    /// Returns the name that results and messages use for the kind.
     pub fn name(self) -> &'static str {
         match self {
             Self::Capture => "capture",
@@ -53,7 +53,7 @@ impl EventKind {
     }
 }
 
-/// An event that happened, with its audit.
+/// Event that happened, with its audit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EventRecord {
     /// Name of the event.
@@ -62,30 +62,32 @@ pub struct EventRecord {
     pub kind: EventKind,
     /// Time, s.
     pub time: f64,
-    /// Numbers of the two systems, the capturing one first.
+    /// Numbers of the two systems, beginning with the capturing system.
     pub systems: [usize; 2],
-    /// Impulse on the second system and on what it carried, axes of W: linear, N s, then angular about `point`, N m s.
+    /// Impulse on the second system and the systems connected to it, axes of W: linear, N s, then angular
+    /// about `point`, N m s.
     pub impulse: [f64; 6],
     /// Point at which the impulse acts, in W, m.
     pub point: [f64; 3],
     /// Kinetic energy lost, J; negative if a spring added energy.
     pub energy_lost: f64,
-    /// Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes of the
-    /// momenta of its bodies.
+    /// Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes
+    /// of the momenta of its bodies.
     pub momentum_error: [f64; 2],
-    /// Relative velocity and relative angular velocity of the connected frames after a capture, relative to those before
-    /// it, or to 1 m/s and 1 rad/s if these are larger; zero for a release.
+    /// Relative velocity and relative angular velocity of the connected frames after a capture, as fractions
+    /// of those before it, or of 1 m/s and 1 rad/s if these are larger; zero for a release.
     pub twist_left: [f64; 2],
-    /// Difference between the change of the kinetic energy and `½ Δvᵀ M Δv` of a capture, or the work of the spring of a
-    /// release, relative to the larger of the kinetic energies before and after; zero while a seating drives joints.
+    /// Error of the energy balance, relative to the larger of the kinetic energies before and after the
+    /// event. For a capture, the change of the kinetic energy is compared with `½ Δvᵀ M Δv`, for a release
+    /// with the work of the spring. Zero while a seating drives joints.
     pub energy_error: f64,
 }
 
-/// Largest error of the audit of an event that passes.
+/// Largest error in the audit of an event that passes.
 pub const AUDIT: f64 = 1e-11;
 
 impl EventRecord {
-    /// Returns the checks of the audit; those of the relative velocities apply to captures only.
+    /// Returns the checks of the audit. The checks of relative velocities apply only to captures.
     pub fn checks(&self) -> Vec<Check> {
         let momentum = [
             ("linear_momentum_error_rel", self.momentum_error[0]),
@@ -100,7 +102,8 @@ impl EventRecord {
         lines.map(|(name, value)| Check { name, value, gate: AUDIT }).collect()
     }
 
-    /// Returns true if momentum and energy balance, and the connected frames do not move relative to each other.
+    /// Returns true if momentum and energy are balanced and the connected frames do not move relative to each
+    /// other.
     pub fn passed(&self) -> bool {
         self.checks().iter().all(Check::passed)
     }
@@ -115,7 +118,7 @@ pub(super) struct GroupRecording {
 }
 
 impl Recording {
-    /// Returns the recording of a run whose groups have these systems.
+    /// Combines the recordings of groups, given with the systems of each group, into the recording of a run.
     pub(super) fn of<'g>(parts: impl Iterator<Item = (&'g [usize], GroupRecording)>) -> Self {
         let (mut systems, mut all) = (Vec::new(), Self::default());
         for (numbers, GroupRecording { systems: traces, events, balance }) in parts {
@@ -132,7 +135,8 @@ impl Recording {
     }
 }
 
-/// Amounts of a group that the current trees do not contain, because their values started when the trees were made.
+/// Totals of a group that the current trees do not contain, because the integrals of trees start at zero when
+/// they are assembled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ledger {
     /// Time integral of the external forces and of their moments about the centres of mass of the trees.

@@ -1,13 +1,14 @@
-//! Cache of the states of the reference orbit at the most recently used instants.
+//! Cache of the states of the reference orbit at the instants used most recently.
 
 use super::error::SimulationError;
 use crate::environment::Ephemeris;
 use crate::orbit::{Orbit, OrbitState};
 use std::sync::Arc;
 
-/// Reference orbit about which a robot is integrated, with its states at the last five instants.
+/// Reference orbit about which a robot is integrated, with its states at the five instants used most
+/// recently.
 ///
-/// Stages of the same step and of neighbouring steps are often at the same instant. Without an orbit, the states are
+/// Stages of a step, and of successive steps, are often at the same instant. Without an orbit, the states are
 /// `None`.
 #[derive(Debug)]
 pub(super) struct ReferenceCache {
@@ -15,7 +16,7 @@ pub(super) struct ReferenceCache {
     instants: [Box<Instant>; 5],
 }
 
-/// State of the reference orbit and positions of Sun and Moon at one instant.
+/// State of the reference orbit and positions of the Sun and the Moon at one instant.
 #[derive(Clone, Debug)]
 pub(super) struct Instant {
     time: f64,
@@ -33,14 +34,15 @@ impl ReferenceCache {
         self.orbit.as_deref()
     }
 
-    /// Returns the state and the ephemeris at `t`, s, in a step that ends at `end`, s.
+    /// Returns the state and the ephemeris at `t`, s, during a step that ends at `end`, s.
     pub(super) fn at(&mut self, t: f64, end: f64) -> Result<&Instant, SimulationError> {
         if let Some(found) = self.instants.iter().position(|instant| instant.time == t) {
             self.instants[..=found].rotate_right(1);
             return Ok(&self.instants[0]);
         }
         let Some(orbit) = &self.orbit else { return Ok(self.store(t, None)) };
-        // The end of the step will be needed next; computing two states costs little more than one.
+        // The end of the step will be needed next, and computing two states costs little more than computing
+        // one.
         let end_is_needed = t < end && self.instants.iter().all(|instant| instant.time != end);
         if let Some([now, then]) = end_is_needed.then(|| orbit.two_states([t, end])).flatten() {
             self.store(end, Some(then));
@@ -50,7 +52,7 @@ impl ReferenceCache {
         Ok(self.store(t, Some(state)))
     }
 
-    /// Stores an instant in place of the least recently used one.
+    /// Stores an instant in place of the instant that has not been used for the longest time.
     fn store(&mut self, t: f64, state: Option<OrbitState>) -> &Instant {
         self.instants.rotate_right(1);
         let instant = &mut self.instants[0];

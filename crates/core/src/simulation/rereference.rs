@@ -1,4 +1,4 @@
-//! Changes to a local reference orbit; see `local_reference.rs` for its frame.
+//! Change to a local reference orbit; see `local_reference.rs` for the frame of that orbit.
 
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
@@ -9,11 +9,11 @@ use crate::spatial::{Scalar, Vec3};
 use nalgebra::Vector3;
 
 impl<S: Scalar> Tree<'_, S> {
-    /// Changes the reference of `loads` to a local orbit in free fall that starts at the centre of mass of this
-    /// system, and transforms `state` to its frame. This system must be the only one on which `loads` act.
+    /// Makes a local orbit in free fall, which starts at the centre of mass of this system, the reference of
+    /// `loads`, and transforms `state` to its frame. This system must be the only one on which `loads` act.
     ///
-    /// The centre of mass is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`, `P' = 0`, and the
-    /// kinetic energy in the new frame is lower by `P²/2m` (König).
+    /// The centre of mass is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`, `P' = 0`.
+    /// The kinetic energy in the new frame is lower by `P²/2m` (König's theorem).
     pub(super) fn rereference(
         &mut self,
         loads: &mut EnvironmentLoads,

@@ -1,4 +1,4 @@
-//! Controllers and recorder of each system of a run.
+//! Controllers and recorder for each system of a run.
 
 use super::checkpoint::SystemControllers;
 use super::controllers::Controllers;
@@ -18,21 +18,23 @@ use crate::world::Member;
 pub(super) struct RunSystem<'a, S> {
     pub(super) controllers: Controllers<'a, S>,
     pub(super) recorder: Recorder,
-    /// Torques, `(n,)`, and requested accelerations before an update of the controllers that a trial step made at its cut.
+    /// Torques, `(n,)`, and requested accelerations before a trial step updated the controllers at the cut of
+    /// that step.
     pub(super) held: Option<(Vec<S>, Vec<Option<f64>>)>,
-    /// True if the controllers are due at the current cut.
+    /// True if an update of the controllers is due at the current cut.
     pub(super) is_due: bool,
     /// Systems whose models the controllers know.
     pub(super) knows: Vec<usize>,
-    /// Places of the systems in the tree that the controllers know, if they are connected to any of these systems.
+    /// Places of the systems in the tree whose model the controllers use; empty if none of the known systems
+    /// is connected.
     pub(super) known_members: Vec<Member>,
-    /// Error estimates of the trees that contained the system before; `None` if its tree never changed.
+    /// Error estimates of the previous trees that contained the system; `None` if its tree has never changed.
     pub(super) settled: Option<Estimates>,
 }
 
 impl<S: Scalar> RunSystem<'_, S> {
-    /// Adds a row, except for its acceleration, for a state whose kinematics are in `system`. `orbit` is the state of
-    /// the reference orbit.
+    /// Adds a row, without the acceleration, for a state whose kinematics are in `system`. `orbit` is the
+    /// state of the reference orbit.
     pub(super) fn add_row(
         &mut self,
         t: f64,
@@ -79,7 +81,7 @@ impl<S: Scalar> RunSystem<'_, S> {
         Ok(self.controllers.set.load(&controls)?)
     }
 
-    /// Returns the current outcomes of the goals.
+    /// Returns the present outcomes of the goals.
     pub(super) fn goal_results(&self, model: &Model) -> Vec<GoalResult> {
         let set = &self.controllers.set;
         let with_goal = set.controls().iter().enumerate().filter(|(_, control)| control.goal.is_some());

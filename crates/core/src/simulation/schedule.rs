@@ -1,37 +1,40 @@
-//! Schedule of a run: its cuts, which are the instants at which steps begin and end. Cuts lie on a regular grid, at
-//! control ticks, and at events, where loads or torques may be discontinuous.
+//! Schedule of a run: its cuts, which are the instants at which steps begin and end. Cuts are on a regular
+//! grid, at control ticks, and at events, where loads or torques may be discontinuous.
 
 use serde::{Deserialize, Serialize};
 
-/// Two instants that differ by less than this fraction of a step count as the same instant.
+/// Fraction of a step below which two instants are treated as equal.
 pub(super) const SAME_INSTANT: f64 = 1e-9;
 /// Longest interval of an adaptive run without a planned end, as a multiple of the regular step.
 pub(super) const LONGEST_INTERVAL: f64 = 1e6;
 
-/// Interval between two cuts. A fixed-step integrator crosses it in one step, an adaptive one possibly in several.
+/// Interval between two cuts. A fixed-step integrator covers it in one step, an adaptive integrator possibly
+/// in several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Interval {
     /// Start of the interval, s.
     pub(super) start: f64,
     /// End of the interval, s.
     pub(super) end: f64,
-    /// Number of the grid step that begins at the start of the interval; `None` if the start is not a grid point.
+    /// Number of the grid step that begins at the start of the interval; `None` if the start is not a grid
+    /// point.
     pub(super) grid_step: Option<usize>,
-    /// True if an event occurs at the start of the interval: wrenches or torques may be discontinuous there.
+    /// True if an event occurs at the start of the interval, where wrenches or torques may then be
+    /// discontinuous.
     pub(super) is_event: bool,
 }
 
-/// Schedule of a run. Its cuts are the multiples of the time step and of the control period, the events, and the end
-/// of the run.
+/// Schedule of a run. Its cuts are the multiples of the time step and of the control period, the events, and
+/// the end of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Schedule {
     time_step: f64,
     /// Planned end of the run, s.
     duration: Option<f64>,
-    /// Clocks of the controllers of each system.
+    /// Clocks of the controllers, one per system.
     clocks: Vec<Clock>,
     events: Vec<f64>,
-    /// Instants of events that became known during the run, s.
+    /// Times of events that became known during the run, s.
     due: Vec<f64>,
     /// True if steps end at the grid points.
     cuts_at_grid: bool,
@@ -56,8 +59,8 @@ pub(super) struct Cursor {
 }
 
 impl Schedule {
-    /// Returns a schedule with events at these instants, s. The clocks tick at least at time zero; their switches are
-    /// cuts too.
+    /// Creates a schedule with events at these times, s. Each clock ticks at least at time zero; the switches
+    /// of clocks are cuts as well.
     pub(super) fn new(
         time_step: f64,
         duration: Option<f64>,
@@ -78,23 +81,23 @@ impl Schedule {
         }
     }
 
-    /// Returns the schedule without cuts at the grid points, which then only determine the times of rows.
+    /// Returns the schedule without cuts at grid points, which then determine only the times of rows.
     pub(super) fn without_grid_steps(self) -> Self {
         Self { cuts_at_grid: false, ..self }
     }
 
-    /// Sets the instants of events that became known during the run, s.
+    /// Sets the times of events that became known during the run, s.
     pub(super) fn set_due(&mut self, due: Vec<f64>) {
         self.due = due;
     }
 
-    /// Returns the first instant of an event between `t` and `end`, s, or `end` if there is none.
+    /// Returns the time of the first event between `t` and `end`, s, or `end` if there is none.
     pub(super) fn first_due(&self, t: f64, end: f64) -> f64 {
         let is_between = |due: &f64| *due > t + self.tolerance() && *due < end - self.tolerance();
         self.due.iter().copied().filter(is_between).fold(end, f64::min)
     }
 
-    /// Returns the current cut, the instant at which the current step begins, s.
+    /// Returns the current cut, at which the current step begins, s.
     pub(super) fn now(&self) -> f64 {
         self.at.now
     }
@@ -120,7 +123,7 @@ impl Schedule {
         *self == Self { at: self.at, due: self.due.clone(), ..other.clone() }
     }
 
-    /// Returns the names of the settings, joined by "and", in which two schedules differ.
+    /// Returns the names of the settings in which two schedules differ, joined by "and".
     pub(super) fn differences(&self, other: &Self) -> String {
         let names = [
             ("duration", self.duration != other.duration),
@@ -142,7 +145,7 @@ impl Schedule {
         self.clocks.iter().flat_map(|clock| clock.switches.iter().copied())
     }
 
-    /// Returns the number of grid steps of a run with a planned end; the last step may be shorter.
+    /// Returns the number of grid steps of a run with a planned end, of which the last may be shorter.
     pub(super) fn grid_steps(&self) -> Option<usize> {
         self.duration.map(|duration| (duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize)
     }
@@ -155,8 +158,8 @@ impl Schedule {
         Some(self.grid_steps()?.saturating_add(ticks).saturating_add(self.events.len()))
     }
 
-    /// Returns the tolerance for comparing instants, s: a fraction of the step or, late in a run, the rounding error
-    /// of the instants.
+    /// Returns the tolerance for comparing instants, s. It is a fraction of the step or, late in a run, the
+    /// rounding error of instants.
     fn tolerance(&self) -> f64 {
         (SAME_INSTANT * self.time_step).max(4.0 * f64::EPSILON * self.at.now)
     }
@@ -166,7 +169,7 @@ impl Schedule {
         (t - self.at.now).abs() <= self.tolerance()
     }
 
-    /// Returns true if `t` is later than `other` by more than the resolution of instants.
+    /// Returns true if `t` is later than `other` by more than the tolerance for comparing instants.
     pub(super) fn is_later(&self, t: f64, other: f64) -> bool {
         t > other + self.tolerance()
     }
@@ -185,7 +188,7 @@ impl Schedule {
         if nearest > self.at.now + self.tolerance() { nearest } else { (count + 1.0) * period }
     }
 
-    /// Returns true if the counters match the current cut and `t` lies in the interval that begins there.
+    /// Returns true if the counters agree with the current cut, and `t` is in the interval that begins there.
     pub(super) fn is_consistent(&self, t: f64) -> bool {
         let Cursor { now, next_grid, next_event } = self.at;
         let is_next = |count: usize, period: f64| {
@@ -203,7 +206,8 @@ impl Schedule {
             && t <= last + self.tolerance()
     }
 
-    /// Returns the interval that begins at the current cut and the position at its end; `None` at the planned end.
+    /// Returns the interval that begins at the current cut, and the position at its end; `None` at the
+    /// planned end.
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {
         let Cursor { now, mut next_grid, mut next_event } = self.at;
         if self.duration.is_some_and(|duration| now >= duration - self.tolerance()) {
@@ -240,8 +244,8 @@ impl Schedule {
         self.at.now = t;
     }
 
-    /// Returns the number and the instant, s, of the next grid step that begins before the current cut, and advances
-    /// past it; `None` if there is none.
+    /// Returns the number and the time, s, of the next grid step that begins before the current cut, and
+    /// advances past it; `None` if there is no such step.
     pub(super) fn next_grid_step_passed(&mut self) -> Option<(usize, f64)> {
         let step = self.at.next_grid;
         let instant = step as f64 * self.time_step;
@@ -253,7 +257,7 @@ impl Schedule {
 
 /// Returns the number of the tick nearest to `t`, s.
 fn nearest_tick(t: f64, period: f64) -> f64 {
-    // conversion to an integer, because rounding is a library call on processors without SSE 4.1
+    // uses an integer conversion, because rounding is a library call on processors without SSE 4.1
     (t / period + 0.5) as u64 as f64
 }
 
@@ -302,7 +306,7 @@ mod tests {
 
     #[test]
     fn rounding_late_in_a_run_makes_no_slivers() {
-        // 10 000 s at 1 ms: k · 0.003 and 3k · 0.001 differ by more than a billionth of a step
+        // for 10 000 s at 1 ms, k · 0.003 and 3k · 0.001 differ by more than a billionth of a step
         let schedule = schedule(1e-3, Some(1e4), 3e-3, vec![9000.0003]);
         let lengths = || intervals(schedule.clone()).map(|interval| interval.end - interval.start);
         let shortest = lengths().fold(f64::INFINITY, f64::min);

@@ -10,54 +10,57 @@ use crate::orbit::Orbit;
 use crate::world::{Event, System};
 use std::sync::Arc;
 
-/// Simulation of one robot, or of a world of several systems: initial states, environment, controls and integrator.
+/// Simulation of one robot, or of a world of several systems, with initial states, environment, controls and
+/// integrator.
 ///
-/// An orbit around a planet adds differential gravity on every body.
+/// If there is an orbit around a planet, differential gravity acts on every body.
 pub struct Simulation {
-    /// The systems of the world; usually one robot.
+    /// Systems of the world; usually a single robot.
     pub systems: Vec<System>,
     /// Events that connect and separate systems.
     pub events: Vec<Event>,
     /// Reference orbit, on which the origin of W moves.
     pub orbit: Option<Arc<dyn Orbit>>,
-    /// Gravity field of the run; by default that of the orbit or, if the orbit has none, that of a point mass.
+    /// Gravity field of the run. By default it is the field of the orbit or, if the orbit has none, that of a
+    /// point mass.
     pub gravity: Option<Arc<Gravity>>,
-    /// Orientation of the Earth; required by the effects that depend on it.
+    /// Orientation of the Earth, which some effects require.
     pub earth: Option<Arc<Earth>>,
-    /// Determines whether the robot drifts away from a reference orbit that is not in free fall (`True`) or is
-    /// carried along with it (`Carried`).
+    /// Determines whether the robot drifts away from a reference orbit that is not in free fall (`True`) or
+    /// is carried along with that orbit (`Carried`).
     pub gravity_mode: GravityMode,
     /// Effects in addition to gravity.
     pub effects: Vec<Arc<dyn Effect>>,
     /// Length of fixed steps and spacing of the grid, s.
     pub time_step: f64,
-    /// External engine in place of the native equations of motion. It has its own integrator, friction and stops, and
-    /// no local reference.
+    /// External engine that replaces the native engine, if any. It has its own integrator, friction and
+    /// stops, and no local reference orbit.
     pub engine: Option<Box<dyn Engine>>,
-    /// Integrator of the native equations of motion.
+    /// Integrator of the native engine.
     pub integrator: Integrator,
-    /// Permitted error of a step of the adaptive integrator, relative to one radian (attitude and joints), to the
-    /// robot's size or distance from the origin of W (lengths), and to the rates.
+    /// Permitted error of a step of the adaptive integrator. It is relative to one radian for attitude and
+    /// joints, to the robot's size or distance from the origin of W for lengths, and to the rates for rates.
     pub tolerance: f64,
-    /// Distance of the base from the reference orbit, m, beyond which integration continues about a local reference
-    /// orbit in free fall. The reference orbit is kept in `Carried` mode, without gravity, with an external engine,
-    /// by systems that may interact with others, and if a control or `reference` depends on the position in W.
+    /// Distance between the base and the reference orbit, m, beyond which integration continues about a local
+    /// reference orbit in free fall. The reference orbit is kept in `Carried` mode, without gravity, with an
+    /// external engine, for systems that may interact with others, and if a control or `reference` depends on
+    /// the position in W.
     pub rereference_beyond: f64,
     /// If true, the wrench of every effect on every body is recorded.
     pub record_wrenches: bool,
-    /// Number of steps per recorded row.
+    /// Number of steps from one recorded row to the next.
     pub record_every: usize,
 }
 
 impl Simulation {
-    /// Returns a simulation of one robot without environment and controls: RK4 with steps of 1 ms, each of which is
-    /// recorded.
+    /// Creates a simulation of one robot without environment and controls, using RK4 with steps of 1 ms, each
+    /// of which is recorded.
     pub fn new(model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
         let name = model.name().to_owned();
         Self::of(vec![System::new(&name, model, q, v)])
     }
 
-    /// Returns a simulation of these systems with the settings of [`Simulation::new`].
+    /// Creates a simulation of several systems with the default settings of [`Simulation::new`].
     pub fn of(systems: Vec<System>) -> Self {
         Self {
             systems,

@@ -1,4 +1,4 @@
-//! Starts a run: groups the systems that may interact, and creates the run of each group.
+//! Start of a run: systems that may interact form groups, each of which is a separate run.
 
 use super::checkpoint::Checkpoint;
 use super::environment_loads::EnvironmentLoads;
@@ -17,11 +17,11 @@ use crate::world::{groups, systems_of};
 use std::sync::Arc;
 
 impl Simulation {
-    /// Runs from the initial state for `duration` seconds; repeated calls give bit-identical results.
+    /// Runs for `duration` seconds from the initial state. Repeated calls give bit-identical results.
     ///
     /// # Errors
-    /// The errors of [`Simulation::start`] and [`Stepper::advance_to`]. The failure contains the rows recorded before
-    /// it.
+    /// The errors of [`Simulation::start`] and [`Stepper::advance_to`]. The failure contains the rows
+    /// recorded before the error.
     pub fn run(&mut self, duration: f64) -> Result<Recording, RunFailure> {
         let mut stepper = self.start(Some(duration)).map_err(RunFailure::at_start)?;
         let advanced = stepper.advance_to(duration);
@@ -33,22 +33,23 @@ impl Simulation {
     }
 
     /// Starts a run that the caller advances. `duration` is the planned end of the run, s, or `None` for an
-    /// open-ended run. The last step ends there, and the adaptive integrator and the error estimates are set up for
-    /// this duration.
+    /// open-ended run. The last step ends at `duration`, for which the adaptive integrator and the error
+    /// estimates are set up.
     ///
     /// # Errors
-    /// The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not positive, and
-    /// [`SimulationError::Earth`] if the orientation data of the Earth do not cover the run.
+    /// The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not
+    /// positive, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover the run.
     pub fn start(&mut self, duration: Option<f64>) -> Result<Stepper<'_>, SimulationError> {
         self.start_from(duration, None)
     }
 
-    /// Resumes a run of the same simulation from a checkpoint and the rows of each system recorded before it. The results are
-    /// bit-identical to those of an uninterrupted run. `duration`, s, is by default that of the checkpoint.
+    /// Resumes a run of the same simulation from a checkpoint and the rows of each system recorded before it.
+    /// The results are bit-identical to those of an uninterrupted run. The default of `duration`, s, is that
+    /// of the checkpoint.
     ///
     /// # Errors
-    /// The errors of [`Simulation::start`], and [`SimulationError::Checkpoint`] for a checkpoint of another robot,
-    /// schedule or instruction set.
+    /// The errors of [`Simulation::start`], and [`SimulationError::Checkpoint`] for a checkpoint with a
+    /// different robot, schedule or instruction set.
     pub fn resume(
         &mut self,
         duration: Option<f64>,
@@ -81,7 +82,7 @@ impl Simulation {
     ) -> Result<Stepper<'_>, SimulationError> {
         let groups = match self.engine {
             None => groups(self.systems.len(), &self.events, &self.links()),
-            Some(_) => vec![(0..self.systems.len()).collect()], // an external engine moves all systems at once
+            Some(_) => vec![(0..self.systems.len()).collect()], // an external engine advances all systems at once
         };
         let count = self.systems.len();
         let resumed = match from {
@@ -117,7 +118,7 @@ impl Simulation {
         Ok(Stepper::new(runs, time_step))
     }
 
-    /// Returns the settings that all systems share.
+    /// Returns the settings that all systems have in common.
     fn settings(&self) -> Shared {
         let effects = self.all_effects();
         Shared {
@@ -138,8 +139,8 @@ impl Simulation {
         }
     }
 
-    /// Returns pairs of systems that interact although no event connects them: those whose controls wait for an event, or
-    /// track a frame of another system.
+    /// Returns pairs of systems that interact although no event connects them, because controls of one of
+    /// them wait for an event or track a frame of the other.
     pub(super) fn links(&self) -> Vec<(usize, usize)> {
         let waiting = self.systems.iter().enumerate().flat_map(|(system, declared)| {
             declared.controls.iter().filter_map(move |control| match control.begin {
@@ -157,8 +158,8 @@ impl Simulation {
         links.chain(tracks).collect()
     }
 
-    /// Returns the gravity field of the simulation: the given one, by default that of the orbit or, if the orbit has
-    /// none, that of a point mass. `None` without a planet.
+    /// Returns the gravity field of the simulation: the given field, or by default that of the orbit or, if
+    /// the orbit has none, that of a point mass. Returns `None` without a planet.
     fn gravity(&self) -> Option<Arc<Gravity>> {
         let orbit = self.orbit.as_ref()?;
         let mu = orbit.mu()?;
@@ -166,7 +167,7 @@ impl Simulation {
         Some(given.cloned().unwrap_or_else(|| Arc::new(Gravity::point_mass(mu))))
     }
 
-    /// Returns true if a control follows commands from outside of the run.
+    /// Returns true if a control follows external commands.
     fn has_external(&self) -> bool {
         let mut controls = self.systems.iter().flat_map(|system| &system.controls);
         controls.any(|control| control.law.external().is_some())
@@ -179,7 +180,7 @@ impl Simulation {
         self.settings().environment_loads(&numbers, &models)
     }
 
-    /// Returns the effects of the scenario, and gravity if the orbit has a planet.
+    /// Returns the effects of the scenario, plus gravity if the orbit is around a planet.
     pub(super) fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
         let mut effects = self.effects.clone();
         if self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some()) {

@@ -1,4 +1,4 @@
-//! Creates the run of a group of systems from the settings of a simulation.
+//! Creation of the run of a group of systems from the settings of a simulation.
 
 use super::accuracy::Accuracy;
 use super::connections::Connections;
@@ -37,7 +37,7 @@ use std::sync::Arc;
 /// Number of rows for which a run without a planned end reserves memory.
 const ROWS_OF_OPEN_RUN: usize = 1024;
 
-/// Settings that all systems of a simulation share.
+/// Settings that all systems of a simulation have in common.
 #[derive(Clone)]
 pub(super) struct Shared {
     pub(super) orbit: Option<Arc<dyn Orbit>>,
@@ -55,13 +55,14 @@ pub(super) struct Shared {
     pub(super) tolerance: f64,
     pub(super) rereference_beyond: f64,
     pub(super) record_wrenches: bool,
-    /// True if wrenches are recorded, and a control follows commands from outside.
+    /// True if wrenches are recorded and a control follows external commands.
     pub(super) takes_commands: bool,
     pub(super) record_every: usize,
 }
 
 impl Shared {
-    /// Returns the settings of a group of systems, with the effects that act on any of them.
+    /// Returns the settings of a group of systems, including only those effects that act on one of its
+    /// systems.
     pub(super) fn of_group(&self, numbers: &[usize]) -> Self {
         let is_own = |effect: &Arc<dyn Effect>| numbers.iter().any(|&system| effect.acts_on(system));
         let named = self.effects.iter().zip(&self.effect_names).filter(|(effect, _)| is_own(effect));
@@ -69,7 +70,7 @@ impl Shared {
         Self { effects, effect_names, ..self.clone() }
     }
 
-    /// Returns the run, at its initial state, of the systems with these numbers.
+    /// Creates the run of the systems with these numbers, at its initial state.
     pub(super) fn run_state<'a, S: Scalar>(
         &self,
         duration: Option<f64>,
@@ -83,7 +84,7 @@ impl Shared {
         let rows = self.row_count(&schedule);
         let (is_native, is_adaptive) = (engine.is_none(), self.is_adaptive());
         let has_every_step = self.record_every == 1 && !is_adaptive;
-        // the rows of one system do not contain the accelerations that torques on the rest of its tree cause
+        // the rows of a system do not contain the accelerations that torques on the rest of its tree cause
         let rows_suffice = has_every_step && (events.list.is_empty() || !is_native);
         let rereference_beyond = self.local_reference_distance(&systems);
         let step_settings = self.step_settings(duration, &systems);
@@ -143,8 +144,8 @@ impl Shared {
         Ok(run)
     }
 
-    /// Returns the model, the tree, and the controllers and the recorder of system `number` of the group with `numbers`,
-    /// which records about `rows` rows.
+    /// Creates the model, the tree, and the controllers and the recorder of system `number`, which belongs to
+    /// the group `numbers` and records about `rows` rows.
     fn run_system<'a, S: Scalar>(
         &self,
         (number, numbers): (usize, &[usize]),
@@ -153,7 +154,7 @@ impl Shared {
     ) -> Result<(&'a Model, Tree<'a, S>, RunSystem<'a, S>), SimulationError> {
         let System { model, controls, tool, reference, stops, knows, .. } = system;
         let model: &'a Model = model;
-        let stops = stops.filter(|_| !self.has_engine); // an external engine has its own
+        let stops = stops.filter(|_| !self.has_engine); // an external engine has its own stops
         let knows: Vec<usize> = knows.iter().filter_map(|&system| local(numbers, system)).collect();
         let options = self.record_options(model, controls, *tool, reference.is_some());
         let recorder = Recorder::new(rows, (number, model), options, controls, rows_suffice)?;
@@ -177,7 +178,7 @@ impl Shared {
         StepSettings { integrator, tolerance, time_step, control_period, duration }
     }
 
-    /// Returns the loads of the environment on the bodies of systems with these numbers and models.
+    /// Creates the loads of the environment on the bodies of systems with these numbers and models.
     pub(super) fn environment_loads(&self, numbers: &[usize], models: &[&Model]) -> EnvironmentLoads {
         EnvironmentLoads::new(
             (numbers, models),
@@ -189,7 +190,7 @@ impl Shared {
         )
     }
 
-    /// Returns the options for the quantities that the run records in addition to the state of a system.
+    /// Returns the quantities that the run records in addition to the state of a system.
     fn record_options(
         &self,
         model: &Model,
@@ -210,14 +211,15 @@ impl Shared {
         }
     }
 
-    /// Returns the names of the effects whose wrenches are recorded, and of the commanded wrenches after them.
+    /// Returns the names of the effects whose wrenches are recorded, followed by the name of the commanded
+    /// wrenches.
     fn recorded_effects(&self) -> Vec<String> {
         let effects = self.effect_names.iter().filter(|_| self.record_wrenches).cloned();
         effects.chain(self.takes_commands.then(|| WRENCH_COMMAND.to_owned())).collect()
     }
 
-    /// Returns the distance from the origin of W beyond which a system changes to a local reference orbit, m; infinity
-    /// if it must keep the reference orbit of the run.
+    /// Returns the distance from the origin of W beyond which a system changes to a local reference orbit, m;
+    /// infinity if it must keep the reference orbit of the run.
     fn local_reference_distance(&self, systems: &[&mut System]) -> f64 {
         let is_allowed = self.gravity_mode == GravityMode::True
             && self.gravity.is_some()
@@ -231,10 +233,11 @@ impl Shared {
         self.integrator == Integrator::DormandPrince
     }
 
-    /// Returns the schedule of the run. Steps of an adaptive integrator do not end at grid points, unless there are
-    /// latches, nor, without controls, at control ticks.
+    /// Creates the schedule of the run. Steps of an adaptive integrator end at grid points only if there are
+    /// latches, and at control ticks only if there are controls.
     fn schedule(&self, duration: Option<f64>, systems: &[&mut System], events: &[Event]) -> Schedule {
-        // in `Carried` mode the acceleration of the reference orbit, and with it its jumps, does not act on the robot
+        // in `Carried` mode, the acceleration of the reference orbit, including its jumps, does not act on
+        // the robot
         let orbit = self.orbit.iter().filter(|_| self.gravity_mode == GravityMode::True);
         let jumps = orbit.flat_map(|orbit| orbit.event_times());
         let times = events.iter().filter_map(|event| event.when.time());
@@ -247,7 +250,7 @@ impl Shared {
         let clocks = systems.iter().map(clock).collect();
         let schedule =
             Schedule::new(self.time_step, duration, clocks, effects.chain(jumps).chain(times).collect());
-        // the conditions of a latch are evaluated at the ends of steps, which must not be too long for it
+        // the conditions of a latch are evaluated at the ends of steps, which must therefore not be too long
         let has_latches = events.iter().any(|event| matches!(event.when, When::Latch(_)));
         if self.is_adaptive() && !has_latches { schedule.without_grid_steps() } else { schedule }
     }
@@ -271,7 +274,7 @@ fn tracks_world(system: &System) -> bool {
             .any(|Control { law, .. }| law.joint_reference().is_none() && law.external().is_none())
 }
 
-/// Returns the number in a group of a system of the world; `None` if it belongs to another group.
+/// Returns the number, within the group, of a system of the world; `None` if it belongs to another group.
 fn local(numbers: &[usize], system: usize) -> Option<usize> {
     numbers.iter().position(|number| *number == system)
 }
@@ -280,7 +283,7 @@ fn lift<S: Scalar>(x: &[f64]) -> Vec<S> {
     x.iter().map(|x| S::of(*x)).collect()
 }
 
-/// Returns the frames in which references of a group are given, with the numbers of their systems in the group.
+/// Returns the frames in which references of a group are given; their systems have the numbers of the group.
 fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameIndex, MovingFrame)> {
     let moving = systems.iter().flat_map(|system| system.moving_frames());
     let place = |moving: &MovingFrame| {
@@ -290,7 +293,7 @@ fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameInd
     moving.filter_map(place).collect()
 }
 
-/// Returns the events of the systems with these numbers, in which systems and events have the numbers of the group.
+/// Returns the events of the systems with these numbers; systems and events have the numbers of the group.
 fn events_of(numbers: &[usize], events: &[Event]) -> Events {
     let is_own =
         |event: &usize| systems_of(events, *event).iter().all(|&system| local(numbers, system).is_some());
@@ -311,7 +314,8 @@ fn events_of(numbers: &[usize], events: &[Event]) -> Events {
     Events::new(own.iter().map(renumbered).collect(), own.clone())
 }
 
-/// Returns a unique column name for each effect: its name, with `_2`, `_3`, … appended where the name is taken.
+/// Returns a unique column name for each effect: its name, with `_2`, `_3`, … appended if the name is already
+/// used.
 pub(super) fn column_names(effects: &[Arc<dyn Effect>]) -> Vec<String> {
     let mut names: Vec<String> = Vec::with_capacity(effects.len());
     for effect in effects {

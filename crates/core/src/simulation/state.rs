@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State<S> {
     pub(crate) trees: Vec<TreeState<S>>,
-    /// Time integral of the moments of the external forces, acting at the centres of mass of the trees, about the common
-    /// centre of mass, W axes, N m s; zero for a single tree.
+    /// Time integral of the moments about the common centre of mass of the external forces, taken to act at
+    /// the centres of mass of the trees, W axes, N m s; zero for a single tree.
     pub(crate) orbital: Vec3<S>,
 }
 
@@ -23,7 +23,7 @@ pub(crate) struct Rate<S> {
 }
 
 impl<S: Real> State<S> {
-    /// Returns the state of `trees` with the given configurations and velocities, one pair per tree; see
+    /// Creates the state of `trees` from configurations and velocities, one pair per tree; see
     /// [`TreeState::at`].
     pub(crate) fn at(trees: &mut [Tree<'_, S>], starts: impl IntoIterator<Item = (Vec<S>, Vec<S>)>) -> Self {
         let pairs = trees.iter_mut().zip(starts);
@@ -36,7 +36,7 @@ impl<S: Real> State<S> {
         self.trees.iter().all(TreeState::is_finite)
     }
 
-    /// Sets the clocks of the trees with joints that are functions of time to `t`, s.
+    /// Sets to `t`, s, the clocks of trees with joints that are given functions of time.
     pub(super) fn set_clocks(&mut self, t: f64) {
         self.trees.iter_mut().filter_map(|tree| tree.clock.as_mut()).for_each(|clock| *clock = S::of(t));
     }
@@ -56,7 +56,7 @@ impl<S: Real> State<S> {
         }
     }
 
-    /// Writes `from ⊕ h rate`; see [`TreeState::move_from`].
+    /// Stores `from ⊕ h rate`; see [`TreeState::move_from`].
     #[inline(always)]
     pub(crate) fn move_from(&mut self, from: &Self, rate: &Rate<S>, h: S) {
         for ((to, from), rate) in self.trees.iter_mut().zip(&from.trees).zip(&rate.trees) {
@@ -69,12 +69,12 @@ impl<S: Real> State<S> {
 }
 
 impl<S: Real> Rate<S> {
-    /// Returns zero rates with the dimensions of `state`.
+    /// Creates zero rates with the dimensions of `state`.
     pub(crate) fn of(state: &State<S>) -> Self {
         Self { trees: state.trees.iter().map(TreeRate::of).collect(), orbital: Vec3::zero() }
     }
 
-    /// `self += s · other`, for weighted sums of stages.
+    /// Computes `self += s · other`, for weighted sums of stages.
     #[inline(always)]
     pub(crate) fn accumulate(&mut self, other: &Self, s: S) {
         for (sum, other) in self.trees.iter_mut().zip(&other.trees) {
@@ -93,7 +93,7 @@ impl<S: Real> Rate<S> {
         self.orbital = from.orbital;
     }
 
-    /// Sets the rates that `accumulate` sums to zero.
+    /// Sets to zero the rates that `accumulate` sums.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         self.trees.iter_mut().for_each(TreeRate::clear);

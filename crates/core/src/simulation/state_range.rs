@@ -5,12 +5,12 @@ use crate::model::{Axis, BASE_NV, Model, QUATERNION};
 
 /// Largest accepted deviation of the norm of an initial quaternion from 1.
 pub(super) const UNIT_NORM: f64 = 1e-6;
-/// Upper bound of the distance from the reference orbit, m (a tenth of a light year), and of joint positions, rad or
-/// m.
+/// Largest accepted distance from the reference orbit, m (a tenth of a light year), and largest accepted
+/// joint position, rad or m.
 const FARTHEST: f64 = 1e15;
-/// Speed of light, m/s: an upper bound of speeds, because the mechanics is Newtonian.
+/// Speed of light, m/s, the largest accepted speed, because the mechanics is Newtonian.
 const LIGHT: f64 = 299_792_458.0;
-/// Upper bound of angular velocities and joint rates, rad/s; products of larger values may overflow.
+/// Largest accepted angular velocity and joint rate, rad/s; products of larger values may overflow.
 const FASTEST: f64 = 1e9;
 
 /// Rejects positions and rates whose products would overflow in the first step.
@@ -31,7 +31,7 @@ pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), Sim
             return Err(SimulationError::OutOfRange { name: "v", index, what, value, unit, limit });
         }
     }
-    // q has one more entry than v, the fourth one of the quaternion: q[7] belongs to the joint of v[6]
+    // q has one more entry than v, the fourth component of the quaternion: q[7] belongs to the joint of v[6]
     for (index, &value) in q.iter().enumerate().filter(|(index, _)| !QUATERNION.contains(index)) {
         if value.abs() >= FARTHEST {
             let same = if index < 3 { index } else { index - 1 };

@@ -1,4 +1,4 @@
-//! One step of a run. The operations are numbered as in the order of execution in `docs/design.md`.
+//! One step of a run. The numbers of the operations are those in the order of execution in `docs/design.md`.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -11,15 +11,15 @@ use crate::control::ControlError;
 use crate::spatial::{Scalar, Vec3};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Takes a step that starts at the current cut, which is the start of `interval`. The step ends at `end`, or
-    /// earlier at the first change of a joint's mode or where the tolerance requires it.
+    /// Computes a step that starts at the current cut, which is the start of `interval`. The step ends at
+    /// `end`, or earlier at the first change of a joint's mode or if the tolerance requires a shorter step.
     pub(super) fn step_to(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
         let start = interval.start;
         self.order_of_execution(end, interval).map_err(|error| self.name_divergence(error, start))?;
         if self.state.is_finite() { Ok(()) } else { Err(self.diverged(start)) }
     }
 
-    /// Takes a step over the whole interval.
+    /// Computes a step over the whole interval.
     pub(super) fn step(&mut self, interval: &Interval) -> Result<(), SimulationError> {
         self.step_to(interval.end, interval)
     }
@@ -39,9 +39,9 @@ impl<S: Scalar> RunState<'_, S> {
         self.record_within_step()
     }
 
-    /// Computes kinematics, impacts, loads, controllers and modes at the start of a step in `interval` that is to end
-    /// at `end`; also used for the last row, which no step follows. Returns the end of the step, s, which is earlier if an
-    /// event has made a cut within the interval.
+    /// Computes kinematics, impacts, loads, controllers and modes at the start of a step in `interval` that
+    /// is to end at `end`. The function is also used for the last row, after which there is no step. Returns
+    /// the end of the step, s, which is earlier than `end` if an event has made a cut within the interval.
     pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<f64, SimulationError> {
         let t = interval.start;
         // 1 kinematics, and the base twist projected onto the momentum
@@ -68,9 +68,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(end)
     }
 
-    /// Computes the loads and updates the controllers that are due. Controllers that compensate the environment are
-    /// updated after the loads have been computed, all others before. The loads they compensate are those of the
-    /// whole interval, even if the step ends earlier.
+    /// Computes the loads and updates the controllers that are due. Controllers that compensate the
+    /// environment are updated after the loads have been computed, all others before. The loads that they
+    /// compensate are those of the whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
         let is_due = self.find_due(t);
@@ -95,14 +95,14 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Returns true if any system has controls, which use its state in its coordinates.
+    /// Returns true if any system has controls, which need the state in the coordinates of their system.
     fn has_controls(&self) -> bool {
         self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
     }
 
-    /// Finds the systems whose controllers are due at `t`, s: at their own ticks, and when an event starts one of them. If a
-    /// trial step has updated them at this cut, they are due again only if a command has come since.
-    /// Returns true if there are any.
+    /// Finds the systems whose controllers are due at `t`, s, which is the case at their ticks and when an
+    /// event starts a control. If a trial step has already updated controllers at this cut, they are due
+    /// again only after a new command. Returns true if any controllers are due.
     fn find_due(&mut self, t: f64) -> bool {
         let is_repeated = self.controllers_updated;
         for number in 0..self.systems.len() {
@@ -119,8 +119,8 @@ impl<S: Scalar> RunState<'_, S> {
         self.systems.iter().any(|run| run.is_due)
     }
 
-    /// Updates the controllers that are due of those systems whose value of `compensates_environment` equals the
-    /// argument.
+    /// Updates the controllers that are due, for the systems whose value of `compensates_environment` equals
+    /// the argument.
     fn update_controllers(&mut self, t: f64, compensates_environment: bool) -> Result<(), SimulationError> {
         for number in 0..self.systems.len() {
             let run = &self.systems[number];
@@ -149,8 +149,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Integrates from the start of `interval` towards `end`, measures the accuracy of the step, and returns the time
-    /// reached, s.
+    /// Integrates from the start of `interval` towards `end`, measures the accuracy of the step, and returns
+    /// the time reached, s.
     fn integrate(&mut self, interval: &Interval, end: f64, is_row: bool) -> Result<f64, SimulationError> {
         let span = (interval.start, end);
         let Self { state, equations, mover, accuracy, systems, ledger, .. } = self;
@@ -192,8 +192,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Reports divergence as such: once the state is not finite, errors raised downstream (overflow of a torque, orbit
-    /// or effect evaluated at a position that is not finite) become [`SimulationError::Diverged`].
+    /// Replaces errors that are consequences of divergence. If the state is not finite, an error such as the
+    /// overflow of a torque, or the evaluation of an orbit or effect at a non-finite position, becomes
+    /// [`SimulationError::Diverged`].
     pub(super) fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
         let is_overflow = matches!(&error, SimulationError::Control(ControlError::Overflow { .. }));
         if is_overflow || self.mover.first_diverged(&self.state).is_some() { self.diverged(t) } else { error }

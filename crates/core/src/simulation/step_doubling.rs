@@ -1,5 +1,5 @@
-//! Step doubling: estimates the errors of the attitude, the base's origin and the joints from the differences between
-//! steps and halved steps.
+//! Step doubling: estimates of the errors of the attitude, the base's origin and the joints from the
+//! differences between a step and two half steps.
 
 use super::acceleration_jumps::AccelerationJumps;
 use super::equations::EquationsOfMotion;
@@ -15,27 +15,28 @@ use crate::model::{BASE_NQ, BASE_NV, QUATERNION};
 use crate::spatial::{Quat, Scalar, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
-/// Largest number of steps between two probes. A probe takes three steps, so probes add about one percent to the cost
-/// of a run.
+/// Largest number of steps between two probes. A probe computes three steps, so probes increase the cost of a
+/// run by about one percent.
 const EVERY: usize = 256;
 /// Smallest number of probes of a run, unless the run has fewer steps.
 const LEAST: usize = 5;
 /// Additional steps that are probed early in a long run, where transients occur.
 const EARLY: [usize; 3] = [4, 16, 64];
-/// Differences smaller than this many ε of the subtracted values count as rounding.
+/// Number of ε of the subtracted values below which a difference is treated as a rounding error.
 const ROUNDING: f64 = 16.0;
 
-/// Repeats a step at intervals as two half steps, and sums the differences between the resulting states.
+/// Step doubling: from time to time, repeats a step as two half steps, and sums the differences between the
+/// resulting states.
 ///
-/// A local error of order `p + 1` is smaller by a factor of `2^p` in two half steps, so for fourth-order Runge-Kutta
-/// the difference equals the local error within a sixteenth. The sum bounds the error of a run unless the motion
-/// amplifies errors, as chaotic motion does.
+/// A local error of order `p + 1` is smaller by a factor of `2^p` after two half steps. For the fourth-order
+/// Runge-Kutta method, the difference therefore equals the local error within a sixteenth. The sum bounds the
+/// error of a run unless the motion amplifies errors, as chaotic motion does.
 pub(super) struct StepDoubling<S> {
     whole: State<S>,
     halved: State<S>,
     /// Kinematics and loads of each tree at the start of the step.
     start: Vec<Data<S>>,
-    /// Steps between two probes.
+    /// Number of steps between two probes.
     every: usize,
     /// Sum of the magnitudes of all accelerations of each tree at the start of the step.
     changes: Vec<f64>,
@@ -50,13 +51,14 @@ pub(super) struct Errors {
     pub(super) step: usize,
     /// Attitude difference at the last probe and its sum over the steps before the probe, rad.
     turn: [f64; 2],
-    /// Differences of the base's origin, then of every joint.
+    /// Differences for the base's origin, then for every joint.
     pub(super) drifts: Vec<Drift>,
-    /// Jumps of the joints' accelerations, from every step.
+    /// Jumps of the joint accelerations, measured at every step.
     pub(super) jumps: AccelerationJumps,
 }
 
-/// Differences of a coordinate between steps and halved steps; each pair is the position and the rate.
+/// Differences of a coordinate between a step and two half steps; each pair consists of the position and the
+/// rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Drift {
     /// Differences at the last probe.
@@ -79,8 +81,8 @@ impl Errors {
         self.turn[1] + self.turn[0] * (steps - self.step) as f64
     }
 
-    /// Returns the summed differences of a coordinate over the first `steps` steps. Coordinate 0 is the base's
-    /// origin; the joints follow.
+    /// Returns the summed differences of a coordinate over the first `steps` steps. Coordinate 0 is the
+    /// base's origin; the joints follow.
     pub(super) fn drift(&self, coordinate: usize, steps: usize) -> CoordinateDrift {
         let drift = &self.drifts[coordinate];
         let [position, rate] = drift.until((steps - self.step) as f64);
@@ -90,7 +92,7 @@ impl Errors {
         CoordinateDrift { position, rate, fastest, jumps: of_joint(&self.jumps.jumps) }
     }
 
-    /// Returns the errors of a tree with `joints` joints before the first probe, all zero.
+    /// Creates the errors of a tree with `joints` joints before the first probe, which are all zero.
     fn new(joints: usize) -> Self {
         let drifts = vec![Drift::default(); joints + 1];
         Self { drifts, jumps: AccelerationJumps::new(joints), ..Self::default() }
@@ -107,8 +109,8 @@ impl Errors {
 }
 
 impl<S: Scalar> StepDoubling<S> {
-    /// Returns the probes of a run before its first step. `steps` is the planned number of steps; `None` for an
-    /// open-ended run.
+    /// Creates the step doubling of a run before its first step. `steps` is the planned number of steps;
+    /// `None` for an open-ended run.
     pub(super) fn new(trees: &[Tree<'_, S>], state: &State<S>, steps: Option<usize>) -> Self {
         let every = steps.map_or(EVERY, |steps| (steps / LEAST).clamp(1, EVERY));
         Self {
@@ -126,8 +128,8 @@ impl<S: Scalar> StepDoubling<S> {
         step.is_multiple_of(self.every) || self.every == EVERY && EARLY.contains(&step)
     }
 
-    /// Probes step number `step` over `interval`, s, if a probe is due. Restores the kinematics and loads in
-    /// `equations` bit by bit.
+    /// Probes step number `step` over `interval`, s, if a probe is due. The kinematics and loads in
+    /// `equations` are restored bit by bit.
     pub(super) fn probe(
         &mut self,
         step: usize,
@@ -150,7 +152,7 @@ impl<S: Scalar> StepDoubling<S> {
         Ok(())
     }
 
-    /// Takes one whole step and two half steps from `state`, and stores the sums of the magnitudes of the
+    /// Computes one whole step and two half steps from `state`, and stores the sums of the magnitudes of the
     /// accelerations at the start.
     fn repeat(
         &mut self,
@@ -184,8 +186,8 @@ impl<S: Scalar> StepDoubling<S> {
 }
 
 impl Errors {
-    /// Stores the differences between the states after one step of length `h`, s, from `start` and after two half
-    /// steps. `changes` is the sum of the magnitudes of all accelerations.
+    /// Stores the differences between the states after one step of length `h`, s, from `start` and after two
+    /// half steps. `changes` is the sum of the magnitudes of all accelerations.
     fn compare<S: Scalar>(
         &mut self,
         start: &TreeState<S>,

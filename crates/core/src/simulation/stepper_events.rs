@@ -1,4 +1,4 @@
-//! Events of a run that the caller advances.
+//! Events of a run that the caller advances by a stepper.
 
 use super::attached::AttachedControl;
 use super::error::SimulationError;
@@ -7,11 +7,11 @@ use super::stepper::Stepper;
 use crate::world::WorldError;
 
 impl Stepper<'_> {
-    /// Triggers an event that happens on command, at the current time. The current step ends there.
+    /// Triggers an event that happens on command, at the current time, where the current step ends.
     ///
     /// # Errors
-    /// [`SimulationError::World`] for an event that does not exist, has happened, or does not happen on command; the run
-    /// is unchanged. The errors of a step end the run.
+    /// [`SimulationError::World`] for an event that does not exist, has already happened, or does not happen
+    /// on command; the run does not change. Errors of a step end the run.
     pub fn trigger(&mut self, name: &str) -> Result<(), SimulationError> {
         self.check()?;
         for group in 0..self.groups.len() {
@@ -26,15 +26,15 @@ impl Stepper<'_> {
         Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
     }
 
-    /// Returns the events in the steps that are complete, in order of time.
+    /// Returns the events during the steps that are complete, in order of time.
     pub fn events(&self) -> Vec<&EventRecord> {
         let mut all: Vec<_> = self.groups.iter().flat_map(|group| group.run.records()).collect();
         all.sort_by(|a, b| a.time.total_cmp(&b.time));
         all
     }
 
-    /// Returns the controls found so far whose frames a capture has rigidly connected to the frames that they follow: nothing
-    /// can reduce their errors.
+    /// Returns the controls, found so far, whose frames a capture has rigidly connected to the frames that
+    /// they follow. Their errors cannot be reduced.
     pub fn attached_controls(&self) -> Vec<AttachedControl> {
         self.groups.iter().flat_map(|group| group.run.attached_controls()).collect()
     }

@@ -1,4 +1,4 @@
-//! The trace of a run.
+//! Trace of a run.
 
 use super::certificate::PairChecks;
 use super::columns::{Column, TRACKING, WRENCHES};
@@ -11,8 +11,9 @@ use std::borrow::Cow;
 macro_rules! define_trace {
     ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
         $meaning:literal;)+) => {
-        /// Result of a run, with one row per recorded step: the first row is the initial state, the last one the
-        /// final state. Columns are in row-major order; those that do not apply to the run are empty.
+        /// Result of a run, with one row per recorded step. The first row is the initial state and the last
+        /// row the final state. Columns are in row-major order; columns that do not apply to the run are
+        /// empty.
         #[derive(Clone, Debug, Default)]
         pub struct Trace {
             $(
@@ -25,30 +26,30 @@ macro_rules! define_trace {
             pub wrenches: Vec<NamedColumn>,
             /// Outcomes of the goals of the controls.
             pub results: Vec<GoalResult>,
-            /// Times at which the run changed to another reference orbit, s; see
+            /// Times at which the run changed to a new reference orbit, s; see
             /// [`REREFERENCED`](super::columns::REREFERENCED).
             pub rereferenced: Vec<f64>,
-            /// Sum of the magnitudes of the work done in each step, J. It is computed during the run, because sparse
-            /// rows would miss work that changes sign.
+            /// Sum of the magnitudes of the work done in each step, J. It is computed during the run, because
+            /// sparse rows would miss work that changes sign.
             pub work_done: f64,
-            /// Estimated attitude error at the end of the run, rad: the accumulated difference between steps and
-            /// halved steps or, for an embedded pair, between its two solutions. It does not include the
-            /// amplification of errors by the motion.
+            /// Estimated attitude error at the end of the run, rad: the accumulated difference between steps
+            /// and half steps or, for an embedded pair, between its two solutions. The amplification of
+            /// errors by the motion is not included.
             pub attitude_step_doubling: Option<f64>,
-            /// Accumulated differences between steps and halved steps: one entry for the base's origin, then one per
-            /// joint. Empty for an adaptive integrator and for an external engine.
+            /// Accumulated differences between steps and half steps: one entry for the base's origin, then
+            /// one per joint. Empty for an adaptive integrator and for an external engine.
             pub step_doubling: Vec<CoordinateDrift>,
-            /// Results of the checks that compare neighbouring steps, evaluated during a fixed-step run whose rows do
-            /// not suffice for them; `None` otherwise.
+            /// Results of the checks that compare successive steps, evaluated during a fixed-step run if its
+            /// rows are not sufficient; `None` otherwise.
             pub pair_checks: Option<PairChecks>,
-            /// True if every step of the run is a row and no capture can make the system a part of a larger tree, so
-            /// that the rows suffice for the checks that compare neighbouring steps.
+            /// True if the rows are sufficient for the checks that compare successive steps: every step is
+            /// recorded, and no capture can make the system a part of a larger tree.
             pub rows_suffice: bool,
         }
 
         impl Trace {
-            /// Returns all columns with their paths, including empty ones: first the fields, then the columns of the
-            /// controls and of the effects.
+            /// Returns all columns with their paths, including empty columns: first the fields, then the
+            /// columns of the controls and of the effects.
             pub fn columns(&self) -> impl Iterator<Item = (Cow<'static, str>, &Vec<f64>)> {
                 let tracking = self.tracking.iter().map(|column| (column.path(&TRACKING), &column.values));
                 let wrenches = self.wrenches.iter().map(|column| (column.path(&WRENCHES), &column.values));
@@ -93,22 +94,24 @@ impl NamedColumn {
     }
 }
 
-/// Difference of one coordinate between steps and halved steps, summed over a run; m, or rad for a revolute joint.
+/// Difference of one coordinate between steps and half steps, summed over a run; m, or rad for a revolute
+/// joint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateDrift {
     /// Difference of the position, m or rad.
     pub position: f64,
-    /// Difference of the rate, m/s or rad/s; for the base's origin, that of the velocity of the centre of mass.
+    /// Difference of the rate, m/s or rad/s; for the base's origin, the difference of the velocity of the
+    /// centre of mass.
     pub rate: f64,
     /// Largest magnitude of the rate, m/s or rad/s.
     pub fastest: f64,
-    /// `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration from the end of a step of length
-    /// `h` to the start of the next.
+    /// Sum `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration from the end of a step of
+    /// length `h` to the start of the next step.
     pub jumps: f64,
 }
 
 impl CoordinateDrift {
-    /// Returns the difference over an interval that follows another one.
+    /// Combines the differences over two successive intervals: `before`, and this one.
     pub(super) fn after(&self, before: &Self) -> Self {
         Self {
             position: self.position + before.position,
@@ -126,8 +129,8 @@ pub struct GoalResult {
     pub name: String,
     /// Outcome of the goal.
     pub outcome: Outcome,
-    /// Component whose error was too large: the name of a joint, `position` or `attitude`; `None` if no error was too
-    /// large.
+    /// Component whose error was too large: the name of a joint, `position` or `attitude`; `None` if no error
+    /// was too large.
     pub component: Option<String>,
 }
 
@@ -137,7 +140,8 @@ impl Trace {
         self.time.len()
     }
 
-    /// Returns the names of the joints whose positions exceed their limits by more than rounding in any row.
+    /// Returns the names of the joints whose positions exceed their limits, beyond rounding errors, in any
+    /// row.
     pub fn limits_exceeded<'m>(&self, model: &'m Model) -> Vec<&'m str> {
         const ROUNDING: f64 = 1e-9;
         let is_past = |j: usize, (lower, upper): (f64, f64)| {

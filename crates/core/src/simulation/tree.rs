@@ -1,4 +1,5 @@
-//! Equations of motion of one tree: computes the time derivatives of its state from state, loads and joint torques.
+//! Equations of motion of one tree, which give the time derivatives of its state from the state, the loads
+//! and the joint torques.
 
 use super::body_states::LoadedSystem;
 use super::modes::JointModes;
@@ -21,11 +22,11 @@ pub(crate) struct Tree<'a, S> {
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
-    /// Velocity of the frame relative to which the velocities in `data` are expressed, W axes, m/s. During a step, it
-    /// is the velocity of the base's origin at the start of the step; otherwise it is zero.
+    /// Velocity of the frame to which the velocities in `data` are relative, W axes, m/s. During a step, this
+    /// is the velocity that the base's origin had at the start of the step; otherwise it is zero.
     frame_velocity: Vec3<S>,
     mass: S,
-    /// Which joints stick or rest at a stop.
+    /// Modes of the joints, which state the joints that stick or rest at a stop.
     pub(crate) modes: JointModes,
     /// True if any joint has damping or friction.
     is_lossy: bool,
@@ -34,14 +35,14 @@ pub(crate) struct Tree<'a, S> {
 }
 
 impl<'a, S: Real> Tree<'a, S> {
-    /// Returns the equations of motion of `model`. `restitution` is that of the stops at the position limits of
-    /// joints; `None` means no stops.
+    /// Creates the equations of motion of `model`. `restitution` is the coefficient of restitution of the
+    /// stops at the position limits of joints; `None` means no stops.
     pub(crate) fn new(model: Cow<'a, Model>, restitution: Option<f64>) -> Self {
         let modes = JointModes::new(&model, restitution);
         Self::with_modes(model, modes)
     }
 
-    /// Returns the equations of motion of `model`, whose joints have these modes.
+    /// Creates the equations of motion of `model`, with the given modes of its joints.
     pub(super) fn with_modes(model: Cow<'a, Model>, modes: JointModes) -> Self {
         let (n, zero) = (model.joint_count(), S::of(0.0));
         Self {
@@ -58,12 +59,13 @@ impl<'a, S: Real> Tree<'a, S> {
         }
     }
 
-    /// Computes the kinematics of `state` and projects its base twist onto its momentum:
-    /// `v_b = Mbb⁻¹ (h − Mbm q̇)`.
+    /// Computes the kinematics of `state` and projects its base twist onto its momentum: `v_b = Mbb⁻¹ (h −
+    /// Mbm q̇)`.
     ///
-    /// The momentum `h` is integrated from the external wrenches alone, so without them it is conserved to rounding,
-    /// whereas the integrated base twist has a truncation error. In a run with several trees, the base is also shifted so
-    /// that the centre of mass is the integral of its velocity `P/m`. Called once per step.
+    /// The momentum `h` is integrated from the external wrenches alone, so without such wrenches it is
+    /// conserved to rounding, whereas the integrated base twist has a truncation error. In a run with several
+    /// trees, the base is also shifted so that the centre of mass is the integral of its velocity `P/m`. The
+    /// function is called once per step.
     pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
         self.project_twist(state);
         if let Some(center) = state.center {
@@ -74,7 +76,7 @@ impl<'a, S: Real> Tree<'a, S> {
 
     fn project_twist(&mut self, state: &mut TreeState<S>) {
         self.move_given(state);
-        // relative to the velocity of the base's origin, so that a speed of km/s in W costs no precision
+        // velocities are taken relative to the base's origin, so that a speed of km/s in W costs no precision
         let frame_velocity = Motion::new(Vec3::from_slice(&state.v), Vec3::zero());
         Vec3::zero().write(&mut state.v);
         self.update_kinematics(state);
@@ -92,15 +94,15 @@ impl<'a, S: Real> Tree<'a, S> {
         );
     }
 
-    /// Writes positions and rates of the joints that are functions of time to `state`.
+    /// Writes the positions and rates of joints that are given functions of time to `state`.
     fn move_given(&self, state: &mut TreeState<S>) {
         if let Some(clock) = state.clock {
             self.modes.move_given(clock.lane(0), &mut state.q, &mut state.v);
         }
     }
 
-    /// Changes the velocity of `state` by `change`, adds the change of its momentum to its impulse and that of its
-    /// kinetic energy to its work, and computes its kinematics. Expects the kinematics before the change.
+    /// Changes the velocity of `state` by `change`, and its impulse and work by the resulting changes of
+    /// momentum and kinetic energy. Computes the new kinematics. Requires the kinematics before the change.
     pub(super) fn jump(&mut self, state: &mut TreeState<S>, change: &[f64]) {
         let energy = |tree: &Self, state: &TreeState<S>| kinetic_energy(&tree.model, &tree.data, &state.v);
         let before = energy(self, state);
@@ -118,23 +120,25 @@ impl<'a, S: Real> Tree<'a, S> {
         kinematics(&self.model, &mut self.data, &state.q, &state.v);
     }
 
-    /// Computes the kinematics of a later stage of a step, whose velocity is relative to the frame of the step.
+    /// Computes the kinematics of a stage after the first, whose velocity is relative to the moving frame of
+    /// the step.
     pub(super) fn update_stage_kinematics(&mut self, stage: &mut TreeState<S>) {
         self.move_given(stage);
         kinematics(&self.model, &mut self.data, &stage.q, &stage.v);
     }
 
-    /// Restores kinematics and loads at the start of a step, which a trial step has overwritten.
+    /// Restores the kinematics and loads at the start of a step after a trial step has overwritten them.
     pub(super) fn restore(&mut self, start: &Data<S>) {
         self.data.copy_from(start);
         self.frame_velocity = Vec3::zero();
     }
 
-    /// Changes to the frame of the step, which moves at the current velocity of the base's origin: makes `v` and the
-    /// velocities in `data` relative to this frame.
+    /// Changes to the moving frame of the step, whose velocity is the current velocity of the base's origin.
+    /// Makes `v` and the velocities in `data` relative to this frame.
     ///
-    /// The equations of motion are the same in this frame, and the integrated velocities stay small. In base axes,
-    /// even a constant velocity in W rotates, which would cost precision and order of convergence.
+    /// The equations of motion are the same in this frame, and the integrated velocities stay small. In base
+    /// axes, even a velocity that is constant in W rotates, which would reduce precision and order of
+    /// convergence.
     pub(crate) fn enter_step_frame(&mut self, q: &[S], v: &mut [S]) {
         let frame_velocity_b = Vec3::from_slice(v);
         let Self { data, frame_velocity, .. } = self;
@@ -150,24 +154,24 @@ impl<'a, S: Real> Tree<'a, S> {
         );
     }
 
-    /// Returns the velocity of the frame of the step, W axes, m/s; zero outside a step.
+    /// Returns the velocity of the moving frame of the step, W axes, m/s; zero outside a step.
     pub(crate) fn frame_velocity(&self) -> Vec3<S> {
         self.frame_velocity
     }
 
-    /// Sets the velocity of the frame relative to which the velocities are expressed, W axes, m/s.
+    /// Sets the velocity of the frame to which the velocities are relative, W axes, m/s.
     pub(super) fn follow_frame(&mut self, velocity: Vec3<S>) {
         self.frame_velocity = velocity;
     }
 
-    /// Returns the parts of the tree that loads read and write; `q` is the configuration whose kinematics are in
-    /// `data`.
+    /// Returns those parts of the tree that loads read and write; `q` is the configuration whose kinematics
+    /// are in `data`.
     pub(super) fn loaded<'s>(&'s mut self, q: &'s [S]) -> LoadedSystem<'s, S> {
         LoadedSystem { q, frame_velocity: self.frame_velocity, data: &mut self.data }
     }
 
-    /// Computes the rates at a state whose kinematics and loads are in `data`; `is_loaded` is true if there are
-    /// external loads.
+    /// Computes the time derivatives of a state whose kinematics and loads are in `data`; `is_loaded` is true
+    /// if there are external loads.
     pub(crate) fn rates(&mut self, state: &TreeState<S>, is_loaded: bool, rate: &mut TreeRate<S>) {
         let (q, v) = (&state.q[..], &state.v[..]);
         if let Some(clock) = state.clock {
@@ -204,14 +208,14 @@ impl<'a, S: Real> Tree<'a, S> {
         }
     }
 
-    /// Returns the torques of the motors, command and compensation of Coulomb friction, N m (N).
+    /// Returns the torques of the motors, which are commands plus compensation of Coulomb friction, N m (N).
     pub(crate) fn torques(&self) -> impl Iterator<Item = S> {
         let joints = self.command.iter().zip(self.modes.compensations());
         joints.map(|(command, torque)| torque.map_or(*command, |torque| *command + S::of(torque)))
     }
 
-    /// Computes the generalized forces at the joints, `τ − b q̇ − f s`, with `s` the direction of slip; `f s` is
-    /// omitted for joints whose motor compensates it.
+    /// Computes the generalized forces at the joints, `τ − b q̇ − f s` with the direction of slip `s`. The
+    /// friction `f s` is omitted for joints whose motors compensate it.
     pub(super) fn update_joint_forces(&mut self, v: &[S]) {
         let Self { model, modes, command, forces, is_lossy, .. } = self;
         forces[BASE_NV..].copy_from_slice(command);
@@ -230,8 +234,9 @@ impl<'a, S: Real> Tree<'a, S> {
     }
 }
 
-/// Computes the base's velocity and acceleration in W, the sum of the wrenches on the first `loaded` bodies and the
-/// power of all forces. `v` and the velocities in `data` are relative to a frame that moves at `frame_velocity`.
+/// Computes the velocity and acceleration of the base in W, the sum of the wrenches on the first `loaded`
+/// bodies, and the power of all forces. `v` and the velocities in `data` are relative to a frame that moves
+/// with `frame_velocity`.
 #[inline(always)]
 fn base_rates<S: Real>(
     data: &Data<S>,

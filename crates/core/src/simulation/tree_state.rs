@@ -12,20 +12,23 @@ pub(crate) struct TreeState<S> {
     pub(crate) q: Vec<S>,
     /// Velocity, `(nv,)`.
     pub(crate) v: Vec<S>,
-    /// Momentum at the start of the run, W axes; changed only when the tree is re-referenced.
+    /// Momentum at the start of the run, W axes. It changes only with a change of the reference orbit.
     pub(crate) initial_momentum: Momentum<S>,
-    /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N m s.
+    /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N
+    /// m s.
     pub(crate) impulse: Momentum<S>,
-    /// Work done on the tree so far, J.
+    /// Work done on the tree since the start, J.
     pub(crate) work: S,
-    /// Energy dissipated by damping, friction and stops of the joints so far, J.
+    /// Energy dissipated by damping, friction and stops of the joints since the start, J.
     pub(crate) dissipated: S,
-    /// Position of the centre of mass in W, the integral of `P/m`, m; `None` in a run with a single tree. The base is
-    /// shifted to it once per step, so that the angular momentum of several trees about a common point is exact.
+    /// Position of the centre of mass in W, which is the integral of `P/m`, m; `None` in a run with a single
+    /// tree. Once per step the base is shifted accordingly, so that the angular momentum of several trees
+    /// about a common point is exact.
     pub(crate) center: Option<Vec3<S>>,
-    /// Part of `dissipated` in the joints of each member, J; empty for a tree with a single member.
+    /// Parts of `dissipated` that belong to the joints of each member, J; empty for a tree with a single
+    /// member.
     pub(crate) shares: Vec<S>,
-    /// Time, s, at which the joints that are functions of time are evaluated; `None` without such joints.
+    /// Time, s, at which joints that are given functions of time are evaluated; `None` without such joints.
     pub(crate) clock: Option<S>,
 }
 
@@ -42,8 +45,8 @@ pub(crate) struct TreeRate<S> {
     pub(crate) v: Vec<S>,
     /// Acceleration, `(nv,)`.
     pub(crate) a: Vec<S>,
-    /// Time derivative of the momentum: the sum of the external forces and that of their moments about the centre of
-    /// mass, W axes, N and N m.
+    /// Time derivative of the momentum: the sum of the external forces, and of their moments about the centre
+    /// of mass, W axes, N and N m.
     pub(crate) wrench: Momentum<S>,
     /// Power of joint torques and external wrenches, W.
     pub(crate) power: S,
@@ -51,7 +54,7 @@ pub(crate) struct TreeRate<S> {
     pub(crate) loss: S,
     /// Velocity of the centre of mass, `P/m`, W axes, m/s; `None` in a run with a single tree.
     pub(crate) center_velocity: Option<Vec3<S>>,
-    /// Part of `loss` in the joints of each member, W; empty for a tree with a single member.
+    /// Parts of `loss` that belong to the joints of each member, W; empty for a tree with a single member.
     pub(crate) shares: Vec<S>,
     /// Time derivative of the clock, 1; `None` without a clock.
     pub(crate) clock: Option<S>,
@@ -75,7 +78,7 @@ impl<S: Real> TreeRate<S> {
         }
     }
 
-    /// `self += s · other`, for weighted sums of stages.
+    /// Computes `self += s · other`, for weighted sums of stages.
     #[inline(always)]
     pub(crate) fn accumulate(&mut self, other: &Self, s: S) {
         self.base_velocity = other.base_velocity.scale_add(s, self.base_velocity);
@@ -113,7 +116,7 @@ impl<S: Real> TreeRate<S> {
         self.clock = from.clock;
     }
 
-    /// Sets the rates that `accumulate` sums to zero.
+    /// Sets to zero the rates that `accumulate` sums.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         (self.base_velocity, self.rotation_rate, self.wrench) =
@@ -128,8 +131,8 @@ impl<S: Real> TreeRate<S> {
 }
 
 impl<S: Real> TreeState<S> {
-    /// Returns the state with configuration `q`, whose quaternion is normalised, velocity `v` and the corresponding
-    /// momentum. Writes the kinematics to `data`.
+    /// Creates the state with configuration `q`, whose quaternion is normalised, velocity `v` and the
+    /// corresponding momentum. Writes the kinematics to `data`.
     pub(crate) fn at(model: &Model, data: &mut Data<S>, mut q: Vec<S>, v: Vec<S>) -> Self {
         Quat::from_xyzw(&q[3..]).normalized().write_xyzw(&mut q[3..]);
         kinematics(model, data, &q, &v);
@@ -189,8 +192,8 @@ impl<S: Real> TreeState<S> {
         }
     }
 
-    /// Writes `from ⊕ h rate`: increments are added to positions and velocities, and the attitude is multiplied by
-    /// `exp(h θ̇)`.
+    /// Stores `from ⊕ h rate`: increments are added to positions and velocities, and the attitude is
+    /// multiplied by `exp(h θ̇)`.
     #[inline(always)]
     pub(crate) fn move_from(&mut self, from: &Self, rate: &TreeRate<S>, h: S) {
         rate.base_velocity.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);
@@ -220,7 +223,7 @@ impl<S: Real> TreeState<S> {
 }
 
 impl<S: Scalar> TreeState<S> {
-    /// Returns configuration and velocity in `f64`.
+    /// Returns the configuration and the velocity as `f64`.
     pub(super) fn values(&self) -> [Vec<f64>; 2] {
         [&self.q, &self.v].map(|x| x.iter().map(|x| x.value()).collect())
     }

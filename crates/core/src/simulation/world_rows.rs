@@ -4,12 +4,13 @@ use super::group_sum::{GroupSum, SystemRow};
 use super::trace::Trace;
 use crate::model::Model;
 
-/// Momentum and kinetic energy of all systems of a world, one row per time that all of them recorded.
+/// Momentum and kinetic energy of all systems of a world, with one row per time that all traces contain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorldRows {
     /// Time, s.
     pub time: Vec<f64>,
-    /// Linear momentum, N s, and angular momentum about the common centre of mass, N m s, axes of W, `(T, 6)`.
+    /// Linear momentum, N s, and angular momentum about the common centre of mass, N m s, axes of W, `(T,
+    /// 6)`.
     pub momentum: Vec<f64>,
     /// Kinetic energy, J.
     pub kinetic_energy: Vec<f64>,
@@ -30,8 +31,8 @@ impl WorldRows {
     }
 }
 
-/// Returns the momentum and the kinetic energy of all systems at the times that their traces share. Where only some
-/// traces have one row before and one after an event, the row after it counts.
+/// Computes the momentum and the kinetic energy of all systems at the times that their traces have in common.
+/// If only some traces have a row both before and after an event, the row after the event is used.
 pub fn world_rows(systems: &[(&Trace, &Model)]) -> WorldRows {
     let mut rows = WorldRows::default();
     let mut at = vec![0; systems.len()];
@@ -42,7 +43,7 @@ pub fn world_rows(systems: &[(&Trace, &Model)]) -> WorldRows {
             at[behind] += 1;
             continue;
         }
-        // a system that has a further row at this time jumps there
+        // a system that has another row at this time changes its velocity there
         let jumps: Vec<bool> =
             (0..at.len()).map(|i| systems[i].0.time.get(at[i] + 1) == Some(&latest)).collect();
         if jumps.iter().any(|jumps| *jumps) && !jumps.iter().all(|jumps| *jumps) {

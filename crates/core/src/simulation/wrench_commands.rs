@@ -8,28 +8,29 @@ use serde::{Deserialize, Serialize};
 /// Name of the commanded wrenches in the trace.
 pub(super) const WRENCH_COMMAND: &str = "wrench_command";
 
-/// Wrench from outside of the run at the origin of a frame, held until the next one on the same frame.
+/// Wrench, commanded from outside the run, at the origin of a frame. It is held until the next command for
+/// the same frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WrenchCommand {
     /// Force at the origin of the frame, N.
     pub force: Vector3<f64>,
     /// Torque, N m.
     pub torque: Vector3<f64>,
-    /// Axes of force and torque.
+    /// Axes of the force and of the torque.
     pub axes: WrenchAxes,
 }
 
 /// Axes in which a commanded wrench is constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrenchAxes {
-    /// W.
+    /// Axes of W.
     #[default]
     World,
-    /// Those of the frame at which it acts.
+    /// Axes of the frame on which the wrench acts.
     Body,
 }
 
-/// Commanded wrenches of a run. A wrench that has been set to zero stays in the list.
+/// Commanded wrenches of a run. A wrench that has been set to zero remains in the list.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct WrenchCommands {
     held: Vec<Held>,
@@ -37,7 +38,7 @@ pub(super) struct WrenchCommands {
     changed_at: Option<f64>,
 }
 
-/// A commanded wrench: force at `point` and torque, in W or in body axes.
+/// Commanded wrench that is held: a force at `point` and a torque, in W axes or in body axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Held {
     /// Number of the system in the world, and index of the frame.
@@ -59,8 +60,8 @@ impl WrenchCommands {
         self.changed_at
     }
 
-    /// Sets the wrench at a frame from `t`, s, on; `place` is the number of the system in the world and the index of the
-    /// frame.
+    /// Sets the wrench on a frame, effective from `t`, s; `place` is the number of the system in the world
+    /// and the index of the frame.
     pub(super) fn set(&mut self, t: f64, place: (usize, usize), frame: &Frame, command: WrenchCommand) {
         let WrenchCommand { force, torque, axes } = command;
         let turned = |vector: Vector3<f64>| match axes {
@@ -77,7 +78,7 @@ impl WrenchCommands {
         self.changed_at = Some(t);
     }
 
-    /// Adds the wrenches on `bodies` to `wrenches`.
+    /// Adds the commanded wrenches on `bodies` to `wrenches`.
     pub(super) fn add_to(&self, bodies: &Bodies, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         for Held { place, body, point, force, torque, axes } in &self.held {
             let index = BodyIndex { system: place.0, body: *body };

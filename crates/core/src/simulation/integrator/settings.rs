@@ -1,15 +1,17 @@
-//! Choice of the integrator.
+//! Choice of the integrator, and its settings.
 
 /// Integration method of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// Classical fourth-order Runge-Kutta, with the attitude integrated on SO(3) (Runge-Kutta-Munthe-Kaas).
+    /// Classical fourth-order Runge-Kutta method with the attitude integrated on SO(3)
+    /// (Runge-Kutta-Munthe-Kaas).
     #[default]
     Rk4,
-    /// Semi-implicit Euler, first order: updates the velocities, then the positions with the new velocities.
+    /// Semi-implicit Euler method, of first order: updates the velocities, then the positions with the new
+    /// velocities.
     SemiImplicitEuler,
-    /// Dormand and Prince's embedded pair 5(4), with the attitude integrated on SO(3). The tolerance determines the
-    /// length of each step; rows within a step come from dense output of fourth order.
+    /// Embedded pair 5(4) of Dormand and Prince with the attitude integrated on SO(3). The tolerance
+    /// determines the length of each step. Rows within a step are computed by dense output of fourth order.
     DormandPrince,
 }
 

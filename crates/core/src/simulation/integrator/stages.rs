@@ -1,4 +1,4 @@
-//! Buffers of a step, its first stage, and the frame in which it is taken.
+//! Buffers of a step, its first stage, and the moving frame of the step.
 
 use crate::dynamics::base_rotation;
 use crate::simulation::equations::EquationsOfMotion;
@@ -7,7 +7,7 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 
-/// States and rates of the stages of a step, allocated once.
+/// States and rates at the stages of a step, allocated once.
 pub(crate) struct Stages<S> {
     /// State at the start of the step, with velocities relative to the frames of the step.
     pub(crate) start: State<S>,
@@ -21,17 +21,18 @@ pub(crate) struct Stages<S> {
     pub(crate) first: Vec<FirstStage<S>>,
 }
 
-/// First stage of one tree, relative to W.
+/// First stage of one tree; its velocity is relative to W.
 pub(crate) struct FirstStage<S> {
     /// Acceleration at the start of the step, `(nv,)`.
     pub(crate) acceleration: Vec<S>,
     /// Sum of the external forces at the start of the step, W axes, N.
     pub(crate) force: Vec3<S>,
-    /// Velocity of the base's origin at the start of the step, and thus of the step's frame, base axes, m/s.
+    /// Velocity of the base's origin at the start of the step, which is also the velocity of the step's
+    /// frame, base axes, m/s.
     pub(super) frame_velocity_b: Vec3<S>,
 }
 
-/// Both ends of the last step of one tree.
+/// State at the start, and rates at the end, of the last step of one tree.
 pub(crate) struct StepEnds<'a, S> {
     /// State at the start, with its velocity relative to the frame of the step.
     pub(crate) start: &'a TreeState<S>,
@@ -57,8 +58,8 @@ impl<S: Real> Stages<S> {
         }
     }
 
-    /// Evaluates the first stage and enters the frames of the step. Expects kinematics and loads of `state` in
-    /// `equations`.
+    /// Evaluates the first stage and changes to the moving frames of the step. Requires kinematics and loads
+    /// of `state` in `equations`.
     pub(crate) fn evaluate_first(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -77,8 +78,8 @@ impl<S: Real> Stages<S> {
         }
     }
 
-    /// Transforms the velocities of `state` from the frames of the step to W: `v = v' + Rᵀ u`, with the velocity `u` of
-    /// the frame.
+    /// Transforms the velocities of `state` from the moving frames of the step to W: `v = v' + Rᵀ u` with the
+    /// velocity `u` of the frame.
     pub(super) fn leave_step_frame(
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
         state: &mut State<S>,
@@ -100,7 +101,7 @@ impl<S: Real> Stages<S> {
         parts.map(|((start, first), last)| StepEnds { start, first, last })
     }
 
-    /// Returns `q` and `v` of a tree at the start of the last step, of the first lane.
+    /// Returns `q` and `v` of a tree at the start of the last step, in the first lane.
     pub(crate) fn start_state(&self, number: usize) -> [Vec<f64>; 2] {
         let start = &self.start.trees[number];
         let mut v = start.v.clone();
@@ -119,7 +120,7 @@ impl<S: Real> FirstStage<S> {
     fn take(&mut self, rate: &TreeRate<S>, v: &[S]) {
         self.force = rate.wrench.linear;
         self.acceleration.copy_from_slice(&rate.a);
-        // in base axes, the constant velocity u of the frame of the step rotates: a = a' − (ω × u, 0)
+        // in base axes, the constant velocity u of the step's frame rotates: a = a' − (ω × u, 0)
         S::enter(
             #[inline(always)]
             || {

@@ -1,4 +1,4 @@
-//! Coefficients of Dormand and Prince's pair 5(4) and of its dense output of fourth order.
+//! Coefficients of the pair 5(4) of Dormand and Prince and of its fourth-order dense output.
 //!
 //! Source: Dormand and Prince, J. Computational and Applied Mathematics 6(1), 1980; Hairer, Nørsett
 //! and Wanner, Solving Ordinary Differential Equations I, 1993, II.5 and II.6.
@@ -19,7 +19,7 @@ pub(super) const A: [[f64; 6]; 6] = [
 /// Weights of the fifth-order solution.
 const B: [f64; 6] = [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0];
 
-/// Weights of the error estimate: those of the fifth-order solution minus those of the fourth-order one.
+/// Weights of the error estimate: fifth-order weights less fourth-order weights.
 pub(super) const E: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
 
@@ -39,7 +39,8 @@ pub(super) fn dense(x: f64) -> [f64; 7] {
     let y = 1.0 - x;
     std::array::from_fn(|i| {
         let (b, first, last) = (B.get(i).copied().unwrap_or(0.0), f64::from(i == 0), f64::from(i == 6));
-        // cubic Hermite polynomial through both ends, plus a quartic whose value and slope are zero at both ends
+        // cubic Hermite polynomial through both ends, plus a quartic polynomial whose value and slope vanish
+        // at both ends
         x * (b + y * (first - b + x * (2.0 * b - last - first + y * D[i])))
     })
 }
@@ -48,12 +49,13 @@ pub(super) fn dense(x: f64) -> [f64; 7] {
 mod tests {
     use super::{A, C, E, dense};
 
-    /// `Σ_i w_i f(c_i)` over seven stages.
+    /// Returns `Σ_i w_i f(c_i)` over the seven stages.
     fn sum(w: &[f64; 7], f: impl Fn(f64) -> f64) -> f64 {
         w.iter().zip([0.0].iter().chain(&C)).map(|(w, c)| w * f(*c)).sum()
     }
 
-    /// Checks the quadrature conditions `Σ w_i c_i^k` and the order conditions of the trees `Σ w_i a_ij c_j^k`.
+    /// Checks the quadrature conditions `Σ w_i c_i^k` and the order conditions of the trees `Σ w_i a_ij
+    /// c_j^k`.
     #[test]
     fn the_dense_output_is_of_fourth_order_everywhere() {
         for x in [0.1, 0.3, 0.5, 0.77, 1.0_f64] {
@@ -76,7 +78,7 @@ mod tests {
         for k in 0..4 {
             assert!(sum(&E, |c| c.powi(k)).abs() < 1e-15);
         }
-        assert!(sum(&E, |c| c.powi(4)).abs() > 1e-4); // and of no higher one
+        assert!(sum(&E, |c| c.powi(4)).abs() > 1e-4); // the order is no higher
         for (row, c) in A.iter().zip(C) {
             assert!((row.iter().sum::<f64>() - c).abs() < 1e-14);
         }

@@ -12,7 +12,7 @@ use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Largest rotation of the base in a step, rad: the rotation vector must stay well below a full turn.
+/// Largest rotation of the base in a step, rad. The rotation vector must stay well below a full turn.
 pub(super) const LARGEST_ROTATION: f64 = 2.0;
 
 /// Lower bound of the scale of rate errors, as a fraction of the largest rate of the run.
@@ -21,34 +21,34 @@ const SLOW: f64 = 1e-3;
 /// State of the step-size control. A run that resumes from it gives bit-identical results.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepControl {
-    /// Step size to try next, s; zero before the first step.
+    /// Size of the next step to try, s; zero before the first step.
     pub(crate) step: f64,
     /// Error of the last accepted step, relative to the tolerance.
     pub(crate) error: f64,
-    /// Consecutive steps that the tolerance made much shorter than the control period.
+    /// Number of consecutive steps that the tolerance made much shorter than the control period.
     pub(crate) short_steps: usize,
     /// Scales and errors of each tree.
     pub(crate) trees: Vec<TreeControl>,
 }
 
-/// Scales to which the errors of a tree are relative, and the errors of its attitude.
+/// Scales relative to which the errors of a tree are measured, and the errors of its attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TreeControl {
     /// Largest rate, rad/s, and largest speed, m/s, so far.
     pub(crate) fastest: [f64; 2],
     /// Sum of the estimated attitude errors of all steps, rad.
     pub(crate) rotation_error: f64,
-    /// Radius of gyration of the tree at the start of the run, m: the scale of lengths.
+    /// Radius of gyration of the tree at the start of the run, m, used as the scale of lengths.
     pub(crate) size: f64,
 }
 
 impl StepControl {
-    /// Returns the control of `trees` trees before the first step.
+    /// Creates the control of `trees` trees before the first step.
     pub(super) fn new(trees: usize) -> Self {
         Self { step: 0.0, error: 0.0, short_steps: 0, trees: vec![TreeControl::default(); trees] }
     }
 
-    /// Computes the sizes of the trees at the first call. Expects kinematics in `equations`.
+    /// Computes the sizes of the trees in the first call. Requires kinematics in `equations`.
     pub(super) fn measure_sizes<S: Real>(
         &mut self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -78,7 +78,7 @@ pub(super) struct Tolerance {
     pub(super) epsilon: f64,
     /// Duration of the run, s.
     horizon: f64,
-    /// Weight of the attitude in the error; a test sets it to zero.
+    /// Weight of the attitude error; a test sets it to zero.
     pub(super) attitude_weight: f64,
 }
 
@@ -87,11 +87,12 @@ impl Tolerance {
         Self { epsilon, horizon, attitude_weight: 1.0 }
     }
 
-    /// Returns the largest error of any tree in the last step, relative to the tolerance; NaN if the step must be
-    /// rejected.
+    /// Returns the largest error of any tree in the last step, relative to the tolerance; NaN if the step
+    /// must be rejected.
     ///
-    /// The tolerance is `ε` times a scale: 1 rad for attitude and revolute joints, the radius of gyration of the
-    /// tree or, if larger, its distance from the origin of W for lengths, and the magnitude of the rates for rates.
+    /// The tolerance is `ε` times a scale. The scale is 1 rad for attitude and revolute joints, the radius of
+    /// gyration of the tree or, if larger, its distance from the origin of W for lengths, and the magnitude
+    /// of the rates for rates.
     pub(super) fn error<S: Real>(
         &self,
         stages: &mut Stages<S>,
@@ -121,7 +122,8 @@ impl Tolerance {
     /// Returns the error of one tree in a step.
     fn system_error<S: Real>(&self, step: &SystemStep<'_, '_, S>) -> f64 {
         let SystemStep { start, trial, sum, size, spin, speed, h, fastest: [fastest, highest], .. } = *step;
-        // the rounding of a robot at rest must not stop the run: a drift of ε/1000 by the end of the run is accepted
+        // rounding errors of a robot at rest must not stop the run, so a drift of ε/1000 by the end of the
+        // run is accepted
         let slow = SLOW * fastest.max(vector(&trial.v) / size).max(1.0 / self.horizon);
         let crawl = SLOW * highest.max(size / self.horizon);
 
@@ -146,12 +148,12 @@ impl Tolerance {
     }
 }
 
-/// Step of one tree whose error is measured.
+/// Step of one tree for which the error is computed.
 struct SystemStep<'a, 's, S> {
     tree: &'a Tree<'s, S>,
     start: &'a TreeState<S>,
     trial: &'a TreeState<S>,
-    /// Error estimate: fifth-order minus fourth-order solution.
+    /// Error estimate: fifth-order less fourth-order solution.
     sum: &'a TreeRate<S>,
     h: f64,
     size: f64,
@@ -187,14 +189,15 @@ impl<'a, 's, S: Real> SystemStep<'a, 's, S> {
         self.tree.model.nodes()[j + 1].axis == Axis::Prismatic
     }
 
-    /// Returns the magnitude of the rate of a joint, the larger of those at both ends of the step, rad/s (m/s).
+    /// Returns the magnitude of the rate of a joint, rad/s (m/s): the larger of the values at both ends of
+    /// the step.
     fn rate(&self, j: usize) -> f64 {
         let rate = |state: &TreeState<S>| state.v[BASE_NV + j].lane(0).abs();
         rate(self.start).max(rate(self.trial))
     }
 }
 
-/// Returns the norm of the first lane.
+/// Returns the norm of a vector in the first lane.
 fn norm<S: Real>(v: Vec3<S>) -> f64 {
     v.norm().lane(0)
 }

@@ -7,7 +7,7 @@ use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Force, Motion, Real};
 
 impl<S: Real> Tree<'_, S> {
-    /// Returns the first joint that moves into its stop, if there is one.
+    /// Returns the first joint that moves into its stop, if any.
     pub(in crate::simulation) fn first_impact(&self, state: &TreeState<S>) -> Option<usize> {
         (0..self.model.joint_count()).find(|&j| {
             let stop = self.modes.stop(j, state.q[BASE_NQ + j].lane(0));
@@ -15,12 +15,13 @@ impl<S: Real> Tree<'_, S> {
         })
     }
 
-    /// Applies the impulses of all joints that move into their stops. Expects the kinematics of `state` in `data`,
-    /// which afterwards holds the kinematics after the impacts, without loads.
+    /// Applies the impulses of all joints that move into their stops. Requires the kinematics of `state` in
+    /// `data`, which afterwards holds the kinematics after the impacts, without loads.
     ///
-    /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj`: the momentum does not change, and the dissipated energy is
-    /// `−½ (1 − e) λ q̇_j`. Joints that rest at their stops stay locked as long as their stops push against them.
-    /// Friction exerts no impulse. If `is_endless`, joints do not rebound, which ends an infinite sequence of bounces.
+    /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj` with the coefficient of restitution `e`. The momentum
+    /// does not change, and the dissipated energy is `−½ (1 − e) λ q̇_j`. Joints that rest at their stops
+    /// stay locked as long as their stops push against them. Friction exerts no impulse. If `is_endless`,
+    /// joints do not rebound, which ends an infinite sequence of bounces.
     pub(crate) fn resolve_impacts(&mut self, state: &mut TreeState<S>, is_endless: bool) {
         let n = self.model.joint_count();
         for round in 0..4 * n + 4 {
@@ -40,7 +41,8 @@ impl<S: Real> Tree<'_, S> {
                 state.shares[share] += lost;
             }
             self.project_momentum(state);
-            // the drives of joints with a given motion work too while they keep their rates
+            // the drives of joints with a given motion do work as well, because they keep their rates during
+            // the impulse
             state.work +=
                 if self.modes.given().is_empty() { -lost } else { self.kinetic_energy(state) - before };
         }
@@ -51,8 +53,8 @@ impl<S: Real> Tree<'_, S> {
         kinetic_energy(&self.model, &self.data, &state.v)
     }
 
-    /// Writes the change of velocity for a unit impulse at joint `j` to `scratch`; returns `(M⁻¹)_jj`, the change of
-    /// that joint's rate per unit of signed impulse.
+    /// Writes the change of velocity caused by a unit impulse at joint `j` to `scratch`. Returns `(M⁻¹)_jj`,
+    /// the change of that joint's rate per unit impulse.
     fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> f64 {
         let n = self.model.joint_count();
         for body in &mut self.data.bodies {
@@ -68,7 +70,7 @@ impl<S: Real> Tree<'_, S> {
             (0..n).map(|i| i != j && (self.modes.is_given(i) || rests_at_stop(i))).collect();
         for _ in 0..=n {
             locked_dynamics_recursion(&self.model, &mut self.data, &at_rest, &impulse, &locked, &[], &mut a);
-            // a stop can only push: a joint that the stop would have to pull is released
+            // a stop can only push, so a joint on which the stop would have to pull is released
             let pulls =
                 |i: &usize| locked[*i] && self.data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;
             let Some(i) = (0..n).find(pulls) else { break };

@@ -1,23 +1,23 @@
-//! Determines which joints with static friction slip and which stick.
+//! Determination of the joints with static friction that slip and of those that stick.
 
 use crate::dynamics::locked_dynamics_recursion;
 use crate::model::{Axis, BASE_NQ, BASE_NV};
 use crate::simulation::tree::Tree;
 use crate::spatial::{Force, Motion, Real};
 
-/// Fraction of the torques at a joint by which the holding torque may exceed its bounds, so that rounding does not
-/// release the joint.
+/// Fraction of the torques at a joint by which the holding torque may exceed its bounds before the joint is
+/// released, to allow for rounding errors.
 const ROUNDING: f64 = 1e-10;
 
 impl<S: Real> Tree<'_, S> {
-    /// Determines the modes of the joints for the step that starts at `q` and `v`. Expects kinematics and loads in
-    /// `data`.
+    /// Determines the modes of the joints for the step that starts at `q` and `v`. Requires kinematics and
+    /// loads in `data`.
     ///
-    /// All joints at rest are locked at first. A locked joint slips if holding it requires more torque than friction
-    /// and stop provide, and a slipping joint that would accelerate against its direction of slip is locked again.
-    /// With bounded torques and a positive definite inertia the solution is unique. In each pass all inconsistent
-    /// joints change their modes; after more than `n` passes, only the first of them does, which prevents cycles
-    /// (Murty's rule).
+    /// Initially, all joints at rest are locked. A locked joint is released if holding it requires more
+    /// torque than friction and stop provide, and a slipping joint that would accelerate against its
+    /// direction of slip is locked again. With bounded torques and a positive definite inertia the solution
+    /// is unique. In each pass all inconsistent joints change their modes. After more than `n` passes, only
+    /// the first of them changes, which prevents cycles (Murty's rule).
     ///
     /// Source: Murty, Linear Algebra and its Applications 7(1), 1974.
     pub(crate) fn solve_modes(&mut self, q: &[S], v: &[S]) {
@@ -59,8 +59,8 @@ impl<S: Real> Tree<'_, S> {
         self.scratch = a;
     }
 
-    /// Returns the new mode of a joint at rest: its direction of slip, or 0 if it should stick; `None` if its current
-    /// mode is consistent.
+    /// Returns the new mode of a joint at rest, which is its direction of slip, or 0 if it should stick;
+    /// `None` if its present mode is consistent.
     fn mode_change(&self, j: usize, q: &[S], v: &[S], a: &[S]) -> Option<f64> {
         if v[BASE_NV + j].lane(0) != 0.0 {
             return None;
@@ -73,8 +73,9 @@ impl<S: Real> Tree<'_, S> {
         (a[BASE_NV + j].lane(0) * direction < 0.0).then_some(0.0)
     }
 
-    /// Returns the additional torque that a locked joint can hold before it slips, relative to the torques that act
-    /// on it, and the direction in which it would slip. Expects the holding torques of a recursion in `data`.
+    /// Returns the additional torque that a locked joint can hold before it slips, relative to the torques
+    /// that act on the joint, and the direction in which it would slip. Requires the holding torques of an
+    /// ABA recursion in `data`.
     fn stick_margin(&self, j: usize, q: &[S]) -> (f64, f64) {
         let body = &self.data.bodies[j + 1];
         let (lowest, highest) = self.modes.torque_bounds(j, q[BASE_NQ + j].lane(0));
@@ -86,15 +87,15 @@ impl<S: Real> Tree<'_, S> {
             Axis::Revolute => body.force.angular,
             Axis::Prismatic => body.force.linear,
         };
-        // λ = Uᵀ a' − τ + Sᵀ pA, the magnitude of each term; U and a' about the parent's origin
+        // λ = Uᵀ a' − τ + Sᵀ pA with the magnitude of each term; U and a' refer to the parent's origin
         let terms = size(body.acceleration.referred_to(-body.offset), body.u_force) + along_axis.norm();
         let scale = terms.lane(0) + self.forces[BASE_NV + j].lane(0).abs() + friction + f64::MIN_POSITIVE;
         let (down, up) = ((highest - need) / scale, (need - lowest) / scale);
         if down < up { (down, -1.0) } else { (up, 1.0) }
     }
 
-    /// Returns the smallest stick margin of the locked joints; negative if a joint should slip. Expects kinematics
-    /// and loads in `data`.
+    /// Returns the smallest stick margin of the locked joints, which is negative if a joint should slip.
+    /// Requires kinematics and loads in `data`.
     pub(super) fn least_stick_margin(&mut self, q: &[S], v: &[S]) -> f64 {
         self.update_joint_forces(v);
         let mut a = std::mem::take(&mut self.scratch);

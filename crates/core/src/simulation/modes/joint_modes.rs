@@ -5,37 +5,37 @@ use crate::spatial::Real;
 use crate::world::GivenJoint;
 use serde::{Deserialize, Serialize};
 
-/// Distance by which a joint may exceed a limit and still count as being at the limit, rad (m).
+/// Distance, rad (m), from a position limit within which a joint is treated as being at the limit.
 pub(in crate::simulation) const AT_LIMIT: f64 = 1e-12;
 
-/// Magnitude of the rate below which the friction compensation for an external engine changes its direction, rad/s
-/// (m/s).
+/// Rate, rad/s (m/s), below which the friction compensation for an external engine changes continuously from
+/// one direction to the other.
 const TURN: f64 = 1e-2;
 
-/// Magnitude of the requested acceleration above which the friction compensation for an external engine expects a
-/// joint at rest to move, rad/s² (m/s²).
+/// Requested acceleration, rad/s² (m/s²), from which the friction compensation for an external engine fully
+/// assumes that a joint at rest will move.
 const START: f64 = 1e-2;
 
-/// Modes of the joints during a step. They follow from the state at its start and from the accelerations that the
-/// control laws request.
+/// Modes of the joints during a step. They depend on the state at the start of the step and on the
+/// accelerations that the control laws request.
 ///
-/// A joint is at rest if its rate is exactly zero. With static friction `fs`, or at a stop, it is locked while the
-/// torque `λ` required to hold it lies within [`JointModes::torque_bounds`]. Kinetic friction opposes the motion of a
-/// joint.
+/// A joint is at rest if its rate is exactly zero. A joint at rest with static friction `fs`, or at a stop,
+/// is locked while the torque `λ` required to hold it is within [`JointModes::torque_bounds`]. Kinetic
+/// friction opposes the motion of a joint.
 ///
-/// A law that compensates Coulomb friction gives the acceleration it requests for each of its joints. The motor of
-/// the joint then adds the torque of the friction itself: while the joint moves, the kinetic friction in the
-/// direction of its rate, which changes sign at the instant at which the rate does; at rest, if the law requests an
-/// acceleration, the static friction in the direction of the law's torque. Friction then has no effect on moving
-/// joints, and it holds the joints that the law keeps at rest.
+/// A law that compensates Coulomb friction states the acceleration that it requests for each of its joints.
+/// The motor of the joint then adds the friction torque. While the joint moves, this is the kinetic friction
+/// in the direction of the rate, whose sign changes at the same instant as that of the rate. At rest, if the
+/// law requests an acceleration, it is the static friction in the direction of the law's torque. Friction
+/// then has no effect on moving joints, but holds the joints that the law keeps at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct JointModes {
     /// Kinetic friction, N m (N).
     friction: Vec<f64>,
-    /// Static friction, N m (N), at least the kinetic one.
+    /// Static friction, N m (N), which is at least the kinetic friction.
     static_friction: Vec<f64>,
-    /// Accelerations that a law requests for the joints whose friction it compensates, rad/s² (m/s²); zero if a joint
-    /// at rest is to stay at rest.
+    /// Accelerations that a law requests for the joints whose friction it compensates, rad/s² (m/s²). Zero
+    /// means that a joint at rest is to stay at rest.
     requested: Vec<Option<f64>>,
     /// Lower and upper position limit of each joint, rad (m); infinite without stops.
     limits: Vec<(f64, f64)>,
@@ -44,9 +44,10 @@ pub(crate) struct JointModes {
     is_active: bool,
     locked: Vec<bool>,
     any_locked: bool,
-    /// Direction of slip of joints with friction: −1, 0 or 1.
+    /// Direction of slip, −1, 0 or 1, of each joint with friction.
     direction: Vec<f64>,
-    /// Joints whose positions are functions of time. They are locked: their accelerations do not depend on torques.
+    /// Joints whose positions are given functions of time. They are locked: their accelerations do not depend
+    /// on torques.
     given: Vec<GivenJoint>,
     /// Accelerations of the locked joints, `(n,)`, rad/s² (m/s²); empty if all are zero.
     accelerations: Vec<f64>,
@@ -88,8 +89,8 @@ impl JointModes {
         }
     }
 
-    /// Returns the modes of a tree with `count` joints, of which `given` move as functions of time; each entry of `parts`
-    /// is the modes of some of its joints and their indices in the tree.
+    /// Creates the modes of a tree with `count` joints, of which `given` are given functions of time. Each
+    /// entry of `parts` consists of the modes of some of the joints and of their indices in the tree.
     pub(in crate::simulation) fn joined<'m>(
         count: usize,
         given: Vec<GivenJoint>,
@@ -123,18 +124,18 @@ impl JointModes {
         all
     }
 
-    /// Locks the joints that move as functions of time.
+    /// Locks the joints whose positions are given functions of time.
     fn lock_given(&mut self) {
         self.given.iter().for_each(|given| self.locked[given.joint] = true);
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Returns true if joint `j` moves as a function of time.
+    /// Returns true if the position of joint `j` is a given function of time.
     pub(super) fn is_given(&self, j: usize) -> bool {
         self.given.iter().any(|given| given.joint == j)
     }
 
-    /// Returns the joints that move as functions of time.
+    /// Returns the joints whose positions are given functions of time.
     pub(in crate::simulation) fn given(&self) -> &[GivenJoint] {
         &self.given
     }
@@ -144,7 +145,8 @@ impl JointModes {
         &self.accelerations
     }
 
-    /// Writes the positions and rates at `t`, s, of the joints that move as functions of time, to `q` and `v`.
+    /// Writes the positions and rates at `t`, s, of the joints that are given functions of time to `q` and
+    /// `v`.
     pub(in crate::simulation) fn move_given<S: Real>(&self, t: f64, q: &mut [S], v: &mut [S]) {
         for given in &self.given {
             let [position, rate, _] = given.at(t);
@@ -152,14 +154,15 @@ impl JointModes {
         }
     }
 
-    /// Computes the accelerations at `t`, s, of the joints that move as functions of time.
+    /// Computes the accelerations at `t`, s, of the joints that are given functions of time.
     pub(in crate::simulation) fn accelerate_given(&mut self, t: f64) {
         for given in &self.given {
             self.accelerations[given.joint] = given.at(t)[2];
         }
     }
 
-    /// Takes the modes in a step from those of a tree; `joints` are the indices of the joints in the tree.
+    /// Copies the modes during a step from those of a tree; `joints` are the indices of the joints in the
+    /// tree.
     pub(in crate::simulation) fn take(&mut self, tree: &Self, joints: &[usize]) {
         for (own, &joint) in joints.iter().enumerate() {
             (self.locked[own], self.direction[own]) = (tree.locked[joint], tree.direction[joint]);
@@ -167,7 +170,7 @@ impl JointModes {
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Returns which joints are locked and in which direction the others slip, `(n,)` each.
+    /// Returns which joints are locked and the directions in which the others slip, `(n,)` each.
     pub(in crate::simulation) fn save(&self) -> SavedModes {
         SavedModes { locked: self.locked.clone(), direction: self.direction.clone() }
     }
@@ -184,12 +187,12 @@ impl JointModes {
         self.is_active
     }
 
-    /// Returns which joints are locked, `(n,)`; `None` if no joint is locked.
+    /// Returns an array that is true for locked joints, `(n,)`; `None` if no joint is locked.
     pub(in crate::simulation) fn locked(&self) -> Option<&[bool]> {
         self.any_locked.then_some(&self.locked[..])
     }
 
-    /// Returns which joints are locked, `(n,)`.
+    /// Returns an array that is true for locked joints, `(n,)`.
     pub(super) fn is_locked_each(&self) -> &[bool] {
         &self.locked
     }
@@ -204,31 +207,33 @@ impl JointModes {
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Returns the kinetic friction in the direction of slip, which is subtracted from the joint torque, N m (N).
+    /// Returns the kinetic friction in the direction of slip, N m (N), which is subtracted from the joint
+    /// torque.
     fn drag(&self, j: usize) -> f64 {
         self.friction[j] * self.direction[j]
     }
 
-    /// Returns the torques that the motors add to those of the law during the step, `(n,)`, N m (N); `None` for
-    /// joints whose friction is not compensated.
+    /// Returns the torques that the motors add during the step to compensate friction, `(n,)`, N m (N);
+    /// `None` for joints without compensation.
     pub(in crate::simulation) fn compensations(&self) -> impl Iterator<Item = Option<f64>> {
         let drag =
             self.friction.iter().zip(&self.direction).map(|(friction, direction)| friction * direction);
         self.requested.iter().zip(drag).map(|(requested, drag)| requested.map(|_| drag))
     }
 
-    /// Returns the kinetic friction minus its compensation, N m (N); zero if a law compensates it.
+    /// Returns the kinetic friction less its compensation, N m (N), which is zero if a law compensates the
+    /// friction.
     pub(in crate::simulation) fn remaining_drag(&self, j: usize) -> f64 {
         if self.requested[j].is_some() { 0.0 } else { self.drag(j) }
     }
 
-    /// Returns the accelerations requested for the joints whose friction a control law compensates, `(n,)`, rad/s²
-    /// (m/s²).
+    /// Returns the accelerations requested for the joints whose friction a control law compensates, `(n,)`,
+    /// rad/s² (m/s²).
     pub(crate) fn requested(&self) -> &[Option<f64>] {
         &self.requested
     }
 
-    /// Returns [`JointModes::requested`] for modification by the law.
+    /// Returns the accelerations of [`JointModes::requested`] as a mutable slice, which laws write.
     pub(crate) fn requested_mut(&mut self) -> &mut [Option<f64>] {
         &mut self.requested
     }
@@ -238,8 +243,8 @@ impl JointModes {
         self.static_friction[j] > 0.0
     }
 
-    /// Returns the largest torque with which friction holds a joint at rest, N m (N); zero if the motor compensates
-    /// it.
+    /// Returns the largest torque with which friction can hold a joint at rest, N m (N); zero if the motor
+    /// compensates the friction.
     pub(super) fn holding_friction(&self, j: usize) -> f64 {
         if self.requested[j].is_some_and(|a| a != 0.0) { 0.0 } else { self.static_friction[j] }
     }
@@ -252,13 +257,15 @@ impl JointModes {
         self.limits[j]
     }
 
-    /// Returns the stop at which a joint at `q` rests: 1 for the upper, −1 for the lower, 0 for neither.
+    /// Returns the stop at which a joint at `q` rests: 1 for the upper stop, −1 for the lower stop, 0 for
+    /// neither.
     pub(super) fn stop(&self, j: usize, q: f64) -> f64 {
         let (lower, upper) = self.limits[j];
         f64::from(q >= upper) - f64::from(q <= lower)
     }
 
-    /// Returns the bounds of the torque that holds a joint at rest: `−fs..fs`, unbounded where a stop pushes.
+    /// Returns the bounds of the torque with which friction and a stop hold a joint at rest: `−fs..fs`,
+    /// unbounded on the side on which a stop pushes.
     pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
         if self.is_given(j) {
             return (f64::NEG_INFINITY, f64::INFINITY);
@@ -269,8 +276,8 @@ impl JointModes {
         (lowest, highest)
     }
 
-    /// Computes the initial guess of the modes: joints at rest that friction or a stop can hold are locked, all
-    /// others slip.
+    /// Sets the initial guess of the modes: joints at rest that friction or a stop can hold are locked, all
+    /// other joints slip.
     pub(super) fn lock_joints_at_rest<S: Real>(&mut self, q: &[S], v: &[S]) {
         for j in 0..self.locked.len() {
             let (q, rate) = (q[BASE_NQ + j].lane(0), v[BASE_NV + j].lane(0));
@@ -281,12 +288,13 @@ impl JointModes {
         self.lock_given();
     }
 
-    /// Sets the friction compensation for an external engine that has its own friction model and holds torques
-    /// constant over its steps.
+    /// Sets the friction compensation for an external engine, which has a different friction model and holds
+    /// torques constant during its steps.
     ///
-    /// With such friction joints creep instead of sticking, and the sign of a small rate is arbitrary. Within
-    /// ±[`TURN`] the compensation therefore changes continuously from one direction to the other, shifted in the
-    /// direction of the acceleration that the law requests (fully from [`START`] on).
+    /// In such an engine joints creep instead of sticking, and the sign of a small rate is arbitrary. Within
+    /// ±[`TURN`] the compensation therefore changes continuously from one direction to the other. The
+    /// transition is shifted in the direction of the requested acceleration, fully for accelerations of
+    /// [`START`] and more.
     pub(in crate::simulation) fn compensate_by_rate<S: Real>(&mut self, v: &[S]) {
         for (j, requested) in self.requested.iter().enumerate() {
             let start = requested.map_or(0.0, |a| (a / START).clamp(-1.0, 1.0));

@@ -1,4 +1,4 @@
-//! Margins of the joints of a tree to the next change of their modes, and corrections of the state at the change.
+//! Margins of the joints of a tree to the next change of mode, and corrections of the state at such a change.
 
 use super::joint_modes::AT_LIMIT;
 use crate::model::{BASE_NQ, BASE_NV};
@@ -6,7 +6,7 @@ use crate::simulation::tree::Tree;
 use crate::simulation::tree_state::TreeState;
 use crate::spatial::Real;
 
-/// A step of one tree, from `start` to `end`.
+/// Step of one tree, from `start` to `end`.
 pub(super) struct ModesOfStep<'a, 's, S> {
     pub(super) tree: &'a Tree<'s, S>,
     pub(super) start: &'a TreeState<S>,
@@ -26,7 +26,8 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         self.joints().map(margin).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the rate of a slipping joint in its direction of slip, relative to its rates at both ends of the step.
+    /// Returns the rate of a slipping joint in its direction of slip, relative to the rates at both ends of
+    /// the step.
     fn slip_margin(&self, j: usize) -> f64 {
         let modes = &self.tree.modes;
         let direction = modes.direction(j);
@@ -37,7 +38,8 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         direction * last / (first.abs() + last.abs()).max(f64::MIN_POSITIVE)
     }
 
-    /// Returns the distance of a joint from the nearer limit, relative to the distance at the start of the step.
+    /// Returns the distance of a joint from the nearer limit, relative to the distance at the start of the
+    /// step.
     fn limit_margin(&self, j: usize) -> f64 {
         let modes = &self.tree.modes;
         let (lower, upper) = modes.limits(j);
@@ -49,14 +51,14 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         (distance(last) + AT_LIMIT) / (distance(first).abs() + AT_LIMIT)
     }
 
-    /// Returns the first joint that would start to slip and at once reverse its direction.
+    /// Returns the first joint that would start to slip and immediately reverse its direction.
     pub(super) fn first_that_slips_back(&self) -> Option<usize> {
         let slips_back = |j: &usize| self.start.v[BASE_NV + j].lane(0) == 0.0 && self.slip_margin(*j) <= 0.0;
         self.joints().find(slips_back)
     }
 
-    /// Returns the rate of the first joint that came to rest or reached its stop: the larger of the magnitudes at both
-    /// ends of the step, rad/s (m/s).
+    /// Returns the rate of the first joint that came to rest or reached its stop, rad/s (m/s): the larger of
+    /// the magnitudes at both ends of the step.
     pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
         let rate = |state: &TreeState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
         let came_to_rest = |j: &usize| rate(self.end, *j) == 0.0 && rate(self.start, *j) > 0.0;
@@ -66,8 +68,8 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
 }
 
 impl<S: Real> Tree<'_, S> {
-    /// Removes rounding at an event: sets the rates of joints that came to rest to zero, and moves joints past a
-    /// limit to the limit.
+    /// Removes rounding errors at an event: sets the rates of joints that came to rest to zero, and moves
+    /// joints that are beyond a limit to the limit.
     pub(super) fn snap_to_event(&self, start: &TreeState<S>, state: &mut TreeState<S>) {
         let modes = &self.modes;
         for j in 0..self.model.joint_count() {

@@ -1,4 +1,5 @@
-//! Modes of the joints: which stick, slip or rest at a stop, and the instants within a step at which a mode changes.
+//! Modes of the joints (sticking, slipping or resting at a stop), and the instants within a step at which a
+//! mode changes.
 
 mod impacts;
 mod joint_friction;

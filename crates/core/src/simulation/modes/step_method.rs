@@ -1,4 +1,5 @@
-//! Takes steps that end early when a joint stops, starts to slip or reaches a limit, or a latch opens or closes.
+//! Step method that ends a step early when a joint stops, starts to slip or reaches a limit, or when a latch
+//! opens or closes.
 
 use super::margins::ModesOfStep;
 use crate::simulation::equations::EquationsOfMotion;
@@ -8,17 +9,19 @@ use crate::simulation::integrator::{Integration, StepSettings};
 use crate::simulation::state::State;
 use crate::spatial::Real;
 
-/// Number of consecutive idle steps after which friction stops joints only at the ends of steps and restitution is
-/// zero, so that infinite sequences of bounces end.
+/// Number of consecutive idle steps after which friction stops joints only at the ends of steps and
+/// restitution is zero, so that infinite sequences of bounces end.
 const MOST_IDLE_STEPS: usize = 32;
-/// Fraction of a regular step: a shorter step is idle if no joint came to rest or reached its stop in it.
+/// Fraction of a regular step below which a step is idle, unless a joint came to rest or reached its stop
+/// during the step.
 const IDLE: f64 = 1e-6;
-/// A step in which a joint came to rest or reached its stop is idle if the joint moved by less than this, rad or m.
+/// Displacement, rad or m, below which a step is idle although the joint came to rest or reached its stop.
 const STILL: f64 = 1e-9;
-/// Resolution of the instant of an event, as a fraction of the step.
+/// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
 
-/// Integrates the equations of motion and locates the changes of modes, of joints and of latches, within a step.
+/// Method that integrates the equations of motion and locates the changes of modes, of joints and of latches,
+/// within a step.
 pub(crate) struct StepMethod<S> {
     pub(crate) integration: Integration<S>,
     start: State<S>,
@@ -47,8 +50,8 @@ impl<S: Real> StepMethod<S> {
         self.idle_steps = 0;
     }
 
-    /// Applies the impacts at `state`. Expects its kinematics, with projected base twists, in `equations`, which
-    /// afterwards hold the kinematics after the impacts. The loads must be computed again.
+    /// Applies the impacts at `state`. Requires its kinematics, with projected base twists, in `equations`,
+    /// which afterwards hold the kinematics after the impacts. The loads must then be computed again.
     pub(crate) fn resolve_impacts(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -62,8 +65,8 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Moves `state` from the start of `interval` towards its end and returns the time reached, s. Expects projected
-    /// base twists, and kinematics, loads and joint modes in `equations`.
+    /// Advances `state` from the start of `interval` towards its end and returns the time reached, s.
+    /// Requires projected base twists, and kinematics, loads and joint modes in `equations`.
     pub(crate) fn advance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -88,7 +91,8 @@ impl<S: Real> StepMethod<S> {
         Ok(reached)
     }
 
-    /// Returns true if the step of length `h`, s, that ended at `state` is idle, that is, made almost no progress.
+    /// Returns true if the step of length `h`, s, that ended at `state` is idle, that is, if it made almost
+    /// no progress.
     fn is_idle(
         &self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -101,7 +105,7 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Returns the step of each tree from its start to `end`.
+    /// Returns, for each tree, the step from its start to `end`.
     fn modes_of<'a, 's, W>(
         &'a self,
         equations: &'a EquationsOfMotion<'s, S, W>,
@@ -112,10 +116,11 @@ impl<S: Real> StepMethod<S> {
         parts.map(move |((tree, start), end)| ModesOfStep { tree, start, end, ignores_slip })
     }
 
-    /// Returns the fraction of the step after which a mode changes, and moves `state` there; 1 if no mode changes.
+    /// Returns the fraction of the step at which a mode changes, and moves `state` there; returns 1 if no
+    /// mode changes.
     ///
-    /// Regula falsi (Illinois) on the length of the step, so that the state at the event has the order of the
-    /// integrator.
+    /// The fraction is found by regula falsi (Illinois variant) on the length of the step, so that the state
+    /// at the change has the order of accuracy of the integrator.
     fn locate(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -129,8 +134,8 @@ impl<S: Real> StepMethod<S> {
         state.copy_from(&self.start);
         let latches = equations.latch_margin(state);
         let (mut low, mut before) = (0.0, self.least_margin(equations, state).min(latches));
-        // the margin of a joint that starts to slip is zero at first: either it soon becomes positive, or the joint
-        // is locked for this step
+        // the margin of a joint that starts to slip is initially zero: either it soon becomes positive, or
+        // the joint is locked for this step
         let mut fraction = 1.0;
         for _ in 0..10 {
             if before > 0.0 {
@@ -184,8 +189,8 @@ impl<S: Real> StepMethod<S> {
         self.margin(equations, state, (whole.0, end))
     }
 
-    /// Returns the relative margin to the next change of a mode, of a joint or of a latch; negative if a mode should
-    /// already have changed.
+    /// Returns the relative margin to the next change of mode, of a joint or of a latch. It is negative if
+    /// the change is overdue.
     fn margin(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -213,8 +218,8 @@ impl<S: Real> StepMethod<S> {
         self.modes_of(equations, state).map(|step| step.least_margin()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Locks the first joint that would start to slip and at once reverse its direction; returns true if there is
-    /// such a joint.
+    /// Locks the first joint that would start to slip and immediately reverse its direction. Returns true if
+    /// there is such a joint.
     fn keep_stuck(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
