@@ -1,4 +1,4 @@
-"""Cost of the whole environment: the paper's reach as bundled and with all effects, alternately.
+"""Cost of the whole environment: times the paper's reach as bundled and with all effects, alternately.
 
 Run it with ``make bench-everything``. The result is the ratio of the real-time factors.
 """

@@ -1,4 +1,4 @@
-"""Times orbit propagation alternately with other packages on PyPI.
+"""Times orbit propagation by this package and by other packages on PyPI, alternately.
 
 ``pip install scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``, jobs ``sgp4``,
 ``kepler`` and ``day``. Each round times this package and the other one, best of three runs; the output is
@@ -39,7 +39,7 @@ def best(job: Callable[[], Any]) -> float:
 
 
 def compare(title: str, theirs: Callable[[], Any], ours: Callable[[], Any], rounds: int) -> None:
-    """Times both alternately and prints the ratio."""
+    """Times both jobs alternately and prints the ratio of their times, with its spread."""
     pairs = [(best(theirs), best(ours)) for _ in range(rounds)]
     ratios = [a / b for a, b in pairs]
     a, b = (statistics.median(column) * 1e3 for column in zip(*pairs, strict=True))
@@ -48,7 +48,7 @@ def compare(title: str, theirs: Callable[[], Any], ours: Callable[[], Any], roun
 
 
 def element_sets(count: int) -> list[tuple[str, str]]:
-    """Returns random low orbits of all inclinations."""
+    """Returns random element sets (two lines) of low orbits of all inclinations."""
     draw = np.random.default_rng(3)
 
     def line(text: str) -> str:
@@ -161,7 +161,7 @@ def gravity(r: Any, mu: Any, radius: Any, j2: Any) -> Any:
 
 
 def extended_day(r: Any, v: Any, mu: float, radius: float, j2: float) -> Any:
-    """Returns the final state in numpy's longdouble by extrapolation of Stoermer's rule, 1 min steps."""
+    """Returns the final state in numpy's longdouble, by extrapolation of Stoermer's rule with 1 min steps."""
     wide = np.longdouble
     mu, radius, j2 = wide(mu), wide(radius), wide(j2)
 

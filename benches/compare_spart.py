@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-os.environ.setdefault("OMP_NUM_THREADS", "1")  # its parallel loops over a dozen links only cost time
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # SPART's parallel loops over a dozen links only cost time
 
 import numpy as np
 from SPARTpy import SPARTpy as spartpy
@@ -26,7 +26,7 @@ ROUNDS, CALLS, BATCH = 15, 500, 4096
 
 
 class Timed:
-    """SPART's library; records the time of its right-hand side without the Python wrapper."""
+    """Wrapper of SPART's library that records the time of its right-hand side without the Python code."""
 
     def __init__(self, library: Any) -> None:
         self.library, self.took = library, 0.0
@@ -49,7 +49,7 @@ def seconds(job: Callable[[], object], calls: int) -> float:
 
 
 def compare(name: str, library: Timed) -> None:
-    """Prints the ratios for a bundled robot."""
+    """Prints the ratios of the times for a bundled robot."""
     model, (engine, joints) = oo.robots.load(name), spart(oo.robots.path(name).read_text())
     state = random_state(model, np.random.default_rng(1), frames=1)
     order = [model.joint_names.index(joint) for joint in joints]

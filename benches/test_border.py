@@ -1,9 +1,9 @@
 """Cost of calls from Python, with pytest-benchmark: run by ``make bench-rust``, not by ``make test``.
 
-Fixed: the bundled humanoid, random states drawn once, arrays of float64. Varied: the kernel, one state or a
-thousand, the way in which columns of a run are read; for loading, the number of links. The kernels are
-timed in Rust; the kernel of group ``call`` does almost nothing, so its time is that of the call. Batches
-run on one thread.
+Fixed: the bundled humanoid, random states drawn once, arrays of float64. Varied: the function, one state or a
+thousand, the way in which columns of a run are read; for loading, the number of links. The algorithms
+themselves are timed in Rust; the function of group ``call`` does almost nothing, so its time is that of a
+call. Batches run on one thread.
 """
 
 from __future__ import annotations

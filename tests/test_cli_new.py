@@ -146,7 +146,7 @@ def test_joints_hold_if_no_motion_can_be_simulated_in_time(
     monkeypatch.setattr(trial, "_FIRST_ESTIMATE_S", 0.1)
     stiff = dynamics(arm(SEVEN[:4]), 'damping="1e6" friction="5"')
     text, summary = drafted(stiff, tmp_path)
-    assert "trial runs of arm motions failed: too slow to simulate (2 runs), the damper" in text
+    assert "trial runs of arm motions failed: too slow to simulate (2 runs), the damping" in text
     assert "  - name: hold                  # all joints keep" in text
     assert summary["simulated_s"] == 1.0
     with pytest.raises(ScenarioError, match=r"too slow to simulate \(3 runs\), the damper of j"):
@@ -168,7 +168,7 @@ def test_a_motion_is_as_slow_as_the_effort_limits_require(tmp_path: Path) -> Non
     sticky = dynamics(urdf.replace('effort="100"', 'effort="1"'), 'friction="2"')
     text, summary = drafted(sticky, tmp_path)
     assert (
-        "# The efforts of these joints exceed their limits at any speed of the motion: j0, j1, j2\n" in text
+        "# The efforts of these joints exceed their limits however slow the motion is: j0, j1, j2\n" in text
     )
     assert summary["joint_efforts_exceeded"] == "j0, j1, j2"
 

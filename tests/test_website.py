@@ -28,7 +28,7 @@ def test_a_consistent_site_has_no_errors(tmp_path: Path) -> None:
 def test_errors_of_a_site_are_found(tmp_path: Path) -> None:
     wrong = {
         '<a href="sub/others.html">': "index.html: sub/others.html does not exist",
-        '<a href="sub/other.html#there">': "index.html: sub/other.html#there has no such anchor",
+        '<a href="sub/other.html#there">': "index.html: the anchor of sub/other.html#there does not exist",
         '<img src="picture.png">': "index.html: picture.png does not exist",
         '<script src="https://unpkg.com/x"></script>': "index.html: loads https://unpkg.com/x",
         '<link rel="stylesheet" href="https://fonts.example/x">': "index.html: loads https://fonts.example/x",

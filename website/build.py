@@ -1,4 +1,4 @@
-"""Builds the site and checks it: any output of the tools other than progress is an error.
+"""Builds the website and checks it: any output of the tools other than progress is an error.
 
 Run from the repository's root: python website/build.py
 """
@@ -19,7 +19,7 @@ PROGRESS = re.compile(r"Build started|Build finished in .*|No issues found|")
 
 
 def main() -> int:
-    """Returns 0 if the site was built without errors or warnings and all links lead somewhere."""
+    """Returns 0 if the site was built without errors or warnings and all internal links have a target."""
     shutil.rmtree(SITE, ignore_errors=True)
     command = [sys.executable, "-m", "zensical", "build", "--strict", "--clean"]
     built = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)

@@ -20,7 +20,7 @@ class EngineDocstrings(griffe.Extension):
     """Adds docstrings to the stub and converts Sphinx syntax to Markdown."""
 
     def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
-        """Processes the package after it was loaded."""
+        """Adds and converts the docstrings of the package after griffe has loaded it."""
         engine = pkg["_core"]
         fill(engine, importlib.import_module("onorbit_rs._core"))
         own = {name: it for name, it in engine.members.items() if not it.is_alias and it.is_attribute}
@@ -29,7 +29,7 @@ class EngineDocstrings(griffe.Extension):
 
 
 def fill(stub: griffe.Module | griffe.Class, live: Any) -> None:
-    """Copies the docstrings of ``live`` and its members to ``stub``."""
+    """Copies the docstrings of ``live``, an object of the compiled module, and its members to ``stub``."""
     for name, signatures in stub.overloads.items():
         if name not in stub.members:
             signatures[-1].overloads = list(signatures)
@@ -46,7 +46,7 @@ def fill(stub: griffe.Module | griffe.Class, live: Any) -> None:
 
 
 def unfold(thing: Any, aliases: dict[str, str]) -> None:
-    """Replaces the private type aliases of the stub by their definitions."""
+    """Replaces the private type aliases of the stub with their definitions."""
 
     def unfolded(annotation: Any) -> Any:
         text = str(annotation)
@@ -75,7 +75,7 @@ def called(new: Any) -> Any:
 
 
 def table(ruler: str, head: str, body: str) -> str:
-    """Returns a table of reStructuredText in Markdown; the ruler defines the columns."""
+    """Returns a reStructuredText table as Markdown; ``ruler`` is the line that defines the columns."""
     starts = [found.start() for found in re.finditer("=+", ruler)]
     ends = [*starts[1:], None]
     lines = [head, ruler.replace("=", "-"), *body.split("\n")]
@@ -84,7 +84,7 @@ def table(ruler: str, head: str, body: str) -> str:
 
 
 def tidy(thing: griffe.Object) -> None:
-    """Converts roles, sessions and tables of reStructuredText to Markdown."""
+    """Converts roles, interactive sessions and tables of reStructuredText to Markdown."""
     if thing.docstring:
         text = ROLE.sub(r"`\1`", thing.docstring.value)
         if "\nExamples\n---" not in text:

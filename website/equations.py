@@ -1,4 +1,4 @@
-"""Converts equations to MathML when the site is built: a browser needs neither a script nor the network.
+"""Converts equations to MathML when the site is built, so that pages require neither scripts nor network.
 
 The syntax is that of GitHub: ``$…$`` within a line, and ``$$`` on separate lines around a displayed equation.
 """
@@ -36,7 +36,7 @@ class Inline(InlineProcessor):
     """Converts equations within a line."""
 
     def handleMatch(self, m: re.Match[str], data: str) -> tuple[Element | str, int, int]:  # type: ignore[override]
-        """Returns the placeholder of an equation and its extent."""
+        """Returns the placeholder of an equation, and the start and end of the equation in the text."""
         return self.md.htmlStash.store(mathml(m[1], "inline")), m.start(0), m.end(0)
 
 
@@ -44,7 +44,7 @@ class Number(InlineProcessor):
     """Prevents a line break within numbers such as ``1e-7``."""
 
     def handleMatch(self, m: re.Match[str], data: str) -> tuple[Element | str, int, int]:  # type: ignore[override]
-        """Returns a span with the number and its extent."""
+        """Returns a span element with the number, and the start and end of the number in the text."""
         span = Element("span", {"class": "number"})
         span.text = m[1]
         return span, m.start(0), m.end(0)
@@ -53,7 +53,7 @@ class Number(InlineProcessor):
 def mathml(tex: str, display: str) -> str:
     """Returns an equation as MathML; raises ValueError for unknown TeX."""
     if unknown := re.findall(r"<m[io]>(\\\w+)</m[io]>", converted := convert(tex.strip(), display=display)):
-        raise ValueError(f"{unknown[0]} in {tex!r} is not supported: write it another way")
+        raise ValueError(f"{unknown[0]} in {tex!r} is not supported; write the equation without this command")
     return converted
 
 

@@ -1,4 +1,4 @@
-"""Generated tables: keys of a part of a scenario (``::keys CLASS``), columns of a trace (``::columns``)."""
+"""Generates tables of the keys in a scenario (``::keys CLASS``) and of the trace columns (``::columns``)."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def columns() -> str:
 
 
 def words(thing: Any) -> str:
-    """Returns a docstring in Markdown."""
+    """Returns the docstring of an object as one line of Markdown."""
     text = thing.docstring.value if thing.docstring else ""
     return ROLE.sub(r"`\1`", text).replace("``", "`")
 
@@ -124,7 +124,7 @@ def in_yaml(default: Any) -> str:
 
 
 def value_of(annotation: str) -> str:
-    """Returns an annotation in words: ``Annotated[Length, Positive] | None`` is ``length``."""
+    """Returns the description of a type annotation: ``length`` for ``Annotated[Length, Positive] | None``."""
     inner = r"(?:[^\[\]]|\[[^\[\]]*\])*"
     text = re.sub(rf"Annotated\[([\w.]+(?:\[[^\[\]]*\])?), {inner}\]", r"\1", " ".join(annotation.split()))
     parts = [part.strip(" ()") for part in re.split(r" \| (?![^\[]*\])", text)]
@@ -132,7 +132,7 @@ def value_of(annotation: str) -> str:
 
 
 def in_words(part: str) -> str:
-    """Returns one member of a union in words."""
+    """Returns the description of one member of a union."""
     name = part.split(".")[-1]
     if literal := re.fullmatch(r"Literal\[(.*)\]", part):
         return ", ".join("`{}`".format(word.strip(" '\"")) for word in literal[1].split(","))
@@ -146,7 +146,7 @@ def in_words(part: str) -> str:
 
 
 class Keys(Preprocessor):
-    """Replaces each directive by its table."""
+    """Replaces each ``::keys`` and ``::columns`` directive with its table."""
 
     def run(self, lines: list[str]) -> list[str]:
         """Returns the lines of the page with its tables."""
@@ -158,7 +158,7 @@ class KeysExtension(Extension):
     """Registers the preprocessor."""
 
     def extendMarkdown(self, md: Markdown) -> None:
-        """Registers it before all other preprocessors."""
+        """Registers the preprocessor before all others."""
         md.preprocessors.register(Keys(md), "keys", 40)
 
 

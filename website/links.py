@@ -1,4 +1,4 @@
-"""Checks the built site: every internal link has a target, and no page loads anything from elsewhere."""
+"""Checks the built site: every internal link has a target, and no page loads files from other sites."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LOADED = {("script", "src"), ("img", "src"), ("iframe", "src")}
 
 
 class Page(HTMLParser):
-    """The links of one page, the files that it loads, and its anchors."""
+    """Links of one page, files that the page loads, and its anchors."""
 
     def __init__(self, text: str) -> None:
         """Parses the page."""
@@ -32,7 +32,7 @@ class Page(HTMLParser):
             (self.loads if is_loaded else self.links).add(given[name])
 
     def handle_data(self, data: str) -> None:
-        """Collects the text."""
+        """Collects the text of the page."""
         self.text += data
 
 
@@ -60,7 +60,7 @@ def problems(site: Path) -> tuple[list[str], set[str]]:
             if not target.exists():
                 wrong.append(f"{name}: {link} does not exist")
             elif parts.fragment and target in pages and not _is_in(unquote(parts.fragment), pages[target]):
-                wrong.append(f"{name}: {link} has no such anchor")
+                wrong.append(f"{name}: the anchor of {link} does not exist")
     return wrong, outside
 
 

@@ -1,6 +1,7 @@
-"""Links from a page to a source file of the engine lead to a copy within the site.
+"""Redirects links to source files of the engine to copies within the site.
 
-In the repository ``../crates/core/src/x.rs`` leads to the file itself; the site has a copy as text.
+In the repository, the link ``../crates/core/src/x.rs`` leads to the file itself; the site contains a copy as
+text.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """``make bench-against REV=…``: the speed of this tree relative to another revision, row by row.
 
-Both are built at the same path with the same flags, so that equal sources give equal machine code. In every
-round both are restarted and timed alternately in short blocks on one core. A ratio above 1 means that this
-tree is faster.
+Both revisions are built at the same path with the same flags, so that equal sources give equal machine code.
+In every round, both are restarted and timed alternately in short blocks on one core. A ratio above 1 means
+that this tree is faster.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from revisions import Build
 from timing import Contestant, difference
 
 BLOCKS = 3  # per build and round; the fastest counts, as the least disturbed by other processes
-SAME = (0.98, 1.02)  # ratios that count as the same speed
+SAME = (0.98, 1.02)  # range of ratios that count as equal speed
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,7 +50,7 @@ def write(folder: Path, arms: int) -> None:
 
 
 def random_states(model: oo.Model, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
-    """Returns random states with numbers between -1 and 1 and any attitude."""
+    """Returns random states: any attitude, other coordinates, rates and efforts between -1 and 1."""
     q = rng.uniform(-1.0, 1.0, (count, model.nq))
     q[:, 3:7] /= np.linalg.norm(q[:, 3:7], axis=1, keepdims=True)
     return q, rng.uniform(-1.0, 1.0, (count, model.nv)), rng.uniform(-1.0, 1.0, (count, model.nv))
@@ -64,7 +64,7 @@ def reach(model: oo.Model) -> Array:
 
 
 def arms_at_rest(model: oo.Model, rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Returns humanoids at rest near that configuration; the first one is exactly there."""
+    """Returns states of humanoids at rest near the initial configuration, which the first one has exactly."""
     q = np.tile(reach(model), (ARMS, 1))
     q[1:, 7:] += rng.uniform(-0.02, 0.02, (ARMS - 1, model.nv - 6))
     return q, np.zeros((ARMS, model.nv)), np.zeros((ARMS, model.nv))

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 RESULTS = Path(__file__).parents[1] / "results.json"
-SLOWER = 0.9  # a ratio below this fraction of the last one is a regression
+SLOWER = 0.9  # a ratio below this fraction of the previous ratio is a regression
 
 Run = dict[str, Any]
 
@@ -27,7 +27,7 @@ def append(run: Run) -> None:
 
 
 def last_like(run: Run) -> Run | None:
-    """Returns the latest earlier run on the same kind of machine."""
+    """Returns the most recent earlier run on the same kind of machine."""
     like = [one for one in history() if one["machine"] == run["machine"]]
     return like[-1] if like else None
 
@@ -77,7 +77,7 @@ def captures(entries: list[Run]) -> list[str]:
 
 
 def regressions(run: Run, before: Run | None) -> list[str]:
-    """Returns the rows whose ratio fell by more than 10 % and below the last median in every round."""
+    """Returns the rows whose ratio fell by more than 10 %, in every round below the previous median."""
     lost = []
     for row in run["rows"]:
         last, ratio = before_of(row, before), row["ratio"]

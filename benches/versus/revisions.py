@@ -72,7 +72,7 @@ def working_tree() -> str:
 
 
 def build(name: str, tree: str) -> Build:
-    """Builds a tree object, unless an equal one was built before."""
+    """Builds a tree object of git, unless an equal tree was built before."""
     content = git("ls-tree", tree, *PARTS)
     folder = AGAINST / hashlib.sha256(content.encode()).hexdigest()[:12]
     if not folder.exists():
@@ -101,7 +101,7 @@ def export(tree: str) -> None:
 
 
 def seed() -> None:
-    """Reuses the dependencies compiled in the working tree, as hard links."""
+    """Links the dependencies compiled in the working tree into the build folder, to reuse them."""
     if TARGET.exists():
         return
     for part in (".fingerprint", "build", "deps"):

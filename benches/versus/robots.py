@@ -23,7 +23,7 @@ REACH = np.array([0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]) 
 
 @dataclass
 class Body:
-    """Mass, centre of mass, inertia about it (xx xy xz yy yz zz)."""
+    """Mass, centre of mass, and inertia about the centre of mass (xx xy xz yy yz zz)."""
 
     mass: float
     com: list[float]
@@ -45,7 +45,7 @@ class Joint:
 
 @dataclass
 class Robot:
-    """The tree: bodies by index, with base 0, and a tool on one of them."""
+    """A robot: bodies by index, with base 0, and a tool frame on one of the bodies."""
 
     base: Body
     joints: list[Joint] = field(default_factory=list)

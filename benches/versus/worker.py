@@ -1,4 +1,4 @@
-"""A timed process in Python, with the protocol of ``benches/peers/contestant.hpp``."""
+"""A Python process that times jobs on request, with the protocol of ``benches/peers/contestant.hpp``."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def timed(job: Job, seconds: float) -> float:
 
 
 def serve(ready: str, jobs: dict[str, Job], **about: Any) -> None:
-    """Answers requests until standard input ends; `about` is sent first, with the names of the jobs."""
+    """Sends `about` and the names of the jobs, then answers requests until standard input ends."""
     answer({"ready": ready, "jobs": list(jobs), **about})
     for line in sys.stdin:
         verb, name, last = line.split()

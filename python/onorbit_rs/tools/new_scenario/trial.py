@@ -39,8 +39,7 @@ _INERTIAL = 0.9
 FAST = 500.0
 """Decay rate, 1/s, for which a fixed step of 1 ms is half a time constant."""
 _FIRST_ESTIMATE_S, _OVERTIME = 2.0, 1.2
-"""Wall-clock time, s, after which a run is stopped if it would take ``_OVERTIME`` times the remaining
-time."""
+"""Wall-clock time, s, after which a run that would take ``_OVERTIME`` times the remaining time is stopped."""
 _FIXED, _ADAPTIVE = "rk4", "dormand_prince"
 
 
@@ -60,7 +59,7 @@ class Trials:
         self._is_late = False
 
     def gentlest(self, plans: Iterable[Plan], seconds: float) -> Plan | None:
-        """Return the first passing plan that rotates the base by at most ``GENTLE``, or the one closest to it.
+        """Return the first passing plan that rotates the base by at most ``GENTLE``, else the gentlest one.
 
         Returns None if no plan passes within ``seconds`` of wall-clock time.
         """

@@ -40,8 +40,8 @@ class Gate:
 class Check:
     """One error and its gate.
 
-    ``passed`` and ``error`` are None if the case was skipped. If the case raised an error, ``passed`` is
-    False and ``error`` is None.
+    A skipped case has None for ``passed`` and ``error``. If the case raised an error, ``passed`` is False and
+    ``error`` is None.
     """
 
     quantity: str

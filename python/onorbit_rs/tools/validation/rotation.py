@@ -58,7 +58,7 @@ TILT = 1e-3  # rad
 
 
 def libration(axis: int, period_s: float) -> tuple[float]:
-    """Return the relative error of the period of the libration about axis 2 (in plane) or 1 (out of plane)."""
+    """Return the relative error of the libration period about axis 2 (in plane) or 1 (out of plane)."""
     cylinder = oo.Model.rigid_body(1000.0, np.diag(CYLINDER))
     a = oo.Kepler.from_state(*TYPICAL, mu=MU).semi_major_axis
     orbit = oo.Kepler(semi_major_axis=a, inclination=0.9, raan=0.3, mu=MU)
