@@ -87,7 +87,8 @@ class Peer:
 
     def say(self, topic: str, kind: str, values: Any, seconds: float = 5.0) -> bool:
         """Sends a message when somebody listens."""
-        if topic not in self.writers:
+        is_new = topic not in self.writers
+        if is_new:
             named = Topic(self.participant, f"rt{topic}", TYPES[kind])
             self.writers[topic] = DataWriter(self.participant, named, qos=_qos(False))
         writer = self.writers[topic]
@@ -96,6 +97,8 @@ class Peer:
             if time.monotonic() > end:
                 return False
             time.sleep(0.002)
+        if is_new:
+            time.sleep(0.05)  # a reader finds a writer at another time than a writer finds the reader
         writer.write(_message(TYPES[kind], values))
         return True
 

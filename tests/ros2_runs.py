@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -67,10 +68,18 @@ class Peer:
 def spinning(node: Node, duration: float | None = None) -> Iterator[list[Any]]:
     """Runs a node in a thread; its trace is in the list at the end of the block."""
     found: list[Any] = []
-    thread = threading.Thread(target=lambda: found.append(node.spin(duration)))
+    thread = threading.Thread(target=lambda: found.append(node.spin(duration)), daemon=True)
     thread.start()
     try:
         yield found
     finally:
         thread.join(10)
         assert not thread.is_alive()
+
+
+def wait_for_subscriber(node: Node, *topics: str) -> None:
+    """Waits until a node has found subscribers of topics."""
+    end = time.monotonic() + 5.0
+    while not all(node._publisher._writers[topic].subscribers() for topic in topics):
+        assert time.monotonic() < end
+        time.sleep(0.005)

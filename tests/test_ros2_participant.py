@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from ros2_runs import DOMAIN, Peer, needs_ros2
+from ros2_runs import DOMAIN, Peer, needs_ros2, wait_for_subscriber
 from stepper_runs import scenario
 
 import onorbit_rs as oo
@@ -136,8 +136,7 @@ def test_a_subscriber_that_stops_delays_the_end_by_a_second_at_most() -> None:
         peer.hear(*STATES)
         peer.hear("/odom", "nav_msgs/msg/Odometry")
         assert peer.publisher("/joint_states") and peer.publisher("/odom")
-        while not all(node._writers[topic].subscribers() for topic in ("/joint_states", "/odom")):
-            time.sleep(0.01)
+        wait_for_subscriber(node, "/joint_states", "/odom")
         os.kill(peer.process.pid, signal.SIGSTOP)
         node.spin(0.1)
         begin = time.monotonic()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -12,12 +13,16 @@ if TYPE_CHECKING:
     from onorbit_rs.ros2.node import Node
 
 PaceOption = Annotated[str, typer.Option(metavar="PACE", help="real_time, fast or stepped (by /step).")]
-DomainOption = Annotated[int, typer.Option(metavar="N", help="DDS domain, as ROS_DOMAIN_ID.")]
+DomainOption = Annotated[int, typer.Option(metavar="N", envvar="ROS_DOMAIN_ID", help="DDS domain, 0 to 232.")]
 ForOption = Annotated[
     float | None, typer.Option("--for", metavar="SECONDS", help="Simulated time, s; default: the scenario's.")
 ]
 NetworkOption = Annotated[str, typer.Option(metavar="NETWORK", help="loopback, or all networks.")]
 PausedOption = Annotated[bool, typer.Option("--paused", help="Wait for /pause false before the first step.")]
+LogOption = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE", help="Write the commands received; onorbit run --commands repeats them."),
+]
 
 
 def ros2(
@@ -27,6 +32,7 @@ def ros2(
     for_: ForOption = None,
     network: NetworkOption = "loopback",
     paused: PausedOption = False,
+    log: LogOption = None,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -43,13 +49,14 @@ def ros2(
         if not quiet:
             print_error(text)
 
-    node = Node.of_scenario(
-        scenario, pace=pace, domain=domain, network=network, is_paused=paused, on_message=tell
-    )
+    options = {"pace": pace, "domain": domain, "network": network, "is_paused": paused, "log": log}
+    node = Node.of_scenario(scenario, **options, on_message=tell)
     if not quiet:
         print_error(_greeting(node, domain))
-    trace = node.spin(node.duration if for_ is None else for_)
-    node.close()
+    try:
+        trace = node.spin(node.duration if for_ is None else for_)
+    finally:
+        node.close()
     report: dict[str, Any] = {
         "certificate_passed": all(passed for _, _, _, passed in trace.certificate()),
         "commands": len(node.commands), "jitter": node.jitter,

@@ -109,8 +109,7 @@ def add_system_topics(
 
 def _values(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
     def convert(content: Any) -> list[Entry]:
-        values = _finite("data", content.data, joints)
-        return [to | {"values": values}]
+        return [to | {"values": _finite("data", content.data, joints)}]
 
     return convert
 
@@ -166,11 +165,11 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
         if unknown := [name for name in names if name not in known]:
             raise RefusedError(f"no external control drives {', '.join(unknown)}")
         for control, joints in controls.items():
-            if not set(names) & set(joints):
+            own = [name for name in names if name in joints]
+            if not own:
                 continue
-            order = _order([name for name in names if name in joints], joints)
+            _order(own, joints)
             places = [names.index(joint) for joint in joints]
-            assert len(order) == len(places)
             entry: Entry = {"system": system, "control": control}
             for field_name in ("position", "velocity", "effort"):
                 values = getattr(content, field_name)
@@ -188,19 +187,20 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
 
 
 def _wrench(system: str, prefix: str, model: Model) -> Callable[[Any], list[Entry]]:
-    """Return the conversion of wrenches in the axes of a link, which the header names; else the base."""
-    bodies = list(model.body_names)
+    """Return the conversion of wrenches at the origin and in the axes of the frame of the header."""
+    root = model.body_names[0]
+    known = list(dict.fromkeys([*model.body_names, *(frame.name for frame in model.frames)]))
 
     def convert(content: Any) -> list[Entry]:
-        frame = content.header.frame_id.removeprefix(prefix) or bodies[0]
-        body = bodies[0] if frame == "base" else frame
-        if body not in bodies:
+        frame = content.header.frame_id.removeprefix(prefix)
+        body = root if frame in ("", "base") else frame
+        if body not in known:
             raise RefusedError(
-                f"frame_id {content.header.frame_id!r} is no link; the links are {', '.join(bodies)}"
+                f"frame_id {content.header.frame_id!r} is no frame of the robot; they are {', '.join(known)}"
             )
-        wrench = content.wrench
-        force, torque = ([v.x, v.y, v.z] for v in (wrench.force, wrench.torque))
-        _finite("wrench", force + torque, list("xyzxyz"))
+        force, torque = ([v.x, v.y, v.z] for v in (content.wrench.force, content.wrench.torque))
+        if not np.isfinite(force + torque).all():
+            raise RefusedError(f"force {force} or torque {torque} is not finite")
         return [{"system": system, "body": body, "force": force, "torque": torque, "frame": "body"}]
 
     return convert

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import os
 import time
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from onorbit_rs.exceptions import InputError, OnOrbitError
 from onorbit_rs.ros2.inbox import Arrived, Entry, Inbox, add_run_topics, add_system_topics
+from onorbit_rs.ros2.live_rows import LiveRows
 from onorbit_rs.ros2.pace import PACES, RealTime
-from onorbit_rs.ros2.participant import Participant, Writer
-from onorbit_rs.ros2.rows import Rows, rows_of_columns, rows_of_trace
-from onorbit_rs.ros2.topics import ERROR, EVENTS, EVENTS_TYPE, OK, WARN, Topics, event_message, topics
+from onorbit_rs.ros2.participant import Participant
+from onorbit_rs.ros2.publisher import Publisher
+from onorbit_rs.ros2.rows import rows_of_columns
+from onorbit_rs.ros2.topics import ERROR, OK, WARN, Topics, topics
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.build_world import build_world
+from onorbit_rs.simulation.commands import CommandLog
 
 if TYPE_CHECKING:
     from onorbit_rs._core import Model, Simulation, Stepper, Trace, WorldTrace
+
+NAME = "onorbit"
+"""Name of the node."""
 
 _IDLE_S = 1e-3
 """Wall-clock time between two looks at the topics while the simulation waits, s."""
@@ -25,6 +34,8 @@ _BLOCK_S = 0.02
 """Simulated time that a node in pace ``fast`` advances between two looks at the topics, s."""
 _DELIVERY_S = 1.0
 """Longest time that a node waits for subscribers that have not received all messages at its end, s."""
+_FAR_S = 3600.0
+"""A trajectory that starts so long after the current time, s, was probably stamped by another clock."""
 _SHORTEST_TICK = 1e-3
 """Shortest simulated time between two looks at the topics, unless the time step is longer, s."""
 
@@ -32,15 +43,13 @@ _SHORTEST_TICK = 1e-3
 class Node:
     """A simulation as a ROS 2 participant, without an installation of ROS 2.
 
-    The node publishes each recorded row. Commands take effect at the next update of the controllers after the
-    simulated time at which they are read, which ``commands`` records.
+    The node publishes each recorded row. A command takes effect at the next update of the controllers after
+    the simulated time at which the node reads it, which ``commands`` records.
 
     Attributes
     ----------
-    commands : list of dict
-        Commands obeyed so far with their simulated times, s; entries as in a command file.
-    jitter : dict
-        How late the node was in pace ``real_time``.
+    duration : float or None
+        Duration of the scenario, s; None for a simulation without one.
     """
 
     def __init__(
@@ -51,6 +60,7 @@ class Node:
         domain: int = 0,
         network: str = "loopback",
         is_paused: bool = False,
+        log: str | os.PathLike[str] | None = None,
         on_message: Callable[[str], None] = lambda text: None,
     ) -> None:
         """Join a domain; nothing moves before :meth:`spin`.
@@ -67,6 +77,8 @@ class Node:
             Reachable from this machine only, or from all its networks.
         is_paused : bool
             Wait for ``/pause`` false before the first step.
+        log : str or path, optional
+            File to which each command is written, from which ``onorbit run --commands`` repeats the run.
         on_message : callable
             Called with each text that also goes to ``/events``.
 
@@ -81,29 +93,25 @@ class Node:
             raise InputError(
                 f"pace is {pace!r}; give one of {', '.join(PACES)}", name="pace", got=pace, expected=PACES
             )
-        self._simulation, self._pace, self._tell = simulation, pace, on_message
+        self._simulation, self._pace, self._is_paused, self._file = simulation, pace, is_paused, log
         self._models: Mapping[str, Model] = simulation.models
         self._tick = _tick(simulation)
-        self._participant = Participant(domain, network=network)
-        self._is_paused = is_paused
+        self._end = np.inf
         self.duration: float | None = None
-        self.commands: list[Entry] = []
         self._clock = RealTime(self._tick)
-        self.topics: Topics = topics(self._models, self._first_rows())
-        self._stepper, self._rows = self._started()
-        kinds = {topic.name: topic.kind for topic in self.topics.series}  # several series may share a topic
-        self._writers = {name: self._participant.writer(name, kind) for name, kind in kinds.items()}
-        for latched in self.topics.latched:
-            writer = self._participant.writer(latched.name, latched.kind, is_latched=True)
-            writer.write(latched.data)
-        self._events: Writer = self._participant.writer(EVENTS, EVENTS_TYPE)
-        self._inbox = self._subscribed()
-        self._participant.announce("onorbit")
-
-    @property
-    def jitter(self) -> dict[str, float]:
-        """How late the node was in pace ``real_time``, s; empty otherwise."""
-        return self._clock.report()
+        probe = simulation.start()
+        probe.advance_to(simulation.time_step)
+        self.topics: Topics = topics(self._models, rows_of_columns(probe.columns(), self._models))
+        self._participant = Participant(domain, network=network)
+        self._start()
+        self._publisher = Publisher(self._participant, self.topics, on_message)
+        self._inbox = Inbox(self._participant)
+        add_run_topics(self._inbox)
+        for system, model in self._models.items():
+            prefix = self.topics.prefixes[system]
+            controls = self._of(self._stepper, system).external
+            add_system_topics(self._inbox, system, prefix, model, controls)
+        self._participant.announce(NAME)
 
     @classmethod
     def of_scenario(cls, scenario: Any, **options: Any) -> Node:
@@ -112,7 +120,7 @@ class Node:
         Parameters
         ----------
         scenario : str, path, mapping or Scenario
-            As for :func:`onorbit_rs.run`; its duration is the attribute ``duration``.
+            As for :func:`onorbit_rs.run`.
         """
         checked = load(scenario)
         built = build_world(checked) if isinstance(checked, WorldScenario) else build(checked)
@@ -121,47 +129,52 @@ class Node:
         return node
 
     @property
+    def commands(self) -> list[Entry]:
+        """Commands obeyed so far with their simulated times, s; entries as in a file of commands."""
+        return list(self._log.entries)
+
+    @property
+    def jitter(self) -> dict[str, float]:
+        """How late the node was in pace ``real_time``, s; empty otherwise."""
+        return self._clock.report()
+
+    @property
     def published(self) -> list[tuple[str, str]]:
         """Names and types of the topics that the node publishes."""
-        latched = [(topic.name, topic.kind) for topic in self.topics.latched]
-        return [*self.topics.names, *latched, (EVENTS, EVENTS_TYPE)]
+        return self._publisher.topics
 
     @property
     def subscribed(self) -> list[tuple[str, str]]:
         """Names and types of the topics that the node listens to."""
         return list(self._inbox.topics())
 
-    def _started(self) -> tuple[Stepper, dict[str, int]]:
-        return self._simulation.start(), dict.fromkeys(self._models, 0)
+    def _start(self) -> None:
+        self._stepper: Stepper = self._simulation.start()
+        self._rows = LiveRows(self._stepper, self._models)
+        self._events = 0
+        self._log = CommandLog(self._file)
 
-    def _first_rows(self) -> dict[str, Rows]:
-        """Return the row at the start, from a second run."""
-        probe = self._simulation.start()
-        probe.advance_to(self._simulation.time_step)
-        return rows_of_columns(probe.columns(), self._models)
-
-    def _subscribed(self) -> Inbox:
-        inbox = Inbox(self._participant)
-        add_run_topics(inbox)
-        for system, model in self._models.items():
-            external = getattr(self._of(system), "external", {})
-            add_system_topics(inbox, system, self.topics.prefixes[system], model, external)
-        return inbox
-
-    def _of(self, system: str) -> Any:
-        return self._stepper[system] if len(self._models) > 1 else self._stepper
+    def _of(self, stepper: Stepper, system: str) -> Any:
+        return stepper[system] if len(self._models) > 1 else stepper
 
     def spin(self, duration: float | None = None) -> Trace | WorldTrace:
         """Run until a simulated time, s, or without an end, and return the trace; Ctrl-C ends the run too.
 
         Raises
         ------
+        InputError
+            If the duration is not positive.
         OnOrbitError
             Errors of the run.
         """
-        end = float("inf") if duration is None else duration
+        self._end = np.inf if duration is None else duration
+        if not self._end > 0.0:
+            raise InputError(
+                f"the duration is {duration!r} s; it must be positive",
+                name="duration", got=duration, expected="a positive number of seconds",
+            )  # fmt: skip
         try:
-            while self._stepper.time < end:
+            while self._stepper.time < self._end:
                 self._obey()
                 if self._is_paused or self._pace == "stepped":
                     self._clock.restart(self._stepper.time)
@@ -169,12 +182,13 @@ class Node:
                     continue
                 if self._pace == "real_time":
                     self._clock.wait(self._stepper.time)
-                self._advance(min(self._next(), end))
+                self._advance(self._next())
         except KeyboardInterrupt:
             self._say(OK, "run", "stopped")
         self._publish()
         trace = self._stepper.finish()
-        self._publish_rows(rows_of_trace(trace, self._models, self._rows))  # the row at the end
+        self._publisher.rows(self._rows.take_last(trace))
+        self._log.close()
         return trace
 
     def _next(self) -> float:
@@ -183,24 +197,20 @@ class Node:
         return self._tick * (round(self._stepper.time / self._tick) + round(block / self._tick))
 
     def _advance(self, t: float) -> None:
-        self._stepper.advance_to(t)
+        self._stepper.advance_to(min(t, self._end))
         self._publish()
 
     def _publish(self) -> None:
-        """Publish the rows since the last call."""
-        since = self._rows if len(self._models) > 1 else next(iter(self._rows.values()))
-        columns = self._stepper.columns(since)
-        for system in self._models:
-            own = columns["time"] if "time" in columns else columns[f"{system}/time"]
-            self._rows[system] += len(own)
-        self._publish_rows(rows_of_columns(columns, self._models))
+        """Publish the rows and events since the last call."""
+        self._publisher.rows(self._rows.take())
+        events = self._stepper.events
+        self._publisher.events(events[self._events :])
+        self._events = len(events)
 
-    def _publish_rows(self, rows: Mapping[str, Rows]) -> None:
-        found = list(self.topics.messages(rows))
-        for k in range(max((len(data) for _, data in found), default=0)):
-            for topic, data in found:
-                if k < len(data):
-                    self._writers[topic.name].write(data[k].tobytes())
+    def _publish_present(self) -> None:
+        """Publish the row at the current time, for a sender that waits for it."""
+        if self._is_paused or self._pace == "stepped":
+            self._publisher.rows(self._rows.take_present())
 
     def _obey(self) -> None:
         """Obey the messages that have arrived."""
@@ -215,11 +225,13 @@ class Node:
     def _obey_entry(self, arrived: Arrived, entry: Entry) -> None:
         if "pause" in entry:
             self._is_paused = entry["pause"]
+            self._publish_present()
             self._say(OK, arrived.topic, "paused" if self._is_paused else "running")
         elif "reset" in entry:
-            self._stepper, self._rows = self._started()
-            self.commands.clear()
+            self._log.close()
+            self._start()
             self._clock.restart(0.0)
+            self._publish_present()
             self._say(OK, arrived.topic, "reset to t = 0 s")
         elif "step" in entry:
             self._step(arrived.topic, entry["step"])
@@ -228,32 +240,35 @@ class Node:
 
     def _step(self, topic: str, length: float) -> None:
         """Advance by a length of simulated time, s."""
-        if not 0.0 < length < float("inf"):
+        if not (self._is_paused or self._pace == "stepped"):
+            self._say(ERROR, topic, "refused: the run is not paused; use pace stepped, or /pause first")
+        elif not 0.0 < length < np.inf:
             self._say(ERROR, topic, f"refused: the step is {length!r} s; it must be positive and finite")
-            return
-        self._advance(self._stepper.time + length)
-        self._say(OK, topic, f"advanced to t = {self._stepper.time:.9g} s")
+        else:
+            self._advance(self._stepper.time + length)
+            self._publish_present()
+            self._say(OK, topic, f"advanced to t = {self._stepper.time:.9g} s")
 
     def _command(self, topic: str, entry: Entry) -> None:
-        from onorbit_rs.simulation.commands import apply
-
-        timed = {"time": self._stepper.time, **entry}
         try:
-            apply(self._stepper, timed)
+            self._log.apply(self._stepper, entry)
         except OnOrbitError as error:
             self._say(ERROR, topic, f"refused: {error}")
             return
-        self.commands.append(timed)
+        now = self._stepper.time
+        if (start := entry.get("trajectory", {}).get("start", now)) > now + _FAR_S:
+            text = f"starts in {start - now:.9g} s: set use_sim_time in the node that sends it"
+            self._say(WARN, topic, text)
         if "trigger" in entry:
-            self._say(OK, topic, f"{entry['trigger']} is due at t = {self._stepper.time:.9g} s")
+            self._say(OK, topic, f"{entry['trigger']} is due at t = {now:.9g} s")
 
     def _say(self, level: int, name: str, text: str) -> None:
-        """Publish an event or an answer."""
-        self._events.write(event_message(self._stepper.time, name, level, text, {}))
-        self._tell(f"{name}: {text}")
+        """Publish an answer."""
+        self._publisher.answer(self._stepper.time, level, name, text)
 
     def close(self) -> None:
         """Leave the domain, after subscribers have received all messages; no effect the second time."""
+        self._log.close()
         self._participant.wait_for_delivery(_DELIVERY_S)
         self._participant.close()
 

@@ -43,6 +43,13 @@ class Rows:
             return cls(columns, wrenches)
         return cls(*({name: held[chosen] for name, held in part.items()} for part in (columns, wrenches)))
 
+    def after(self, time: float) -> Rows:
+        """Return the rows after a time, s."""
+        later = self.time > time
+        return Rows(
+            *({name: held[later] for name, held in part.items()} for part in (self.columns, self.wrenches))
+        )
+
     @property
     def time(self) -> Floats:
         """Times (T,), s."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -62,10 +62,12 @@ class Topics:
         """Names and types of the topics with a message per row; several series may share a topic."""
         return list(dict.fromkeys((topic.name, topic.kind) for topic in self.series))
 
-    def messages(self, rows: Mapping[str, Rows]) -> Iterator[tuple[Series, NDArray[np.uint8]]]:
-        """Return the messages of each topic for the rows of each system."""
+    def messages(
+        self, rows: Mapping[str, Rows], names: Container[str] | None = None
+    ) -> Iterator[tuple[Series, NDArray[np.uint8]]]:
+        """Return the messages of each topic, or of those named, for the rows of each system."""
         for topic in self.series:
-            if len(rows[topic.system]):
+            if len(rows[topic.system]) and (names is None or topic.name in names):
                 yield topic, topic.messages(rows[topic.system])
 
 

@@ -1,0 +1,51 @@
+"""Rows of a run that is being advanced, each of them once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs.ros2.rows import Rows, rows_of_columns, rows_of_trace
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model, Stepper, Trace, WorldTrace
+
+
+class LiveRows:
+    """Rows of a stepper that have not been taken yet."""
+
+    def __init__(self, stepper: Stepper, models: Mapping[str, Model]) -> None:
+        """Take none yet."""
+        self._stepper, self._models = stepper, models
+        self._counts = dict.fromkeys(models, 0)
+        self._taken_until = -np.inf
+
+    def take(self) -> dict[str, Rows]:
+        """Return the new rows of each system before the current time."""
+        since = self._counts if len(self._models) > 1 else next(iter(self._counts.values()))
+        columns = self._stepper.columns(since)
+        for system in self._models:
+            name = f"{system}/time"
+            self._counts[system] += len(columns[name if name in columns else "time"])
+        return self._after(rows_of_columns(columns, self._models))
+
+    def take_present(self) -> dict[str, Rows]:
+        """Return the row of each system at the current time, which a later :meth:`take` leaves out.
+
+        The cost grows with the number of rows of the run.
+        """
+        rows = self.take_last(self._stepper.trace())
+        self._taken_until = self._stepper.time
+        return rows
+
+    def take_last(self, trace: Trace | WorldTrace) -> dict[str, Rows]:
+        """Return the rows that a trace of the run has after those taken."""
+        return self._after(rows_of_trace(trace, self._models, self._counts))
+
+    def _after(self, rows: dict[str, Rows]) -> dict[str, Rows]:
+        """Return the rows after the one that :meth:`take_present` returned."""
+        if np.isinf(self._taken_until):
+            return rows
+        return {system: own.after(self._taken_until) for system, own in rows.items()}

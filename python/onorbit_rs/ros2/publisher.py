@@ -1,0 +1,51 @@
+"""The publishers of a node: rows, events and answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from onorbit_rs.ros2.topics import EVENTS, EVENTS_TYPE, Topics, event_message, message_of_event
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import EventRecord
+    from onorbit_rs.ros2.participant import Participant
+    from onorbit_rs.ros2.rows import Rows
+
+
+class Publisher:
+    """Publishes the messages of a run on its topics."""
+
+    def __init__(self, participant: Participant, topics: Topics, tell: Callable[[str], None]) -> None:
+        """Create the publishers of all topics and publish what is latched; texts also go to ``tell``."""
+        self._topics, self._tell = topics, tell
+        self._writers = {name: participant.writer(name, kind) for name, kind in topics.names}
+        for latched in topics.latched:
+            participant.writer(latched.name, latched.kind, is_latched=True).write(latched.data)
+        self._events = participant.writer(EVENTS, EVENTS_TYPE)
+
+    @property
+    def topics(self) -> list[tuple[str, str]]:
+        """Names and types of the topics."""
+        latched = [(topic.name, topic.kind) for topic in self._topics.latched]
+        return [*self._topics.names, *latched, (EVENTS, EVENTS_TYPE)]
+
+    def rows(self, rows: Mapping[str, Rows]) -> None:
+        """Publish the messages of the rows of each system, row by row, on topics that have subscribers."""
+        wanted = {name for name, writer in self._writers.items() if writer.subscribers()}
+        found = [(self._writers[topic.name], data) for topic, data in self._topics.messages(rows, wanted)]
+        for k in range(max((len(data) for _, data in found), default=0)):
+            for writer, data in found:
+                if k < len(data):
+                    writer.write(data[k].tobytes())
+
+    def events(self, records: Iterable[EventRecord]) -> None:
+        """Publish events such as captures."""
+        for record in records:
+            self._events.write(message_of_event(record))
+            self._tell(f"{record.name}: {record.kind} at t = {record.time:.9g} s")
+
+    def answer(self, time: float, level: int, name: str, text: str) -> None:
+        """Publish an answer to a message at a simulated time, s."""
+        self._events.write(event_message(time, name, level, text, {}))
+        self._tell(f"{name}: {text}")

@@ -1,0 +1,265 @@
+"""Commands of another process: what they do, what is refused and why, and the same run from the log."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from ros2_runs import DOMAIN, Peer, needs_ros2, spinning
+from stepper_runs import assert_same_bits
+
+import onorbit_rs as oo
+from onorbit_rs.simulation.command_format import read_commands
+from onorbit_rs.simulation.replay import replay_commands
+
+needs_ros2()
+
+from onorbit_rs.ros2 import Node  # noqa: E402
+from onorbit_rs.ros2.inbox import Inbox, add_run_topics, add_system_topics  # noqa: E402
+
+ROBOT = oo.robots.load("humanoid_torso")
+ARM, WRIST = ROBOT.joint_names[:4], ROBOT.joint_names[4:]
+PERIOD = 0.01
+FLOATS = "std_msgs/msg/Float64MultiArray"
+TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"
+STATE = "sensor_msgs/msg/JointState"
+WRENCH = "geometry_msgs/msg/WrenchStamped"
+STEP = "std_msgs/msg/Float64"
+EVENTS = ("/events", "diagnostic_msgs/msg/DiagnosticArray")
+
+
+def simulation(**wrist: Any) -> oo.Simulation:
+    """A robot whose arm follows positions and whose wrist follows efforts."""
+    controls = [
+        oo.Control(oo.External(kp=100.0, kd=20.0), joints=ARM, name="arm"),
+        oo.Control(oo.External(**wrist), joints=WRIST, name="wrist"),
+    ]
+    q = ROBOT.neutral()
+    return oo.Simulation(ROBOT, q, np.zeros(ROBOT.nv), controller=controls, control_period=PERIOD)
+
+
+@pytest.fixture(scope="module")
+def peer() -> Iterator[Peer]:
+    with Peer() as found:
+        yield found
+
+
+@contextlib.contextmanager
+def node_of(run: oo.Simulation, **options: Any) -> Iterator[Node]:
+    node = Node(run, domain=DOMAIN, **options)
+    try:
+        yield node
+    finally:
+        node.close()
+
+
+def answer(peer: Peer) -> tuple[int, str, str]:
+    (message,) = peer.take("/events", 1)
+    (status,) = message["status"]
+    return status["level"], status["name"], status["message"]
+
+
+def step(peer: Peer, length: float) -> None:
+    peer.say("/step", STEP, {"data": length})
+    assert answer(peer)[0] == 0
+
+
+def obeyed(node: Node, count: int) -> None:
+    """Waits until the node has obeyed a number of commands."""
+    end = time.monotonic() + 5.0
+    while len(node.commands) < count:
+        assert time.monotonic() < end, node.commands
+        time.sleep(0.002)
+
+
+def point(seconds: float, **values: Any) -> dict[str, Any]:
+    sec, nanosec = divmod(round(seconds * 1e9), 10**9)
+    return values | {"time_from_start": {"sec": sec, "nanosec": nanosec}}
+
+
+def test_every_kind_of_command_moves_the_robot_and_the_log_repeats_the_run(
+    peer: Peer, tmp_path: Path
+) -> None:
+    log = tmp_path / "commands.jsonl"
+    with node_of(simulation(), pace="stepped", log=log) as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        assert {"/arm/commands", "/wrist/commands", "/arm/joint_trajectory", "/joint_commands"} <= dict(
+            node.subscribed
+        ).keys()
+        with spinning(node, 1.0) as found:
+            peer.say("/arm/commands", FLOATS, {"data": [0.1, 0.0, 0.0, 0.0]})
+            peer.say("/wrist/commands", FLOATS, {"data": [0.02, 0.0, 0.0]})
+            obeyed(node, 2)
+            step(peer, 0.3)
+            backwards = ARM[::-1]
+            points = [point(0.1, positions=[0.0, 0.0, 0.0, 0.2]), point(0.2, positions=[0.0, 0.1, 0.0, 0.2])]
+            peer.say("/arm/joint_trajectory", TRAJECTORY, {"joint_names": backwards, "points": points})
+            obeyed(node, 3)
+            step(peer, 0.3)
+            both = {"name": [*WRIST, *ARM], "position": [0.0] * 7, "velocity": [0.0] * 7, "effort": [0.0] * 7}
+            peer.say("/joint_commands", STATE, both)
+            assert answer(peer)[2].startswith("refused: "), "the wrist has no gains for a position"
+            obeyed(node, 4)
+            peer.say("/joint_commands", STATE, {"name": WRIST, "effort": [0.0, 0.0, -0.01]})
+            wrench = {"force": {"x": 1.0, "y": 0.0, "z": 0.0}, "torque": {"x": 0.0, "y": 0.0, "z": 0.1}}
+            peer.say(
+                "/wrench_command", WRENCH, {"header": {"frame_id": ROBOT.body_names[3]}, "wrench": wrench}
+            )
+            obeyed(node, 6)
+            step(peer, 0.4)
+    (trace,) = found
+    q, tau = trace.q[:, 7:], trace.tau
+    assert abs(q[300, 0] - 0.1) < 0.03 and abs(q[0, 0]) < 1e-12, "the positions of the first command"
+    np.testing.assert_array_equal(tau[1, 4:], [0.02, 0.0, 0.0])
+    assert abs(q[600, 0] - 0.2) < 0.05 and abs(q[600, 2] - 0.1) < 0.06, "joints are matched by their names"
+    np.testing.assert_array_equal(tau[601, 4:], [0.0, 0.0, -0.01])
+    assert np.abs(trace.impulse[-1]).max() > 0.3 and not trace.impulse[600].any(), "the wrench acts"
+    assert [entry["time"] for entry in node.commands] == [0.0, 0.0, 0.3, 0.6, 0.6, 0.6]
+    assert read_commands(log) == node.commands
+    stepper = simulation().start()
+    replay_commands(stepper, read_commands(log), 1.0)
+    assert_same_bits(stepper.finish(), trace)
+    without = simulation().start()
+    replay_commands(without, read_commands(log)[:2], 1.0)
+    assert (without.finish().q[-1] != trace.q[-1]).any()
+
+
+def test_a_command_takes_effect_at_the_next_update(peer: Peer) -> None:
+    """Effort from the outside is in the state at most two control periods after it was sent."""
+    with node_of(simulation(), pace="stepped") as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.06) as found:
+            step(peer, 0.013)
+            peer.say("/wrist/commands", FLOATS, {"data": [0.02, 0.0, 0.0]})
+            obeyed(node, 1)
+            step(peer, 0.1)
+    tau = found[0].tau[:, 4]
+    assert node.commands[0]["time"] == pytest.approx(0.013)
+    assert not tau[:20].any() and (tau[20:] == 0.02).all()
+
+
+NAN, INF = float("nan"), float("inf")
+HERE = [0.0] * 4
+PAST = {"header": {"stamp": {"sec": 0, "nanosec": 1}}}
+PATH = "/arm/joint_trajectory"
+REFUSED = [
+    ("/arm/commands", FLOATS, {"data": [0.1]}, "data has 1 numbers; expected 4: "),
+    ("/arm/commands", FLOATS, {"data": [0.0, NAN, 0.0, 0.0]}, f"data of joint {ARM[1]} is not finite"),
+    ("/arm/commands", FLOATS, {"data": [0.0, 0.0, 0.0, INF]}, f"data of joint {ARM[3]} is not finite"),
+    (PATH, TRAJECTORY, {"joint_names": [*ARM[:3], "elbow"], "points": [point(1.0)]}, "elbow; expected"),
+    (PATH, TRAJECTORY, {"joint_names": ARM}, "the trajectory has no points"),
+    (PATH, TRAJECTORY, {"joint_names": ARM, "points": [point(1.0)]}, "positions has 0 numbers"),
+    (PATH, TRAJECTORY,
+     {"joint_names": ARM, "points": [point(0.2, positions=HERE), point(0.1, positions=HERE)]}, "times"),
+    (PATH, TRAJECTORY, PAST | {"joint_names": ARM, "points": [point(0.1, positions=HERE)]}, "ends"),
+    ("/joint_commands", STATE, {"name": ["knee"], "position": [0.0]}, "no external control drives knee"),
+    ("/joint_commands", STATE, {"name": ARM}, "neither position nor velocity nor effort"),
+    ("/joint_commands", STATE, {}, "the message names no joints"),
+    ("/joint_commands", STATE, {"name": ARM[:2], "effort": [0.0, 0.0]}, "expected "),
+    ("/joint_commands", STATE, {"name": [ARM[0], *ARM[:3]], "effort": HERE}, "expected "),
+    ("/wrench_command", WRENCH, {"header": {"frame_id": "moon"}}, "frame_id 'moon' is no frame of the robot"),
+    ("/wrench_command", WRENCH, {"wrench": {"force": {"x": NAN}}}, "force [nan, 0.0, 0.0] or torque"),
+]  # fmt: skip
+
+
+def test_what_cannot_be_obeyed_is_refused_with_its_reason(peer: Peer) -> None:
+    with node_of(simulation(), pace="stepped") as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.5) as found:
+            step(peer, 0.4)
+            for topic, kind, values, reason in REFUSED:
+                assert peer.say(topic, kind, values)
+                level, name, text = answer(peer)
+                assert (level, name) == (2, topic) and text.startswith("refused: "), text
+                assert reason in text, text
+            step(peer, 0.1)
+    assert node.commands == []
+    assert_same_bits(found[0], simulation().run(0.5))
+
+
+def test_a_trajectory_stamped_by_the_wall_clock_is_pointed_out(peer: Peer) -> None:
+    with node_of(simulation(), pace="stepped") as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.01):
+            late = {"header": {"stamp": {"sec": 1_790_000_000, "nanosec": 0}}, "joint_names": ARM}
+            peer.say(
+                "/arm/joint_trajectory", TRAJECTORY, late | {"points": [point(1.0, positions=[0.0] * 4)]}
+            )
+            assert answer(peer) == (
+                1, "/arm/joint_trajectory",
+                "starts in 1.79e+09 s: set use_sim_time in the node that sends it",
+            )  # fmt: skip
+            step(peer, 0.01)
+        assert len(node.commands) == 1
+
+
+def test_of_two_senders_the_last_message_holds(peer: Peer) -> None:
+    with Peer() as other, node_of(simulation(), pace="stepped") as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.02) as found:
+            for count, sender, effort in ((1, peer, 0.01), (2, other, 0.02), (3, other, 0.03)):
+                sender.say("/wrist/commands", FLOATS, {"data": [effort, 0.0, 0.0]})
+                obeyed(node, count)
+            assert answer(peer) == (1, "/wrist/commands", "has several senders; the last message holds")
+            step(peer, 0.02)
+    assert (found[0].tau[:, 4] == 0.03).all()
+    assert [entry["values"][0] for entry in node.commands] == [0.01, 0.02, 0.03]
+
+
+def test_the_timeout_acts_when_a_sender_vanishes() -> None:
+    late = simulation(timeout=0.1, on_timeout="zero")
+    with Peer() as peer, node_of(late, is_paused=True) as node, spinning(node, 0.4) as found:
+        peer.say("/wrist/commands", FLOATS, {"data": [0.02, 0.0, 0.0]})
+        obeyed(node, 1)
+        peer.say("/pause", "std_msgs/msg/Bool", {"data": False})
+        while node._is_paused:
+            time.sleep(0.002)
+        peer.process.kill()
+    (trace,), (sent,) = found, (entry["time"] for entry in node.commands)
+    acts = trace.time[trace.tau[:, 4] == 0.02]
+    assert sent <= acts[0] < sent + 2 * PERIOD
+    assert abs(acts[-1] - (sent + 0.1)) < 2.1 * PERIOD and trace.time[-1] == 0.4
+
+
+class FakeReader:
+    def __init__(self, topic: str, kind: str, payloads: list[bytes]) -> None:
+        self.topic, self.kind, self.payloads = topic, kind, payloads
+
+    def take(self) -> list[tuple[bytes, int]]:
+        return [(payload, 1) for payload in self.payloads]
+
+
+class FakeParticipant:
+    """Readers that have received bytes."""
+
+    def __init__(self, payloads: list[bytes]) -> None:
+        self.payloads = payloads
+
+    def reader(self, topic: str, kind: str) -> FakeReader:
+        return FakeReader(topic, kind, self.payloads)
+
+
+def test_malformed_bytes_are_refused_on_every_topic() -> None:
+    rng = np.random.default_rng(7)
+    sizes = (0, 1, 3, 4, 5, 8, 12, 40, 200)
+    payloads = [b"\0\1\0\0" + rng.bytes(size) for size in sizes] + [rng.bytes(size) for size in sizes]
+    inbox: Any = Inbox(FakeParticipant(payloads))  # type: ignore[arg-type]
+    add_run_topics(inbox)
+    add_system_topics(inbox, "robot", "", ROBOT, {"arm": list(ARM)})
+    found = list(inbox.take())
+    assert len(found) == len(payloads) * len(list(inbox.topics()))
+    refused = [one for one in found if one.refusal is not None]
+    assert any(one.refusal.startswith("the message is malformed (") for one in refused)
+    assert all(not one.entries for one in refused)
+    run = {"/pause", "/reset", "/step", "/trigger"}
+    assert {one.topic for one in found if one.refusal is None} <= run, "random bytes never name joints"
