@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak notices clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak test-ros2 notices clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -97,5 +97,9 @@ fuzz: $(VENV)/.built $(VENV)/.tested ## fuzzes every parser, guided by coverage;
 soak: $(VENV)/.built $(VENV)/.tested ## tests kills, disk faults, leaks and long runs (docs/reliability.md)
 	$(BIN)/python tests/soak $(if $(SECONDS),--seconds $(SECONDS)) $(if $(SEED),--seed $(SEED))
 
+# SECONDS= length of the measurement of joint states, default: 60
+test-ros2: $(VENV)/.built $(VENV)/.tested ## tests the live node with rclpy of Jazzy, in .venv-ros2 (250 MB); skipped without wheels
+	$(BIN)/python tests/rclpy_peer $(if $(SECONDS),--seconds $(SECONDS))
+
 clean: ## removes builds and the environment
-	rm -rf target $(VENV) out
+	rm -rf target $(VENV) .venv-ros2 out
