@@ -95,3 +95,59 @@ def test_a_list_of_controllers_is_written_with_its_lines(tmp_path: Path) -> None
     assert re.search(r"\n    kp: 100.0 +# control.yaml:7: kp_value: 100.0\n", text), text
     assert re.search(r"\n    reference: .*# the target was sent over a ROS topic", text), text
     assert onorbit("check", "mine.yaml", cwd=tmp_path).returncode == 0
+
+
+# as in ets_vii/config of OnOrbitROS, and a controller that passes efforts on
+DRIVEN = """\
+right_arm_controller:
+  type: effort_controllers/JointTrajectoryController
+  joints: [right_joint_1, right_joint_2]
+  state_publish_rate: 50
+  gains:
+    right_joint_1: {p: 2000, d: 100, i: 10, i_clamp: 1}
+    right_joint_2: {p: 2000, d: 100, i: 10, i_clamp: 1}
+left_joint_1_controller:
+  type: effort_controllers/JointVelocityController
+  joint: left_joint_1
+  pid: {p: 50.0, i: 10.0, d: 1.0}
+hand_controller:
+  type: effort_controllers/JointGroupEffortController
+  joints: [left_joint_6, left_joint_7]
+"""
+
+
+def test_controllers_that_a_node_drove_follow_commands(tmp_path: Path) -> None:
+    files = write(tmp_path, control=DRIVEN)
+    done = convert([*files, DUAL], external=True)
+    arm, joint, hand = done.scenario["controllers"]
+    assert (arm["kind"], arm["kp"], arm["kd"]) == ("external", 100.0, 20.0)
+    assert arm["joints"] == ["right_joint_1", "right_joint_2"]
+    assert (joint["kind"], joint["kd"], "kp" in joint) == ("external", 20.0, False)
+    assert hand == {
+        "name": "hand_controller", "kind": "external", "joints": ["left_joint_6", "left_joint_7"],
+    }  # fmt: skip
+    notes = "\n".join(note.text for note in done.notes)
+    for topic in ("/right_arm_controller/joint_trajectory", "/left_joint_1_controller/commands"):
+        assert f"send them to {topic} of onorbit ros2" in notes
+    stepper = build(load(done.scenario)).simulation.start()
+    assert stepper.external == {
+        "right_arm_controller": arm["joints"], "left_joint_1_controller": ["left_joint_1"],
+        "hand_controller": hand["joints"],
+    }  # fmt: skip
+    stepper.send("right_arm_controller", position=[0.1, 0.0])
+    stepper.send("hand_controller", effort=[0.01, 0.0])
+    stepper.advance(0.1)
+    assert stepper.v[6:].any()
+
+
+def test_without_the_option_only_efforts_follow_commands(tmp_path: Path) -> None:
+    done = convert([*write(tmp_path, control=DRIVEN), DUAL])
+    assert [entry["kind"] for entry in done.scenario["controllers"]] == ["joint_pid", "joint_pid", "external"]
+
+
+def test_the_command_writes_external_controllers(tmp_path: Path) -> None:
+    done = onorbit("convert", *write(tmp_path, control=DRIVEN), DUAL, "--external")
+    assert re.search(
+        r'kind: "external" +# .*: type: effort_controllers/JointGroupEffortController', done.stdout
+    )
+    assert "gains of a PID, N m per error, do not fit computed torque: kp 100 1/s², kd 20 1/s" in done.stderr

@@ -22,6 +22,9 @@ def convert(
     controller: Annotated[
         str | None, typer.Option(metavar="NAME", help="Controller to convert, if there are several.")
     ] = None,
+    external: Annotated[
+        bool, typer.Option("--external", help="Joints with a PID follow commands, as of onorbit ros2.")
+    ] = False,
     keep_going: Annotated[bool, typer.Option("--keep-going", help="Ignore unknown keys.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> None:
@@ -34,8 +37,9 @@ def convert(
     from onorbit_rs.tools.interop.write_scenario import scenario_text
 
     check_output_file(out, force=force)
+    beside = out.parent if out else None
     conversion = convert_files(
-        files, controller=controller, keep_going=keep_going, beside=out.parent if out else None
+        files, controller=controller, external=external, keep_going=keep_going, beside=beside
     )
     check_scenario(conversion.scenario, None, {})
     for note in conversion.notes:

@@ -40,6 +40,7 @@ def convert(
     paths: Sequence[str | os.PathLike[str]],
     *,
     controller: str | None = None,
+    external: bool = False,
     keep_going: bool = False,
     beside: str | os.PathLike[str] | None = None,
 ) -> Conversion:
@@ -52,6 +53,8 @@ def convert(
     controller : str, optional
         Name of the controller to convert, if a file has several. Default: all controllers if they drive
         different joints, otherwise the first controller.
+    external : bool
+        Whether joints with a PID follow commands (``kind: external``) instead of holding their positions.
     keep_going : bool
         Whether an unknown key causes a note instead of an error.
     beside : path, optional
@@ -90,7 +93,7 @@ def convert(
         comments[("robot",)] = "its root link is free-floating"
         notes.append(Note(robot, None, "robot", "understood", "the robot; its root link is free-floating"))
     for source in _sources([file for file in files if file not in robots], keep_going, notes):
-        _read(source, controller)
+        _read(source, controller, external)
         for key, part in source.result.items():
             if key in scenario and key not in ("simulation", "robot"):
                 raise scenario_error(
@@ -143,13 +146,13 @@ def _is_known(data: Mapping[str, Any]) -> bool:
     return any(key in ORBIT_KEYS or key in FIXED_KEYS for key in data)
 
 
-def _read(source: Source, controller: str | None) -> None:
+def _read(source: Source, controller: str | None, external: bool) -> None:
     """Convert an orbit, a fixed pose or controllers, depending on the keys."""
     inner = [part for part in source.data.values() if isinstance(part, dict)]
     if CONTROLLER_MARKS & set(source.data) or any(
         CONTROLLER_MARKS & set(part) or "type" in part for part in inner
     ):
-        read_controllers(source, controller)
+        read_controllers(source, controller, external)
     elif any(key in FIXED_KEYS and key not in ORBIT_KEYS for key in source.data):
         source.refuse_unknown(FIXED_KEYS)
         read_fixed_pose(source)

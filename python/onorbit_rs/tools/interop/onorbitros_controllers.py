@@ -6,28 +6,31 @@ from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.tools.interop.onorbitros_controller import is_of_task, joints_of, read_task_law
+from onorbit_rs.tools.interop.onorbitros_external import forwards_efforts, read_driven, read_efforts
 from onorbit_rs.tools.interop.onorbitros_pid import is_pid, read_pid
 
 if TYPE_CHECKING:
     from onorbit_rs.tools.interop.source import Source
 
 
-def read_controllers(source: Source, wanted: str | None) -> None:
+def read_controllers(source: Source, wanted: str | None, external: bool) -> None:
     """Convert the controller ``wanted``; if None, all that can run together, otherwise the first.
 
     A single controller of an end effector becomes ``tool``, ``controller`` and ``reference``; other or
-    several controllers become ``controllers``.
+    several controllers become ``controllers``. With ``external``, those with a PID follow commands.
     """
     if is_of_task(source.data):
         read_task_law(source, ("controller",))
         return
     parts = {name: part for name, part in source.data.items() if isinstance(part, dict)}
-    known = [name for name, part in parts.items() if is_of_task(part) or is_pid(part)]
+    known = [
+        name for name, part in parts.items() if is_of_task(part) or is_pid(part) or forwards_efforts(part)
+    ]
     if not known:
         kinds = ", ".join(sorted({str(part["type"]) for part in parts.values() if "type" in part})) or "none"
         raise source.fail(
             next(iter(source.data)), "neither a controller with an end_effector_link nor one of ROS Control "
-            f"that commands efforts with a PID (the types found are {kinds})",
+            f"that commands efforts, directly or with a PID (the types found are {kinds})",
         )  # fmt: skip
     if wanted is not None and wanted not in known:
         raise source.fail(known[0], f"no controller is named {wanted!r}{did_you_mean(wanted, known)}")
@@ -42,7 +45,7 @@ def read_controllers(source: Source, wanted: str | None) -> None:
     if len(chosen) == 1 and is_of_task(parts[chosen[0]]):
         read_task_law(source.inside(chosen[0]), ("controller",))
         return
-    _read_several(source, chosen)
+    _read_several(source, chosen, external)
 
 
 def _together(parts: dict[str, Any], names: list[str]) -> tuple[list[str], str]:
@@ -59,7 +62,7 @@ def _together(parts: dict[str, Any], names: list[str]) -> tuple[list[str], str]:
     return names, ""
 
 
-def _read_several(source: Source, names: list[str]) -> None:
+def _read_several(source: Source, names: list[str], external: bool) -> None:
     """Convert controllers to ``controllers``; the longest trajectory determines the duration of the run."""
     entries: list[dict[str, Any]] = []
     for name in names:
@@ -67,6 +70,10 @@ def _read_several(source: Source, names: list[str]) -> None:
         inside.result["name"] = name
         if is_of_task(inside.data):
             read_task_law(inside, ())
+        elif forwards_efforts(inside.data):
+            read_efforts(inside)
+        elif external:
+            read_driven(inside)
         else:
             read_pid(inside)
         run = inside.result.pop("simulation", None)

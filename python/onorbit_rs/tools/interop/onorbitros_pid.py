@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from onorbit_rs.tools.interop.source import Source
 
-_INTERFACES = {
+INTERFACES = {
     "JointTrajectoryController": "position",
     "JointPositionController": "position",
     "JointVelocityController": "velocity",
@@ -22,7 +22,7 @@ GAINS = ("p", "i", "d", "i_clamp")
 def is_pid(part: dict[str, Any]) -> bool:
     """Return whether a controller has gains and a type of ROS Control's ``effort_controllers``."""
     kind = str(part.get("type")).partition("effort_controllers/")[2]
-    return kind in _INTERFACES and ("gains" in part or "pid" in part)
+    return kind in INTERFACES and ("gains" in part or "pid" in part)
 
 
 def read_pid(source: Source) -> None:
@@ -30,13 +30,11 @@ def read_pid(source: Source) -> None:
     source.refuse_unknown(KEYS)
     data = source.data
     kind = str(data["type"]).partition("/")[2]
-    joints = data["joints"] if "joints" in data else [data.get("joint")]
-    if not isinstance(joints, list) or not joints or not all(isinstance(name, str) for name in joints):
-        raise source.fail("joints" if "joints" in data else "joint", "must list the controlled joints")
+    joints = joint_names(source)
     key = "gains" if "gains" in data else "pid"
     source.put(("kind",), "joint_pid", "type")
     source.note("type", "understood", f"{data['type']} becomes a PID per joint")
-    source.put(("interface",), _INTERFACES[kind], "type")
+    source.put(("interface",), INTERFACES[kind], "type")
     source.put(("joints",), joints, "joints" if "joints" in data else "joint")
     gains = [_gains_of(source, key, name) for name in joints]
     for name in ("p", "d"):
@@ -48,12 +46,22 @@ def read_pid(source: Source) -> None:
         source.note(key, "corrected", "in ROS Control, i without i_clamp has no effect: it becomes zero")
     source.note(
         key, "understood",
-        "unchanged; commands were sent over a topic: the joints are held, unless you add a reference",
+        "unchanged; commands were sent over a topic: the joints are held, unless you add a reference, or "
+        "--external for commands of ROS 2",
     )  # fmt: skip
     source.comments[("p",)] = f"{source.file.name}: {key}"
     for extra in KEYS[5:]:
         if extra in data:
             source.note(extra, "no meaning", "there are neither action goals nor topics")
+
+
+def joint_names(source: Source) -> list[str]:
+    """Return the joints that a controller of ROS Control lists."""
+    data = source.data
+    joints = data["joints"] if "joints" in data else [data.get("joint")]
+    if not isinstance(joints, list) or not joints or not all(isinstance(name, str) for name in joints):
+        raise source.fail("joints" if "joints" in data else "joint", "must list the controlled joints")
+    return joints
 
 
 def _gains_of(source: Source, key: str, joint: str) -> dict[str, float]:
