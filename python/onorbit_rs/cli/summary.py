@@ -32,6 +32,7 @@ _FILES = (
     ("report.html", "self-contained report, for a browser"),
     ("run.rrd", "the recording, for the rerun viewer"),
     ("scenario.yaml", "the scenario with all defaults, ready to run"),
+    ("commands.jsonl", "the commands that the run was given"),
 )
 _AUDIT = (("impulse_ns", "N s"), ("energy_lost_j", "J"))
 _OF_THE_RUN = ("simulated_s", "wall_s", "real_time_factor")
