@@ -10,12 +10,12 @@ use pyo3::prelude::*;
 use pyo3::type_object::PyTypeCheck;
 use pyo3::types::{PyBool, PySet, PyString, PyTuple};
 
-/// Returns the name of an object's type, for messages.
+/// Returns the name of an object's type, for use in messages.
 pub(crate) fn type_name(value: &Bound<'_, PyAny>) -> String {
     value.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string())
 }
 
-/// Returns an integer; floats, booleans and text are rejected.
+/// Reads an integer; floats, booleans and text are rejected.
 pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
     let py = value.py();
     let number = if value.is_instance_of::<PyBool>() { None } else { Some(value.extract::<i64>()) };
@@ -41,7 +41,7 @@ pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
     }
 }
 
-/// Returns an integer of at least `least`; `hint` is appended to the message for a smaller one.
+/// Reads an integer of at least `least`; the message for a smaller one ends with `hint`.
 fn count(value: &Bound<'_, PyAny>, name: &str, least: usize, hint: &str) -> PyResult<usize> {
     let number = whole(value, name)?;
     usize::try_from(number).ok().filter(|count| *count >= least).ok_or_else(|| {
@@ -61,12 +61,12 @@ pub(crate) fn record_every(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "record_every", 1, " step")
 }
 
-/// Reads the index of the first row to return.
+/// Reads the index of the first row that is to be returned.
 pub(crate) fn first_row(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "since", 0, "")
 }
 
-/// Number of threads, read from the argument `threads`.
+/// Number of threads, as given by the argument `threads`.
 #[derive(Clone, Copy)]
 pub(crate) struct Threads(pub(crate) usize);
 
@@ -78,8 +78,8 @@ impl<'py> FromPyObject<'_, 'py> for Threads {
     }
 }
 
-/// Returns the entries of an iterable, but not of text or of a set without order, whose entries all have the class `T`;
-/// `what` is its name in messages.
+/// Reads the entries of an iterable other than text or a set. All entries must have the class `T`; `what`
+/// describes them in messages.
 pub(crate) fn list_of<'py, T: PyTypeCheck>(
     value: &Bound<'py, PyAny>,
     name: &str,
@@ -108,7 +108,8 @@ pub(crate) fn wrong_entry(entry: &Bound<'_, PyAny>, name: &str, what: &str) -> P
     raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
 }
 
-/// Returns names in a list; `what` describes them in messages, which show text given instead of a list as one.
+/// Reads a list of names; `what` describes them in messages. For text that is given instead of a list, the
+/// message suggests a list with that text.
 pub(crate) fn names_in(
     value: &Bound<'_, PyAny>,
     name: &str,
@@ -120,7 +121,7 @@ pub(crate) fn names_in(
     entries.iter().map(|entry| entry.extract()).collect()
 }
 
-/// Returns text; `what` describes it in messages.
+/// Reads text; `what` describes it in messages.
 pub(crate) fn text(value: &Bound<'_, PyAny>, name: &str, what: &str) -> PyResult<String> {
     value.extract().map_err(|_| {
         let (py, got) = (value.py(), type_name(value));
@@ -135,10 +136,10 @@ pub(crate) struct Input<'py> {
 }
 
 impl<'py> Input<'py> {
-    /// Borrows an array of `f64`, and converts lists and other arrays of real numbers. Any other value is an
+    /// Borrows an array of `f64`. Lists and other arrays of real numbers are converted; any other value is an
     /// error whose message contains `name`.
     pub(crate) fn new(value: &Bound<'py, PyAny>, name: &str) -> PyResult<Self> {
-        // the type is exact: a subclass such as a masked array is converted
+        // only the exact type is borrowed; a subclass such as a masked array is converted
         if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
             && value.get_type_ptr() == PyUntypedArray::type_object_raw(value.py())
             && array.is_c_contiguous()
@@ -175,7 +176,7 @@ impl<'py> Input<'py> {
         if !matches!(kind.as_str(), "f" | "i" | "u") {
             return Err(refuse(format!("of dtype {}", array.getattr("dtype")?)));
         }
-        // ascontiguousarray makes a scalar one-dimensional; its length is checked later
+        // ascontiguousarray makes a scalar one-dimensional; the length is checked later
         let array = numpy.call_method1("ascontiguousarray", (array, "float64"))?;
         let array = array.cast_into::<PyArrayDyn<f64>>()?;
         if array.is_aligned() {
@@ -200,7 +201,7 @@ impl<'py> Input<'py> {
         }
     }
 
-    /// Returns all elements in row-major order.
+    /// Returns all elements of the array in row-major order.
     pub(crate) fn data(&self) -> &[f64] {
         self.array.as_slice().unwrap_or(&[]) // contiguity was checked when it was borrowed
     }
@@ -210,7 +211,7 @@ impl<'py> Input<'py> {
     }
 }
 
-/// Returns a vector or matrix of fixed shape with finite entries.
+/// Reads a vector or matrix of fixed shape with finite entries.
 pub(crate) fn fixed<const N: usize>(
     value: &Bound<'_, PyAny>,
     name: &str,
@@ -227,14 +228,14 @@ pub(crate) fn fixed<const N: usize>(
     }
 }
 
-/// Returns an error if a number is not finite.
+/// Returns an error if any of the numbers is not finite.
 pub(crate) fn finite(py: Python<'_>, name: &str, numbers: &[f64]) -> PyResult<()> {
     let Some(x) = numbers.iter().find(|x| !x.is_finite()) else { return Ok(()) };
     let message = format!("{name} holds {x}; all values must be finite");
     Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)))
 }
 
-/// Returns the times of an argument `t`, s, and its shape: `()` for a number, `(T,)` for an array.
+/// Reads the times of an argument `t`, s, and their shape: `()` for a number, `(T,)` for an array.
 pub(crate) fn times(t: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     if let Ok(one) = t.extract::<f64>() {
         return Ok((vec![one], Vec::new()));
@@ -252,7 +253,7 @@ pub(crate) fn wrong_shape(py: Python<'_>, name: &str, expected: &str, got: &[usi
     shape_error(py, &message, name, expected, got.to_vec())
 }
 
-/// Returns a shape as Python writes it, such as `(2, 3)`.
+/// Formats a shape as Python does, such as `(2, 3)`.
 pub(crate) fn shape_text(shape: &[usize]) -> String {
     match shape {
         [n] => format!("({n},)"),
@@ -263,7 +264,7 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
 /// Number of elements (8 MiB) up to which an allocation is assumed to succeed.
 const SMALL: usize = 1 << 20;
 
-/// Returns a new array of zeros for results of the core.
+/// Creates an array of zeros for results of the core.
 pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let count = shape.iter().try_fold(1_usize, |count, n| count.checked_mul(*n));
     if count.is_some_and(|count| count <= SMALL) {
@@ -283,21 +284,21 @@ pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py
     }
 }
 
-/// Returns the numbers of an array that was created in this call and has no other references.
+/// Returns the numbers of an array that was created in this call and to which there are no other references.
 #[allow(clippy::mut_from_ref)] // the slice is numpy's buffer, which has no other references
 pub(crate) fn fresh<'a>(array: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a mut [f64] {
     // SAFETY: created by `zeros` in this call, contiguous, and not yet visible to Python.
     unsafe { array.as_slice_mut() }.unwrap_or(&mut [])
 }
 
-/// Returns a new array with these numbers.
+/// Creates an array with these numbers.
 pub(crate) fn array_of<'py>(py: Python<'py>, shape: &[usize], data: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
     let array = PyArray::zeros(py, IxDyn(shape), false); // for small arrays, such as a state
     fresh(&array).copy_from_slice(data);
     array
 }
 
-/// Returns a read-only array.
+/// Creates a read-only array with these numbers.
 pub(crate) fn constant<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
     let array = array_of(py, &[values.len()], values);
     let _ = array.readwrite().make_nonwriteable();

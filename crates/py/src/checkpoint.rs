@@ -1,4 +1,4 @@
-//! Checkpoints of runs for Python.
+//! Checkpoints of runs, as a Python class.
 
 use crate::arrays::{Input, array_of, first_row};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
@@ -11,24 +11,25 @@ use pyo3::types::{PyBool, PyDict};
 use std::ffi::CString;
 use std::time::{Duration, Instant};
 
-/// State of a run, from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
+/// State of a run from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
 ///
-/// A run passes checkpoints with the rows since the previous one to its callback; resuming needs all rows.
+/// The callback of a run receives checkpoints with the rows since the previous checkpoint. To resume a run,
+/// all rows are needed.
 ///
 /// Parameters
 /// ----------
 /// state : str
-///     State of the run that its rows do not contain, as JSON.
+///     State of the run, as JSON, apart from its rows.
 /// columns : dict of array
-///     Rows (k, width) of each column of the trace by its name, in the unit of the column. In a world of several
-///     systems, the names are paths such as ``chaser/q``.
+///     Rows (k, width) of each column of the trace, by the name of the column and in its unit. In a world of
+///     several systems, the names are paths such as ``chaser/q``.
 /// wall_s : float
 ///     Wall-clock time of the run so far, s.
 #[pyclass(name = "Checkpoint", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyCheckpoint {
-    /// State of the run that its rows do not contain, as text (JSON).
+    /// State of the run, as JSON, apart from its rows.
     state: String,
-    /// Rows of each column of the trace by its name: (k, width), in the unit of the column.
+    /// Rows (k, width) of each column of the trace, by the name of the column and in its unit.
     columns: Py<PyDict>,
     /// Wall-clock time of the simulation loop so far, s.
     pub(crate) wall_s: f64,
@@ -92,12 +93,12 @@ impl PyCheckpoint {
     }
 }
 
-/// Returns what precedes the names of the columns of a system in a run of `count` systems.
+/// Returns the prefix of the column names of a system in a run of `count` systems.
 fn prefix(system: &str, count: usize) -> String {
     if count == 1 { String::new() } else { format!("{system}/") }
 }
 
-/// First row to return: of every system, or by the name of the system.
+/// Index of the first row to return: one for all systems, or one per system by name.
 pub(crate) enum Since {
     Every(usize),
     Each(Vec<(String, usize)>),
@@ -114,7 +115,8 @@ impl<'py> FromPyObject<'_, 'py> for Since {
 }
 
 impl Since {
-    /// Returns the first row of each of the systems with these names; systems that are not named start at row 0.
+    /// Returns the index of the first row for each of the systems with these names; systems that are not
+    /// named start at row 0.
     pub(crate) fn rows(&self, py: Python<'_>, systems: &Systems) -> PyResult<Vec<usize>> {
         match self {
             Self::Every(row) => Ok(vec![*row; systems.names.len()]),
@@ -134,7 +136,8 @@ pub(crate) fn row_counts(stepper: &Stepper<'_>, systems: usize) -> Vec<usize> {
     (0..systems).map(|system| stepper.rows(system).rows()).collect()
 }
 
-/// Returns the rows of the systems with these names as a dict of columns; `since` is the first row of each system.
+/// Returns the rows of the systems with these names as a dict of columns, starting for each system at its row
+/// in `since`.
 pub(crate) fn columns_since<'py>(
     py: Python<'py>,
     stepper: &Stepper<'_>,
@@ -159,7 +162,7 @@ pub(crate) fn columns_since<'py>(
     Ok(columns)
 }
 
-/// Returns a checkpoint of a run with its rows; `since` is the first row of each system.
+/// Creates a checkpoint of a run with its rows; `since` is the index of the first row for each system.
 pub(crate) fn checkpoint_of(
     py: Python<'_>,
     stepper: &Stepper<'_>,
@@ -218,7 +221,7 @@ impl CheckpointCallback {
         let answer = to.call1(py, (checkpoint,))?;
         self.last = Instant::now();
         if !answer.bind(py).is(PyBool::new(py, false)) {
-            // if it was not stored, the next one contains its rows again
+            // if the checkpoint was not stored, the next one contains its rows again
             self.rows = row_counts(stepper, self.names.len());
         }
         Ok(())

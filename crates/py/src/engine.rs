@@ -9,7 +9,8 @@ use onorbit_core::spatial::Vec3;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Environment of a run: ``wrenches(t, q, v)`` returns the wrench on each body at a state within the step.
+/// Environment of a run. ``wrenches(t, q, v)`` returns the wrench on each body at a state within the current
+/// step.
 #[pyclass(name = "Wrenches", frozen, module = "onorbit_rs")]
 struct PyWrenches {
     query: Mutex<(EnvironmentQuery, (f64, f64))>,
@@ -58,8 +59,8 @@ fn state<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input
     Ok(input)
 }
 
-/// Python object with `step(start, end, q, v, tau, wrenches)`, or `step_world` for several systems, as the engine of a
-/// run.
+/// Engine of a run that is a Python object with the method `step(start, end, q, v, tau, wrenches)`, or
+/// `step_world` for several systems.
 pub(crate) struct PythonEngine {
     object: Py<PyAny>,
     wrenches: Py<PyWrenches>,
@@ -67,7 +68,7 @@ pub(crate) struct PythonEngine {
 }
 
 impl PythonEngine {
-    /// Wraps the engine of a simulation, to which all effects must have been added before.
+    /// Wraps the engine of a simulation. All effects of the simulation must have been added before.
     pub(crate) fn new(engine: &Bound<'_, PyAny>, simulation: &Simulation) -> PyResult<Self> {
         let py = engine.py();
         let models = || simulation.systems.iter().map(|system| &system.model);
@@ -76,7 +77,7 @@ impl PythonEngine {
         let is_world = simulation.systems.len() > 1;
         if is_world && !engine.hasattr("step_world")? {
             let message = "an engine of a world of several systems needs a method step_world; see the notes of \
-                           Simulation, or use the native equations of motion";
+                           Simulation, or use the native engine";
             return Err(raise(py, "EngineError", message, &fields!(py, "name": "engine")));
         }
         let query = Mutex::new((simulation.outside(), (0.0, 0.0)));
@@ -122,19 +123,19 @@ impl PythonEngine {
 
 const IMPULSE: &str = "the impulse that the engine returned";
 
-/// A connection in Python: system and body of both sides, the two points, and the rotation.
+/// Connection as passed to Python: system and body of both sides, the two points, and the rotation.
 type Described<'py> = ((usize, usize), (usize, usize), Bound<'py, PyAny>, Bound<'py, PyAny>);
 
 fn described<'py>(py: Python<'py>, weld: &BodyWeld) -> Described<'py> {
     let [by, of] = weld.bodies.map(|body| (body.system, body.body));
     let rows = |vectors: &[Vec3<f64>]| vectors.iter().flat_map(|v| [v.x, v.y, v.z]).collect::<Vec<f64>>();
-    let turned = weld.rotation.transpose(); // stored by columns
+    let turned = weld.rotation.transpose(); // the matrix is stored by columns
     let (points, rotation) = (rows(&weld.points), rows(&[turned.x, turned.y, turned.z]));
     (by, of, array_of(py, &[2, 3], &points).into_any(), array_of(py, &[3, 3], &rotation).into_any())
 }
 
-/// Reads what each system received in a step of a world: impulse, work and loss; impulse and work of the connections;
-/// and the moment about the common centre of mass.
+/// Reads the exchange of each system in a step of a world: impulse, work and loss; impulse and work of the
+/// connections; and the moment about the common centre of mass.
 fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyResult<()> {
     let [impulse, work, loss, weld_impulse, weld_work, orbital] = values;
     let n = output.systems.len();

@@ -13,13 +13,13 @@ use std::time::{Duration, Instant};
 /// Wall-clock time between two checks for signals.
 pub(crate) const PACE: Duration = Duration::from_millis(50);
 
-/// Batch size from which the cost of a separate thread, some tens of microseconds, is negligible.
+/// Smallest batch size for which the cost of a separate thread, some tens of microseconds, is negligible.
 pub(crate) const LONG_BATCH: usize = 1 << 16;
 
-/// Steps of an integrated orbit between two checks for signals.
+/// Number of steps of an integrated orbit between two checks for signals.
 const STEPS: usize = 16;
 
-/// Returns an interval of wall-clock time, given in s; `name` is that of the argument in messages.
+/// Converts an interval of wall-clock time, s; `name` is the name of the argument in messages.
 pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Duration> {
     Duration::try_from_secs_f64(seconds).map_err(|_| {
         let message = format!("{name} is {} s; it must be finite, zero or positive", short(seconds));
@@ -41,10 +41,10 @@ pub(crate) fn batch<R: Send>(
     interruptible(py, &stop, || work(Threads { count, stop: Some(&stop) }))
 }
 
-/// Runs `work` on a separate thread; Ctrl-C during it raises at once and abandons `work`, which finishes in
+/// Runs `work` on a separate thread. A Ctrl-C is raised immediately; `work` is then abandoned and finishes in
 /// the background.
 ///
-/// This is for work that cannot be stopped, such as parsing a file or computing a certificate.
+/// This function is for work that cannot be stopped, such as parsing a file or computing a certificate.
 pub(crate) fn abandonable<R: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> R + Send + 'static,
@@ -73,9 +73,9 @@ pub(crate) fn prepare(py: Python<'_>, orbit: &dyn Orbit, times: &[f64]) -> PyRes
     Ok(())
 }
 
-/// Runs `work` without the GIL on successive ranges of `rows`, initially `first` rows and then as many
-/// as take about one interval, and checks for signals in between. Ranges begin at multiples of `first`, a
-/// power of two.
+/// Runs `work` without the GIL on successive ranges of `rows`, with checks for signals in between. The first
+/// range has `first` rows; later ones have as many rows as take about one interval. Ranges begin at multiples
+/// of `first`, a power of two.
 pub(crate) fn in_pieces<E: IntoPython + Send>(
     py: Python<'_>,
     rows: usize,
@@ -103,7 +103,7 @@ pub(crate) fn in_pieces<E: IntoPython + Send>(
     }
 }
 
-/// Runs `work` on a separate thread; Ctrl-C meanwhile sets `stop` and raises after `work` has returned.
+/// Runs `work` on a separate thread. A Ctrl-C sets `stop`, and is raised after `work` has returned.
 pub(crate) fn interruptible<R: Send>(
     py: Python<'_>,
     stop: &AtomicBool,

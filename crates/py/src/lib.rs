@@ -1,4 +1,4 @@
-//! Python bindings of `onorbit-core`. This crate converts data and computes nothing.
+//! Python bindings of `onorbit-core`. This crate only converts data; all computations are in the core.
 
 mod arrays;
 mod batch;
@@ -46,7 +46,8 @@ fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(info)
 }
 
-/// Disables instructions that are newer than the set in the variable `ONORBIT_INSTRUCTION_SET`.
+/// Disables instructions newer than the instruction set named by the environment variable
+/// `ONORBIT_INSTRUCTION_SET`.
 fn limit_instructions() -> PyResult<()> {
     let level = std::env::var("ONORBIT_INSTRUCTION_SET").unwrap_or_default();
     if level.is_empty() {

@@ -1,4 +1,4 @@
-//! Output arrays, either new or given by the caller.
+//! Output arrays, which are either new or given by the caller.
 
 use crate::arrays::{Input, fresh, shape_text, zeros};
 use crate::errors::{fields, raise};
@@ -15,12 +15,12 @@ pub(crate) struct Output<'py> {
 }
 
 impl<'py> Output<'py> {
-    /// Returns a new array of this shape.
+    /// Creates a new array of this shape.
     pub(crate) fn fresh(py: Python<'py>, shape: &[usize]) -> PyResult<Self> {
         Ok(Self { array: zeros(py, shape)?, borrowed: None })
     }
 
-    /// Returns the caller's array if it has this shape.
+    /// Borrows the caller's array, which must have this shape.
     fn given(value: Any<'_, 'py>, name: &str, shape: &[usize]) -> PyResult<Self> {
         let refuse = |class: &str, got: &str| {
             let (py, needed) = (value.py(), shape_text(shape));
@@ -92,7 +92,7 @@ pub(crate) fn outputs<'py, const N: usize>(
     Ok(made)
 }
 
-/// Reads `out=(a, b)`; `what` names the arrays in messages.
+/// Reads the argument `out=(a, b)`; `what` names the arrays in messages.
 pub(crate) fn pair<'py>(out: Option<Any<'_, 'py>>, what: &str) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
     let Some(out) = out else { return Ok(None) };
     let (a, b) = out.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>)>().map_err(|_| {

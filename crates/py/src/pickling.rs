@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 /// Function and arguments that rebuild an object: the value of `__reduce__`.
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
-/// Constructor, arguments and keywords that reconstruct an object.
+/// Constructor, arguments and keywords with which an object is reconstructed.
 pub(crate) struct ConstructorCall(Py<PyTuple>);
 
 impl ConstructorCall {
-    /// Records a call with keywords only.
+    /// Records a call that has only keyword arguments.
     pub(crate) fn with_keywords(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         Self::new(constructor, (), keywords)
     }
 
-    /// Records a call with keywords only, of which arrays and lists are copied.
+    /// Records a call that has only keyword arguments, of which arrays and lists are copied.
     pub(crate) fn with_copies(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         let copies = keywords.copy()?;
         for (name, value) in keywords.iter() {
@@ -28,7 +28,7 @@ impl ConstructorCall {
         Self::new(constructor, (), &copies)
     }
 
-    /// Records a call with arguments and keywords.
+    /// Records a call with positional and keyword arguments.
     pub(crate) fn new<'py, A>(
         constructor: &str,
         arguments: A,
@@ -53,16 +53,16 @@ impl ConstructorCall {
         Ok((own == constructor).then_some((arguments, keywords)))
     }
 
-    /// Returns the value of `__reduce__`.
+    /// Returns the value of `__reduce__` for this call.
     pub(crate) fn reduce<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
         let rebuild = py.import("onorbit_rs.common.pickling")?.getattr("rebuild")?;
         Ok((rebuild, self.0.bind(py).clone().into_any()))
     }
 
-    /// Returns the value of `__reduce__` of a robot, whose file may change before it is read again.
+    /// Returns the value of `__reduce__` of a robot whose file may change before it is read again.
     ///
-    /// The file is also read here: an error in this process is reported, whereas an error in a worker of a
-    /// pool stops the worker silently.
+    /// The file is read in this process as well, so that an error is reported here; in a worker of a pool, an
+    /// error would stop the worker silently.
     pub(crate) fn reduce_robot<'py>(&self, robot: &Bound<'py, PyAny>) -> PyResult<Reduced<'py>> {
         let py = robot.py();
         let print = py.import("onorbit_rs.robots.fingerprint")?.call_method1("fingerprint", (robot,))?;
@@ -73,7 +73,8 @@ impl ConstructorCall {
     }
 }
 
-/// Records the call of a constructor, given by its name, with variables that have the names of its arguments.
+/// Records the call of a constructor. The macro takes its name and variables that have the names of its
+/// arguments.
 macro_rules! call_of {
     ($py:expr, $constructor:literal, $($name:ident),+ $(,)?) => {{
         let keywords = pyo3::types::PyDict::new($py);

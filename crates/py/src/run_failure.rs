@@ -7,8 +7,9 @@ use onorbit_core::simulation::SimulationError;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
-/// Returns the exception for a run that an error ended. A Ctrl-C in a Python controller, in another engine, or
-/// pending while the run failed becomes `RunInterrupted`, with the error as its context.
+/// Returns the exception for a run that ended with an error. A Ctrl-C in a Python controller or in an
+/// external engine, or one that is pending while the run fails, becomes `RunInterrupted` with the error as
+/// its context.
 pub(crate) fn run_failure(
     py: Python<'_>,
     error: SimulationError,
@@ -33,12 +34,12 @@ pub(crate) fn run_failure(
     interrupted
 }
 
-/// Returns the exception for an error raised between two steps: Ctrl-C becomes `RunInterrupted`.
+/// Returns the exception for an error raised between two steps. Ctrl-C becomes `RunInterrupted`.
 pub(crate) fn interrupted(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyAny>>) -> PyErr {
     if error.is_instance_of::<PyKeyboardInterrupt>(py) {
         run_interrupted(py, error, time, trace)
     } else {
-        error // the callback raised
+        error // an error of the callback
     }
 }
 

@@ -1,4 +1,4 @@
-//! A simulation and the run that borrows it, shared by `Simulation` and its steppers.
+//! Simulation together with the run that borrows it, shared by `Simulation` and its steppers.
 
 use crate::errors::{SimulationErrorExt, plain};
 use onorbit_core::simulation::{AttachedControl, Checkpoint, Simulation, Stepper, Trace};
@@ -9,7 +9,7 @@ use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 self_cell!(
-    /// Run together with the simulation that it borrows.
+    /// Run, together with the simulation that it borrows.
     struct Running {
         owner: MutBorrow<Simulation>,
         #[not_covariant]
@@ -21,7 +21,7 @@ self_cell!(
 enum Slot {
     Idle(Box<Simulation>),
     Running(Box<Running>),
-    /// Temporary state while the simulation and its run replace each other.
+    /// Temporary state while the simulation and its run replace one another.
     Empty,
 }
 
@@ -31,7 +31,7 @@ pub(crate) struct Runs {
     number: u64,
     /// Wall-clock time of the current run so far, s.
     pub(crate) wall_s: f64,
-    /// Controls of which the current run has warned.
+    /// Controls about which the current run has issued a warning.
     warned: Vec<AttachedControl>,
 }
 
@@ -45,7 +45,7 @@ impl SharedRun {
     }
 
     /// Returns exclusive access to the runs. Raises an error if another thread, or a callback of the run
-    /// itself, has access.
+    /// itself, already has access.
     pub(crate) fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Runs>> {
         match self.0.try_lock() {
             Ok(runs) => Ok(runs),
@@ -58,7 +58,7 @@ impl SharedRun {
         }
     }
 
-    /// Ends the current run and starts another one; returns its number.
+    /// Ends the current run, starts another run, and returns its number.
     pub(crate) fn start(
         &self,
         py: Python<'_>,
@@ -114,7 +114,8 @@ impl Runs {
         }
     }
 
-    /// Warns of controls of run `number` that follow a frame to which a capture has rigidly connected their own.
+    /// Issues warnings about controls of run `number` that follow a frame to which a capture has rigidly
+    /// connected their own frame.
     pub(crate) fn warn(&mut self, py: Python<'_>, number: u64) -> PyResult<()> {
         let all = self.with(number, |stepper| stepper.attached_controls()).unwrap_or_default();
         for new in all.into_iter().filter(|attached| !self.warned.contains(attached)).collect::<Vec<_>>() {
@@ -130,7 +131,8 @@ impl Runs {
         Ok(())
     }
 
-    /// Calls `work` with run `number`; `None` if another run has been started since, or if it was ended.
+    /// Calls `work` with run `number`. Returns `None` if that run was ended or another run has been started
+    /// since.
     pub(crate) fn with<R>(&mut self, number: u64, work: impl FnOnce(&mut Stepper<'_>) -> R) -> Option<R> {
         match &mut self.slot {
             Slot::Running(running) if self.number == number => {

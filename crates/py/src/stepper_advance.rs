@@ -1,4 +1,4 @@
-//! Advances the run of a stepper, and ends it.
+//! Advance and end of the run of a stepper.
 
 use crate::checkpoint::row_counts;
 use crate::errors::SimulationErrorExt;
@@ -12,11 +12,11 @@ use std::ops::ControlFlow;
 use std::sync::MutexGuard;
 use std::time::{Duration, Instant};
 
-/// Callback at regular intervals of wall-clock time, which receives the run and its wall-clock time so far, s.
+/// Callback at regular intervals of wall-clock time. It receives the run and its wall-clock time so far, s.
 pub(crate) type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResult<()>;
 
 impl PyStepper {
-    /// Runs to the end and returns the whole trace; `pause` is called at intervals.
+    /// Runs to the end and returns the whole trace; `pause` is called at regular intervals.
     pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<Py<PyAny>> {
         let mut runs = self.run.lock(py)?;
         if let Err(error) = self.advance_locked(py, &mut runs, duration, None, pause) {
@@ -42,7 +42,7 @@ impl PyStepper {
         }
     }
 
-    /// Advances in slices of wall-clock time, without the GIL.
+    /// Advances the run in slices of wall-clock time, without the GIL.
     pub(crate) fn advance_locked(
         &self,
         py: Python<'_>,
@@ -81,7 +81,8 @@ impl PyStepper {
         }
     }
 
-    /// Returns the exception for an error of the core, with the rows of the run if the error ended it.
+    /// Returns the exception for an error of the core. If the error ended the run, the exception has its
+    /// rows.
     pub(crate) fn failed(
         &self,
         py: Python<'_>,
@@ -96,7 +97,7 @@ impl PyStepper {
         self.ended_early(py, error, recording, wall_s)
     }
 
-    /// Returns the exception for an error that ended the run, with its rows.
+    /// Returns the exception for an error that ended the run, with the recorded rows.
     pub(crate) fn ended_early(
         &self,
         py: Python<'_>,

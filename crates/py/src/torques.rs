@@ -6,7 +6,7 @@ use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Reads the torques of a command to a system.
+/// Reads the torques commanded to a system.
 pub(crate) fn torques(model: &Model, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
     let py = tau.py();
     let n = model.joint_count();

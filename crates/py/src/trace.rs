@@ -1,4 +1,4 @@
-//! The columns of a trace as read-only views.
+//! Columns of a trace as read-only views.
 
 use crate::interrupt::abandonable;
 use numpy::ndarray::ArrayView;
@@ -10,10 +10,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Result of a run: one row per recorded step; the first row is the initial state, the last the final state.
+/// Result of a run with one row per recorded step. The first row is the initial state, and the last row is
+/// the final state.
 ///
-/// The columns are read-only views in SI units; columns that do not apply to the run have the value None.
-/// ``onorbit_rs.COLUMNS`` describes each: shape, unit, frame and meaning.
+/// The columns are read-only views in SI units; columns that do not apply to the run are None.
+/// ``onorbit_rs.COLUMNS`` describes the shape, unit, frame and meaning of each column.
 #[pyclass(name = "Trace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyTrace {
     pub(crate) trace: Trace,
@@ -26,30 +27,31 @@ pub(crate) struct PyTrace {
     pub(crate) wall_s: f64,
 }
 
-/// Number of rows above which the certificate of a trace takes more than a tenth of a second.
+/// Number of rows above which computing the certificate of a trace takes more than a tenth of a second.
 const LONG_TRACE: usize = 1 << 14;
 
 type Column<'py> = Option<Bound<'py, PyArrayDyn<f64>>>;
 
-/// Returns a view of a column with the trace as its owner; None if the run did not record it.
+/// Returns a view of a column, owned by the trace; None if the run did not record the column.
 fn view<'py>(this: &Bound<'py, PyTrace>, data: &[f64], row: &[usize]) -> PyResult<Column<'py>> {
     let shape: Vec<usize> = std::iter::once(this.get().trace.rows()).chain(row.iter().copied()).collect();
     let Ok(array) = ArrayView::from_shape(IxDyn(&shape), data) else { return Ok(None) };
-    // SAFETY: the columns of a frozen trace are never written nor reallocated, and the view keeps it alive.
+    // SAFETY: the columns of a frozen trace are never written or reallocated, and the view keeps the trace
+    // alive.
     let view = unsafe { PyArray::borrow_from_array(&array, this.clone().into_any()) };
     Ok(Some(view.readwrite().make_nonwriteable().as_any().cast::<PyArrayDyn<f64>>()?.clone()))
 }
 
-/// Returns the column that the table describes under this name.
+/// Returns the view of the column that the table describes under this name.
 fn described<'py>(this: &Bound<'py, PyTrace>, name: &str, data: &[f64]) -> PyResult<Column<'py>> {
     let column = COLUMNS.iter().find(|column| column.name == name).expect("every field is in the table");
     let row = column.row_shape(&this.get().model);
-    // a robot without joints has torques of width zero
+    // a robot without joints has torque columns of width zero
     let is_recorded = !data.is_empty() || (column.condition == Condition::Always && row.contains(&0));
     if is_recorded { view(this, data, &row) } else { Ok(None) }
 }
 
-/// Declares the class with a getter for each row of the table of columns.
+/// Declares the class, with a getter for each row of the table of columns.
 macro_rules! getters {
     ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
         $meaning:literal;)+) => {
@@ -63,13 +65,12 @@ macro_rules! getters {
                 }
             )+
 
-            /// Return the names of the columns that the run recorded, apart from ``tracking`` and
-            /// ``wrenches``.
+            /// Return the names of the columns that the run recorded, except ``tracking`` and ``wrenches``.
             ///
             /// Returns
             /// -------
             /// list of str
-            ///     In the order of ``onorbit_rs.COLUMNS``.
+            ///     Names in the order of ``onorbit_rs.COLUMNS``.
             fn columns(this: &Bound<'_, Self>) -> PyResult<Vec<&'static str>> {
                 let mut names = Vec::new();
                 $( if Self::$name(this)?.is_some() { names.push(stringify!($name)); } )+
@@ -88,7 +89,7 @@ macro_rules! getters {
             /// -------
             /// list of tuple
             ///     ``(name, value, gate, passed)`` for each check that applies to the run. Values are
-            ///     relative to nonzero scales, apart from angles in rad (names in ``_rad``).
+            ///     relative to nonzero scales, except angles in rad, whose names end in ``_rad``.
             fn certificate(this: &Bound<'_, Self>) -> PyResult<Vec<(&'static str, f64, f64, bool)>> {
                 let of = |this: &PyTrace| certify(&this.model, &this.trace).checks();
                 let (own, shared) = (this.get(), this.clone().unbind());
@@ -100,18 +101,18 @@ macro_rules! getters {
                 Ok(checks.iter().map(|check| (check.name, check.value, check.gate, check.passed())).collect())
             }
 
-            /// Return the names of the joints that exceed their position limits in some row.
+            /// Return the names of the joints that exceed their position limits in any row.
             ///
             /// Returns
             /// -------
             /// list of str
-            ///     Empty without position limits.
+            ///     Names; empty if the joints have no position limits.
             fn joint_limits_exceeded(&self) -> Vec<&str> {
                 self.trace.limits_exceeded(&self.model)
             }
 
-            /// Tracking errors by the name of the control, desired minus actual: (T, 6) of a task, m and rad,
-            /// or (T, k) of k joints; zero while the control is inactive.
+            /// Tracking errors, desired minus actual, by the name of the control: (T, 6) for a task, m and
+            /// rad, or (T, k) for k joints; zero while the control is inactive.
             #[getter]
             fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let all = PyDict::new(this.py());
@@ -121,8 +122,8 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Wrenches by the name of the effect, (T, bodies, 6): force, N, through the centre of mass of
-            /// each body of ``model.body_names``, and torque about it, N m, in W axes. Recorded with
+            /// Wrenches by the name of the effect, (T, bodies, 6), W axes: the force, N, through the centre
+            /// of mass of each body of ``model.body_names``, and the torque about it, N m. Recorded with
             /// ``record_wrenches=True``.
             #[getter]
             fn wrenches<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
@@ -133,17 +134,17 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Times at which the robot had drifted so far from its reference orbit that integration
-            /// continued about a new one: (K,), s.
+            /// Times at which integration continued about a new reference orbit, because the robot had
+            /// drifted too far from the previous one: (K,), s.
             #[getter]
             fn rereferenced<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
                 PyArray1::from_slice(py, &self.trace.rereferenced)
             }
 
-            /// Outcomes of the goals: dicts of ``name``, ``outcome`` (``succeeded``,
-            /// ``path_tolerance_violated``, ``goal_tolerance_violated``, ``unfinished``), ``time``, s, the
-            /// ``component`` (a joint, ``position`` or ``attitude``) whose error was too large, and that
-            /// ``error``, m or rad.
+            /// Outcomes of the goals, as dicts: ``name``, ``outcome`` (``succeeded``,
+            /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``), ``time``, s,
+            /// ``component``, the joint (or ``position`` or ``attitude``) whose error was too large, and
+            /// ``error``, that error, m or rad.
             #[getter]
             fn results<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
                 let all = self.trace.results.iter().map(|result| {

@@ -23,24 +23,25 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// orbits : list of Orbit
 ///     N orbits.
 /// times : (T,) or (N, T) array
-///     Simulation times, s: the same for all orbits, or one row per orbit.
+///     Simulation times, s: common to all orbits, or one row per orbit.
 /// threads : int, optional
 ///     Number of threads; default: all cores.
 /// out : tuple of two (N, T, 3) arrays, optional
-///     Arrays for the results, which are returned. They must not be accessed during the call.
+///     Arrays in which the results are stored and which are returned. They must not be accessed during the
+///     call.
 ///
 /// Returns
 /// -------
 /// r : (N, T, 3) array
-///     Positions, each in the axes of its orbit, m.
+///     Positions, m, in the axes of the respective orbit.
 /// v : (N, T, 3) array
-///     Velocities, m/s.
+///     Velocities, m/s, in the same axes.
 ///
 /// Raises
 /// ------
 /// OrbitError
 ///     If a state cannot be computed; ``index`` is the index of the orbit. ``Sgp4Error`` and ``PathError``
-///     are subclasses. An error of an orbit's gravity or Earth is raised as it is.
+///     are subclasses. Errors of an orbit's gravity or Earth are raised unchanged.
 #[pyfunction]
 #[pyo3(signature = (orbits, times, *, threads=None, out=None))]
 pub(super) fn propagate<'py>(
@@ -72,7 +73,7 @@ pub(super) fn propagate<'py>(
     written(py, &shape, out, std::slice::from_ref(&input), run)
 }
 
-/// Calls `write` with two arrays of this shape, those in `out` or new ones, and returns them.
+/// Calls `write` with two arrays of this shape, which are those in `out` or new ones, and returns the arrays.
 fn written<'py>(
     py: Python<'py>,
     shape: &[usize],
@@ -86,7 +87,7 @@ fn written<'py>(
     Ok((r.into_array().into_any(), v.into_array().into_any()))
 }
 
-/// Returns the states of many elliptic orbits; each element and the time are a number or an (N,) array.
+/// Computes the states of many elliptic orbits. Each element, and the time, is a number or an (N,) array.
 pub(crate) fn kepler_states<'py>(
     py: Python<'py>,
     given: [(&str, Any<'_, 'py>); 7],

@@ -15,7 +15,7 @@ use std::sync::atomic::AtomicBool;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Integrate many states without an environment: with free joints, given torques, or a computed-torque
+/// Integrate many states without an environment, with free joints, given torques, or a computed-torque
 /// controller.
 ///
 /// The bits of the results do not depend on ``threads``.
@@ -41,11 +41,11 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// integrator : {"rk4", "semi_implicit_euler"}
 ///     Integrator.
 /// record_every : int, optional
-///     If given, every ``record_every``-th state is returned.
+///     If given, the initial state and every ``record_every``-th state are returned.
 /// threads : int, optional
 ///     Number of threads; default: all cores.
 /// out : tuple of two arrays, optional
-///     Arrays for the results, which are returned.
+///     Arrays in which the results are stored and which are returned.
 ///
 /// Returns
 /// -------
@@ -58,10 +58,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// SimulationError
 ///     If a state diverges.
 /// ControlError
-///     If only one of ``controller`` and ``reference`` is given, ``tau`` is given as well, the controller is of
-///     another kind or for another robot, or the reference is in the frame ``"lvlh"``.
+///     If only one of ``controller`` and ``reference`` is given, if ``tau`` is given as well, if the
+///     controller is of another kind or for another robot, or if the reference is in the frame ``"lvlh"``.
 /// InputError, ShapeError
-///     If a number is invalid, the integrator is another, or an array has the wrong shape.
+///     If a number is invalid, the integrator is not one of those listed, or an array has the wrong shape.
 #[pyfunction]
 #[pyo3(signature = (
     model, q0, v0, *, steps, time_step=1e-3, tau=None, controller=None, reference=None, integrator="rk4",
@@ -151,7 +151,7 @@ pub(super) fn rollout<'py>(
     Ok((q.into_array().into_any(), v.into_array().into_any()))
 }
 
-/// Returns the computed-torque law, the only one that a rollout supports.
+/// Returns the computed-torque law, which is the only law that a rollout supports.
 fn law_of<'a, 'py>(controller: Any<'a, 'py>) -> PyResult<&'a Bound<'py, PyComputedTorque>> {
     controller.cast::<PyComputedTorque>().map_err(|_| {
         let py = controller.py();

@@ -12,19 +12,21 @@ use pyo3::types::PyTuple;
 /// ``Model.integrate``.
 #[pyclass(name = "FreeFloatingDerivatives", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyFreeFloatingDerivatives {
-    /// ``∂τ/∂q`` of ``τ = M* q̈ + c* - Q*``, (n, nv) or (B, n, nv).
+    /// Derivative ``∂τ/∂q`` of the joint torques ``τ = M* q̈ + c* - Q*``, (n, nv) or (B, n, nv).
     torque_dq: Py<PyAny>,
-    /// ``∂τ/∂v``, (n, nv) or (B, n, nv).
+    /// Derivative ``∂τ/∂v`` of the joint torques, (n, nv) or (B, n, nv).
     torque_dv: Py<PyAny>,
-    /// ``∂ẍ/∂q`` of ``ẍ = Jg q̈ + d``, (6, nv) or (B, 6, nv), rows in W axes, linear first.
+    /// Derivative ``∂ẍ/∂q`` of the frame's acceleration ``ẍ = Jg q̈ + d``, (6, nv) or (B, 6, nv), rows in W
+    /// axes, linear first.
     acceleration_dq: Py<PyAny>,
-    /// ``∂ẍ/∂v``, (6, nv) or (B, 6, nv), rows in W axes.
+    /// Derivative ``∂ẍ/∂v`` of the frame's acceleration, (6, nv) or (B, 6, nv), rows in W axes, linear first.
     acceleration_dv: Py<PyAny>,
-    /// ``∂ẋ/∂q`` of the frame's twist ``ẋ = J v``, (6, nv) or (B, 6, nv), rows in W axes.
+    /// Derivative ``∂ẋ/∂q`` of the frame's twist ``ẋ = J v``, (6, nv) or (B, 6, nv), rows in W axes, linear
+    /// first.
     velocity_dq: Py<PyAny>,
 }
 
-/// Returns the derivatives of the reduced model in new arrays or in those of `out`.
+/// Computes the derivatives of the reduced model in new arrays or in those of `out`.
 pub(crate) fn free_floating_derivatives<'py>(
     py: Python<'py>,
     model: &PyModel,

@@ -6,22 +6,23 @@ use crate::model::PyModel;
 use onorbit_core::batch::Kernel;
 use pyo3::prelude::*;
 
-/// Reduced model of a free-floating manipulator, ``M* q̈ + c* = τ + Q*`` and ``ẍ = Jg q̈ + d``.
+/// Reduced model of a free-floating manipulator: ``M* q̈ + c* = τ + Q*`` and ``ẍ = Jg q̈ + d``.
 #[pyclass(name = "FreeFloating", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyFreeFloating {
-    /// ``M*``, (n, n) or (B, n, n), kg m², kg m and kg.
+    /// Reduced mass matrix ``M*``, (n, n) or (B, n, n), kg m², kg m and kg.
     inertia: Py<PyAny>,
-    /// ``c*``, (n,) or (B, n), N m or N.
+    /// Reduced bias forces ``c*``, (n,) or (B, n), N m or N.
     bias: Py<PyAny>,
-    /// ``Q* = Qm - Mbmᵀ Mbb⁻¹ Qb``, (n,) or (B, n), N m or N.
+    /// Generalized external forces ``Q* = Qm - Mbmᵀ Mbb⁻¹ Qb`` at the joints, (n,) or (B, n), N m or N.
     external: Py<PyAny>,
-    /// ``Jg``, (6, n) or (B, 6, n), W axes at the frame's origin, linear rows first.
+    /// Generalized Jacobian ``Jg`` of the frame, (6, n) or (B, 6, n), W axes at the frame's origin, linear
+    /// rows first.
     jacobian: Py<PyAny>,
-    /// ``d``, (6,) or (B, 6), m/s² and rad/s², W axes.
+    /// Drift ``d``, the acceleration of the frame for ``q̈ = 0``, (6,) or (B, 6), m/s² and rad/s², W axes.
     drift: Py<PyAny>,
 }
 
-/// Returns the reduced model in new arrays or in those of `out`.
+/// Computes the reduced model in new arrays or in those of `out`.
 pub(crate) fn free_floating<'py>(
     py: Python<'py>,
     model: &PyModel,

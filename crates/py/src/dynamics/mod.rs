@@ -20,7 +20,8 @@ type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Evaluates `kernel` for one state or a batch of states.
 ///
-/// `shapes` are the trailing shapes of its outputs; `out` are the arrays to write them into.
+/// `shapes` are the shapes of its outputs for one state; `out` holds the arrays in which they are stored, if
+/// given.
 pub(crate) fn evaluate<'py, const N: usize>(
     py: Python<'py>,
     model: &PyModel,
@@ -61,7 +62,7 @@ pub(crate) fn evaluate<'py, const N: usize>(
     Ok(outputs.map(Output::into_array))
 }
 
-/// Returns the batch size if the first argument is a batch, and checks that the others match it.
+/// Returns the batch size if the first argument is a batch, and checks that the other arguments match it.
 fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Option<usize>> {
     let first = inputs[0].shape();
     for (input, name) in inputs.iter().zip(names) {
@@ -78,7 +79,7 @@ fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Op
     Ok((first.len() == 2).then(|| first[0]))
 }
 
-/// Reads `{frame: (6,) or (B, 6)}`, wrenches in the frame's axes about its origin, N and N m, linear first.
+/// Reads `{frame: (6,) or (B, 6)}`: wrenches in frame axes about the frame origin, N and N m, linear first.
 ///
 /// Appends their numbers to `inputs` and returns their frames.
 fn wrenches<'py>(

@@ -1,4 +1,4 @@
-//! Epoch, orientation parameters and ephemerides of the Earth, as given from Python.
+//! Epoch, orientation parameters and ephemerides of the Earth, read from Python arguments.
 
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::errors::{IntoPython, LARGEST_TABLE, fields, in_file, raise, unreadable};
@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Returns an epoch from text or an aware ``datetime``.
+/// Reads an epoch from text or from a ``datetime`` with a time zone.
 pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
     let py = epoch.py();
     let text = if epoch.is_instance_of::<PyString>() {
@@ -33,7 +33,7 @@ pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
     Epoch::parse(&text).map_err(|error| error.into_python(py))
 }
 
-/// Returns Earth orientation parameters from a table or from constants.
+/// Reads Earth orientation parameters from a table or from constants.
 pub(super) fn earth_parameters(
     py: Python<'_>,
     eop: Option<Any<'_, '_>>,
@@ -54,7 +54,7 @@ pub(super) fn earth_parameters(
     }
 }
 
-/// Returns an Earth that rotates uniformly about z.
+/// Creates an Earth that rotates uniformly about z.
 pub(super) fn about_z(
     py: Python<'_>,
     angle: Option<f64>,
@@ -74,7 +74,7 @@ pub(super) fn about_z(
     })
 }
 
-/// Returns Earth orientation parameters from a file or from rows.
+/// Reads Earth orientation parameters from a file or from rows.
 fn parameter_table(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     let py = eop.py();
     if let Ok(path) = eop.extract::<PathBuf>() {
@@ -87,7 +87,7 @@ fn parameter_table(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     Ok(EarthParameters::from_rows(rows.data().as_chunks().0))
 }
 
-/// Returns the positions of Sun and Moon in a SPICE kernel, which PyPI's `jplephem` reads.
+/// Reads the positions of Sun and Moon from a SPICE kernel by means of PyPI's `jplephem`.
 pub(super) fn spice_kernel(py: Python<'_>, path: PathBuf) -> PyResult<SpiceKernel> {
     type Parts<'py> = Vec<(f64, f64, f64, Bound<'py, PyAny>)>;
     let read = py.import("onorbit_rs.ephemeris.spice")?.getattr("segments")?;

@@ -1,4 +1,4 @@
-//! Rotation of the Earth, and positions of Sun and Moon.
+//! Rotation of the Earth, and positions of the Sun and the Moon.
 
 mod inputs;
 
@@ -15,41 +15,44 @@ use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Epoch of a run, orientation of the Earth, and positions of Sun and Moon.
+/// Epoch of a run, orientation of the Earth, and positions of the Sun and the Moon.
 ///
-/// UT1 and polar motion are measured quantities, which the user supplies as constants or as a table; by
-/// default they are zero.
+/// UT1 and polar motion are measured quantities that the user supplies as constants or as a table. By default
+/// they are zero.
 ///
 /// Parameters
 /// ----------
 /// epoch : str or datetime, optional
 ///     Time zero: text with its time scale, such as ``2024-03-01T12:00:00 UTC`` (or ``Z``, TAI, TT, TDB), or
-///     an aware ``datetime``. ``iau2006`` requires it.
+///     a
+///     ``datetime`` with a time zone. ``iau2006`` requires an epoch.
 /// rotation : {"iau2006", "about_z"}
-///     Precession of IAU 2006 and nutation of 2000A (to 2 mas), or uniform rotation about z. Without an
-///     epoch, ``about_z`` has no Sun and no Moon.
+///     ``iau2006`` is the precession of IAU 2006 with the nutation of 2000A (accurate to 2 mas); ``about_z``
+///     is a uniform rotation about z. Without an epoch, ``about_z`` provides no positions of the Sun and the
+///     Moon.
 /// ut1_minus_utc : float, optional
 ///     UT1 - UTC for ``iau2006``, constant during the run, s; default: 0.
 /// polar_motion : (2,) array, optional
 ///     Coordinates of the pole for ``iau2006``, constant during the run, rad; default: 0.
-/// eop : path or (N, 4) array, optional
-///     Table of Earth orientation parameters in place of these two: a file (``finals2000A`` or ``eopc04`` of the IERS, or lines
-///     below ``mjd,x_arcsec,y_arcsec,ut1_minus_utc_s``), or rows of MJD (UTC), coordinates of the pole, rad,
-///     and UT1 - UTC, s.
+///     Table of Earth orientation parameters, which replaces ``ut1_minus_utc`` and ``polar_motion``: a file
+///     (``finals2000A`` or ``eopc04`` of the IERS, or CSV with the header
+///     ``mjd,x_arcsec,y_arcsec,ut1_minus_utc_s``), or rows of MJD (UTC), coordinates of the pole, rad, and
+///     UT1 - UTC, s.
 /// angle : float, optional
 ///     Rotation angle at time zero for ``about_z``, rad; default: 0.
 /// rate : float, optional
 ///     Angular velocity for ``about_z``, rad/s; default: that of the Earth.
 /// ephemeris : path, optional
-///     SPICE kernel for Sun and Moon, such as ``de440s.bsp``, read by PyPI's jplephem. By default they are
-///     computed by an analytic series (2″ and 10″ from JPL's DE421 over 1900-2050).
+///     SPICE kernel for the Sun and the Moon, such as ``de440s.bsp``, read by PyPI's jplephem. By default the
+///     positions are computed by an analytic series (2″ and 10″ from JPL's DE421 over 1900-2050).
 /// axes : {"GCRF", "TEME"}
-///     Inertial axes of the methods; a run uses those of its orbit.
+///     Inertial axes used by the methods; a run uses the axes of its orbit.
 ///
 /// Raises
 /// ------
 /// EarthError, NotFoundError, ReadError
-///     If an argument is invalid or does not apply to the rotation, or a file does not exist or cannot be read.
+///     If an argument is invalid or does not apply to the rotation, or a file does not exist or cannot be
+///     read.
 #[pyclass(name = "Earth", frozen, module = "onorbit_rs")]
 pub(crate) struct PyEarth {
     pub(crate) earth: Arc<Earth>,
@@ -121,14 +124,14 @@ impl PyEarth {
         self.earth.epoch().map(|epoch| epoch.to_string())
     }
 
-    /// Inertial axes of the methods: ``GCRF`` or ``TEME``; None for rotation about z without an epoch.
+    /// Inertial axes used by the methods: ``GCRF`` or ``TEME``; None for rotation about z without an epoch.
     #[getter]
     fn axes(&self) -> Option<&'static str> {
         self.earth.axes().map(Axes::name)
     }
 
-    /// Return the rotation ``rot_fi`` from the inertial axes (``axes``) to Earth-fixed axes: ITRF for
-    /// ``iau2006``, uniformly rotating axes for ``about_z``.
+    /// Return the rotation ``rot_fi`` from inertial axes (``axes``) to Earth-fixed axes, which are ITRF axes
+    /// for ``iau2006`` and uniformly rotating axes for ``about_z``.
     ///
     /// Parameters
     /// ----------
@@ -158,7 +161,7 @@ impl PyEarth {
         self.at(py, t, &[3], Earth::angular_velocities)
     }
 
-    /// Return the position of the Sun, without light time and aberration.
+    /// Return the geometric position of the Sun, without correction for light time and aberration.
     ///
     /// Parameters
     /// ----------
@@ -173,7 +176,7 @@ impl PyEarth {
         self.at(py, t, &[3], Earth::suns)
     }
 
-    /// Return the position of the Moon, without light time and aberration.
+    /// Return the geometric position of the Moon, without correction for light time and aberration.
     ///
     /// Parameters
     /// ----------

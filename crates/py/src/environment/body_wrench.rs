@@ -14,8 +14,8 @@ use pyo3::prelude::*;
 /// Parameters
 /// ----------
 /// body : str
-///     Link or frame; the wrench acts at its origin and is expressed in its axes. In a world of several systems
-///     ``SYSTEM/LINK``.
+///     Link or frame. The wrench acts at its origin and is expressed in its axes. In a world of several
+///     systems, the path ``SYSTEM/LINK``.
 /// force : (3,) array, optional
 ///     Force, N; default: 0.
 /// torque : (3,) array, optional

@@ -7,22 +7,25 @@ use crate::errors::fields;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Drag ``-½ ρ C_D A (n·u)₊ u`` on every face in co-rotating air, with its torque.
+/// Drag ``-½ ρ C_D A (n·u)₊ u`` on every face in an atmosphere that rotates with the Earth, and the resulting
+/// torque.
 ///
-/// ``u`` is the velocity of the face's centroid relative to the air, for a cannonball that of the centre of
-/// mass. The effect requires an orbit and an ``earth``. The density is computed on a grid of 128 m and
-/// extrapolated with the scale height; within 160 m of a grid point, the relative error is at most 1e-4.
+/// ``u`` is the velocity, relative to the atmosphere, of the face's centroid or, for a cannonball, of the
+/// centre of mass. The effect requires an orbit and an ``earth``. The density ``ρ`` is computed on a grid of
+/// 128 m and extrapolated with the scale height; within 160 m of a grid point, the relative error is at most
+/// 1e-4.
 ///
 /// Parameters
 /// ----------
 /// atmosphere : Atmosphere
 ///     Model of the density.
 /// surfaces : Surface or dict of str to Surface, optional
-///     Surfaces of the bodies: ``Faces`` for all bodies, any one surface for a robot with a single body, or a
-///     dict by link or frame; bodies that are not listed have no drag. In a world of several systems the keys are
-///     ``SYSTEM/LINK``, or ``SYSTEM`` for all of its bodies. Default: the surfaces of each ``System``, otherwise
-///     ``Faces()``, the visual geometry with C_D = 2.2; bodies without visual geometry have no drag, which the
-///     simulation warns of.
+///     Surfaces of the bodies: ``Faces`` for all bodies, any surface for a robot with a single body, or a
+///     dict by link or frame, in which bodies that are not listed have no drag. In a world of several systems
+///     the keys are
+///     ``SYSTEM/LINK``, or ``SYSTEM`` for all of its bodies. Default: the surfaces of each ``System`` or, if
+///     none are given, ``Faces()``: the visual geometry with C_D = 2.2. Bodies without visual geometry then
+///     have no drag, and a warning is issued.
 #[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyDrag;
 

@@ -6,7 +6,7 @@ use pyo3::types::PyDict;
 
 /// Gravity-gradient torque ``3μ/r³ r̂ × I r̂`` on each body about its centre of mass.
 ///
-/// It requires an orbit.
+/// The effect requires an orbit around a planet.
 #[pyclass(name = "GravityGradient", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyGravityGradient;
 

@@ -34,7 +34,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     surfaces::add_classes(m)
 }
 
-/// Base class of effects on the bodies, the entries of ``environment``.
+/// Base class of effects on the bodies, which are the entries of ``environment``.
 #[pyclass(name = "Effect", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyEffect {
     kind: Kind,
@@ -51,9 +51,9 @@ impl PyEffect {
 /// Parameters of an effect that is not yet assigned to systems.
 pub(crate) enum Kind {
     GravityGradient,
-    /// Part of the gravity of the run; see [`crate::gravity::gravity_of`].
+    /// A part of the gravity of the run; see [`crate::gravity::gravity_of`].
     GravityField(Arc<GravityField>),
-    /// Part of the gravity of the run; see [`crate::gravity::gravity_of`].
+    /// A part of the gravity of the run; see [`crate::gravity::gravity_of`].
     ThirdBody(Luminary),
     BodyWrench {
         frame: String,
@@ -73,7 +73,7 @@ pub(crate) enum Kind {
     },
 }
 
-/// Returns the effects in ``environment``.
+/// Reads the list of effects given as ``environment``.
 pub(crate) fn effects<'py>(environment: Option<Any<'_, 'py>>) -> PyResult<Vec<Bound<'py, PyEffect>>> {
     environment.map_or_else(
         || Ok(Vec::new()),
@@ -82,7 +82,7 @@ pub(crate) fn effects<'py>(environment: Option<Any<'_, 'py>>) -> PyResult<Vec<Bo
 }
 
 impl PyEffect {
-    /// Returns an effect with the constructor and keywords that pickle it.
+    /// Creates the base object of an effect, with the constructor and keywords used to pickle it.
     pub(crate) fn new(
         kind: Kind,
         constructor: &str,
@@ -92,7 +92,7 @@ impl PyEffect {
         Ok(PyClassInitializer::from(Self { kind, constructor_call }))
     }
 
-    /// Returns the gravity field if the effect is one.
+    /// Returns the gravity field, if the effect is one.
     pub(crate) fn field(&self) -> Option<&Arc<GravityField>> {
         match &self.kind {
             Kind::GravityField(field) => Some(field),
@@ -100,7 +100,7 @@ impl PyEffect {
         }
     }
 
-    /// Returns the Sun or the Moon if the effect is its gravity.
+    /// Returns the Sun or the Moon, if the effect is the gravity of one of them.
     pub(crate) fn luminary(&self) -> Option<Luminary> {
         match &self.kind {
             Kind::ThirdBody(body) => Some(*body),
@@ -113,7 +113,7 @@ impl PyEffect {
         matches!(self.kind, Kind::GravityField(_) | Kind::ThirdBody(_))
     }
 
-    /// Returns the effect on given systems; `None` if it is part of gravity.
+    /// Returns the effect on the given systems; `None` if it is a part of gravity.
     pub(crate) fn on(&self, py: Python<'_>, targets: &[Target<'_>]) -> PyResult<Option<Arc<dyn Effect>>> {
         Ok(Some(match &self.kind {
             Kind::GravityField(_) | Kind::ThirdBody(_) => return Ok(None),

@@ -6,12 +6,12 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::{RadiationPressure, SHADOW_RADIUS, SOLAR_FLUX};
 use pyo3::prelude::*;
 
-/// Radiation pressure of the Sun on every face, with its torque and the Earth's shadow.
+/// Radiation pressure of sunlight on every face, with the resulting torque and the Earth's shadow.
 ///
-/// ``F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, for a cannonball ``-P C_R A ŝ``, with ``P = ν
-/// (flux/c) (1 au/d)²`` and ``ν`` the fraction of the solar disc that is not occulted by the Earth. Light
-/// reflected or emitted by the Earth is neglected. The effect requires an orbit and an
-/// ``earth`` with an epoch.
+/// The force on a face is ``-P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, and that on a cannonball ``-P
+/// C_R A ŝ``. ``ŝ`` points to the Sun, and ``P = ν (flux/c) (1 au/d)²``, where ``d`` is the distance of the
+/// Sun and ``ν`` the fraction of the solar disc that the Earth does not occult. Light reflected or emitted by
+/// the Earth is neglected. The effect requires an orbit and an ``earth`` with an epoch.
 ///
 /// Parameters
 /// ----------
@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 /// shadow : bool
 ///     If False, the shadow of the Earth (umbra and penumbra) is neglected.
 /// earth_radius : float
-///     Radius of the Earth for its shadow, m.
+///     Radius of the Earth used for its shadow, m.
 #[pyclass(name = "RadiationPressure", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyRadiationPressure;
 

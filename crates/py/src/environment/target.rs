@@ -1,11 +1,11 @@
-//! Systems on which effects act, and their links by path.
+//! Systems on which effects act, and lookup of their links by path.
 
 use super::surfaces::SurfaceAssignment;
 use crate::errors::{IntoPython, fields, raise};
 use onorbit_core::model::{Model, ModelError};
 use pyo3::prelude::*;
 
-/// A system on which effects act.
+/// System on which effects act.
 pub(crate) struct Target<'a> {
     /// Name of the system.
     pub(crate) name: &'a str,
@@ -14,8 +14,8 @@ pub(crate) struct Target<'a> {
     pub(crate) surfaces: Option<&'a SurfaceAssignment>,
 }
 
-/// Returns the number of the system and the index of the frame with the path ``SYSTEM/LINK``. The name of the only
-/// system may be left out.
+/// Returns the number of the system and the index of the frame with the path ``SYSTEM/LINK``. If there is
+/// only one system, its name may be omitted.
 pub(super) fn frame_at(py: Python<'_>, targets: &[Target<'_>], path: &str) -> PyResult<(usize, usize)> {
     let on_system = |system: usize, frame: &str| {
         let frame = targets[system].model.frame(frame).map_err(|error| error.into_python(py))?;

@@ -1,4 +1,4 @@
-//! Conversion of the core's errors to the classes of `onorbit_rs.exceptions`, the only place that does this.
+//! Conversion of all errors of the core to the classes of `onorbit_rs.exceptions`.
 
 mod batch;
 mod control;
@@ -24,7 +24,7 @@ pub(crate) trait IntoPython {
     fn into_python(self, py: Python<'_>) -> PyErr;
 }
 
-/// Returns `onorbit_rs.exceptions.<class>(message, **fields)`.
+/// Returns the exception `onorbit_rs.exceptions.<class>(message, **fields)`.
 pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'_, PyDict>) -> PyErr {
     let construct = || -> PyResult<Bound<'_, PyAny>> {
         let module = py.import("onorbit_rs.exceptions")?;
@@ -33,7 +33,7 @@ pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'
     match construct() {
         Ok(error) => PyErr::from_value(error),
         Err(interrupt) if is_interrupt(py, &interrupt) => {
-            // a pending Ctrl-C is raised, with the error as its context
+            // if a Ctrl-C is pending, it is raised with the error as its context
             let context = construct().map(PyErr::from_value).ok();
             interrupt.set_context(py, context);
             interrupt
@@ -47,7 +47,7 @@ pub(crate) fn is_interrupt(py: Python<'_>, error: &PyErr) -> bool {
     !error.is_instance_of::<PyException>(py)
 }
 
-/// Returns the error with the name of the file before its message.
+/// Returns the error with the name of the file at the beginning of its message.
 pub(crate) fn in_file(py: Python<'_>, path: &Path, error: impl IntoPython) -> PyErr {
     let error = error.into_python(py);
     let value = error.value(py);
@@ -57,7 +57,8 @@ pub(crate) fn in_file(py: Python<'_>, path: &Path, error: impl IntoPython) -> Py
     error
 }
 
-/// Largest size of a table of Earth orientation or space weather, bytes; real tables have up to ten million.
+/// Largest accepted size of a table of Earth orientation or space weather, bytes; real tables have up to ten
+/// million.
 pub(crate) const LARGEST_TABLE: usize = 100_000_000;
 
 /// Returns the error for a text file that cannot be read; `what` names its content.
@@ -70,7 +71,7 @@ pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &TextFi
     raise(py, class, &message, &fields!(py, "path": file.to_string(), "kind": what))
 }
 
-/// Returns an error without fields.
+/// Creates an error without fields.
 pub(crate) fn plain(py: Python<'_>, class: &str, message: &str) -> PyErr {
     raise(py, class, message, &PyDict::new(py))
 }
@@ -86,7 +87,7 @@ pub(crate) fn shape_error<'py>(
     raise(py, "ShapeError", message, &fields!(py, "name": name, "expected": expected, "got": got))
 }
 
-/// Collects the fields of an error, except those that cannot be converted.
+/// Collects the fields of an error; fields that cannot be converted are omitted.
 macro_rules! fields {
     ($py:expr, $($name:literal: $value:expr),* $(,)?) => {{
         let fields = pyo3::types::PyDict::new($py);

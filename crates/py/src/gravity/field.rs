@@ -11,12 +11,12 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Gravity field of a planet, without its point mass.
+/// Gravity field of a planet, excluding its point mass.
 ///
-/// As an effect of a simulation it acts on every body; its ``mu`` is then used in place of the orbit's, from
-/// which it may differ by at most 1e-5 of the value. The orientation of the planet is that of the simulation's
-/// ``earth``. A field of order 0 does not require an ``earth``; without one, the axis of the field is z.
-/// Positions are from the planet's centre in planet-fixed axes.
+/// As an effect of a simulation, the field acts on every body. Its ``mu`` is then used instead of the orbit's
+/// value, from which it may differ by at most a relative 1e-5. The orientation of the planet is that of the
+/// simulation's ``earth``. A field of order 0 does not require an ``earth``; without one, the axis of the
+/// field is z. Positions are from the planet's centre in planet-fixed axes.
 ///
 /// Parameters
 /// ----------
@@ -30,7 +30,7 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// GravityError
-///     If there is no such model, or degree or order are out of range.
+///     If there is no such model, or if degree or order is out of range.
 #[pyclass(name = "GravityField", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyGravityField {
     field: Arc<GravityField>,
@@ -68,18 +68,18 @@ impl PyGravityField {
         )
     }
 
-    /// Return a field that has zonal harmonics only and is evaluated in closed form.
+    /// Return a field with zonal harmonics only, which is evaluated in closed form.
     ///
     /// Parameters
     /// ----------
     /// degree : int, optional
     ///     Highest degree, 2 to 6, of the Earth's zonal harmonics (EGM2008); default: 6.
     /// j : (k,) array, optional
-    ///     Zonal coefficients J2, J3 and so on, at most to J6, not normalised, in place of ``degree``.
+    ///     Zonal coefficients J2, J3 and so on, up to J6, not normalised; may be given instead of ``degree``.
     /// mu : float, optional
-    ///     Gravitational parameter of the planet of ``j``, m³/s²; required with ``j``.
+    ///     Gravitational parameter of the planet to which ``j`` belongs, m³/s²; required with ``j``.
     /// radius : float, optional
-    ///     Reference radius of ``j``, m; required with ``j``.
+    ///     Reference radius to which ``j`` refers, m; required with ``j``.
     ///
     /// Returns
     /// -------
@@ -88,8 +88,9 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// GravityError
-    ///     If ``degree`` is out of range, a number is invalid, or neither ``degree`` alone nor all of the other
-    ///     three are given.
+    ///     If ``degree`` is out of range, if a number is invalid, or if ``degree`` is given together with any
+    ///     of ``j``,
+    ///     ``mu`` and ``radius``, or only some of the latter are given.
     #[staticmethod]
     #[pyo3(signature = (degree=None, *, j=None, mu=None, radius=None))]
     fn zonal<'py>(
@@ -127,9 +128,9 @@ impl PyGravityField {
     /// Parameters
     /// ----------
     /// path : path
-    ///     File.
+    ///     Path of the file.
     /// degree : int, optional
-    ///     Highest degree; default: that of the file.
+    ///     Highest degree; default: the degree of the file.
     /// order : int, optional
     ///     Highest order; default: ``degree``.
     ///
@@ -140,7 +141,8 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// NotFoundError, ReadError, GravityError
-    ///     If there is no such file, it cannot be read, or its content, degree or order is invalid.
+    ///     If the file does not exist or cannot be read, or if its content, the degree or the order is
+    ///     invalid.
     #[staticmethod]
     #[pyo3(signature = (path, *, degree=None, order=None))]
     fn from_gfc<'py>(
@@ -159,13 +161,14 @@ impl PyGravityField {
     /// Parameters
     /// ----------
     /// c, s : (n, n) array
-    ///     Coefficients ``c[degree, order]`` and ``s[degree, order]`` to degree n - 1; ``c[0, 0]`` is treated as 1.
+    ///     Coefficients ``c[degree, order]`` and ``s[degree, order]`` to degree n - 1; ``c[0, 0]`` is treated
+    ///     as 1.
     /// mu : float
     ///     Gravitational parameter, m³/s².
     /// radius : float
     ///     Reference radius, m.
     /// degree : int, optional
-    ///     Highest degree; default: that of the arrays.
+    ///     Highest degree; default: the degree of the arrays.
     /// order : int, optional
     ///     Highest order; default: ``degree``.
     ///
@@ -176,7 +179,8 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// GravityError, ShapeError
-    ///     If a number, the degree or the order is invalid, or the arrays are not square and of equal size.
+    ///     If a number, the degree or the order is invalid, or if the arrays are not square and of equal
+    ///     size.
     #[staticmethod]
     #[pyo3(signature = (c, s, *, mu, radius, degree=None, order=None))]
     fn from_coefficients<'py>(
@@ -235,7 +239,7 @@ impl PyGravityField {
         self.field.order()
     }
 
-    /// Return the acceleration of the field without that of the point mass.
+    /// Return the acceleration due to the field, excluding the point mass.
     ///
     /// Parameters
     /// ----------
@@ -250,12 +254,12 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// GravityError
-    ///     If a position is inside the planet: below 0.996 of the reference radius.
+    ///     If a position is inside the planet, that is, below 0.996 of the reference radius.
     fn acceleration<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at_each(py, r, &[3], GravityField::accelerations)
     }
 
-    /// Return the gradient of the acceleration, symmetric and with zero trace.
+    /// Return the gradient of the acceleration, which is symmetric with zero trace.
     ///
     /// Parameters
     /// ----------
@@ -270,7 +274,7 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// GravityError
-    ///     If a position is inside the planet: below 0.996 of the reference radius.
+    ///     If a position is inside the planet, that is, below 0.996 of the reference radius.
     fn gradient<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at_each(py, r, &[3, 3], GravityField::gradients)
     }
@@ -281,7 +285,7 @@ impl PyGravityField {
     }
 }
 
-/// Function of the core that computes one row per position.
+/// Function of the core that computes one row of results per position.
 type Fill = fn(&GravityField, &[f64], &mut [f64]) -> Result<(), GravityError>;
 
 impl PyGravityField {
@@ -321,7 +325,7 @@ fn order_of(value: Any<'_, '_>) -> PyResult<Option<usize>> {
     if value.is_none() { Ok(None) } else { degree_or_order(value, "order").map(Some) }
 }
 
-/// Reads a degree or an order, which is not negative.
+/// Reads a degree or an order, which must not be negative.
 fn degree_or_order(value: Any<'_, '_>, name: &str) -> PyResult<usize> {
     let number = whole(value, name)?;
     usize::try_from(number).map_err(|_| {

@@ -5,9 +5,10 @@ use crate::errors::{fields, raise};
 use onorbit_core::gravity::Luminary;
 use pyo3::prelude::*;
 
-/// Gravity of the Sun or the Moon on robot and reference: ``μ [(s - r)/|s - r|³ - s/|s|³]``.
+/// Gravity of the Sun or the Moon on robot and reference: ``μ [(s - r)/|s - r|³ - s/|s|³]`` at the position
+/// ``r``, with the third body at ``s``.
 ///
-/// It requires an orbit around the Earth, and an ``earth`` with an epoch.
+/// The effect requires an orbit around the Earth, and an ``earth`` with an epoch.
 ///
 /// Parameters
 /// ----------
@@ -17,7 +18,7 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// EffectError
-///     If the name is another.
+///     If ``body`` is any other name.
 #[pyclass(name = "ThirdBody", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyThirdBody {
     body: Luminary,
@@ -35,7 +36,7 @@ impl PyThirdBody {
         Ok(PyEffect::new(Kind::ThirdBody(body), "ThirdBody", &keywords)?.add_subclass(Self { body }))
     }
 
-    /// ``sun`` or ``moon``.
+    /// Name of the third body, ``sun`` or ``moon``.
     #[getter]
     fn body(&self) -> &'static str {
         self.body.name()

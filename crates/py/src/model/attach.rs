@@ -14,21 +14,21 @@ use std::path::PathBuf;
 
 /// Attach one robot to another, such as an arm to a bus, and return the combined robot.
 ///
-/// ``other`` is fixed to a frame of ``model``. The base and the name of the result are those of ``model``.
-/// Joints are numbered depth first: those of ``other`` come after all joints of ``model`` if ``frame`` is
-/// fixed to the base, otherwise after the joints that descend from the body of ``frame``.
+/// ``other`` is fixed to a frame of ``model``. The result has the base and the name of ``model``. Joints are
+/// numbered depth first: the joints of ``other`` come after all joints of ``model`` if ``frame`` is fixed to
+/// the base, otherwise after the joints that descend from the body of ``frame``.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     The robot that carries the other, such as a bus.
+///     Robot to which the other one is attached, such as a bus.
 /// frame : str
-///     Link or frame of ``model`` to attach to.
+///     Link or frame of ``model`` to which ``other`` is attached.
 /// other : Model or path
-///     The robot to attach, such as an arm. If it is a URDF or xacro file, its base may be massless.
+///     Robot to attach, such as an arm. If it is a URDF or xacro file, its base may be massless.
 /// other_frame : str, optional
-///     Mounting frame of ``other``. Defaults to its root link. If joints move it, ``other`` is attached by the link
-///     of this frame, as :meth:`Model.rerooted` at that link.
+///     Mounting frame of ``other``. Defaults to its root link. If the frame is on a link that joints move,
+///     ``other`` is first re-rooted at that link (:meth:`Model.rerooted`).
 /// pose : (4, 4) array, optional
 ///     Homogeneous transform of the mounting frame in ``frame``, m. Defaults to the identity.
 /// prefix : str, optional
@@ -43,8 +43,8 @@ use std::path::PathBuf;
 /// FrameError
 ///     If a frame does not exist.
 /// ModelError
-///     If both robots have a link, joint or frame of the same name, the pose is invalid, or the file of ``other`` does
-///     not describe a valid robot.
+///     If both robots have a link, joint or frame of the same name, the pose is invalid, or the file of
+///     ``other`` does not describe a valid robot.
 #[pyfunction]
 #[pyo3(signature = (model, frame, other, other_frame=None, *, pose=None, prefix=""))]
 pub(super) fn attach(
@@ -69,14 +69,14 @@ pub(super) fn attach(
         Err(_) => (&other.cast::<PyRobotPart>()?.get().model, true),
     };
     let whole = bus.attach(frame, arm, &mount).map_err(|error| error.into_python(py))?;
-    // warnings were issued when the models were loaded; those of a part are issued here
+    // the warnings of models were issued when the models were loaded; those of a part are issued here
     let known = if is_part { bus.warnings().to_vec() } else { whole.warnings().to_vec() };
     let keywords = fields!(py, "pose": deep_copy(pose)?, "prefix": prefix);
     let call = ConstructorCall::new("attach", (model, frame, &other, other_frame), &keywords)?;
     PyModel::wrap(py, whole, Some(call), &known)
 }
 
-/// Returns `other`, read from its file if it is a path.
+/// Returns `other` as an object; if it is a path, reads the file.
 fn model_or_part<'py>(other: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
     if other.is_instance_of::<PyModel>() || other.is_instance_of::<PyRobotPart>() {
         return Ok(other.clone());

@@ -8,7 +8,7 @@ use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use onorbit_core::model::{Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder};
 use pyo3::prelude::*;
 
-/// Builder of a robot, link by link; the first link is the free-floating base.
+/// Builder that constructs a robot link by link. The first link is the free-floating base.
 ///
 /// Parameters
 /// ----------
@@ -46,8 +46,8 @@ impl PyModelBuilder {
 
     /// Add a link and the joint that connects it to its parent.
     ///
-    /// Position limits are enforced only with ``Simulation(enforce_limits=True)``, rate limits not at all; effort limits
-    /// are the default limits of :class:`JointPid`.
+    /// Position limits are enforced only with ``Simulation(enforce_limits=True)``, and rate limits are not
+    /// enforced. Effort limits are the default limits of :class:`JointPid`.
     ///
     /// Parameters
     /// ----------
@@ -73,7 +73,7 @@ impl PyModelBuilder {
     /// damping : float
     ///     Viscous friction, N m s/rad or N s/m.
     /// friction : float
-    ///     Coulomb friction of the moving joint (kinetic), N m or N.
+    ///     Kinetic Coulomb friction, which acts while the joint moves, N m or N.
     /// rotor_inertia : float
     ///     Rotor inertia reflected to the joint, kg m² or kg.
     /// lower, upper : float, optional
@@ -83,14 +83,15 @@ impl PyModelBuilder {
     /// effort : float, optional
     ///     Effort limit, N m or N.
     /// static_friction : float, optional
-    ///     Largest friction at rest, N m or N; at least ``friction``, the default.
+    ///     Largest torque or force that static friction can hold, N m or N; at least ``friction``, which is
+    ///     the default.
     ///
     /// Raises
     /// ------
     /// FrameError
     ///     If the parent does not exist.
     /// ModelError
-    ///     If a name exists already, or a value is invalid.
+    ///     If the name is already used, or a value is invalid.
     #[pyo3(signature = (
         name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
         damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,
@@ -149,7 +150,7 @@ impl PyModelBuilder {
     /// name : str
     ///     Name of the frame.
     /// link : str
-    ///     Link to which it is fixed.
+    ///     Link to which the frame is fixed.
     /// xyz, rpy : (3,) array, optional
     ///     Position, m, and roll, pitch, yaw, rad, in the link's frame.
     #[pyo3(signature = (name, link, *, xyz=None, rpy=None))]
@@ -168,7 +169,7 @@ impl PyModelBuilder {
 
     /// Return the robot.
     ///
-    /// More links may be added to the builder afterwards; they do not change the returned robot.
+    /// Links that are added to the builder afterwards do not change the returned robot.
     ///
     /// Returns
     /// -------
@@ -177,7 +178,7 @@ impl PyModelBuilder {
     /// Raises
     /// ------
     /// ModelError
-    ///     If the robot is invalid, such as a joint that moves only massless links.
+    ///     If the robot is invalid, for example because a joint moves only massless links.
     fn build(&self, py: Python<'_>) -> PyResult<PyModel> {
         let model = self.builder.clone().build().map_err(|error| error.into_python(py))?;
         PyModel::wrap(py, model, None, &[])
@@ -206,7 +207,7 @@ fn pose(xyz: Option<Any<'_, '_>>, rpy: Option<Any<'_, '_>>) -> PyResult<Isometry
     Ok(Isometry3::from_parts(Translation3::from(vector(xyz, "xyz", [0.0; 3])?), rotation))
 }
 
-/// Reads the inertial properties of a link; `None` without a mass.
+/// Reads the inertial properties of a link; `None` if no mass is given.
 fn inertial(
     py: Python<'_>,
     mass: Option<f64>,
@@ -215,7 +216,7 @@ fn inertial(
 ) -> PyResult<Option<Inertial>> {
     let Some(mass) = mass else {
         if com.is_some() || inertia.is_some() {
-            return Err(raise(py, "ModelError", "com and inertia require a mass; give one", &fields!(py,)));
+            return Err(raise(py, "ModelError", "com and inertia require a mass; give mass", &fields!(py,)));
         }
         return Ok(None);
     };

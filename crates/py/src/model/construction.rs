@@ -12,23 +12,23 @@ use std::path::PathBuf;
 impl PyModel {
     /// Load a robot from a URDF or xacro file; its root link is free-floating.
     ///
-    /// A file named ``.xacro``, or any file with ``xacro=True`` or ``xacro_arguments``, is first expanded
-    /// with PyPI's ``xacro`` (``pip install 'onorbit-rs[xacro]'``). Its expressions are evaluated by
+    /// A file named ``*.xacro``, or any file with ``xacro=True`` or ``xacro_arguments``, is first expanded
+    /// with PyPI's ``xacro`` (``pip install 'onorbit-rs[xacro]'``). Expressions in the file are evaluated by
     /// onorbit_rs; Python code in the file is not executed.
     ///
     /// Parameters
     /// ----------
     /// path : path
-    ///     File.
+    ///     Path of the file.
     /// package_paths : list of path, optional
     ///     ROS packages or folders that contain them, searched for ``package://`` and ``$(find ...)``.
-    /// xacro_arguments : dict of str to object, optional
+    ///     Folders that are ROS packages or contain them, searched for ``package://`` and ``$(find ...)``.
     ///     Values of ``$(arg name)``.
     /// xacro : bool
     ///     If True, the file is expanded as xacro regardless of its name.
     /// links : dict of str to dict, optional
-    ///     ``{name: {"mass": kg, "com": (3,) m, "inertia": (3, 3) kg m²}}``: values that replace those of the
-    ///     file before the robot is validated; :meth:`with_link` replaces them afterwards.
+    ///     ``{name: {"mass": kg, "com": (3,) m, "inertia": (3, 3) kg m²}}``: values that replace those in the
+    ///     file before the robot is validated. Use :meth:`with_link` to replace values of a valid robot.
     ///
     /// Returns
     /// -------
@@ -60,7 +60,7 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// text : str
-    ///     URDF.
+    ///     Text of the URDF.
     /// folder : path, optional
     ///     Folder to which relative paths of meshes refer.
     /// package_paths : list of path, optional
@@ -87,7 +87,7 @@ impl PyModel {
 
     /// Return a spacecraft without joints.
     ///
-    /// Its body is named ``base``, and its origin is the centre of mass.
+    /// The only body is named ``base``; its origin is the centre of mass.
     ///
     /// Parameters
     /// ----------
@@ -116,7 +116,7 @@ impl PyModel {
     /// name : str
     ///     Name of the link.
     /// mass : float, optional
-    ///     Mass, kg. The inertia does not scale with it.
+    ///     Mass, kg. The inertia is not scaled with the mass.
     /// com : (3,) array, optional
     ///     Centre of mass in link axes, m.
     /// inertia : (3, 3) array, optional
@@ -131,7 +131,7 @@ impl PyModel {
     /// FrameError
     ///     If no link has this name.
     /// ModelError
-    ///     If the values are not physical, or the link has no inertial and no mass is given.
+    ///     If the values are not physical, or if the link has no inertial and no mass is given.
     #[pyo3(signature = (name, *, mass=None, com=None, inertia=None))]
     fn with_link(
         slf: &Bound<'_, Self>,
@@ -145,8 +145,8 @@ impl PyModel {
 
     /// Return the same robot with another link as its floating base.
     ///
-    /// Links, frames and joints keep their names, and joints the signs of their positions, rates and torques. Bodies
-    /// and joints are numbered depth first from the new base.
+    /// Links, frames and joints keep their names, and joints keep the signs of their positions, rates and
+    /// torques. Bodies and joints are numbered depth first from the new base.
     ///
     /// Parameters
     /// ----------
@@ -165,7 +165,8 @@ impl PyModel {
         reroot::rerooted(slf, link)
     }
 
-    /// Convert a state to the coordinates of another model of the same links, such as a :meth:`rerooted` one.
+    /// Convert a state to the coordinates of another model of the same links, such as the result of
+    /// :meth:`rerooted`.
     ///
     /// Parameters
     /// ----------
@@ -174,12 +175,12 @@ impl PyModel {
     /// v : (nv,) array
     ///     Velocity of this model.
     /// to : Model
-    ///     Other model. All its joints and the link of its base exist in this model.
+    ///     Other model. All of its joints, and the link that is its base, must exist in this model.
     ///
     /// Returns
     /// -------
     /// (nq,) array, (nv,) array
-    ///     Configuration and velocity of ``to`` that place and move its links as ``q`` and ``v`` do those of this model.
+    ///     Configuration and velocity of ``to`` with which the links have the same poses and twists.
     ///
     /// Raises
     /// ------

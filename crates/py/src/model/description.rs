@@ -7,22 +7,24 @@ use pyo3::prelude::*;
 type Matrix3 = [[f64; 3]; 3];
 type Matrix4 = [[f64; 4]; 4];
 
-/// Moving joint of a model; positions in rad, or m for a prismatic joint.
+/// Moving joint of a model. Positions are in rad, or in m for a prismatic joint.
 #[pyclass(name = "Joint", frozen, get_all, module = "onorbit_rs")]
 pub(super) struct PyJoint {
     /// Name of the joint.
     name: String,
-    /// ``revolute`` or ``prismatic``; a continuous joint is revolute without ``lower`` and ``upper``.
+    /// Type of the joint, ``revolute`` or ``prismatic``; a continuous joint is revolute without ``lower`` and
+    /// ``upper``.
     kind: &'static str,
     /// Name of the parent body.
     parent: String,
     /// Name of the child body.
     child: String,
-    /// Pose of the child link in the parent link at position zero: (4, 4), m.
+    /// Pose of the child link relative to the parent link at joint position zero: (4, 4), m.
     pose: Matrix4,
-    /// Unit vector of the axis in the child link: (3,).
+    /// Unit vector along the axis, in the child link's axes: (3,).
     axis: [f64; 3],
-    /// Point on the axis in the child link, m: (3,). Zero unless ``Model.rerooted`` or ``attach`` reversed the joint.
+    /// Point on the axis, in the child link's axes, m: (3,). It is zero unless ``Model.rerooted`` or
+    /// ``attach`` reversed the joint.
     anchor: [f64; 3],
     /// Lower position limit, rad or m, or None.
     lower: Option<f64>,
@@ -36,7 +38,7 @@ pub(super) struct PyJoint {
     damping: f64,
     /// Kinetic Coulomb friction, N m or N.
     friction: f64,
-    /// Largest friction at rest, N m or N.
+    /// Largest torque or force that static friction can hold, N m or N.
     static_friction: f64,
     /// Rotor inertia reflected to the joint, kg m² or kg.
     rotor_inertia: f64,
@@ -49,9 +51,9 @@ pub(super) struct PyBody {
     name: String,
     /// Mass, kg.
     mass: f64,
-    /// Centre of mass in the link's axes: (3,), m.
+    /// Centre of mass in the axes of the body's first link: (3,), m.
     com: [f64; 3],
-    /// Inertia about the centre of mass in the link's axes: (3, 3), kg m².
+    /// Inertia about the centre of mass in the axes of the body's first link: (3, 3), kg m².
     inertia: Matrix3,
 }
 
@@ -60,22 +62,23 @@ pub(super) struct PyBody {
 pub(super) struct PyFrame {
     /// Name of the frame.
     name: String,
-    /// Name of the body to which it is fixed.
+    /// Name of the body to which the frame is fixed.
     body: String,
-    /// Pose in the link of the body: (4, 4), m.
+    /// Pose relative to the body's first link: (4, 4), m.
     pose: Matrix4,
 }
 
 /// Shape that is fixed to a frame.
 #[pyclass(name = "Visual", frozen, get_all, module = "onorbit_rs")]
 pub(super) struct PyVisual {
-    /// Name of the frame to which it is fixed.
+    /// Name of the frame to which the shape is fixed.
     link: String,
     /// Pose in that frame: (4, 4), m.
     pose: [[f64; 4]; 4],
-    /// ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
+    /// Type of the shape: ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
     kind: &'static str,
-    /// Edge lengths of a box, radius and length of a cylinder or capsule, radius of a sphere, m; empty for a mesh.
+    /// Edge lengths of a box, radius and length of a cylinder or capsule, or radius of a sphere, m; empty for
+    /// a mesh.
     size: Vec<f64>,
     /// Path of a mesh file, or None.
     filename: Option<String>,

@@ -21,7 +21,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// (nv, nv) or (B, nv, nv) array
-    ///     Base in base axes first, then joints; kg, kg m and kg m².
+    ///     Mass matrix, kg, kg m and kg m²; the base, in base axes, precedes the joints.
     #[pyo3(signature = (q, *, threads=None, out=None))]
     fn mass_matrix<'py>(
         &self,
@@ -33,7 +33,8 @@ impl PyModel {
         self.one(Kernel::MassMatrix, &[q], None, &[nv, nv], threads, out)
     }
 
-    /// Return the Coriolis and centrifugal forces less the external forces, ``c - Σ Jᵀ F``.
+    /// Return the bias forces ``c - Σ Jᵀ F``: Coriolis and centrifugal forces less generalized external
+    /// forces.
     ///
     /// Parameters
     /// ----------
@@ -94,7 +95,7 @@ impl PyModel {
         self.one(Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads, out)
     }
 
-    /// Return the acceleration ``M⁻¹ (tau - c + Σ Jᵀ F)``, computed in O(n).
+    /// Return the acceleration ``M⁻¹ (tau - c + Σ Jᵀ F)``, computed in O(n) operations.
     ///
     /// Parameters
     /// ----------
@@ -128,9 +129,9 @@ impl PyModel {
 
     /// Return the derivatives of :meth:`inverse_dynamics`.
     ///
-    /// Column ``j`` of the derivative with respect to ``q`` is that along ``integrate(q, eps * e_j)``:
-    /// translations (m) and rotations (rad) of the base in base axes, then joints. ``external`` is held
-    /// constant in the axes of its frames.
+    /// Column ``j`` of the derivative with respect to ``q`` is the derivative along ``integrate(q, eps *
+    /// e_j)``. The columns are translations (m) and rotations (rad) of the base in base axes, then the
+    /// joints. ``external`` is held constant in the axes of its frames.
     ///
     /// Parameters
     /// ----------
@@ -148,7 +149,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// dq, dv, da : (nv, nv) or (B, nv, nv) array
-    ///     Derivatives with respect to ``q``, ``v`` and ``a``; the last is the mass matrix.
+    ///     Derivatives with respect to ``q``, ``v`` and ``a``; ``da`` is the mass matrix.
     #[pyo3(signature = (q, v, a, *, external=None, threads=None, out=None))]
     fn inverse_dynamics_derivatives<'py>(
         &self,
@@ -182,7 +183,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// dq, dv, dtau : (nv, nv) or (B, nv, nv) array
-    ///     Derivatives with respect to ``q``, ``v`` and ``tau``; the last is the inverse mass matrix.
+    ///     Derivatives with respect to ``q``, ``v`` and ``tau``; ``dtau`` is the inverse mass matrix.
     #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
     fn forward_dynamics_derivatives<'py>(
         &self,

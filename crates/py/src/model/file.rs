@@ -1,4 +1,4 @@
-//! Robots from files.
+//! Reading of robots from files.
 
 use super::PyModel;
 use super::link_change::link_changes;
@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 
-/// Reads a URDF or xacro file. Also returns the keyword arguments with which the file can be read again from
-/// another working folder.
+/// Reads a URDF or xacro file. Also returns the keyword arguments with which the same file can be read from
+/// another working directory.
 pub(super) fn read_file<'py>(
     py: Python<'py>,
     path: &Path,
@@ -38,7 +38,7 @@ pub(super) fn read_file<'py>(
     Ok((model, keywords))
 }
 
-/// Returns the robot of a URDF text.
+/// Reads a robot from the text of a URDF.
 pub(super) fn from_urdf_string(
     py: Python<'_>,
     text: &str,

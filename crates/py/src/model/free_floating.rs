@@ -7,9 +7,11 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl PyModel {
-    /// Return the reduced model ``M*, c*, Q*, Jg, d`` for one frame, exact for any momentum and wrench.
+    /// Return the reduced model ``M*``, ``c*``, ``Q*``, ``Jg``, ``d`` for one frame, which is exact for any
+    /// momentum and wrench.
     ///
-    /// ``out`` is the result of an earlier call with the same number of states, which is overwritten.
+    /// ``out`` is the result of an earlier call with the same number of states; it is overwritten and
+    /// returned.
     ///
     /// Parameters
     /// ----------
@@ -43,9 +45,10 @@ impl PyModel {
     /// Return the derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and ``ẋ`` at given joint
     /// accelerations.
     ///
-    /// Tangent vectors and wrenches are treated as in :meth:`inverse_dynamics_derivatives`. For ``q̈ = 0``
-    /// the first two are the derivatives of ``c* - Q*`` and ``d``. The derivatives with respect to ``q̈`` are
-    /// ``M*`` and ``Jg``; that of ``ẋ`` with respect to ``v`` is :meth:`frame_jacobian`.
+    /// Tangent vectors and wrenches are treated as in :meth:`inverse_dynamics_derivatives`. For ``q̈ = 0``,
+    /// the results for torque and acceleration are the derivatives of ``c* - Q*`` and ``d``. The derivatives
+    /// with respect to ``q̈`` are ``M*`` and ``Jg``; the derivative of ``ẋ`` with respect to ``v`` is
+    /// :meth:`frame_jacobian`.
     ///
     /// Parameters
     /// ----------

@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl PyModel {
-    /// Return ``q ⊕ dv``, the configuration reached by a constant velocity during unit time.
+    /// Return ``q ⊕ dv``, the configuration that is reached from ``q`` with the constant velocity ``dv`` in
+    /// unit time.
     ///
     /// Parameters
     /// ----------
@@ -33,8 +34,8 @@ impl PyModel {
         self.one(Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads, out)
     }
 
-    /// Return ``q2 ⊖ q``, the ``dv`` for which ``integrate(q, dv) = q2``, with the shorter rotation of the
-    /// base.
+    /// Return ``q2 ⊖ q``, the ``dv`` for which ``integrate(q, dv) = q2``. Of the two possible rotations of
+    /// the base, the shorter one is used.
     ///
     /// Parameters
     /// ----------
@@ -115,7 +116,7 @@ impl PyModel {
         self.one(Kernel::FrameVelocity(self.frame(frame)?), &[q, v], None, &[6], threads, out)
     }
 
-    /// Return the Jacobian ``J`` of a frame; its twist at its origin in W axes is ``J v``.
+    /// Return the Jacobian ``J`` of a frame: ``J v`` is the twist at the frame's origin, in W axes.
     ///
     /// Parameters
     /// ----------
@@ -129,7 +130,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// (6, nv) or (B, 6, nv) array
-    ///     Rows in W axes, linear first; dimensionless and m.
+    ///     Jacobian with rows in W axes, linear first; dimensionless and m.
     #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_jacobian<'py>(
         &self,

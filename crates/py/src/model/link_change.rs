@@ -1,4 +1,4 @@
-//! Changes of link properties, as given from Python.
+//! Changes of link properties, read from Python arguments.
 
 use super::builder::vector;
 use super::{Any, PyModel};
@@ -27,8 +27,8 @@ pub(super) fn with_link(
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Returns the call that reconstructs `model.with_link(name, **keywords)`. Successive changes of one link
-/// become a single call, so that repeated changes do not keep every intermediate model in memory.
+/// Returns the call that reconstructs `model.with_link(name, **keywords)`. Successive changes of one link are
+/// merged into a single call, so that intermediate models do not remain in memory.
 fn call_of_with_link(
     model: &Bound<'_, PyModel>,
     name: &str,
@@ -63,13 +63,13 @@ fn link_change(
     Ok(LinkChange { link: link.to_owned(), mass, com, inertia })
 }
 
-/// Converts ``{link: {"mass": ..., "com": ..., "inertia": ...}}``.
+/// Converts a dict `{link: {"mass": ..., "com": ..., "inertia": ...}}`.
 pub(super) fn link_changes(links: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<LinkChange>> {
     let Some(links) = links else { return Ok(Vec::new()) };
     links.iter().map(|(name, values)| change_from_dict(&name.extract::<String>()?, &values)).collect()
 }
 
-/// Converts the values of one link.
+/// Converts the dict of values for one link.
 fn change_from_dict(link: &str, values: &Bound<'_, PyAny>) -> PyResult<LinkChange> {
     let py = values.py();
     let refuse = |message: &str| Err(raise(py, "ModelError", message, &fields!(py, "link": link)));

@@ -1,4 +1,5 @@
-//! The class `Model`. Its methods are in one file per topic: `construction`, `properties`, `kinematics`, `dynamics`,
+//! The class `Model`. Its methods are in one file per topic: `construction`, `properties`, `kinematics`,
+//! `dynamics`,
 //! `momentum` and `free_floating`.
 
 pub(crate) mod attach;
@@ -45,15 +46,17 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 
 /// Model of a free-floating robot: an immutable tree of bodies.
 ///
-/// ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad, ``v = [v_body(3), w_body(3), rates(n)]`` in m/s
-/// and rad/s: linear and angular velocity of the base in base axes, then joint rates. W is the world frame
-/// of the simulation. Methods with an argument ``q``, except :meth:`transfer_state`, accept one state ``(n,)`` or a
-/// batch ``(B, n)`` and return arrays of the matching shape.
+/// Configurations are ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad. Velocities are ``v = [v_body(3),
+/// w_body(3), rates(n)]`` in m/s and rad/s: linear and angular velocity of the base in base axes, then joint
+/// rates. W is the world frame of the simulation. Methods with an argument ``q``, except
+/// :meth:`transfer_state`, accept one state ``(n,)`` or a batch ``(B, n)`` and return arrays of the
+/// corresponding shape.
 ///
 /// Two keyword arguments are common to these methods. ``threads`` is the number of threads for a batch
-/// (default: all cores). ``out`` receives the result and is then returned, which avoids the allocation of large arrays:
-/// a contiguous float64 array, three of them for the derivatives of the dynamics, or an earlier result of the same
-/// class. It must not be accessed by other threads during the call, and its contents are undefined after an error.
+/// (default: all cores). ``out`` receives the result and is returned, which avoids the allocation of large
+/// arrays. It is a contiguous float64 array, a tuple of three arrays for the derivatives of the dynamics, or
+/// an earlier result of the same class. It must not be accessed by other threads during the call, and its
+/// contents are undefined after an error.
 #[pyclass(name = "Model", frozen, module = "onorbit_rs")]
 pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
@@ -62,7 +65,7 @@ pub(crate) struct PyModel {
 }
 
 impl PyModel {
-    /// Wraps a model and issues its warnings, except those in `known`.
+    /// Wraps a model and issues its warnings, except those listed in `known`.
     pub(crate) fn wrap(
         py: Python<'_>,
         model: Model,
@@ -77,13 +80,13 @@ impl PyModel {
         Ok(Self { model: Arc::new(model), evaluator, constructor_call })
     }
 
-    /// Returns a further Python object of a model, whose warnings have been issued.
+    /// Creates another Python object for a model whose warnings have already been issued.
     pub(crate) fn of(model: Arc<Model>) -> Self {
         let evaluator = Mutex::new(Evaluator::new(&model));
         Self { model, evaluator, constructor_call: None }
     }
 
-    /// Returns the index of the frame with this name.
+    /// Returns the index of the frame `name`.
     pub(crate) fn frame(&self, name: &Bound<'_, PyAny>) -> PyResult<usize> {
         let py = name.py();
         let Ok(text) = name.cast::<PyString>() else {

@@ -1,4 +1,4 @@
-//! Robots that are to be attached to another robot.
+//! Robots that will be attached to another robot.
 
 use super::file::read_file;
 use crate::pickling::{ConstructorCall, Reduced};
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Robot from a file that is to be attached to another robot; its base may be massless.
+/// Robot, read from a file, that will be attached to another robot; its base may be massless.
 #[pyclass(name = "RobotPart", frozen, module = "onorbit_rs._core")]
 pub(super) struct PyRobotPart {
     pub(super) model: Model,

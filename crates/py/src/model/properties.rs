@@ -38,13 +38,13 @@ impl PyModel {
         self.model.joint_names().collect()
     }
 
-    /// Names of the bodies, base first; a body is named after its first link.
+    /// Names of the bodies, base first. The name of a body is that of its first link.
     #[getter]
     fn body_names(&self) -> Vec<&str> {
         self.model.body_names().collect()
     }
 
-    /// Names of the frames: every link, and additional frames.
+    /// Names of the frames: all links, followed by the frames that were added.
     #[getter]
     fn frame_names(&self) -> Vec<&str> {
         self.model.frame_names().collect()
@@ -62,7 +62,7 @@ impl PyModel {
         description::bodies(&self.model)
     }
 
-    /// Frames: every link, and additional frames.
+    /// Frames: all links, followed by the frames that were added.
     #[getter]
     fn frames(&self) -> Vec<PyFrame> {
         description::frames(&self.model)
@@ -80,14 +80,15 @@ impl PyModel {
         description::shapes(&self.model, self.model.visuals())
     }
 
-    /// Collision shapes, with meshes only if their file exists. They are drawn in place of visual meshes that
-    /// cannot be drawn; there are no contacts.
+    /// Collision shapes, with only those meshes whose file exists. They are drawn instead of visual meshes
+    /// that cannot be drawn; contacts are not simulated.
     #[getter]
     fn collisions(&self) -> Vec<PyVisual> {
         description::shapes(&self.model, self.model.collisions())
     }
 
-    /// Return the configuration at the origin of W, without rotation, with all joints at zero.
+    /// Return the configuration with the base at the origin of W, unrotated, and all joint positions equal to
+    /// zero.
     ///
     /// Returns
     /// -------

@@ -1,4 +1,4 @@
-//! Robots with another base, and their states.
+//! Robots with a different base, and conversion of their states.
 
 use super::{Any, Array, PyModel};
 use crate::arrays::{Input, array_of, wrong_shape};
@@ -9,7 +9,7 @@ use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Returns the robot with the link `link` as its base.
+/// Returns the robot re-rooted at the link `link`, which becomes its base.
 pub(super) fn rerooted(model: &Bound<'_, PyModel>, link: &str) -> PyResult<PyModel> {
     let py = model.py();
     let old = &model.get().model;
@@ -18,7 +18,7 @@ pub(super) fn rerooted(model: &Bound<'_, PyModel>, link: &str) -> PyResult<PyMod
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Returns the configuration and the velocity of `to` for a state of `from`.
+/// Returns the configuration and the velocity of `to` that correspond to a state of `from`.
 pub(super) fn transfer_state<'py>(
     py: Python<'py>,
     from: &Model,

@@ -6,10 +6,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::Path;
 
-/// Reads a xacro file, which `onorbit_rs.robots.expand` expands.
+/// Reads a robot from a xacro file, which `onorbit_rs.robots.expand` expands.
 ///
-/// Errors name the file but no line, because the line would be one of the expanded text, which the user does
-/// not see.
+/// Error messages name the file but no line, because the line number would refer to the expanded text, which
+/// the user does not see.
 pub(super) fn from_xacro(
     py: Python<'_>,
     path: &Path,

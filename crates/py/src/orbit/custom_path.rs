@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::Arc;
 
-/// Path with continuous acceleration through given positions.
+/// Path through given positions with continuous acceleration.
 ///
 /// Parameters
 /// ----------
@@ -23,11 +23,11 @@ use std::sync::Arc;
 /// accelerations : (T, 3) array, optional
 ///     Accelerations, inertial axes, m/s²; only together with ``velocities``.
 /// attitudes : (T, 4) array, optional
-///     Quaternions (x, y, z, w) from path axes to inertial axes, which :meth:`frame` returns.
+///     Quaternions (x, y, z, w) of the rotation from path axes to inertial axes, which :meth:`frame` returns.
 /// mu : float, optional
 ///     Gravitational parameter, m³/s²; None means that there is no planet.
 /// ends : {"error", "coast"}
-///     Behaviour outside the times: ``error`` raises ``PathError``; ``coast`` continues at the velocity and
+///     Behaviour outside the times: ``error`` raises ``PathError``; ``coast`` continues with the velocity and
 ///     angular velocity of the nearest end.
 ///
 /// Raises
@@ -43,7 +43,7 @@ pub(super) struct PyCustomPath {
 
 type Rows<const D: usize> = Vec<SVector<f64, D>>;
 
-/// Returns the rows of a (T, D) array and stores the array in `keywords`.
+/// Reads the rows of a (T, D) array, and stores the array in `keywords`.
 fn table<const D: usize>(value: Any<'_, '_>, name: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Rows<D>> {
     let input = Input::new(value, name)?;
     match input.shape() {

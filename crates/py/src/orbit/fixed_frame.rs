@@ -1,4 +1,4 @@
-//! A reference at rest.
+//! Reference orbit at rest.
 
 use super::{Any, PyOrbit, base};
 use crate::arrays::{array_of, fixed};
@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 use std::sync::Arc;
 
-/// Reference at rest in inertial axes.
+/// Reference orbit at rest in inertial axes.
 ///
-/// It has no local orbital frame; :meth:`frame` returns its attitude. With ``mu``, the robot falls away
-/// from the reference, which stays at rest, unless the gravity mode of the simulation is ``carried``.
+/// The reference has no local orbital frame; :meth:`frame` returns its attitude. With ``mu``, the robot falls
+/// away from the reference, unless the gravity mode of the simulation is ``carried``.
 ///
 /// Parameters
 /// ----------

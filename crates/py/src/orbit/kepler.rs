@@ -11,8 +11,9 @@ use std::sync::Arc;
 
 /// Two-body orbit: an ellipse, a parabola or a hyperbola.
 ///
-/// Give either ``semi_major_axis`` or ``semi_latus_rectum``, and at most one of ``mean_anomaly``,
-/// ``true_anomaly`` and ``periapsis_time``; without them the orbit is at its periapsis at ``epoch``.
+/// Specify either ``semi_major_axis`` or ``semi_latus_rectum``, and at most one of ``mean_anomaly``,
+/// ``true_anomaly`` and ``periapsis_time``. Without any of these three, the orbit is at its periapsis at
+/// ``epoch``.
 ///
 /// Parameters
 /// ----------
@@ -49,15 +50,15 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// OrbitError
-///     If the elements are invalid or inconsistent, such as a semi-major axis whose sign contradicts the eccentricity,
-///     or if ``secular_j2`` is set for an open orbit.
+///     If the elements are invalid or inconsistent, such as a semi-major axis whose sign contradicts the
+///     eccentricity, or if ``secular_j2`` is set for an open orbit.
 #[pyclass(name = "Kepler", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyKepler {
     kepler: Kepler,
     flattening: Flattening,
 }
 
-/// Returns J2 and reference radius for the secular rates; those of the Earth by default.
+/// Returns J2 and the reference radius for the secular rates; by default, the values of the Earth.
 fn flattening(
     py: Python<'_>,
     secular_j2: bool,
@@ -74,7 +75,7 @@ fn flattening(
 /// J2 and reference radius, m, of the secular rates; `None` for a two-body orbit.
 type Flattening = Option<(f64, f64)>;
 
-/// Returns the initializer of a two-body orbit, with secular rates if `flattening` is given.
+/// Creates the initializer of a two-body orbit, with secular rates if `flattening` is given.
 fn wrap(
     py: Python<'_>,
     kepler: Result<Kepler, OrbitError>,
@@ -169,7 +170,7 @@ impl PyKepler {
     /// mu : float
     ///     Gravitational parameter, m³/s²; default: that of the Earth.
     /// secular_j2, j2, radius
-    ///     As in the constructor.
+    ///     As for the constructor.
     ///
     /// Returns
     /// -------
@@ -178,7 +179,7 @@ impl PyKepler {
     /// Raises
     /// ------
     /// OrbitError
-    ///     If position and velocity are parallel or zero, or as in the constructor.
+    ///     If position and velocity are parallel or zero, or for the reasons stated for the constructor.
     #[staticmethod]
     #[pyo3(signature = (r, v, *, mu=3.986004418e14, secular_j2=false, j2=None, radius=None))]
     fn from_state<'py>(
@@ -212,13 +213,13 @@ impl PyKepler {
     /// eccentricity : float or (N,) array
     ///     Eccentricity, below 1.
     /// inclination, raan, argument_of_periapsis, mean_anomaly : float or (N,) array
-    ///     Angles, rad; the mean anomaly is that at time zero.
+    ///     Angles, rad; ``mean_anomaly`` is the mean anomaly at time zero.
     /// mu : float
     ///     Gravitational parameter, m³/s²; default: that of the Earth.
     /// threads : int, optional
     ///     Number of threads; default: all cores.
     /// out : tuple of two (N, 3) arrays, optional
-    ///     Arrays for the results.
+    ///     Arrays in which the results are stored and which are returned.
     ///
     /// Returns
     /// -------
@@ -303,8 +304,8 @@ impl PyKepler {
         self.kepler.elements().argument_of_periapsis
     }
 
-    /// Mean anomaly at the epoch, or at ``periapsis_time`` if that was given, rad; None for parabolas and nearly parabolic
-    /// orbits.
+    /// Mean anomaly at the epoch, or at ``periapsis_time`` if that was given instead, rad; None for parabolas
+    /// and nearly parabolic orbits.
     #[getter]
     fn mean_anomaly(&self) -> Option<f64> {
         match self.kepler.elements().phase {
@@ -313,7 +314,7 @@ impl PyKepler {
         }
     }
 
-    /// Period, s; None for an open orbit.
+    /// Period of revolution, s; None for an open orbit.
     #[getter]
     fn period(&self) -> Option<f64> {
         self.kepler.period()

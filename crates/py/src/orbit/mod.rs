@@ -36,7 +36,7 @@ pub(crate) struct PyOrbit {
     constructor_call: ConstructorCall,
 }
 
-/// Returns the base object of an orbit of any kind.
+/// Creates the base object of an orbit of any kind.
 fn base(
     orbit: Arc<dyn Orbit>,
     constructor: &str,
@@ -58,13 +58,15 @@ impl PyOrbit {
         self.orbit.mu()
     }
 
-    /// Inertial axes of positions and velocities: ``GCRF``, or ``TEME`` for an element set and orbits integrated in TEME.
+    /// Inertial axes of positions and velocities: ``GCRF``, or ``TEME`` for an element set and orbits
+    /// integrated in TEME.
     #[getter]
     fn axes(&self) -> &'static str {
         self.orbit.axes().name()
     }
 
-    /// How the velocity is obtained, as text; SGP4's velocity is not exactly the derivative of its position.
+    /// Text that describes how the velocity is obtained. The velocity of SGP4 is not exactly the derivative
+    /// of its position.
     #[getter]
     fn velocity_source(&self) -> &'static str {
         self.orbit.velocity_source()
@@ -87,7 +89,7 @@ impl PyOrbit {
     /// Raises
     /// ------
     /// OrbitError
-    ///     If the orbit has no state at a time. ``Sgp4Error`` and ``PathError`` are subclasses.
+    ///     If the orbit has no state at one of the times. ``Sgp4Error`` and ``PathError`` are subclasses.
     fn state<'py>(
         &self,
         py: Python<'py>,
@@ -124,7 +126,8 @@ impl PyOrbit {
     /// Raises
     /// ------
     /// OrbitError
-    ///     If the reference is at rest or moves along its position vector, or as for :meth:`state`.
+    ///     If the reference is at rest or moves along its position vector, or for the reasons stated for
+    ///     :meth:`state`.
     fn lvlh<'py>(
         &self,
         py: Python<'py>,
@@ -135,7 +138,7 @@ impl PyOrbit {
 
     /// Return attitude and angular velocity of the frame that moves along the reference.
     ///
-    /// This is the attitude given with a path or a fixed frame, otherwise the local orbital frame.
+    /// This is the attitude given with a path or a fixed frame, or else the local orbital frame.
     ///
     /// Parameters
     /// ----------
@@ -152,7 +155,7 @@ impl PyOrbit {
     /// Raises
     /// ------
     /// OrbitError
-    ///     As for :meth:`lvlh`, without the conditions on the motion if an attitude was given.
+    ///     As for :meth:`lvlh`; if an attitude was given, the conditions on the motion do not apply.
     fn frame<'py>(
         &self,
         py: Python<'py>,
@@ -187,7 +190,7 @@ impl PyOrbit {
     }
 }
 
-/// Returns three finite numbers.
+/// Reads three finite numbers.
 fn vector(value: Any<'_, '_>, name: &str) -> PyResult<Vector3<f64>> {
     Ok(Vector3::from(fixed::<3>(value, name, &[3])?))
 }

@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 /// Orbit integrated numerically in a gravity field.
 ///
-/// The integration uses collocation of order 16 and is extended as later states are requested; the error
-/// after one day in LEO is a micrometre.
+/// The integration uses collocation of order 16 and continues when later states are requested. The error
+/// after one day in a low Earth orbit is a micrometre.
 ///
 /// Parameters
 /// ----------
@@ -32,18 +32,18 @@ use std::sync::Arc;
 /// earth : Earth, optional
 ///     Orientation of the planet; required by a ``ThirdBody``, and by a ``GravityField`` of an order above 0.
 /// mu : float, optional
-///     Gravitational parameter, m³/s²; default: that of the ``GravityField``, or of the Earth without one. The value of
-///     a ``GravityField`` is used in any case; the given one may differ from it by at most 1e-5 (relative).
+///     Gravitational parameter, m³/s². If there is a ``GravityField``, its value is used, and ``mu`` may
+///     differ from it by at most a relative 1e-5. Otherwise the default is the value of the Earth.
 /// axes : {"GCRF", "TEME"}
 ///     Inertial axes.
 ///
 /// Raises
 /// ------
 /// OrbitError
-///     If an effect is not gravity, or the orbit begins inside the planet; its methods raise it for times at which the
-///     orbit is inside the planet.
+///     If an effect is not gravity, or the orbit begins inside the planet. The methods raise this error at
+///     times at which the orbit is inside the planet.
 /// GravityError, EarthError
-///     If the gravity effects contradict each other or ``mu``, or lack an ``earth`` or its epoch.
+///     If the gravity effects contradict each other or ``mu``, or if they require an ``earth`` or an epoch.
 #[pyclass(name = "Numerical", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyNumerical;
 
@@ -73,7 +73,7 @@ impl PyNumerical {
         wrap(py, start, axes, effects(environment)?, earth, mu)
     }
 
-    /// Return the orbit that starts from a state of another orbit, in its axes.
+    /// Return the orbit that starts from a state of another orbit, in the axes of that orbit.
     ///
     /// Parameters
     /// ----------
@@ -86,7 +86,8 @@ impl PyNumerical {
     /// earth : Earth, optional
     ///     Orientation of the planet.
     /// mu : float, optional
-    ///     Gravitational parameter, m³/s²; default: that of the ``GravityField``, or of ``orbit`` without one.
+    ///     Gravitational parameter, m³/s². The default is that of the ``GravityField`` or, without one, of
+    ///     ``orbit``.
     ///
     /// Returns
     /// -------
@@ -95,7 +96,7 @@ impl PyNumerical {
     /// Raises
     /// ------
     /// OrbitError, GravityError, EarthError
-    ///     If ``orbit`` has no state at ``t0``, and as in the constructor.
+    ///     If ``orbit`` has no state at ``t0``, or for the reasons stated for the constructor.
     #[staticmethod]
     #[pyo3(signature = (orbit, *, t0=0.0, environment=None, earth=None, mu=None))]
     fn from_orbit<'py>(
@@ -134,7 +135,7 @@ fn wrap(
     let others: Vec<_> = others.map(|effect| type_name(effect)).collect();
     if !others.is_empty() {
         let message = format!(
-            "the reference is in free fall, so {} cannot act on it; give the orbit only GravityField and \
+            "a numerical orbit is in free fall, so {} cannot act on it; give the orbit only GravityField and \
              ThirdBody, and \
              the other effects to the simulation",
             others.join(", ")

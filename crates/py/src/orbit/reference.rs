@@ -1,16 +1,16 @@
-//! Propagation by the reference code of SGP4, PyPI's `sgp4`.
+//! Propagation by PyPI's `sgp4`, the reference implementation of SGP4.
 
 use onorbit_core::orbit::sgp4::ExternalSgp4;
 use pyo3::prelude::*;
 
-/// A `Satrec` of `sgp4.api`; each state requires a call of Python.
+/// Object of the class `Satrec` of `sgp4.api`; each state requires a call to Python.
 #[derive(Debug)]
 pub(super) struct Satrec {
     tsince: Py<PyAny>,
 }
 
 impl Satrec {
-    /// Constructs a `Satrec` with a function of `onorbit_rs.ephemeris.satrec`.
+    /// Creates a `Satrec` with a function of `onorbit_rs.ephemeris.satrec`.
     pub(super) fn new<'py>(
         py: Python<'py>,
         function: &str,

@@ -10,34 +10,33 @@ use pyo3::types::{PyDict, PyString, PyTuple};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Orbit of a two-line element set by SGP4 (improved mode).
+/// Orbit of a two-line element set, propagated by SGP4 in improved mode.
 ///
-/// Time zero is the epoch of the set. Axes are TEME; position and velocity are those of SGP4.
+/// Time zero is the epoch of the element set. Axes are TEME; position and velocity are those of SGP4.
 ///
 /// Parameters
 /// ----------
 /// line1 : str or Satrec
-///     First line, or a ``Satrec`` of PyPI's ``sgp4``, of which the epoch, the elements (bit by bit) and the
-///     gravity constants are copied.
+///     First line, or a ``Satrec`` of PyPI's ``sgp4``, from which the epoch, the elements (bit by bit) and
+///     the gravity constants are copied.
 /// line2 : str, optional
-///     Second line; not with a ``Satrec``.
+///     Second line; omitted with a ``Satrec``.
 /// gravity : {"wgs72", "wgs72old", "wgs84"}, optional
-///     Gravity constants; published sets are fitted with ``wgs72``, the default.
+///     Gravity constants. The default is ``wgs72``, with which published element sets are fitted.
 /// check_checksum : bool
-///     If True, a wrong checksum is an error.
+///     If True, a wrong checksum raises an error.
 /// propagator : {"native", "reference"}
-///     With ``reference``, PyPI's ``sgp4`` reads and propagates the set in place of the engine's SGP4, as a
-///     cross-check; each state then requires calls of Python.
+///     With ``reference``, PyPI's ``sgp4`` reads and propagates the element set instead of the SGP4 of the
+///     engine, as an independent check; each state then requires calls to Python.
 ///
 /// Raises
 /// ------
 /// ElementSetError
-///     If a line does not have 69 valid columns or its checksum is wrong (the message names line and column), the lines
-///     are of two satellites, or an element is out of range.
-///     Also for a ``Satrec`` with other gravity constants, or in AFSPC mode unless ``propagator`` is
-///     ``reference``.
+///     If a line does not have 69 valid columns or its checksum is wrong (the message names line and column),
+///     if the lines belong to two satellites, or if an element is out of range; also for a ``Satrec`` with
+///     other gravity constants, or in AFSPC mode unless ``propagator`` is ``reference``.
 /// Sgp4Error
-///     If SGP4 rejects a set or a time; ``code`` is its error code.
+///     If SGP4 rejects an element set or a time; ``code`` is the error code.
 #[pyclass(name = "Sgp4", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PySgp4 {
     sgp4: Arc<Sgp4>,
@@ -54,7 +53,7 @@ fn earth_model(py: Python<'_>, name: &str) -> PyResult<EarthModel> {
     }
 }
 
-/// Returns true if the reference code propagates.
+/// Returns true if the reference implementation propagates.
 fn is_reference(py: Python<'_>, propagator: &str) -> PyResult<bool> {
     match propagator {
         "native" => Ok(false),
@@ -66,7 +65,7 @@ fn is_reference(py: Python<'_>, propagator: &str) -> PyResult<bool> {
     }
 }
 
-/// Returns the initializer of an orbit; `reference` propagates in place of the engine if it is given.
+/// Creates the initializer of an orbit; if `reference` is given, it propagates instead of the engine.
 fn wrap(
     sgp4: Sgp4,
     reference: Option<Satrec>,
@@ -81,7 +80,7 @@ fn wrap(
     Ok(PyClassInitializer::from(orbit).add_subclass(PySgp4 { sgp4 }))
 }
 
-/// Returns the mean elements of a `Satrec`; `None` if its epoch is not a date.
+/// Returns the mean elements of a `Satrec`; `None` if its epoch is not a valid date.
 fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
     let number = |name: &str| satrec.getattr(name)?.extract::<f64>();
     let Some(epoch) = Epoch::of_julian_date(number("jdsatepoch")?, number("jdsatepochF")?) else {
@@ -100,7 +99,7 @@ fn mean_elements(satrec: &Bound<'_, PyAny>) -> PyResult<Option<MeanElements>> {
     }))
 }
 
-/// Returns an orbit with the epoch, elements and gravity constants of a `Satrec`.
+/// Creates an orbit with the epoch, elements and gravity constants of a `Satrec`.
 fn of_satrec(
     satrec: &Bound<'_, PyAny>,
     propagator: &str,
@@ -161,7 +160,7 @@ impl PySgp4 {
     /// message : mapping or str
     ///     Keywords of the message, or its text (JSON, XML, CSV or KVN).
     /// gravity, propagator
-    ///     As in the constructor.
+    ///     As for the constructor.
     ///
     /// Returns
     /// -------
@@ -170,7 +169,7 @@ impl PySgp4 {
     /// Raises
     /// ------
     /// ElementSetError
-    ///     If the message cannot be read, lacks a keyword, or an entry is invalid.
+    ///     If the message cannot be read or lacks a keyword, or if an entry is invalid.
     #[staticmethod]
     #[pyo3(signature = (message, *, gravity="wgs72", propagator="native"))]
     fn from_omm<'py>(
@@ -211,19 +210,19 @@ impl PySgp4 {
         self.sgp4.elements().satellite
     }
 
-    /// Epoch of the set, which is time zero: ISO 8601, UTC.
+    /// Epoch of the element set, which is time zero: ISO 8601, UTC.
     #[getter]
     fn epoch(&self) -> String {
         self.sgp4.elements().epoch.to_string()
     }
 
-    /// Epoch as a Julian date (UTC), days: the date of midnight, and the fraction of the day.
+    /// Epoch as a Julian date (UTC), days, in two parts: the date of midnight, and the fraction of the day.
     #[getter]
     fn julian_date(&self) -> (f64, f64) {
         self.sgp4.elements().epoch.julian_date()
     }
 
-    /// Period of the mean motion, s.
+    /// Period that corresponds to the mean motion, s.
     #[getter]
     fn period(&self) -> f64 {
         self.sgp4.period()

@@ -10,9 +10,9 @@ use onorbit_core::reference::{MovingFrame, ReferenceFrame, Target};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Uniformly moving and rotating spacecraft, which defines a frame for references.
+/// Uniformly moving and rotating spacecraft that defines a frame for references.
 ///
-/// No forces act on it.
+/// No forces act on the spacecraft.
 ///
 /// Parameters
 /// ----------
@@ -53,13 +53,14 @@ impl PyTarget {
     }
 }
 
-/// What references and controls of a system refer to: the reference orbit, and the events and systems of its world.
+/// Objects to which references and controls of a system may refer: the reference orbit, and the events and
+/// systems of the world.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Around<'a> {
     pub(crate) orbit: Option<&'a Arc<dyn Orbit>>,
     /// Names of the events.
     pub(crate) events: &'a [String],
-    /// Names and models of the systems; empty for a robot alone.
+    /// Names and models of the systems; empty for a single robot.
     pub(crate) systems: &'a [(String, Arc<Model>)],
 }
 
@@ -74,7 +75,7 @@ pub(super) enum Frame {
 }
 
 impl Frame {
-    /// Reads ``frame=``: a name or a target; W by default.
+    /// Reads the argument ``frame``: a name or a target; W by default.
     pub(super) fn of(value: Option<Any<'_, '_>>) -> PyResult<Self> {
         let Some(value) = value else { return Ok(Self::World) };
         if let Ok(target) = value.cast::<PyTarget>() {
@@ -97,7 +98,8 @@ impl Frame {
         }
     }
 
-    /// Returns the frame of the core; `"lvlh"` requires the orbit, a frame of a system the systems.
+    /// Returns the frame of the core. The frame `"lvlh"` requires the orbit, a frame of a system requires the
+    /// systems.
     pub(super) fn bind(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<ReferenceFrame> {
         Ok(match self {
             Self::World => ReferenceFrame::World,

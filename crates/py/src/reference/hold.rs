@@ -1,4 +1,4 @@
-//! Constant pose.
+//! Constant pose as a reference.
 
 use super::{Any, PyReference, pose};
 use crate::pickling::call_of;

@@ -15,7 +15,7 @@ pub(super) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 impl PyJointReference {
-    /// Returns the base object of a reference of any kind, which `constructor_call` constructs.
+    /// Creates the base object of a reference of any kind, which `constructor_call` reconstructs.
     fn new<P: JointPath + 'static>(
         py: Python<'_>,
         path: Result<P, ReferenceError>,
@@ -25,7 +25,7 @@ impl PyJointReference {
     }
 }
 
-/// Returns a (K, n) array and n.
+/// Reads a (K, n) array, and returns its number of columns n with the array.
 fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> {
     let input = Input::new(value, name)?;
     match *input.shape() {
@@ -53,20 +53,20 @@ impl PyJointHold {
     }
 }
 
-/// Twice continuously differentiable path through joint positions, from rest to rest; all joints move
-/// together.
+/// Twice continuously differentiable path through joint positions, from rest to rest. All joints reach each
+/// point at the same time.
 ///
 /// Parameters
 /// ----------
 /// points : (K, n) array
 ///     Positions, rad or m.
 /// times : (K,) array, optional
-///     Times of the points, s. Default: with stops, the shortest time within ``speed`` and ``acceleration`` for
-///     each piece; with ``stops=False``, these times multiplied by one factor, with which some joint reaches a
-///     limit at one point of the path.
+///     Times of the points, s. By default the limits determine the times: with stops, each piece takes the
+///     shortest time within ``speed`` and ``acceleration``; with ``stops=False``, these times are multiplied
+///     by a common factor with which some joint just reaches a limit at one point of the path.
 /// speed, acceleration : float or (n,) array, optional
-///     Limits of the rates, rad/s or m/s, and of the accelerations, rad/s² or m/s²; either these or ``times``
-///     are given.
+///     Limits of the rates, rad/s or m/s, and of the accelerations, rad/s² or m/s². Specify either limits or
+///     ``times``.
 /// stops : bool
 ///     If False, the path passes through the points without stopping.
 #[pyclass(name = "JointWaypoints", extends = PyJointReference, frozen, module = "onorbit_rs")]
@@ -95,7 +95,7 @@ impl PyJointWaypoints {
         .add_subclass(Self))
     }
 
-    /// Return a path in which one joint after the other moves, each from rest to rest.
+    /// Return a path in which the joints move one after the other, each from rest to rest.
     ///
     /// Parameters
     /// ----------
@@ -132,8 +132,8 @@ impl PyJointWaypoints {
 
 /// C² spline through joint positions at given times.
 ///
-/// Outside these times the joints rest at the first or last position, so the rate jumps at an end where it is
-/// not zero.
+/// Before the first and after the last time, the joints rest at the first or last position. The rate
+/// therefore jumps at an end at which it is not zero.
 ///
 /// Parameters
 /// ----------

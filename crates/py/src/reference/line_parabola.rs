@@ -8,18 +8,19 @@ use pyo3::prelude::*;
 
 /// Line with a superimposed parabola, ``p(t) = p0 + s d + s (1 - s) h``, with constant attitude.
 ///
-/// ``s`` is the quintic from 0 to 1.
+/// ``s`` is the quintic time law from 0 to 1.
 ///
 /// Parameters
 /// ----------
 /// start_pose : (4, 4) array
 ///     Initial pose of the tool in ``frame``, m.
 /// displacement : (3,) array
-///     ``d``, axes of ``frame``, m.
+///     Displacement ``d``, axes of ``frame``, m.
 /// duration : float
 ///     Duration, s.
 /// height : (3,) array, optional
-///     ``h``, axes of ``frame``, m; a quarter of it is reached at half the distance.
+///     Coefficient ``h`` of the parabola, axes of ``frame``, m; at half the distance, the lateral offset is a
+///     quarter of ``h``.
 /// frame : {"world", "lvlh", "base"} or Target, optional
 ///     Frame of the reference; default: W.
 #[pyclass(name = "LineParabola", extends = PyReference, frozen, module = "onorbit_rs")]

@@ -40,11 +40,11 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     joint::add_classes(m)
 }
 
-/// Base class of references of a tool: a pose with velocity and acceleration as functions of time.
+/// Base class of references of a tool: a pose, with velocity and acceleration, as a function of time.
 ///
-/// A reference is expressed in the axes of its ``frame``: ``"world"``, ``"lvlh"`` (of the simulation's
-/// orbit), ``"base"`` (relative to the robot's base), a :class:`Target`, or a frame of another system of the same
-/// world, ``"SYSTEM/FRAME"``, with which it moves.
+/// A reference is expressed in the axes of its ``frame``. The frame is ``"world"``, ``"lvlh"`` (of the
+/// simulation's orbit), ``"base"`` (relative to the robot's base), a :class:`Target`, or a frame
+/// ``"SYSTEM/FRAME"`` of another system of the same world, with which the reference moves.
 #[pyclass(name = "Reference", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyReference {
     path: Arc<dyn TaskPath>,
@@ -60,7 +60,7 @@ impl PyReference {
         self.path.duration()
     }
 
-    /// Return pose, velocity and acceleration in the reference's own frame.
+    /// Return the pose, velocity and acceleration in the frame of the reference.
     ///
     /// Parameters
     /// ----------
@@ -72,13 +72,13 @@ impl PyReference {
     /// pose : (4, 4) or (T, 4, 4) array
     ///     Homogeneous matrix, m.
     /// velocity, acceleration : (6,) or (T, 6) array
-    ///     Linear, then angular: m/s and rad/s, or m/s² and rad/s².
+    ///     Linear, then angular components: m/s and rad/s, or m/s² and rad/s².
     fn sample<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Arrays<'py>> {
         let reference = TaskReference { path: Arc::clone(&self.path), frame: Default::default() };
         table(py, &reference, true, t)
     }
 
-    /// Return pose, velocity and acceleration in W.
+    /// Return the pose, velocity and acceleration in W.
     ///
     /// The reference starts at simulation time zero.
     ///
@@ -87,7 +87,7 @@ impl PyReference {
     /// t : float or (T,) array
     ///     Time since the start of the reference, s.
     /// orbit : Orbit, optional
-    ///     Orbit of a reference in the frame ``"lvlh"``, which requires it.
+    ///     Orbit, which is required for a reference in the frame ``"lvlh"``.
     ///
     /// Returns
     /// -------
@@ -97,8 +97,8 @@ impl PyReference {
     /// Raises
     /// ------
     /// ControlError
-    ///     If the reference is relative to the base or to another system, because its pose in W then depends on the
-    ///     run, or it is in the frame ``"lvlh"`` and ``orbit`` is missing.
+    ///     If the reference is relative to the base or to another system, because its pose in W then depends
+    ///     on the run, or if the reference is in the frame ``"lvlh"`` and ``orbit`` is missing.
     #[pyo3(signature = (t, *, orbit=None))]
     fn in_world<'py>(
         &self,
@@ -126,7 +126,7 @@ impl PyReference {
 }
 
 impl PyReference {
-    /// Returns the base object of a reference of any kind, which `constructor_call` constructs.
+    /// Creates the base object of a reference of any kind, which `constructor_call` reconstructs.
     fn new<P: TaskPath + 'static>(
         py: Python<'_>,
         path: Result<P, ReferenceError>,
@@ -137,7 +137,7 @@ impl PyReference {
         Ok(Self { path: Arc::new(path), frame: frame::Frame::of(frame)?, constructor_call })
     }
 
-    /// Returns the reference of the core, in frames of the orbit and the systems `around`.
+    /// Returns the reference of the core, whose frame may refer to the orbit and the systems in `around`.
     fn bind(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<TaskReference> {
         Ok(TaskReference { path: Arc::clone(&self.path), frame: self.frame.bind(py, around)? })
     }
@@ -183,7 +183,7 @@ impl PyJointReference {
     }
 }
 
-/// Samples a reference of a tool at one time or at many.
+/// Samples a reference of a tool at one time or at many times.
 fn table<'py>(
     py: Python<'py>,
     reference: &TaskReference,
@@ -198,7 +198,8 @@ fn table<'py>(
     Ok((poses, v, a))
 }
 
-/// Returns the reference of a tool in a Python object; one in the frame of the orbit moves on `orbit`.
+/// Returns the reference of a tool contained in a Python object; a reference in the frame `"lvlh"` uses the
+/// orbit in `around`.
 pub(crate) fn extract(value: Any<'_, '_>, around: &Around<'_>) -> PyResult<TaskReference> {
     match value.cast::<PyReference>() {
         Ok(reference) => reference.get().bind(value.py(), around),
@@ -206,7 +207,7 @@ pub(crate) fn extract(value: Any<'_, '_>, around: &Around<'_>) -> PyResult<TaskR
     }
 }
 
-/// Returns the reference of joints in a Python object.
+/// Returns the reference of joints contained in a Python object.
 pub(crate) fn extract_joints(value: Any<'_, '_>) -> PyResult<JointReference> {
     match value.cast::<PyJointReference>() {
         Ok(reference) => Ok(Arc::clone(&reference.get().path)),
@@ -222,19 +223,19 @@ fn no_reference(value: Any<'_, '_>, expected: &str) -> PyErr {
     raise(py, "DtypeError", &message, &fields!(py, "name": "reference", "expected": expected, "got": got))
 }
 
-/// Returns a vector of three finite numbers.
+/// Reads a vector of three finite numbers.
 fn vector(value: Any<'_, '_>, name: &str) -> PyResult<Vector3<f64>> {
     Ok(fixed::<3>(value, name, &[3])?.into())
 }
 
-/// Returns a (4, 4) pose.
+/// Reads a (4, 4) pose.
 fn pose(value: Any<'_, '_>) -> PyResult<Hold> {
     let rows = fixed::<16>(value, "pose", &[4, 4])?;
     let mut poses = Hold::from_rows(&[rows]).map_err(|error| error.into_python(value.py()))?;
     Ok(poses.remove(0))
 }
 
-/// Returns (K, 4, 4) poses.
+/// Reads (K, 4, 4) poses.
 fn poses(value: Any<'_, '_>) -> PyResult<Vec<Hold>> {
     let input = Input::new(value, "poses")?;
     let [_, 4, 4] = input.shape() else {
@@ -243,7 +244,7 @@ fn poses(value: Any<'_, '_>) -> PyResult<Vec<Hold>> {
     Hold::from_rows(input.data().as_chunks().0).map_err(|error| error.into_python(value.py()))
 }
 
-/// Returns (K,) numbers.
+/// Reads (K,) numbers.
 fn row(value: Any<'_, '_>, name: &str) -> PyResult<Vec<f64>> {
     let input = Input::new(value, name)?;
     match input.shape() {

@@ -13,11 +13,11 @@ use pyo3::prelude::*;
 /// poses : (K, 4, 4) array
 ///     Poses of the tool in ``frame``, m.
 /// times : (K,) array, optional
-///     Times of the poses, s. Default: with stops, the shortest time within the limits for each piece; with
-///     ``stops=False``, these times multiplied by one factor, with which a limit is reached at one point of the
-///     path.
+///     Times of the poses, s. By default the limits determine the times: with stops, each piece takes the
+///     shortest time within the limits; with ``stops=False``, these times are multiplied by a common factor
+///     with which a limit is just reached at one point of the path.
 /// speed, acceleration, angular_speed, angular_acceleration : float, optional
-///     Limits as for :class:`Line`; either these or ``times`` are given.
+///     Limits as for :class:`Line`. Specify either limits or ``times``.
 /// stops : bool
 ///     If False, the path passes through the poses without stopping.
 /// frame : {"world", "lvlh", "base"} or Target, optional
@@ -63,7 +63,8 @@ impl PyWaypoints {
     }
 }
 
-/// C² spline through poses at given times; before and after, the first and last pose are held.
+/// C² spline through poses at given times. Before the first time the first pose is held, after the last time
+/// the last pose.
 ///
 /// Parameters
 /// ----------

@@ -5,7 +5,7 @@ use crate::pickling::call_of;
 use onorbit_core::reference::{ReferenceError, Screw};
 use pyo3::prelude::*;
 
-/// Rotation about a line.
+/// Rotation of the tool about a line.
 ///
 /// Parameters
 /// ----------
@@ -16,9 +16,9 @@ use pyo3::prelude::*;
 /// axis : (3,) array
 ///     Direction of the line, axes of ``frame``.
 /// angle : float
-///     Angle, rad.
+///     Angle of rotation, rad.
 /// turns : bool
-///     If False, the attitude is constant; otherwise it rotates with the position.
+///     If True, the attitude rotates with the position; otherwise it is constant.
 /// ramp : float, optional
 ///     If given, the rate is constant between two ramps, each of which takes this fraction of the duration;
 ///     otherwise the angle is a quintic of time.

@@ -1,4 +1,4 @@
-//! Timing of references: a given duration, or the shortest within limits.
+//! Timing of references: a given duration, or the shortest duration within limits.
 
 use super::Any;
 use super::row;
@@ -7,7 +7,7 @@ use crate::errors::{IntoPython, plain};
 use onorbit_core::reference::{RateLimit, ReferenceError, TaskLimits, Timing};
 use pyo3::prelude::*;
 
-/// Returns the given duration or times, or the limits of a frame's motion; both together are rejected.
+/// Reads the duration or times, or the limits of a frame's motion. Giving both is an error.
 pub(super) fn of_task<T>(
     py: Python<'_>,
     given: Option<T>,
@@ -27,7 +27,7 @@ pub(super) fn of_task<T>(
     }
 }
 
-/// Returns the given times, or limits for each of `count` joints; both together are rejected.
+/// Reads the times, or limits for each of `count` joints. Giving both is an error.
 pub(super) fn of_joints(
     py: Python<'_>,
     count: usize,
@@ -51,7 +51,7 @@ pub(super) fn of_joints(
     }
 }
 
-/// Returns one value per joint, from one number for all joints or (n,).
+/// Returns one value per joint. The argument is one number for all joints, or an (n,) array.
 fn per_joint(value: Any<'_, '_>, name: &str, count: usize) -> PyResult<Vec<f64>> {
     if let Ok(one) = value.extract::<f64>() {
         return Ok(vec![one; count]);

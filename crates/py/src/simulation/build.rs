@@ -1,4 +1,4 @@
-//! Simulations from the arguments given in Python.
+//! Construction of simulations from Python arguments.
 
 use super::Any;
 use crate::earth::PyEarth;
@@ -16,8 +16,8 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Returns the simulation of a world with default settings of the integration. `given` says which of the arguments that
-/// belong to a robot have been given.
+/// Creates the simulation of a world with default settings of the integration. `given` states which arguments
+/// that belong to a robot have been given.
 pub(super) fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> PyResult<Simulation> {
     if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
         return Err(PyTypeError::new_err(format!(
@@ -27,11 +27,11 @@ pub(super) fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> Py
     world.get().simulation(world.py())
 }
 
-/// Orbit, Earth, gravity mode and effects of a simulation as given in Python.
+/// Orbit, Earth, gravity mode and effects of a simulation, as given in Python.
 type Surroundings<'a, 'py> =
     (Option<&'a Bound<'py, PyOrbit>>, Option<&'a Bound<'py, PyEarth>>, &'a str, Option<Any<'a, 'py>>);
 
-/// Returns the simulation of a robot with default settings of the integration.
+/// Creates the simulation of a robot with default settings of the integration.
 pub(super) fn of_robot(
     model: Any<'_, '_>,
     (q, v): (Option<Any<'_, '_>>, Option<Any<'_, '_>>),
@@ -58,7 +58,7 @@ pub(super) fn of_robot(
     Ok(simulation)
 }
 
-/// Sets the effects and the gravity field; orbit and Earth must have been set before. `surfaces` are those that were
+/// Sets the effects and the gravity field. Orbit and Earth must be set before. `surfaces` are the surfaces
 /// declared with each system.
 pub(crate) fn set_environment(
     py: Python<'_>,
@@ -71,7 +71,7 @@ pub(crate) fn set_environment(
         .map(|(System { name, model, .. }, surfaces)| Target { name, model, surfaces: *surfaces })
         .collect();
     for (number, own) in surfaces.iter().enumerate() {
-        own.map_or(Ok(()), |own| own.on_robot(py, &targets, number).map(drop))?; // errors even without an effect
+        own.map_or(Ok(()), |own| own.on_robot(py, &targets, number).map(drop))?; // reports errors even if no effect uses the surfaces
     }
     let on_systems = environment.iter().filter_map(|effect| effect.get().on(py, &targets).transpose());
     simulation.effects = on_systems.collect::<PyResult<_>>()?;

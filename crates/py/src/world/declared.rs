@@ -1,4 +1,4 @@
-//! Worlds of several spacecraft.
+//! Worlds of several systems.
 
 use super::event::{events_in, events_of, names_of};
 use super::system::PySystem;
@@ -19,12 +19,12 @@ use pyo3::types::PyDict;
 use std::ffi::CString;
 use std::sync::Arc;
 
-/// World of one or more spacecraft on one reference orbit, with their environment and events.
+/// World of one or more systems on one reference orbit, with their environment and events.
 ///
 /// Parameters
 /// ----------
 /// systems : list of System
-///     Spacecraft.
+///     Systems, each of which is a spacecraft with a unique name.
 /// orbit : Orbit, optional
 ///     Reference orbit, on which the origin of W moves. An orbit around a planet adds gravity on every body.
 /// earth : Earth, optional
@@ -36,13 +36,13 @@ use std::sync::Arc;
 /// events : list of Capture and Release, optional
 ///     Events that connect and separate systems.
 /// rereference_beyond : float
-///     Distance of a system from the reference orbit, m, beyond which integration continues about a new reference;
-///     systems that events may connect keep the reference orbit.
+///     Distance of a system from the reference orbit, m, beyond which integration continues about a new
+///     reference orbit. Systems that events may connect keep the reference orbit.
 ///
 /// Raises
 /// ------
 /// WorldError
-///     If a system or an event is not valid.
+///     If a system or an event is invalid.
 #[pyclass(name = "World", frozen, module = "onorbit_rs")]
 pub(crate) struct PyWorld {
     systems: Vec<Py<PySystem>>,
@@ -112,7 +112,7 @@ impl PyWorld {
 }
 
 impl PyWorld {
-    /// Returns a simulation of the world with default settings of the integration.
+    /// Creates a simulation of the world with default settings of the integration.
     pub(crate) fn simulation(&self, py: Python<'_>) -> PyResult<Simulation> {
         let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));
         let names = names_of(py, &self.events)?;
@@ -142,7 +142,7 @@ impl PyWorld {
     }
 }
 
-/// Returns the numbers of the systems that a system knows; `names` are the names of all systems.
+/// Returns the numbers of the systems whose models a system knows; `names` are the names of all systems.
 fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResult<Vec<usize>> {
     let number = |known: &String| {
         let others = || names.iter().filter(|name| **name != system.name).map(String::as_str);
@@ -158,7 +158,7 @@ fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResul
     system.knows.iter().map(number).collect()
 }
 
-/// Warns of systems that others know without effect.
+/// Issues warnings about systems that other systems know without effect.
 fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     let name = |system: usize| &simulation.systems[system].name;
     for idle in idle_knowledge(&simulation.systems, &simulation.events) {
@@ -181,7 +181,7 @@ fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     Ok(())
 }
 
-/// Warns of systems that start so far from the reference orbit that their positions lose digits.
+/// Issues warnings about systems that start so far from the reference orbit that their positions lose digits.
 fn warn_of_distance(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     for far in simulation.far_systems() {
         let reason =

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// When an event happens, as given in Python.
+/// Condition under which an event happens, as given in Python.
 #[derive(Clone)]
 struct Condition {
     at: Option<f64>,
@@ -20,7 +20,7 @@ struct Condition {
 }
 
 impl Condition {
-    /// Returns the condition, of which exactly one must be given.
+    /// Creates the condition, of which exactly one must be given.
     fn new(
         py: Python<'_>,
         name: &str,
@@ -58,7 +58,7 @@ impl Condition {
         Ok(())
     }
 
-    /// Returns the condition of the core; `names` are the names of all events.
+    /// Returns the condition as used by the core; `names` are the names of all events.
     fn when(&self, py: Python<'_>, name: &str, names: &[String]) -> PyResult<When> {
         if let Some(envelope) = self.latch {
             return Ok(When::Latch(envelope));
@@ -73,7 +73,7 @@ impl Condition {
     }
 }
 
-/// Returns the number of the event that `name` refers to as `other`.
+/// Returns the number of the event `other`, to which the event `name` refers.
 fn event_named(py: Python<'_>, name: &str, other: &str, names: &[String]) -> PyResult<usize> {
     names.iter().position(|known| known == other).ok_or_else(|| {
         let message = format!(
@@ -106,9 +106,10 @@ fn frame_at(
     Ok(FrameIndex { system, frame })
 }
 
-/// Capture: connects two frames of different systems rigidly, at their relative pose of that instant.
+/// Capture: connects two frames of different systems rigidly, with the relative pose that they have at that
+/// instant.
 ///
-/// Exactly one of ``at``, ``after``, ``on_command`` and ``within`` says when.
+/// Exactly one of ``at``, ``after``, ``on_command`` and ``within`` specifies when the capture happens.
 ///
 /// Parameters
 /// ----------
@@ -119,26 +120,26 @@ fn frame_at(
 /// frame_b : str
 ///     Captured frame as ``SYSTEM/FRAME``.
 /// at : float, optional
-///     Time, s.
+///     Simulation time of the capture, s.
 /// after : str, optional
-///     Name of another event.
+///     Name of another event, after which the capture happens.
 /// delay : float
 ///     Time after the other event, s.
 /// on_command : bool
-///     If True, ``Stepper.trigger`` starts the event.
+///     If True, the capture happens when ``Stepper.trigger`` is called.
 /// within : (float, float), optional
-///     A latch: largest distance, m, and angle, rad, between the frames.
+///     Latch: the capture happens once the frames are within this distance, m, and angle, rad, of each other.
 /// slower_than : (float, float), optional
-///     Largest speed of the captured frame's origin as observed in the capturing frame, m/s, and largest relative
-///     angular speed, rad/s, at which the latch closes; default: any.
+///     Largest speed of the captured frame's origin as observed in the capturing frame, m/s, and largest
+///     relative angular speed, rad/s, at which the latch closes; default: no limit.
 /// held_for : float
 ///     Time for which the conditions of the latch must hold, s.
 /// seat : float, optional
-///     Time, s, in which the captured frame is pulled into ``pose`` after the capture, as latches and grapple fixtures do;
-///     the motion starts and ends at rest. By default the pose at the capture is kept.
+///     Time, s, during which the captured frame moves to ``pose`` after the capture, as with latches and
+///     grapple fixtures. The motion starts and ends at rest. By default the pose at the capture is kept.
 /// pose : (4, 4) array, optional
-///     Nominal pose of the captured frame in the capturing frame, m; by default the two frames coincide. Its distance
-///     is at most 1000 m.
+///     Nominal pose of the captured frame in the capturing frame, m; the distance may be at most 1000 m. By
+///     default the two frames coincide.
 #[pyclass(name = "Capture", frozen, module = "onorbit_rs")]
 pub(crate) struct PyCapture {
     /// Name of the event.
@@ -152,7 +153,7 @@ pub(crate) struct PyCapture {
     frame_b: String,
     condition: Condition,
     seat: Option<Seat>,
-    /// Pose of the seat as given in Python.
+    /// Nominal pose as given in Python.
     pose: Option<Py<PyAny>>,
 }
 
@@ -184,13 +185,17 @@ impl PyCapture {
         let within = within.map(|within| fixed(within, "within", &[2])).transpose()?;
         let slower = slower_than.map(|slower| fixed(slower, "slower_than", &[2])).transpose()?;
         if within.is_none() && (slower.is_some() || held_for != 0.0) {
-            let message = format!("the event '{name}' has slower_than or held_for, which belong to within");
+            let message = format!(
+                "the event '{name}' has slower_than or held_for, which require within; add within or omit them"
+            );
             return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
         }
         let slower_than = slower.unwrap_or([f64::INFINITY; 2]);
         let latch = within.map(|within| Envelope { within, slower_than, held_for });
         if seat.is_none() && pose.is_some() {
-            let message = format!("the event '{name}' has a pose, which belongs to seat; add the time in s");
+            let message = format!(
+                "the event '{name}' has a pose, which requires seat; add seat, the duration of the motion in s"
+            );
             return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
         }
         let nominal = pose.map(isometry).transpose()?.unwrap_or_default();
@@ -213,9 +218,10 @@ impl PyCapture {
     }
 }
 
-/// Release: removes the connection that a capture made.
+/// Release: removes the connection that a capture established.
 ///
-/// Exactly one of ``at``, ``after`` and ``on_command`` says when. The release of what is not connected has no effect.
+/// Exactly one of ``at``, ``after`` and ``on_command`` specifies when the release happens. Releasing frames
+/// that are not connected has no effect.
 ///
 /// Parameters
 /// ----------
@@ -224,16 +230,16 @@ impl PyCapture {
 /// capture : str
 ///     Name of the capture.
 /// at : float, optional
-///     Time, s.
+///     Simulation time of the release, s.
 /// after : str, optional
-///     Name of another event.
+///     Name of another event, after which the release happens.
 /// delay : float
 ///     Time after the other event, s.
 /// on_command : bool
-///     If True, ``Stepper.trigger`` starts the event.
+///     If True, the release happens when ``Stepper.trigger`` is called.
 /// impulse : (6,) array, optional
-///     Impulse of a spring on the captured system: N s, then N m s, in the axes of the capturing frame at its origin.
-///     The opposite impulse acts on the other system.
+///     Impulse of a spring on the captured system: N s, then N m s, at the origin and in the axes of the
+///     capturing frame. The opposite impulse acts on the other system.
 #[pyclass(name = "Release", frozen, module = "onorbit_rs")]
 pub(crate) struct PyRelease {
     /// Name of the event.
@@ -306,7 +312,8 @@ pub(super) fn names_of(py: Python<'_>, events: &[Py<PyAny>]) -> PyResult<Vec<Str
     events.iter().map(|event| event.bind(py).getattr("name")?.extract()).collect()
 }
 
-/// Reads the events of a world; `names` are their names, `systems` the names and models of the systems.
+/// Reads the events of a world; `names` are the names of the events, `systems` the names and models of the
+/// systems.
 pub(super) fn events_of(
     py: Python<'_>,
     events: &[Py<PyAny>],

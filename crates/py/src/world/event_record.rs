@@ -1,4 +1,4 @@
-//! Events that happened.
+//! Records of events that have happened.
 
 use crate::arrays::{Input, array_of, wrong_shape};
 use crate::errors::{fields, raise};
@@ -10,27 +10,28 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Event that happened, with its audit; ``trace.events`` of a world has these records.
+/// Event that happened, with its audit. ``trace.events`` of a world contains these records.
 ///
 /// Parameters
 /// ----------
 /// name : str
 ///     Name of the event.
 /// kind : {"capture", "release"}
-///     Kind.
+///     Kind of the event.
 /// time : float
 ///     Time, s.
 /// systems : (str, str)
-///     Names of the two systems, the capturing one first.
+///     Names of the two systems, beginning with the capturing system.
 /// impulse : (6,) array
-///     Impulse on the second system, with what it carries: N s, then N m s about ``point``, axes of W.
+///     Impulse on the second system and the systems connected to it: N s, then N m s about ``point``, axes of
+///     W.
 /// point : (3,) array
 ///     Point at which the impulse acts, in W, m.
 /// energy_lost : float
 ///     Kinetic energy lost, J; negative if a spring added energy.
 /// momentum_error : (2,) array
-///     Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes of the
-///     momenta of its bodies.
+///     Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes
+///     of the momenta of its bodies.
 #[pyclass(name = "EventRecord", frozen, module = "onorbit_rs")]
 #[derive(PartialEq)]
 pub(crate) struct PyEventRecord {
@@ -41,7 +42,7 @@ pub(crate) struct PyEventRecord {
     /// Time, s.
     #[pyo3(get)]
     time: f64,
-    /// Names of the two systems, the capturing one first.
+    /// Names of the two systems, beginning with the capturing system.
     #[pyo3(get)]
     systems: (String, String),
     impulse: [f64; 6],
@@ -53,7 +54,7 @@ pub(crate) struct PyEventRecord {
 }
 
 impl PyEventRecord {
-    /// Returns the record of an event of systems with these names.
+    /// Creates the record of an event of systems with these names.
     pub(crate) fn of(record: &EventRecord, names: &[String]) -> Self {
         let EventRecord { name, kind, time, systems, impulse, point, energy_lost, momentum_error, .. } =
             record;
@@ -96,13 +97,14 @@ impl PyEventRecord {
         Ok(Self { name, kind, time, systems, impulse, point, energy_lost, momentum_error })
     }
 
-    /// Kind: ``capture`` or ``release``.
+    /// Kind of the event, ``capture`` or ``release``.
     #[getter]
     fn kind(&self) -> &'static str {
         self.kind.name()
     }
 
-    /// Impulse on the second system, with what it carries, (6,): N s, then N m s about ``point``, axes of W.
+    /// Impulse on the second system and the systems connected to it, (6,): N s, then N m s about ``point``,
+    /// axes of W.
     #[getter]
     fn impulse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         array_of(py, &[6], &self.impulse)
@@ -114,8 +116,8 @@ impl PyEventRecord {
         array_of(py, &[3], &self.point)
     }
 
-    /// Changes of the linear and of the angular momentum of the group, (2,), relative to the sums of the magnitudes of
-    /// the momenta of its bodies.
+    /// Changes of the linear and of the angular momentum of the group, (2,), relative to the sums of the
+    /// magnitudes of the momenta of its bodies.
     #[getter]
     fn momentum_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         array_of(py, &[2], &self.momentum_error)
@@ -148,7 +150,7 @@ impl PyEventRecord {
     }
 }
 
-/// Returns the entries of a vector, which are not finite in a run that diverged.
+/// Reads the entries of a vector, which may be non-finite if the run diverged.
 fn entries<const N: usize>(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; N]> {
     let input = Input::new(value, name)?;
     match <[f64; N]>::try_from(input.data()) {

@@ -1,4 +1,4 @@
-//! Settings of one robot: controls, reference, tool and stops, and its initial state.
+//! Settings of one robot: its controls, reference, tool, stops and initial state.
 
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::control::{Robot, controls_of};
@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Settings of one robot as given in Python.
+/// Settings of one robot, as given in Python.
 pub(crate) struct RobotSettings {
     pub(crate) controller: Option<Py<PyAny>>,
     pub(crate) reference: Option<Py<PyAny>>,

@@ -1,4 +1,4 @@
-//! One spacecraft of a world.
+//! System of a world.
 
 use super::robot_settings::{RobotSettings, initial_state};
 use crate::arrays::names_in;
@@ -11,12 +11,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// One spacecraft of a world: model, initial state and controllers.
+/// System of a world: one spacecraft with its model, initial state and controllers.
 ///
 /// Parameters
 /// ----------
 /// name : str
-///     Name, unique in the world: a letter, then letters, digits, ``_`` and ``-``.
+///     Name, unique in the world: a letter, followed by letters, digits, ``_`` and ``-``.
 /// model : Model
 ///     Robot.
 /// q : (nq,) array
@@ -24,8 +24,8 @@ use std::sync::Arc;
 /// v : (nv,) array
 ///     Initial velocity, m/s and rad/s.
 /// controller : control law, object or list of Control, optional
-///     Control law for all joints, an object with ``update(t, state)``, or several controls. After a capture they
-///     still use the model of this system alone, unless it ``knows`` the other one.
+///     Control law for all joints, an object with ``update(t, state)``, or several controls. After a capture,
+///     control laws still use the model of this system alone, unless it ``knows`` the other system.
 /// reference : Reference or JointReference, optional
 ///     Reference of the controller.
 /// tool : str, optional
@@ -39,11 +39,12 @@ use std::sync::Arc;
 /// reference_start_tolerance : (float, float), optional
 ///     Permitted initial deviation of the tool from its reference, m and rad; default: (0.05, 0.1).
 /// surfaces : Surface or dict of str to Surface, optional
-///     Surfaces of the links for ``Drag`` and ``RadiationPressure`` that have no ``surfaces``; the form is that of
-///     ``Drag``. Default: ``Faces()``.
+///     Surfaces of the links, used by ``Drag`` and ``RadiationPressure`` effects that have no ``surfaces``;
+///     the form is as for ``Drag``. Default: ``Faces()``.
 /// knows : list of str, optional
-///     Names of other systems whose models the controllers know. While such a system is connected to this one, laws that
-///     use a model use that of the connected tree, in which its joints have no motor torque.
+///     Names of other systems whose models the controllers know. While such a system is connected to this
+///     one, laws that use a model use the model of the connected tree, in which the joints of the other
+///     system have no motor torque.
 #[pyclass(name = "System", frozen, module = "onorbit_rs")]
 pub(crate) struct PySystem {
     /// Name of the system.
@@ -116,7 +117,7 @@ impl PySystem {
 }
 
 impl PySystem {
-    /// Returns the system of the core, whose references and controls refer to what is `around`.
+    /// Returns the system of the core, whose references and controls may refer to the objects in `around`.
     pub(super) fn system(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<System> {
         let model = self.model.get();
         let mut system = System::new(&self.name, Arc::clone(&model.model), self.q.clone(), self.v.clone());

@@ -13,11 +13,11 @@ use std::sync::OnceLock;
 
 /// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
 ///
-/// ``trace["chaser"]`` is the :class:`Trace` of a system, with all of its rows. The columns of the world have the rows
-/// whose times all systems recorded. Systems that events may connect have the same rows; those of different groups
-/// share the multiples of ``record_every`` steps and the end of the run, but not the rows at events, impacts and
-/// control ticks of one group. Where only some systems have one row before and one after an event, the row of the
-/// world is the one after it.
+/// ``trace["chaser"]`` is the :class:`Trace` of a system, with all of its rows. The columns of the world have
+/// only the rows at times that all systems recorded. Systems that events may connect have the same rows.
+/// Systems of different groups share the multiples of ``record_every`` steps and the end of the run, but the
+/// rows at events, impacts and control ticks are those of one group. If only some systems have a row both
+/// before and after an event, the row of the world is the one after the event.
 #[pyclass(name = "WorldTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyWorldTrace {
     names: Vec<String>,
@@ -92,8 +92,8 @@ impl PyWorldTrace {
         self.column(py, &self.rows().time, 1)
     }
 
-    /// Linear momentum of all systems, N s, and their angular momentum about the common centre of mass, N m s, axes
-    /// of W, (T, 6).
+    /// Linear momentum of all systems, N s, and their angular momentum about the common centre of mass, N m
+    /// s, axes of W, (T, 6).
     #[getter]
     fn momentum<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         self.column(py, &self.rows().momentum, 6)
@@ -105,14 +105,14 @@ impl PyWorldTrace {
         self.column(py, &self.rows().kinetic_energy, 1)
     }
 
-    /// Return the certificate of the groups of systems that may interact: momentum and energy, and the audits of the
-    /// events.
+    /// Return the certificate of the groups of systems that may interact: checks of momentum and energy, and
+    /// the audits of the events.
     ///
     /// Returns
     /// -------
     /// list of tuple
-    ///     ``(name, value, gate, passed)``; the names begin with those of the systems of the group, or with the name of
-    ///     the event. The certificate of one system is ``trace[name].certificate()``.
+    ///     ``(name, value, gate, passed)``. The names begin with the names of the systems of the group, or
+    ///     with the name of the event. The certificate of one system is ``trace[name].certificate()``.
     fn certificate(&self) -> Vec<(String, f64, f64, bool)> {
         let mut all = Vec::new();
         let mut add =
@@ -130,7 +130,7 @@ impl PyWorldTrace {
         all
     }
 
-    /// Return the number of rows that all systems share.
+    /// Return the number of rows that all systems have in common.
     fn __len__(&self) -> usize {
         self.rows().rows()
     }

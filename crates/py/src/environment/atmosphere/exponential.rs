@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 
 /// Exponential atmosphere.
 ///
-/// Without arguments it has the 28 layers of Vallado's table 8-4 (2013), from 0 to 1000 km and above, for
-/// moderate solar activity.
+/// Without arguments, the atmosphere has the 28 layers of Vallado's table 8-4 (2013), from 0 to 1000 km and
+/// above, for moderate solar activity.
 ///
 /// Parameters
 /// ----------

@@ -7,16 +7,16 @@ use pyo3::prelude::*;
 
 /// Harris-Priester atmosphere from 100 to 1000 km for mean solar activity.
 ///
-/// The density is ``ρm + (ρM - ρm) cosⁿ(ψ/2)``, with ψ the angle from the apex of the diurnal bulge, ``ρM``
-/// the density at the apex and ``ρm`` that opposite it. The model requires an ``earth`` with an epoch, and
-/// raises ``EffectError`` outside its range of altitudes.
+/// The density is ``ρm + (ρM - ρm) cosⁿ(ψ/2)``, where ψ is the angle from the apex of the diurnal bulge,
+/// ``ρM`` the density at the apex and ``ρm`` the density on the opposite side. The model requires an
+/// ``earth`` with an epoch, and raises ``EffectError`` below 100 km and above 1000 km.
 ///
 /// Parameters
 /// ----------
 /// exponent : float
-///     ``n``: from 2 for low inclinations to 6 for polar orbits.
+///     Exponent ``n``: from 2 for low inclinations to 6 for polar orbits.
 /// lag : float
-///     Angle by which the bulge follows the Sun to the east, rad.
+///     Angle by which the apex of the bulge lies east of the Sun, rad.
 #[pyclass(name = "HarrisPriester", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
 pub(super) struct PyHarrisPriester;
 

@@ -34,7 +34,7 @@ pub(crate) struct PyAtmosphere {
 }
 
 impl PyAtmosphere {
-    /// Returns an atmosphere with the class and keywords that pickle it.
+    /// Creates the base object of an atmosphere, with the class and keywords used to pickle it.
     fn new(
         atmosphere: impl Atmosphere + 'static,
         class: &str,
@@ -45,14 +45,14 @@ impl PyAtmosphere {
     }
 }
 
-/// Returns the given Earth, or one without rotation for models that do not use it.
+/// Returns the given Earth, or an Earth without rotation for models that do not use the rotation.
 fn earth_or_fixed(earth: Option<&Bound<'_, PyEarth>>) -> Arc<Earth> {
     earth.map_or_else(|| Arc::new(Earth::about_z(0.0, 0.0)), |earth| Arc::clone(&earth.get().earth))
 }
 
 #[pymethods]
 impl PyAtmosphere {
-    /// Return the density at geodetic coordinates; the arguments broadcast.
+    /// Return the density at geodetic coordinates. The arguments are broadcast against each other.
     ///
     /// Parameters
     /// ----------
@@ -73,8 +73,8 @@ impl PyAtmosphere {
     /// Raises
     /// ------
     /// EffectError, EarthError, ShapeError
-    ///     If a point is outside the range of the model, the Earth does not cover a time, or the arguments do
-    ///     not broadcast.
+    ///     If a point is outside the range of the model, the ``earth`` does not cover a time, or the shapes
+    ///     of the arguments cannot be broadcast.
     #[pyo3(signature = (altitude, latitude=None, longitude=None, t=None, *, earth=None))]
     fn density<'py>(
         &self,
@@ -118,8 +118,8 @@ impl PyAtmosphere {
     /// Raises
     /// ------
     /// EffectError, EarthError, ShapeError
-    ///     If a point is outside the range of the model, the Earth does not cover a time, or ``t`` does not
-    ///     match ``r``.
+    ///     If a point is outside the range of the model, the ``earth`` does not cover a time, or the shape of
+    ///     ``t`` does not match that of ``r``.
     #[pyo3(signature = (r, t=None, *, earth))]
     fn density_at<'py>(
         &self,
@@ -158,7 +158,7 @@ impl PyAtmosphere {
     }
 }
 
-/// Broadcasts arrays to one shape.
+/// Broadcasts arrays to a common shape.
 fn broadcast<'py, const N: usize>(
     names: [&str; N],
     values: [Any<'_, 'py>; N],
@@ -182,7 +182,7 @@ fn broadcast<'py, const N: usize>(
     Ok((inputs, shape))
 }
 
-/// Returns a number for the shape `()`, otherwise the array.
+/// Returns a number if the shape is `()`, otherwise the array.
 fn scalar_or_array<'py>(array: Bound<'py, PyAny>, shape: &[usize]) -> PyResult<Bound<'py, PyAny>> {
     if shape.is_empty() { array.call_method0("item") } else { Ok(array) }
 }

@@ -11,10 +11,10 @@ use onorbit_core::text_file::read_text;
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// NRLMSISE-00 atmosphere, including anomalous oxygen.
+/// NRLMSISE-00 atmosphere, whose density includes anomalous oxygen.
 ///
-/// The model requires an ``earth`` with an epoch, and space weather, either as constants or as a table. A
-/// missing value or day raises ``EffectError``.
+/// The model requires an ``earth`` with an epoch, and space weather given either as constants or as a table.
+/// A missing value or day raises ``EffectError``.
 ///
 /// Parameters
 /// ----------
@@ -23,8 +23,8 @@ use std::path::{Path, PathBuf};
 /// f107a : float, optional
 ///     81-day mean of F10.7, 1e-22 W/(m² Hz).
 /// ap : float or (7,) array, optional
-///     Geomagnetic index: the daily mean, or the daily mean, the 3-hour indices at the time and 3, 6 and 9 h
-///     before, and the means of 12-33 h and 36-57 h before.
+///     Geomagnetic index: either the daily mean, or a history that consists of the daily mean, the 3-hour
+///     indices at the time and 3, 6 and 9 h before, and the means of 12-33 h and of 36-57 h before.
 /// table : path, optional
 ///     CSV file with one row per day and the columns ``DATE, AP_AVG, F10.7_OBS, F10.7_OBS_CENTER81``, and
 ///     ``AP1`` to ``AP8`` for the three-hourly history (``SW-All.csv`` of CelesTrak).

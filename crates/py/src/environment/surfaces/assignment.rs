@@ -10,14 +10,14 @@ use pyo3::types::{PyDict, PyMapping};
 
 /// Assignment of surfaces to bodies.
 pub(crate) enum SurfaceAssignment {
-    /// The surfaces that were declared with each system, otherwise the faces of its visual geometry.
+    /// Surfaces that were declared with each system, or else the faces of its visual geometry.
     Declared,
     All(SurfaceKind),
     Named(Vec<(String, SurfaceKind)>),
 }
 
 impl SurfaceAssignment {
-    /// Reads ``None``, one surface, or a mapping from names to surfaces.
+    /// Reads ``None``, one surface, or a dict from names to surfaces.
     pub(crate) fn new(surfaces: Option<Any<'_, '_>>) -> PyResult<Self> {
         let Some(surfaces) = surfaces else { return Ok(Self::Declared) };
         let kind = |value: Any<'_, '_>| match value.cast::<PySurface>() {
@@ -48,7 +48,8 @@ impl SurfaceAssignment {
         }
     }
 
-    /// Returns the surfaces on given systems; warns if bodies without visual geometry have no faces.
+    /// Returns the surfaces on the given systems. Issues a warning if bodies without visual geometry have no
+    /// faces.
     pub(crate) fn on_with_warning(
         &self,
         py: Python<'_>,
@@ -85,7 +86,8 @@ impl SurfaceAssignment {
         Ok(surfaces)
     }
 
-    /// Returns the surfaces on one of the systems, and true if they are the faces of all of its bodies.
+    /// Returns the surfaces on one of the systems, paired with true if they are the faces of all of its
+    /// bodies.
     fn on_system(
         &self,
         py: Python<'_>,
@@ -127,8 +129,8 @@ impl SurfaceAssignment {
         }
     }
 
-    /// Returns the surfaces on one of the systems, whose links have their own names here, and true if they are the faces
-    /// of all of its bodies.
+    /// Returns the surfaces on one of the systems, whose links are named without the system. The surfaces are
+    /// paired with true if they are the faces of all bodies of the system.
     pub(crate) fn on_robot(
         &self,
         py: Python<'_>,
@@ -151,7 +153,7 @@ impl SurfaceAssignment {
 }
 
 impl Default for SurfaceKind {
-    /// Returns the surface of bodies to which none is assigned: the faces of their visual geometry.
+    /// Returns the default surface of a body: the faces of its visual geometry.
     fn default() -> Self {
         Self::Faces { drag_coefficient: 2.2, optics: Optics::default() }
     }
@@ -162,8 +164,8 @@ impl SurfaceKind {
         matches!(self, Self::Faces { .. })
     }
 
-    /// Returns this surface on all bodies of a system, and true if it consists of their faces; other surfaces require a
-    /// robot with a single body.
+    /// Returns this surface on all bodies of a system, paired with true if it consists of their faces. Any
+    /// other surface requires a robot with a single body.
     fn on_all(
         &self,
         py: Python<'_>,
@@ -191,7 +193,7 @@ impl SurfaceKind {
     }
 }
 
-/// Returns the path of a body; with a single system, only its name.
+/// Returns the path of a body, or only its name if there is a single system.
 fn path_of(targets: &[Target<'_>], target: &Target<'_>, body: &str) -> String {
     if targets.len() == 1 { body.to_owned() } else { format!("{}/{body}", target.name) }
 }

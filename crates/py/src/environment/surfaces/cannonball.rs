@@ -1,11 +1,11 @@
-//! Surfaces with the same area from all directions.
+//! Surfaces with the same area in all directions.
 
 use super::{PySurface, SurfaceKind};
 use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::surfaces::Surface;
 use pyo3::prelude::*;
 
-/// Surface with the same area from all directions, at the centre of mass and therefore without torque.
+/// Surface with the same area in all directions. Forces act at the centre of mass, so there is no torque.
 ///
 /// Parameters
 /// ----------
@@ -14,7 +14,8 @@ use pyo3::prelude::*;
 /// drag_coefficient : float
 ///     Drag coefficient C_D.
 /// reflectivity : float
-///     Radiation pressure coefficient C_R: 1 if all light is absorbed, 2 for a flat mirror that faces the Sun.
+///     Radiation pressure coefficient C_R: 1 if all light is absorbed, 2 for a flat mirror that faces the
+///     Sun.
 #[pyclass(name = "Cannonball", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyCannonball;
 

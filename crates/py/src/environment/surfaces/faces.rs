@@ -5,20 +5,20 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::surfaces::Surface;
 use pyo3::prelude::*;
 
-/// Faces of a body's visual geometry: that of a link and of all links that are fixed to it.
+/// Faces of a body's visual geometry, which is that of a link and of all links fixed to it.
 ///
-/// Boxes, cylinders and spheres are represented exactly, capsules to 2 %; meshes are rejected.
+/// Boxes, cylinders and spheres are represented exactly, capsules with an error of 2 %; meshes are rejected.
 ///
-/// Each face has its own angle of incidence and centroid, which results in a torque. Faces do not shadow each
-/// other.
+/// The force on each face depends on its angle of incidence and acts at its centroid, which results in a
+/// torque. Faces do not shadow each other.
 ///
 /// Parameters
 /// ----------
 /// drag_coefficient : float
 ///     Drag coefficient C_D.
-/// specular : float
+///     Fraction of the light that is reflected specularly.
 ///     Specularly reflected fraction of the light.
-/// diffuse : float
+///     Fraction of the light that is reflected diffusely; the remainder is absorbed.
 ///     Diffusely reflected fraction of the light; the remainder is absorbed.
 #[pyclass(name = "Faces", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyFaces;

@@ -1,4 +1,5 @@
-//! Surfaces of links for drag and radiation pressure; bound to a robot when the simulation is constructed.
+//! Surfaces of links for drag and radiation pressure, which are assigned to a robot when the simulation is
+//! constructed.
 
 mod assignment;
 mod cannonball;
@@ -40,7 +41,7 @@ impl PySurface {
 }
 
 impl PySurface {
-    /// Returns a surface with the class and keywords that pickle it.
+    /// Creates the base object of a surface, with the class and keywords used to pickle it.
     fn new(
         kind: SurfaceKind,
         class: &str,
@@ -92,7 +93,7 @@ impl SurfaceKind {
     }
 }
 
-/// Returns checked fractions of reflected light.
+/// Creates optical coefficients from fractions of reflected light, after a check.
 fn optics(py: Python<'_>, specular: f64, diffuse: f64) -> PyResult<Optics> {
     Optics::new(specular, diffuse).map_err(|error| error.into_python(py))
 }

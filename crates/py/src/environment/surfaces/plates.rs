@@ -6,7 +6,7 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::model::Model;
 use pyo3::prelude::*;
 
-/// Flat one-sided plates; a thin panel consists of two of them.
+/// Flat plates that are exposed on one side; a thin panel consists of two such plates.
 ///
 /// Parameters
 /// ----------
@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 /// normals : (N, 3) array
 ///     Outward normals of any length, in the axes of the link or frame.
 /// centroids : (N, 3) array
-///     Centroids from the origin of the link or frame, in its axes, m.
+///     Centroids relative to the origin of the link or frame, in its axes, m.
 /// drag_coefficient, specular, diffuse : float
 ///     As for ``Faces``.
 #[pyclass(name = "Plates", extends = PySurface, frozen, module = "onorbit_rs")]

@@ -20,13 +20,14 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// (6,) or (B, 6) array
-///     ``(δa, δλ, δex, δey, δix, δiy)``, dimensionless and rad; multiplied by the chief's semi-major axis
-///     they are lengths.
+///     Relative elements ``(δa, δλ, δex, δey, δix, δiy)``, dimensionless and rad; multiplied by the chief's
+///     semi-major axis they are lengths.
 ///
 /// Raises
 /// ------
 /// OrbitError
-///     If the chief's orbit is equatorial, an orbit is open, or position and velocity are parallel or zero.
+///     If the chief's orbit is equatorial, if an orbit is open, or if position and velocity are parallel or
+///     zero.
 #[pyfunction]
 #[pyo3(signature = (r, v, deputy_r, deputy_v, *, mu=3.986004418e14))]
 pub(super) fn relative_elements<'py>(
@@ -97,7 +98,7 @@ pub(super) fn deputy_state<'py>(
     Ok((to_r.into_any(), to_v.into_any()))
 }
 
-/// Returns positions, (3,) or (B, 3), and their shape without the last axis.
+/// Reads positions, (3,) or (B, 3), and returns them with their shape without the last axis.
 fn chief_positions<'py>(r: Any<'_, 'py>) -> PyResult<(Input<'py>, Vec<usize>)> {
     let input = Input::new(r, "r")?;
     let batch = match input.shape() {

@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 
 /// Return the Clohessy-Wiltshire transition matrix.
 ///
-/// It solves Hill's linear equations of relative motion near a circular orbit; the error is of second order
-/// in the separation.
+/// The matrix solves Hill's linear equations of relative motion near a circular orbit. The error is of second
+/// order in the separation.
 ///
 /// Parameters
 /// ----------
@@ -47,8 +47,8 @@ pub(super) fn hill_transition<'py>(
     Ok(out.into_any())
 }
 
-/// Return the velocity that leads to the origin in a given time: the first impulse of a two-impulse
-/// rendezvous.
+/// Return the velocity with which a satellite reaches the origin in a given time. The change to this velocity
+/// is the first impulse of a two-impulse rendezvous.
 ///
 /// Parameters
 /// ----------
@@ -67,7 +67,7 @@ pub(super) fn hill_transition<'py>(
 /// Raises
 /// ------
 /// OrbitError
-///     If no such velocity exists, such as for zero time or half a period, or ``mean_motion`` is not positive.
+///     If no such velocity exists, as for zero time or half a period, or if ``mean_motion`` is not positive.
 #[pyfunction]
 pub(super) fn intercept_velocity<'py>(
     py: Python<'py>,
