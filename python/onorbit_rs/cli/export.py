@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from onorbit_rs.cli.options import FolderArgument, JsonOption, QuietOption
-from onorbit_rs.cli.output_files import check_output_file
+from onorbit_rs.cli.output_files import check_bag_file
 from onorbit_rs.cli.text_output import print_error, print_line
 from onorbit_rs.exceptions import InputError
 
@@ -32,8 +32,8 @@ def export(
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.common.progress import parts_bar
 
-    _check(mcap, ".mcap", "--mcap", force=force)
-    _check(bag, ".bag", "--bag", force=force)
+    check_bag_file("--mcap", mcap, ".mcap", force=force)
+    check_bag_file("--bag", bag, ".bag", force=force)
     if mcap is None and bag is None:
         raise InputError(
             "give the file to write: --mcap FILE for ROS 2, or --bag FILE for ROS 1", name="mcap"
@@ -54,16 +54,6 @@ def export(
             print_line(f"{kind}: {entry['file']} ({entry['bytes'] / 1e6:.1f} MB)")
         if entry.get("left_out"):
             print_error(f"not in ROS 1, left out: {', '.join(entry['left_out'])}")
-
-
-def _check(file: Path | None, suffix: str, option: str, *, force: bool) -> None:
-    """Check that a file has the suffix by which readers recognise its format, and can be written."""
-    if file is not None and file.suffix != suffix:
-        raise InputError(
-            f"{option} {file} must end in {suffix}; readers recognise the format by it",
-            name=option.lstrip("-"), got=file.suffix, expected=suffix,
-        )  # fmt: skip
-    check_output_file(file, force=force)
 
 
 def _telling(tell: Callable[[str, float], None], file: Path) -> Callable[[float], None]:

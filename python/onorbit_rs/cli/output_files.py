@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from onorbit_rs.common.files import exists, file_kind, is_link, output_errors
-from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError
+from onorbit_rs.exceptions import InputError, OutputFolderError, OutputNotEmptyError
 
 
 def check_output_file(file: Path | None, *, force: bool) -> None:
@@ -35,3 +35,21 @@ def check_output_file(file: Path | None, *, force: bool) -> None:
             raise OutputFolderError(f"cannot write {file}: no such folder", path=str(file))
         if not os.access(folder, os.W_OK):
             raise OutputFolderError(f"cannot write {file}: its folder is not writable", path=str(file))
+
+
+def check_bag_file(option: str, file: Path | None, suffix: str, *, force: bool) -> None:
+    """Check that a bag can be written, and has the suffix by which readers recognise its format.
+
+    Raises
+    ------
+    InputError
+        If it has another suffix.
+    OutputNotEmptyError, OutputFolderError
+        As :func:`check_output_file`.
+    """
+    if file is not None and file.suffix != suffix:
+        raise InputError(
+            f"{option} {file} must end in {suffix}; readers recognise the format by it",
+            name=option.lstrip("-"), got=file.suffix, expected=suffix,
+        )  # fmt: skip
+    check_output_file(file, force=force)

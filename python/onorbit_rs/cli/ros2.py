@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
+from onorbit_rs.cli.output_files import check_bag_file
+from onorbit_rs.common.printable import printable
 
 if TYPE_CHECKING:
     from onorbit_rs.ros2.node import Node
@@ -18,6 +20,10 @@ ForOption = Annotated[
     float | None, typer.Option("--for", metavar="SECONDS", help="Simulated time, s; default: the scenario's.")
 ]
 NetworkOption = Annotated[str, typer.Option(metavar="NETWORK", help="loopback, or all networks.")]
+RecordOption = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Record messages and obeyed commands as MCAP.")
+]
+RecordForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing file of --record.")]
 PausedOption = Annotated[bool, typer.Option("--paused", help="Wait for /pause false before the first step.")]
 LogOption = Annotated[
     Path | None,
@@ -33,6 +39,8 @@ def ros2(
     network: NetworkOption = "loopback",
     paused: PausedOption = False,
     log: LogOption = None,
+    record: RecordOption = None,
+    force: RecordForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -49,8 +57,9 @@ def ros2(
         if not quiet:
             print_error(text)
 
+    check_bag_file("--record", record, ".mcap", force=force)
     options = {"pace": pace, "domain": domain, "network": network, "is_paused": paused, "log": log}
-    node = Node.of_scenario(scenario, **options, on_message=tell)
+    node = Node.of_scenario(scenario, **options, record=record, on_message=tell)
     if not quiet:
         print_error(_greeting(node, domain))
     try:
@@ -59,7 +68,7 @@ def ros2(
         node.close()
     report: dict[str, Any] = {
         "certificate_passed": all(passed for _, _, _, passed in trace.certificate()),
-        "commands": len(node.commands), "jitter": node.jitter,
+        "commands": len(node.commands), "jitter": node.jitter, "recording": record and str(record),
     }  # fmt: skip
     if as_json:
         print_json(report)
@@ -82,6 +91,8 @@ def _closing(report: dict[str, Any]) -> str:
         f"certificate: {'passed' if report['certificate_passed'] else 'failed'}",
         f"commands: {report['commands']}",
     ]
+    if report["recording"]:
+        lines.append(f"recording: {printable(report['recording'])}")
     if jitter := report["jitter"]:
         lines.append(
             f"real time: late by {1e3 * jitter['late_median_s']:.2f} ms (median), "

@@ -39,9 +39,11 @@ class Route:
 
 @dataclass(frozen=True)
 class Arrived:
-    """A message that arrived: its topic, and its entries or the reason of its refusal."""
+    """A message that arrived, and its entries or the reason of its refusal."""
 
     topic: str
+    kind: str
+    data: bytes
     entries: list[Entry]
     refusal: str | None = None
     is_second_sender: bool = False
@@ -74,15 +76,15 @@ class Inbox:
 
 
 def _arrived(route: Route, data: bytes, is_second: bool) -> Arrived:
-    topic = route.reader.topic
+    message = route.reader.topic, route.reader.kind, data
     try:
         content = decode(data, route.reader.kind)
     except Exception as error:  # the decoder raises errors of many types for malformed bytes
-        return Arrived(topic, [], f"the message is malformed ({type(error).__name__})", is_second)
+        return Arrived(*message, [], f"the message is malformed ({type(error).__name__})", is_second)
     try:
-        return Arrived(topic, route.convert(content), None, is_second)
+        return Arrived(*message, route.convert(content), None, is_second)
     except RefusedError as refusal:
-        return Arrived(topic, [], str(refusal), is_second)
+        return Arrived(*message, [], str(refusal), is_second)
 
 
 def add_run_topics(inbox: Inbox) -> None:

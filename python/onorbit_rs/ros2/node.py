@@ -15,7 +15,9 @@ from onorbit_rs.ros2.live_rows import LiveRows
 from onorbit_rs.ros2.pace import PACES, RealTime
 from onorbit_rs.ros2.participant import Participant
 from onorbit_rs.ros2.publisher import Publisher
+from onorbit_rs.ros2.recording import Recording
 from onorbit_rs.ros2.rows import rows_of_columns
+from onorbit_rs.ros2.stopping import noted_stop
 from onorbit_rs.ros2.topics import ERROR, OK, WARN, Topics, topics
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build import build
@@ -61,6 +63,7 @@ class Node:
         network: str = "loopback",
         is_paused: bool = False,
         log: str | os.PathLike[str] | None = None,
+        record: str | os.PathLike[str] | None = None,
         on_message: Callable[[str], None] = lambda text: None,
     ) -> None:
         """Join a domain; nothing moves before :meth:`spin`.
@@ -79,6 +82,9 @@ class Node:
             Wait for ``/pause`` false before the first step.
         log : str or path, optional
             File to which each command is written, from which ``onorbit run --commands`` repeats the run.
+        record : str or path, optional
+            MCAP file of the messages that the node publishes and of the commands that it obeys; :meth:`close`
+            completes it and replaces an existing file. A run that is recorded cannot be reset.
         on_message : callable
             Called with each text that also goes to ``/events``.
 
@@ -88,6 +94,8 @@ class Node:
             If an argument is invalid.
         Ros2Error
             If the domain cannot be joined.
+        OutputFolderError
+            If a file cannot be written.
         """
         if pace not in PACES:
             raise InputError(
@@ -104,7 +112,8 @@ class Node:
         self.topics: Topics = topics(self._models, rows_of_columns(probe.columns(), self._models))
         self._participant = Participant(domain, network=network)
         self._start()
-        self._publisher = Publisher(self._participant, self.topics, on_message)
+        self._recording = None if record is None else Recording(record, self.topics.latched)
+        self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
         self._inbox = Inbox(self._participant)
         add_run_topics(self._inbox)
         for system, model in self._models.items():
@@ -174,15 +183,11 @@ class Node:
                 name="duration", got=duration, expected="a positive number of seconds",
             )  # fmt: skip
         try:
-            while self._stepper.time < self._end:
-                self._obey()
-                if self._is_paused or self._pace == "stepped":
-                    self._clock.restart(self._stepper.time)
-                    time.sleep(_IDLE_S)
-                    continue
-                if self._pace == "real_time":
-                    self._clock.wait(self._stepper.time)
-                self._advance(self._next())
+            with noted_stop() as is_stopped:
+                while self._stepper.time < self._end and not is_stopped():
+                    self._turn()
+                if is_stopped():
+                    self._say(OK, "run", "stopped")
         except KeyboardInterrupt:
             self._say(OK, "run", "stopped")
         self._publish()
@@ -190,6 +195,17 @@ class Node:
         self._publisher.rows(self._rows.take_last(trace))
         self._log.close()
         return trace
+
+    def _turn(self) -> None:
+        """Obey the messages that have arrived, and advance to the next time unless the run waits."""
+        self._obey()
+        if self._is_paused or self._pace == "stepped":
+            self._clock.restart(self._stepper.time)
+            time.sleep(_IDLE_S)
+            return
+        if self._pace == "real_time":
+            self._clock.wait(self._stepper.time)
+        self._advance(self._next())
 
     def _next(self) -> float:
         """Return the next time at which the node looks at its topics, on the grid of ticks."""
@@ -219,14 +235,20 @@ class Node:
                 self._say(WARN, arrived.topic, "has several senders; the last message holds")
             if arrived.refusal is not None:
                 self._say(ERROR, arrived.topic, f"refused: {arrived.refusal}")
-            for entry in arrived.entries:
-                self._obey_entry(arrived, entry)
+            now = self._stepper.time
+            is_obeyed = [self._obey_entry(arrived, entry) for entry in arrived.entries]
+            if any(is_obeyed) and self._recording is not None:
+                self._recording.write_one(arrived.topic, arrived.kind, now, arrived.data)
 
-    def _obey_entry(self, arrived: Arrived, entry: Entry) -> None:
+    def _obey_entry(self, arrived: Arrived, entry: Entry) -> bool:
+        """Obey a command or refuse it with an answer; return True if it is obeyed."""
         if "pause" in entry:
             self._is_paused = entry["pause"]
             self._publish_present()
             self._say(OK, arrived.topic, "paused" if self._is_paused else "running")
+        elif "reset" in entry and self._recording is not None:
+            self._say(ERROR, arrived.topic, "refused: the run is recorded, and times in a bag do not go back")
+            return False
         elif "reset" in entry:
             self._log.close()
             self._start()
@@ -234,12 +256,13 @@ class Node:
             self._publish_present()
             self._say(OK, arrived.topic, "reset to t = 0 s")
         elif "step" in entry:
-            self._step(arrived.topic, entry["step"])
+            return self._step(arrived.topic, entry["step"])
         else:
-            self._command(arrived.topic, entry)
+            return self._command(arrived.topic, entry)
+        return True
 
-    def _step(self, topic: str, length: float) -> None:
-        """Advance by a length of simulated time, s."""
+    def _step(self, topic: str, length: float) -> bool:
+        """Advance by a length of simulated time, s; return False if it is refused."""
         if not (self._is_paused or self._pace == "stepped"):
             self._say(ERROR, topic, "refused: the run is not paused; use pace stepped, or /pause first")
         elif not 0.0 < length < np.inf:
@@ -248,27 +271,35 @@ class Node:
             self._advance(self._stepper.time + length)
             self._publish_present()
             self._say(OK, topic, f"advanced to t = {self._stepper.time:.9g} s")
+            return True
+        return False
 
-    def _command(self, topic: str, entry: Entry) -> None:
+    def _command(self, topic: str, entry: Entry) -> bool:
         try:
             self._log.apply(self._stepper, entry)
         except OnOrbitError as error:
             self._say(ERROR, topic, f"refused: {error}")
-            return
+            return False
         now = self._stepper.time
         if (start := entry.get("trajectory", {}).get("start", now)) > now + _FAR_S:
             text = f"starts in {start - now:.9g} s: set use_sim_time in the node that sends it"
             self._say(WARN, topic, text)
         if "trigger" in entry:
             self._say(OK, topic, f"{entry['trigger']} is due at t = {now:.9g} s")
+        return True
 
     def _say(self, level: int, name: str, text: str) -> None:
         """Publish an answer."""
         self._publisher.answer(self._stepper.time, level, name, text)
 
     def close(self) -> None:
-        """Leave the domain, after subscribers have received all messages; no effect the second time."""
+        """Complete the files and leave the domain, after subscribers have received all messages.
+
+        No effect the second time.
+        """
         self._log.close()
+        if self._recording is not None:
+            self._recording.close()
         self._participant.wait_for_delivery(_DELIVERY_S)
         self._participant.close()
 

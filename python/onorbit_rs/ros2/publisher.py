@@ -1,4 +1,4 @@
-"""The publishers of a node: rows, events and answers."""
+"""The publishers of a node: rows, events and answers, with their recording."""
 
 from __future__ import annotations
 
@@ -10,15 +10,22 @@ from onorbit_rs.ros2.topics import EVENTS, EVENTS_TYPE, Topics, event_message, m
 if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord
     from onorbit_rs.ros2.participant import Participant
+    from onorbit_rs.ros2.recording import Recording
     from onorbit_rs.ros2.rows import Rows
 
 
 class Publisher:
     """Publishes the messages of a run on its topics."""
 
-    def __init__(self, participant: Participant, topics: Topics, tell: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        participant: Participant,
+        topics: Topics,
+        tell: Callable[[str], None],
+        recording: Recording | None = None,
+    ) -> None:
         """Create the publishers of all topics and publish what is latched; texts also go to ``tell``."""
-        self._topics, self._tell = topics, tell
+        self._topics, self._tell, self._recording = topics, tell, recording
         self._writers = {name: participant.writer(name, kind) for name, kind in topics.names}
         for latched in topics.latched:
             participant.writer(latched.name, latched.kind, is_latched=True).write(latched.data)
@@ -32,8 +39,13 @@ class Publisher:
 
     def rows(self, rows: Mapping[str, Rows]) -> None:
         """Publish the messages of the rows of each system, row by row, on topics that have subscribers."""
-        wanted = {name for name, writer in self._writers.items() if writer.subscribers()}
-        found = [(self._writers[topic.name], data) for topic, data in self._topics.messages(rows, wanted)]
+        heard = {name for name, writer in self._writers.items() if writer.subscribers()}
+        found = []
+        for topic, data in self._topics.messages(rows, None if self._recording else heard):
+            if topic.name in heard:
+                found.append((self._writers[topic.name], data))
+            if self._recording:
+                self._recording.write(topic.name, topic.kind, rows[topic.system].time, data)
         for k in range(max((len(data) for _, data in found), default=0)):
             for writer, data in found:
                 if k < len(data):
@@ -42,10 +54,15 @@ class Publisher:
     def events(self, records: Iterable[EventRecord]) -> None:
         """Publish events such as captures."""
         for record in records:
-            self._events.write(message_of_event(record))
+            self._event(record.time, message_of_event(record))
             self._tell(f"{record.name}: {record.kind} at t = {record.time:.9g} s")
 
     def answer(self, time: float, level: int, name: str, text: str) -> None:
         """Publish an answer to a message at a simulated time, s."""
-        self._events.write(event_message(time, name, level, text, {}))
+        self._event(time, event_message(time, name, level, text, {}))
         self._tell(f"{name}: {text}")
+
+    def _event(self, time: float, data: bytes) -> None:
+        self._events.write(data)
+        if self._recording:
+            self._recording.write_one(EVENTS, EVENTS_TYPE, time, data)
