@@ -66,13 +66,17 @@ def test_commands_and_answers_are_recorded_and_a_reset_is_refused(tmp_path: Path
         assert say("/reset", "std_msgs/msg/Empty", {}) == refused
         assert say("/arm/commands", FLOATS, {"data": [1.0]}).startswith("refused: data has 1 number")
         peer.say("/arm/commands", FLOATS, {"data": [0.1] * 7})
+        end = time.monotonic() + 5.0
+        while not node.commands:
+            assert time.monotonic() < end
+            time.sleep(0.002)
         assert say("/step", "std_msgs/msg/Float64", {"data": 0.2}) == "advanced to t = 0.3 s"
     assert not list(tmp_path.glob(".partial-*"))
     bag, wanted = read_mcap(file), wanted_of(run, found[0])
     # the row at 0.1 s was published before the command of that time set its efforts
     rows = [row for table in (bag, wanted) for row in table["/joint_states"] if row[0] == 10**8]
     before, after = numbers(rows[0][1]), rows[1][1]
-    assert before[:14] == after[:14] and max(before[14:]) < 1e-6 < max(after[14:])
+    assert before[:14] == after[:14] and np.abs(before[14:]).max() < 1e-6 < np.abs(after[14:]).max()
     after[14:] = before[14:]
     assert differences(bag, wanted) == []
     assert [(stamp, numbers(message)) for stamp, message in bag["/arm/commands"]] == [(10**8, [0.1] * 7)]
