@@ -112,7 +112,7 @@ class Node:
         self.topics: Topics = topics(self._models, rows_of_columns(probe.columns(), self._models))
         self._participant = Participant(domain, network=network)
         self._start()
-        self._recording = None if record is None else Recording(record, self.topics.latched)
+        self._recording = None if record is None else Recording(record, self.topics)
         self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
         self._inbox = Inbox(self._participant)
         add_run_topics(self._inbox)
@@ -238,7 +238,7 @@ class Node:
             now = self._stepper.time
             is_obeyed = [self._obey_entry(arrived, entry) for entry in arrived.entries]
             if any(is_obeyed) and self._recording is not None:
-                self._recording.write_one(arrived.topic, arrived.kind, now, arrived.data)
+                self._recording.message(arrived.topic, arrived.kind, now, arrived.data)
 
     def _obey_entry(self, arrived: Arrived, entry: Entry) -> bool:
         """Obey a command or refuse it with an answer; return True if it is obeyed."""

@@ -39,13 +39,10 @@ class Publisher:
 
     def rows(self, rows: Mapping[str, Rows]) -> None:
         """Publish the messages of the rows of each system, row by row, on topics that have subscribers."""
-        heard = {name for name, writer in self._writers.items() if writer.subscribers()}
-        found = []
-        for topic, data in self._topics.messages(rows, None if self._recording else heard):
-            if topic.name in heard:
-                found.append((self._writers[topic.name], data))
-            if self._recording:
-                self._recording.write(topic.name, topic.kind, rows[topic.system].time, data)
+        if self._recording:
+            self._recording.rows(rows)
+        wanted = {name for name, writer in self._writers.items() if writer.subscribers()}
+        found = [(self._writers[topic.name], data) for topic, data in self._topics.messages(rows, wanted)]
         for k in range(max((len(data) for _, data in found), default=0)):
             for writer, data in found:
                 if k < len(data):
@@ -65,4 +62,4 @@ class Publisher:
     def _event(self, time: float, data: bytes) -> None:
         self._events.write(data)
         if self._recording:
-            self._recording.write_one(EVENTS, EVENTS_TYPE, time, data)
+            self._recording.message(EVENTS, EVENTS_TYPE, time, data)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import defaultdict
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,23 +13,24 @@ import numpy as np
 from onorbit_rs.common.files import replacing
 from onorbit_rs.ros2.extra import require
 from onorbit_rs.ros2.messages import nanoseconds
+from onorbit_rs.ros2.rows import Rows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Mapping
 
-    from numpy.typing import ArrayLike, NDArray
-
-    from onorbit_rs.ros2.topics import Latched
+    from onorbit_rs.ros2.topics import Topics
 
 _CHUNK_BYTES = 1 << 17
 """Length of a chunk before compression: 0.3 ms to compress, so that a node in real time is not late."""
+_ROWS = 64
+"""Rows whose messages are computed together, at a thirtieth of the cost of one by one."""
 
 
 class Recording:
     """An MCAP file that has its name after :meth:`close`, and is absent before."""
 
-    def __init__(self, file: str | os.PathLike[str], latched: Iterable[Latched]) -> None:
-        """Begin a file with messages at time zero.
+    def __init__(self, file: str | os.PathLike[str], topics: Topics) -> None:
+        """Begin a file with the messages that are latched, at time zero.
 
         Raises
         ------
@@ -40,29 +42,41 @@ class Recording:
         require("mcap")
         from onorbit_rs.ros2.mcap_file import McapFile
 
+        self._topics = topics
+        self._pending: defaultdict[str, list[Rows]] = defaultdict(list)
+        self._is_closed = False
         with ExitStack() as stack:
             stream = stack.enter_context(stack.enter_context(replacing(Path(file))).open("wb"))
             self._bag = McapFile(stream, chunk_bytes=_CHUNK_BYTES)
-            self._numbers: dict[str, int] = {}
-            for topic in latched:
+            self._numbers = {name: self._bag.add_topic(name, kind) for name, kind in topics.names}
+            for topic in topics.latched:
                 self._numbers[topic.name] = self._bag.add_topic(topic.name, topic.kind, is_latched=True)
-                self.write_one(topic.name, topic.kind, 0.0, topic.data)
+                self.message(topic.name, topic.kind, 0.0, topic.data)
             self._open = stack.pop_all()
-        self._is_closed = False
 
-    def write(self, topic: str, kind: str, times: ArrayLike, messages: NDArray[np.uint8]) -> None:
-        """Write messages (T, size), in CDR, of simulated times (T,), s."""
+    def rows(self, rows: Mapping[str, Rows]) -> None:
+        """Record the messages of the rows of each system."""
+        for system, part in rows.items():
+            self._pending[system].append(part)
+        if max(sum(map(len, parts)) for parts in self._pending.values()) >= _ROWS:
+            self._write_rows()
+
+    def _write_rows(self) -> None:
+        rows = {system: Rows.joined(parts) for system, parts in self._pending.items()}
+        for topic, data in self._topics.messages(rows) if rows else ():
+            self._bag.write(self._numbers[topic.name], nanoseconds(rows[topic.system].time), data)
+        self._pending.clear()
+
+    def message(self, topic: str, kind: str, time: float, data: bytes) -> None:
+        """Record a message, in CDR, of a simulated time, s."""
         if topic not in self._numbers:
             self._numbers[topic] = self._bag.add_topic(topic, kind)
-        self._bag.write(self._numbers[topic], nanoseconds(times), messages)
-
-    def write_one(self, topic: str, kind: str, time: float, data: bytes) -> None:
-        """Write a message, in CDR, of a simulated time, s."""
-        self.write(topic, kind, [time], np.frombuffer(data, np.uint8)[None])
+        self._bag.write(self._numbers[topic], nanoseconds([time]), np.frombuffer(data, np.uint8)[None])
 
     def close(self) -> None:
         """Complete the file; no effect the second time."""
         if not self._is_closed:
             self._is_closed = True
             with self._open:
+                self._write_rows()
                 self._bag.close()

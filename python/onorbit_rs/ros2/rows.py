@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -60,6 +60,21 @@ class Rows:
         """Attitude of the local orbital frame in inertial axes, (T, 4)."""
         r, v = self["reference_position_eci"], self["reference_velocity_eci"]
         return quaternion_from_matrix(local_orbital_axes(r, v))
+
+    @classmethod
+    def joined(cls, parts: Sequence[Rows]) -> Rows:
+        """Return consecutive rows in one; none without parts."""
+        parts = [part for part in parts if len(part)]
+        if not parts:
+            return cls({"time": np.empty(0)})
+
+        def column(held: Sequence[Floats]) -> Floats:
+            return np.concatenate([values.reshape(len(values), -1) for values in held])
+
+        return cls(
+            {name: column([part.columns[name] for part in parts]) for name in parts[0].columns},
+            {name: column([part.wrenches[name] for part in parts]) for name in parts[0].wrenches},
+        )
 
     def between(self, start: float, end: float) -> Rows:
         """Return the rows from ``start`` to before ``end``, s."""
