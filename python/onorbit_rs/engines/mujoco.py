@@ -31,8 +31,8 @@ _WEIGHTS = np.array([1.0, 2.0, 2.0, 1.0]) / 6.0
 class Mujoco:
     """Engine that integrates the motion with MuJoCo: ``onorbit_rs.Simulation(..., engine=Mujoco(model))``.
 
-    ``rk4`` is MuJoCo's fourth-order Runge-Kutta method, with the environment's wrenches evaluated at every
-    stage. Momentum is not projected, so that its drift is of fourth order in the step.
+    ``rk4`` is the fourth-order Runge-Kutta method of MuJoCo 4, with the environment's wrenches evaluated at
+    every stage. Momentum is not projected, so that its drift is of fourth order in the step.
     ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are
     MuJoCo's soft constraints with their stiffest settings; the restitution of stops is close to zero. The
     connections of a world are welds, also soft: a capture removes the relative velocity within a few steps
