@@ -21,8 +21,8 @@ pub enum ControlError {
     #[error("{name} is {value}; it must not be negative", value = short(*value))]
     Negative { name: &'static str, value: f64 },
     #[error(
-        "frame '{frame}' is moved by {joints}, but controlling its position and attitude requires at least \
-         6 between it and the base",
+        "frame '{frame}' is moved by {joints}, but controlling its position and attitude requires at least 6 \
+         joints between the frame and the base",
         joints = count(*joints, "joint")
     )]
     TooFewJoints { frame: String, joints: usize },
@@ -75,8 +75,8 @@ pub enum ControlError {
     )]
     EmptyWindow { control: String, begin: f64, end: f64 },
     #[error(
-        "control '{control}' tracks frame '{frame}' with {joints} of its group between it and the base, but \
-         controlling position and attitude requires at least 6",
+        "control '{control}' has {joints} in its group between frame '{frame}' and the base, but controlling the \
+         position and attitude of the frame requires at least 6",
         joints = count(*joints, "joint")
     )]
     TooFewInGroup { control: String, frame: String, joints: usize },
@@ -87,11 +87,11 @@ pub enum ControlError {
          it a reference of positions or rates"
     )]
     NothingTracked { control: String },
-    #[error("{name} is not zero, but the effort interface commands the reference itself; omit the gains")]
+    #[error("{name} is not zero, but with the effort interface the reference is the effort; omit the gains")]
     GainOfEffort { name: &'static str },
     #[error(
-        "one of controls '{first}' and '{second}' compensates the environment and the other does not; set \
-         the same value for all computed torques of a robot"
+        "one of controls '{first}' and '{second}' compensates the environment and the other does not; set compensate_environment to the same \
+         value for all computed-torque laws of a robot"
     )]
     MixedCompensation { first: String, second: String },
     #[error(
@@ -112,15 +112,17 @@ pub enum ControlError {
     )]
     TimeoutGain { gain: &'static str, used_by: &'static str },
     #[error(
-        "control '{control}' follows commands from outside, so it has neither a goal nor a reference to shift; omit \
+        "control '{control}' follows external commands, so it has neither a goal nor a reference to shift; omit \
          'goal' and 'starts_at_present'"
     )]
     GoalOfExternal { control: String },
     #[error("there is no control '{name}'{hint}", hint = named(known, name))]
     UnknownControl { name: String, known: Vec<String> },
-    #[error("control '{control}' follows no commands from outside{hint}", hint = externals(known))]
+    #[error("control '{control}' follows no commands{hint}", hint = externals(known))]
     NotExternal { control: String, known: Vec<String> },
-    #[error("control '{control}' has ended, so it takes no commands; command a control that is active")]
+    #[error(
+        "control '{control}' has ended, so it accepts no commands; send the command to an active control"
+    )]
     ControlEnded { control: String },
     #[error(
         "{name} of the command to '{control}' has {got}; expected {expected}",
@@ -155,7 +157,7 @@ pub enum ControlError {
     )]
     PastTrajectory { control: String, end: f64, now: f64 },
     #[error(
-        "control '{control}' gets {of}, which require {gain} > 0 for all of its joints; construct it with gains, such as \
+        "control '{control}' has received {of}, which require {gain} > 0 for all of its joints; construct it with gains, such as \
          External(kp=100, kd=20), or send efforts"
     )]
     CommandGain { control: String, gain: &'static str, of: &'static str },
@@ -174,7 +176,7 @@ fn named(known: &[String], name: &str) -> String {
 /// Returns how to send commands to those controls that follow them.
 fn externals(known: &[String]) -> String {
     match known {
-        [] => "; give the joints to command the controller External".to_owned(),
+        [] => "; use an External controller for the joints to be commanded".to_owned(),
         _ => format!("; those that do are: {}", known.join(", ")),
     }
 }

@@ -20,8 +20,7 @@ pub enum GravityError {
     #[error("order is {order}; it must be at most the degree, {degree}")]
     OrderAboveDegree { degree: usize, order: usize },
     #[error(
-        "degree {degree} and order {order} are requested, but {model} ends at degree {highest}; request \
-         at most this, or read a larger model from a .gfc file"
+        "degree {degree} and order {order} are requested, but {model} ends at degree {highest}; request at most these, or read a larger model from a .gfc file"
     )]
     BeyondModel { model: String, degree: usize, order: usize, highest: usize },
     #[error("degree is {degree}; it must be from 2 to 2700")]
@@ -36,7 +35,7 @@ pub enum GravityError {
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
         "the coefficients of {model} are not fully normalised ({found}); multiply each by \
-         √((n + m)!/((2n + 1) k (n - m)!)), k = 1 for m = 0, else 2"
+         √((n + m)!/((2n + 1) k (n - m)!)), with k = 1 for m = 0 and k = 2 otherwise"
     )]
     NotNormalised { model: String, found: String },
     #[error(

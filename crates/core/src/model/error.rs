@@ -27,7 +27,7 @@ pub enum ModelError {
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
     #[error(
         "the robot has more than {most} moving joints: matrices over all of them would require too much \
-         memory; make joints that do not move fixed"
+         memory; declare joints that do not move as fixed"
     )]
     TooManyJoints { most: usize },
     #[error(
@@ -43,7 +43,7 @@ pub enum ModelError {
     SingularBase { link: String, joints: Vec<String> },
     #[error("the {what} name '{name}' is used twice; give each {what} a different name")]
     DuplicateName { what: &'static str, name: String },
-    #[error("both robots have a {what} '{name}'; give the attached one a prefix, such as 'left_'")]
+    #[error("both robots have a {what} '{name}'; give the attached robot a prefix, such as 'left_'")]
     NameOfBoth { what: &'static str, name: String },
     #[error("with the prefix '{prefix}', both robots have a {what} '{name}'; choose a different prefix")]
     PrefixTaken { what: &'static str, name: String, prefix: String },

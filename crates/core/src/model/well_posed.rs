@@ -1,4 +1,4 @@
-//! Check that every motion of a robot has inertia.
+//! Check that inertia resists every motion of a robot.
 
 use super::error::ModelError;
 use super::tree::{Axis, Model, Node};

@@ -260,7 +260,7 @@ macro_rules! trace_columns {
                 "Position of the reference orbit, which is the origin of W, from the planet's centre.";
             reference_velocity_eci (T, 3), "m/s", "I", Orbit, WHOLE, "Velocity of the reference orbit.";
             reference_residual (T, 3), "m/s²", "I", Carried, WHOLE,
-                "Acceleration of gravity that the reference orbit does not follow and that is left out.";
+                "Acceleration of gravity that the reference orbit does not follow, which is omitted from the motion.";
         }
     };
 }

@@ -74,7 +74,7 @@ pub enum SimulationError {
          bodies"
     )]
     EffectTwice { effect: String, body: String },
-    #[error("the {effect} acts on none of the systems, which are numbered from 0; there are {count}")]
+    #[error("the {effect} acts on none of the {count} systems, which are numbered from 0")]
     EffectOnNoSystem { effect: String, count: usize },
     #[error(
         "the controller tracks frame '{controller}', but the tool of the run is '{tool}'; use the same \
@@ -98,7 +98,7 @@ pub enum SimulationError {
         offset = unlike(*offset, &[*tolerance]), tolerance = short(*tolerance)
     )]
     JointsStartAway { control: String, joint: String, offset: f64, tolerance: f64 },
-    #[error("{rows} recorded rows do not fit in memory; record fewer with record_every")]
+    #[error("{rows} recorded rows do not fit in memory; record fewer rows with record_every")]
     TooManyRows { rows: usize },
     #[error(
         "the run diverged at t = {time} s: the state is not finite; reduce time_step, initial rates, gains or joint \
@@ -117,7 +117,7 @@ pub enum SimulationError {
         t = unlike(*t, &[*end]), end = short(*end)
     )]
     AfterEnd { t: f64, end: f64 },
-    #[error("the run has ended; start a new one")]
+    #[error("the run has ended; start a new run")]
     Ended,
     #[error(
         "joint '{joint}' is driven by control '{control}', which is active; command other joints, or end \

@@ -24,7 +24,7 @@ pub enum WorldError {
     )]
     OwnSystem { event: String, system: String },
     #[error(
-        "a reference of the system '{system}' is given in a frame of the system itself or in one that does not exist"
+        "a reference of the system '{system}' is given in a frame of the system itself, or in a frame that does not exist"
     )]
     ReferenceFrame { system: String },
     #[error("the event '{event}' connects two systems into a robot that is not valid: {source}")]
@@ -42,8 +42,7 @@ pub enum WorldError {
     #[error("the event '{event}' has a latch, but only a capture can have one; use at, after or on_command")]
     LatchWithoutCapture { event: String },
     #[error(
-        "the captures {names} would connect the same systems twice, which closes a loop; closed loops are not \
-         supported yet; release one of them first"
+        "the captures {names} would connect the same systems twice, which closes a loop; closed loops are not supported yet; release one of the captures first"
     )]
     Loop { names: String },
     #[error(

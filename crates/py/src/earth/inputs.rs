@@ -23,8 +23,10 @@ pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
             return Err(EarthError::Epoch { text: epoch.repr()?.to_string() }.into_python(py));
         }
         if epoch.call_method0("utcoffset")?.is_none() {
-            let message =
-                format!("epoch {} has no time zone; set one, such as tzinfo=datetime.UTC", epoch.repr()?);
+            let message = format!(
+                "epoch {} has no time zone; set a time zone, such as tzinfo=datetime.UTC",
+                epoch.repr()?
+            );
             return Err(raise(py, "EarthError", &message, &fields!(py, "name": "epoch", "got": epoch)));
         }
         let utc = epoch.call_method1("astimezone", (datetime.getattr("timezone")?.getattr("utc")?,))?;

@@ -34,7 +34,7 @@ impl Condition {
         let problem = if count != 1 {
             "needs exactly one of at, after, on_command or (for a capture) within"
         } else if delay != 0.0 && after.is_none() {
-            "has a delay, which belongs to after"
+            "has a delay without after; add after, or omit delay"
         } else {
             return Ok(Self { at, after, delay, latch });
         };

@@ -93,7 +93,7 @@ pub enum UrdfProblem {
     ForeignElement { element: String },
     #[error("the robot has no links; add at least one link")]
     NoLinks,
-    #[error("the file defines xacro macros but no robot; expand the file that calls them")]
+    #[error("the file defines xacro macros but no robot; expand the file that uses the macros")]
     OnlyMacros,
     #[error("{owner} has no <{element}> element; add one")]
     MissingElement { owner: String, element: &'static str },

@@ -64,7 +64,8 @@ impl PyNrlmsise00 {
                     missing.iter().filter(|(_, missing)| *missing).map(|(name, _)| *name).collect();
                 let message = match table {
                     Some(_) => {
-                        "space weather is given both by numbers and by a table; give one of them".to_owned()
+                        "space weather is given both as numbers and as a table; give only one of the two"
+                            .to_owned()
                     }
                     None => format!(
                         "space weather is missing {}: give f107, f107a and ap, or a table",
