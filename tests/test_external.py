@@ -296,3 +296,30 @@ def test_only_external_controls_that_have_not_ended_take_commands() -> None:
         oo.Simulation(model, q, v, controller=oo.External(), reference=oo.JointHold(q[7:]))
     with pytest.raises(Errors.ControlError, match="neither a goal"):
         oo.Simulation(model, q, v, controller=[oo.Control(oo.External(), goal=oo.Goal(tolerance=1))])
+
+
+def test_friction_is_compensated_for_positions_and_acts_against_efforts() -> None:
+    builder = oo.ModelBuilder("slider", base="base", mass=20.0, inertia=np.eye(3))
+    builder.add_link(
+        "mass", parent="base", joint="slide", kind="prismatic", axis=[1, 0, 0], mass=5.0, inertia=np.eye(3),
+        friction=1.0, damping=2.0,
+    )  # fmt: skip
+    model = builder.build()
+    q, v = model.neutral(), np.zeros(model.nv)
+    reduced = 20.0 * 5.0 / 25.0
+
+    def end(**command: Any) -> tuple[float, float]:
+        stepper = oo.Simulation(model, q, v, controller=oo.External(KP, KD), time_step=STEP).start()
+        stepper.send("control", **command)
+        stepper.advance_to(0.5)
+        trace = stepper.finish()
+        assert all(passed for _, _, _, passed in trace.certificate())
+        return float(trace.q[-1, 7]), float(trace.v[-1, 6])
+
+    expected = sampled(np.array([0.4, 0.0]), KP, KD, STEP, 500)
+    assert 0.4 - end(position=[0.4])[0] == pytest.approx(
+        expected[0], rel=1e-2
+    )  # the damping is held for a step
+    assert end(effort=[0.9]) == (0.0, 0.0)  # the joint sticks
+    rate = (3.0 - 1.0) / 2.0 * (1 - np.exp(-2.0 / reduced * 0.5))  # m v̇ = τ − f − b v
+    assert end(effort=[3.0])[1] == pytest.approx(rate, rel=1e-9)
