@@ -1,4 +1,4 @@
-//! Checks that wrong lengths, frames and robots given to batches are errors and never panics.
+//! Checks that batches with wrong lengths, frames or robots return errors and never panic.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;

@@ -1,5 +1,5 @@
-//! Checks that batches on lanes agree with single states, for every kernel and instruction set of this
-//! processor.
+//! Checks that batches on SIMD lanes agree with single states, for every kernel and every instruction set of
+//! this processor.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;

@@ -1,4 +1,4 @@
-//! Checks compliance: static balance in closed form, and energy that decreases.
+//! Checks compliance control: its static balance against a closed form, and that its energy decreases.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;

@@ -1,5 +1,5 @@
-//! Checks laws with friction compensation: joints move as without friction, from rest, through reversals, at
-//! goals.
+//! Checks laws with friction compensation: joints move as if they had no friction, from rest, through
+//! reversals and at goals.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

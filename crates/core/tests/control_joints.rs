@@ -1,4 +1,4 @@
-//! Checks joint laws against closed forms, goals, and successive controls.
+//! Checks joint-space laws against closed forms, and their goals and successive controls.
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
 mod common;

@@ -1,5 +1,5 @@
-//! Checks the operation counts of the recursions on arms of increasing length: linear, except for the mass
-//! matrix.
+//! Checks the operation counts of the recursions on arms of increasing length, which are linear except for
+//! the mass matrix.
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used)]
 
 #[path = "common/chain.rs"]

@@ -1,5 +1,5 @@
-//! Checks derivatives against dual numbers, which are exact: random trees, every joint type, wrenches on
-//! every frame.
+//! Checks derivatives against dual numbers, which are exact, on random trees with every joint type and
+//! wrenches on every frame.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

@@ -1,4 +1,4 @@
-//! Identities that hold for any robot in any state, on random trees with every joint type.
+//! Checks identities that hold for any robot in any state, on random trees with every joint type.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

@@ -1,4 +1,4 @@
-//! Checks a timed wrench: frame, point of application, switching times, errors.
+//! Checks a timed wrench: its frame, point of application, switching times and errors.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use onorbit_core::environment::{

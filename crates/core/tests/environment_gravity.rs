@@ -1,4 +1,4 @@
-//! Checks differential gravity and the gravity-gradient torque against independent numbers.
+//! Checks differential gravity and the gravity-gradient torque against independently computed numbers.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 #![allow(clippy::excessive_precision)] // tables stand as their sources print them
 
@@ -15,8 +15,8 @@ const ORIGIN: [f64; 3] = [-4292653.41, 955168.47, 5139356.57];
 
 /// Offset ρ from the reference (m) and the tide g(R + ρ) - g(R) there (m/s²): radial, skew and
 /// across, 1 mm to 10 000 km, then the far side of the Earth and 300 km below.
-/// mpmath 1.3.0 (the last row Python's decimal), 60 digits, the definition as it stands, every input taken as the double it
-/// is, mu 3.986004418e14; 2026-11-21.
+/// mpmath 1.3.0 (the last row Python's decimal), 60 digits, the definition as it stands, every input taken as
+/// the double it is, mu 3.986004418e14; 2026-11-21.
 #[rustfmt::skip]
 const TIDES: [([f64; 3], [f64; 3]); 17] = [
     ([-0.0006346288412326936, 0.00014121276548578954, 0.0007598060204680561], [-1.6348184001098716e-9, 3.6376731145429088e-10, 1.9572776748732569e-9]),
@@ -185,7 +185,8 @@ fn gravity_gradient_torque_agrees_with_nasa() {
 
 #[test]
 fn the_gravity_gradient_aligns_a_long_body_with_the_vertical() {
-    // Pitched by θ about z from the radial x axis: T = -(3μ/2r³) (C - A) sin 2θ along z, with A the small moment.
+    // Pitched by θ about z from the radial x axis: T = -(3μ/2r³) (C - A) sin 2θ along z, with A the small
+    // moment.
     let (small, large, r, pitch) = (2.0, 30.0, 7e6_f64, 0.3_f64);
     let rot = Rotation3::from_axis_angle(&Vector3::z_axis(), pitch).into_inner();
     let inertia = Matrix3::from_diagonal(&Vector3::new(small, large, large));

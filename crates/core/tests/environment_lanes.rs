@@ -1,4 +1,4 @@
-//! Checks that wrenches are the same on any lanes, for any number of bodies and any surfaces.
+//! Checks that wrenches do not depend on the number of SIMD lanes, for any number of bodies and any surfaces.
 #![allow(clippy::unwrap_used)] // set-up that fails should stop
 
 mod common;

@@ -1,4 +1,4 @@
-//! Checks the Earth's shadow against ray tracing, and against its cones.
+//! Checks the Earth's shadow against ray tracing and against the cones of umbra and penumbra.
 
 use nalgebra::Vector3;
 use onorbit_core::environment::sunlit;

@@ -1,4 +1,4 @@
-//! Checks a planet's field against closed forms and for consistency.
+//! Checks the gravity field of a planet against closed forms, and its consistency.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Vector3};

@@ -1,5 +1,5 @@
-//! Checks the field against 100 digits (`tests/oracles/generate_gravity_fixture.py`), and its expansion about
-//! a robot.
+//! Checks the gravity field against a computation with 100 digits
+//! (`tests/oracles/generate_gravity_fixture.py`), and its expansion about a robot.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use nalgebra::{Matrix3, Vector3};

@@ -1,4 +1,4 @@
-//! Attached robots and robots with a changed link equal the same robots built directly.
+//! Checks that attached robots, and robots with a changed link, equal the same robots built directly.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

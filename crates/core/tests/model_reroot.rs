@@ -1,4 +1,4 @@
-//! A robot with another root has the same motion, momentum and energy.
+//! Checks that a robot with another root has the same motion, momentum and energy.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 
@@ -13,16 +13,16 @@ use onorbit_core::dynamics::{
 use onorbit_core::model::{Joint, JointKind, Link, Model, ModelBuilder, ModelError, Mount};
 use onorbit_core::spatial::Force;
 
-/// What does not depend on the root: accelerations of the joints by name and of all frames, momentum, energy and centre
-/// of mass.
+/// What does not depend on the root: accelerations of the joints by name and of all frames, momentum, energy
+/// and centre of mass.
 struct Motion {
     joints: Vec<f64>,
     frames: Vec<f64>,
     sums: Vec<f64>,
 }
 
-/// Returns the motion at a state, with torques `tau` by the name of the joint and `wrench` on the frame `tool`. The
-/// order of joints and frames is that of `names`.
+/// Returns the motion at a state, with torques `tau` by the name of the joint and `wrench` on the frame
+/// `tool`. The order of joints and frames is that of `names`.
 fn motion(model: &Model, names: &Model, (q, v): (&[f64], &[f64]), tau: &[f64], wrench: &[f64]) -> Motion {
     let mut torques = vec![0.0; model.nv()];
     for (name, tau) in names.joint_names().zip(tau) {
@@ -97,8 +97,8 @@ fn the_way_back_gives_the_same_state() {
     }
 }
 
-/// Returns a body and a second one on a joint that is traversed from its child, whose axis is `sign` times that of the
-/// reversed joint.
+/// Returns a body and a second one on a joint that is traversed from its child, whose axis is `sign` times
+/// that of the reversed joint.
 fn reversed_by_hand(sign: f64, links: &[Link; 2], joint: &Joint, axis: Vector3<f64>) -> Model {
     let backwards = Joint {
         origin: Isometry3::identity(),

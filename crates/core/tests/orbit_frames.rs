@@ -1,4 +1,4 @@
-//! Local orbital frames: their rate is the derivative of their attitude.
+//! Checks local orbital frames: their angular velocity is the derivative of their attitude.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 #![allow(clippy::excessive_precision)] // tables stand as their sources print them
 

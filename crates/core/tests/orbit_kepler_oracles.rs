@@ -1,4 +1,4 @@
-//! Checks Kepler orbits against independent numbers: 60-digit solutions, textbooks, GMAT, NASA.
+//! Checks Kepler orbits against independent numbers: solutions with 60 digits, textbooks, GMAT and NASA.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 #![allow(clippy::excessive_precision)] // tables stand as their sources print them
 

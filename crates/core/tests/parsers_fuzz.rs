@@ -1,4 +1,5 @@
-//! Checks that the corpus of `make fuzz` and some mutations of it are read or refused with a message.
+//! Checks that each file in the corpus of `make fuzz`, and some mutations of it, is either read or rejected
+//! with a message.
 
 #[path = "../../../tests/fuzz/engine/mutate.rs"]
 mod mutate;

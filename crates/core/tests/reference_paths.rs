@@ -1,4 +1,5 @@
-//! Checks references: consistent position, velocity and acceleration in every frame; ends and limits.
+//! Checks references: consistent position, velocity and acceleration in every frame, behaviour at the ends,
+//! and limits.
 #![allow(clippy::unwrap_used, clippy::panic)] // set-up that fails should stop
 
 use nalgebra::{Matrix3, Rotation3, Vector3};

@@ -1,4 +1,4 @@
-//! Checks that the adaptive integrator meets its tolerance, also in attitude and in rows between steps.
+//! Checks that the adaptive integrator meets its tolerance, including attitude and rows between steps.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

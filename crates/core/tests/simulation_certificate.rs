@@ -1,4 +1,4 @@
-//! Checks the certificate: green for correct runs, red for incorrect ones.
+//! Checks the certificate: correct runs pass, and incorrect runs fail.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

@@ -1,4 +1,4 @@
-//! Checks that a stopped run resumes with the same bits.
+//! Checks that a stopped run resumes with identical bits.
 #![allow(clippy::unwrap_used)] // a test that cannot set up should stop
 
 mod common;

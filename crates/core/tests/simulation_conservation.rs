@@ -1,4 +1,5 @@
-//! Checks the invariants of a free robot: momentum, energy, straight line, Jacobi integral.
+//! Checks the invariants of a free robot: momentum, energy, the straight path of its centre of mass, and the
+//! Jacobi integral.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

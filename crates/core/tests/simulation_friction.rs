@@ -1,4 +1,5 @@
-//! Checks Coulomb friction: stops as in the closed form, sticks exactly, breaks away in time.
+//! Checks Coulomb friction: a joint stops as in the closed form, sticks exactly, and breaks away at the right
+//! time.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

@@ -1,4 +1,4 @@
-//! Checks the reach of the humanoid torso against numbers of an independent engine.
+//! Checks a reaching motion of the humanoid torso against numbers from an independent engine.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

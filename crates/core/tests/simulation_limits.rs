@@ -1,4 +1,4 @@
-//! Checks rigid stops: closed-form bounces, closed balances, no penetration.
+//! Checks rigid stops: bounces against closed forms, balances of momentum and energy, and no penetration.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

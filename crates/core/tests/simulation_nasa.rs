@@ -1,4 +1,4 @@
-//! NASA's 6-DOF orbital check-cases through [`Simulation`]: 8 h at 1 s.
+//! Checks NASA's 6-DOF orbital check-cases through [`Simulation`]: 8 h with steps of 1 s.
 //!
 //! Source: NASA/TM-2015-218675 numbering, values of JEOD's SIM_dyncomp verification logs, as typed
 //! in `validation/nasa_orbital/states.csv`. Gates: 1e-4 m, 1e-7 m/s, 1e-12 rad/s, 1e-7 deg; 1e-3 m

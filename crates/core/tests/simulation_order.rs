@@ -1,4 +1,4 @@
-//! Checks the observed orders of the integrators, and of one that composes attitudes naively.
+//! Checks the observed orders of the integrators, and of a negative control that composes attitudes naively.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

@@ -1,4 +1,5 @@
-//! Checks a robot far from its reference, which is integrated about a local reference; its rows stay in W.
+//! Checks a robot far from its reference orbit, which is integrated about a local reference orbit while its
+//! rows remain in W.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

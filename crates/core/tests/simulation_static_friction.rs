@@ -1,5 +1,5 @@
-//! Checks static friction above the kinetic friction: sticking, breaking away and sticking again as in closed
-//! forms.
+//! Checks static friction above the kinetic friction against closed forms: sticking, breaking away and
+//! sticking again.
 #![allow(clippy::unwrap_used, clippy::print_stdout)] // set-up that fails should stop; --nocapture shows the numbers
 
 mod common;

@@ -1,4 +1,4 @@
-//! Checks the recorded wrenches per effect and body: they are the loads that moved the robot.
+//! Checks the recorded wrenches per effect and body, which must be the loads that moved the robot.
 #![allow(clippy::print_stdout)] // shows what was measured when a test fails
 
 mod common;

@@ -1,6 +1,6 @@
-//! Checks that no processor executes an unknown instruction: outside the entry points of the instruction
-//! sets, this program has only instructions of the baseline of x86-64. It disassembles itself with binutils'
-//! `objdump`.
+//! Checks that no processor executes an instruction that it does not support: outside the entry points of the
+//! instruction sets, this program has only instructions of the x86-64 baseline. The program disassembles
+//! itself with `objdump` of binutils.
 #![cfg(target_arch = "x86_64")]
 #![allow(clippy::unwrap_used, clippy::print_stderr)] // a failed unwrap is a failed test; a skip says why
 

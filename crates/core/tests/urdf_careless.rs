@@ -1,4 +1,5 @@
-//! Records faults of `urdf-rs`' own parser with careless files, the reason why it is given a checked tree.
+//! Records faults of the parser of `urdf-rs` with careless files, which are the reason why it is given a
+//! checked tree.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

@@ -1,4 +1,4 @@
-//! Checks that loading any file ends in a robot or an error.
+//! Checks that loading any file results in a robot or an error.
 
 use onorbit_core::model::urdf::from_str;
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! The bundled humanoids.
+//! Checks the bundled humanoid robots.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

@@ -1,4 +1,4 @@
-//! Checks what is read of a URDF, and the defaults of what is omitted.
+//! Checks the values that are read from a URDF, and the defaults of values that are omitted.
 
 #![allow(clippy::unwrap_used)] // a failed unwrap is a failed test
 

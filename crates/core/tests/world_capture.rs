@@ -1,4 +1,4 @@
-//! Captures and releases of rigid craft against closed forms.
+//! Checks captures and releases of rigid spacecraft against closed forms.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

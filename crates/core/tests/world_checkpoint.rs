@@ -1,4 +1,5 @@
-//! Checkpoints of worlds: the bits and the certificate of an uninterrupted run, and damaged connections.
+//! Checks checkpoints of worlds: identical bits and certificate after resuming, and errors for damaged
+//! connections.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -23,7 +24,8 @@ fn craft() -> Arc<Model> {
     Arc::new(builder.build().unwrap())
 }
 
-/// The first craft captures the second by a latch that is held for 0.2 s, and releases it. A third one is alone.
+/// The first craft captures the second by a latch that is held for 0.2 s, and releases it. A third one is
+/// alone.
 fn simulation() -> Simulation {
     let model = craft();
     let system = |name: &str, x: f64, v: [f64; 6]| {
@@ -88,8 +90,8 @@ fn a_resumed_world_has_the_bits_and_the_certificate_of_an_uninterrupted_run() {
     }
 }
 
-/// Regression: the tree that remained after a release was rooted at another system than in its checkpoint, and a resumed
-/// run read its coordinates as those of the other system.
+/// Regression: the tree that remained after a release was rooted at another system than in its checkpoint,
+/// and a resumed run read its coordinates as those of the other system.
 #[test]
 fn a_tree_that_its_root_has_left_resumes_with_the_same_bits() {
     let grip = |system: usize| FrameIndex { system, frame: 1 };
@@ -116,8 +118,8 @@ fn a_tree_that_its_root_has_left_resumes_with_the_same_bits() {
     assert_eq!(whole.groups, rest.groups);
 }
 
-/// Regression: with these steps, the end of a turn is rounded to a number after the step that ends there, and the run
-/// did not end.
+/// Regression: with these steps, the end of a turn is rounded to a number after the step that ends there, and
+/// the run did not end.
 #[test]
 fn several_groups_advance_whatever_the_length_of_the_steps() {
     for time_step in [1e-4, 2e-4, 3e-4, 0.01, 0.1] {

@@ -1,4 +1,4 @@
-//! Effects address systems by their numbers in the world, also in the runs of groups.
+//! Checks that effects address systems by their numbers in the world, also in the runs of groups.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -12,7 +12,8 @@ use onorbit_core::simulation::{Simulation, SimulationError};
 use onorbit_core::world::{Action, Event, FrameIndex, System, When};
 use std::sync::Arc;
 
-/// Three spheres; an event may connect the last two, so that their numbers in their group differ from those in the world.
+/// Three spheres; an event may connect the last two, so that their numbers in their group differ from those
+/// in the world.
 fn three_spheres() -> Simulation {
     let model = Arc::new(Model::rigid_body(10.0, Matrix3::identity()).unwrap());
     let system = |number: usize| {
