@@ -17,7 +17,7 @@ pub enum ModelError {
     )]
     IndefiniteInertia { link: String, moments: [f64; 3] },
     #[error(
-        "the inertia of link '{link}' is not symmetric: mirrored entries differ by {difference} kg m2; make them equal",
+        "the inertia of link '{link}' is not symmetric: mirrored entries differ by {difference} kg m2; make both entries equal",
         difference = short(*difference)
     )]
     AsymmetricInertia { link: String, difference: f64 },

@@ -57,8 +57,8 @@ pub struct StepOutput {
     pub acceleration: Vec<f64>,
     /// Impulse and work of each system.
     pub systems: Vec<Exchange>,
-    /// Time integral over the step of the moments about the common centre of mass of the external forces,
-    /// taken to act at the centres of mass of the systems, W axes, N m s; zero for a single system.
+    /// Time integral over the step of the moments of the external forces about the common centre of mass,
+    /// with each force acting at the centre of mass of its system, W axes, N m s; zero for a single system.
     pub orbital: [f64; 3],
 }
 

@@ -73,8 +73,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Returns the moment about the common centre of mass of the external forces, taken to act at the centres
-    /// of mass `c_i` of the trees: `Σ (c_i − c) × F_i`, W axes, N m.
+    /// Returns the moment of the external forces about the common centre of mass `c`, with each force `F_i`
+    /// acting at the centre of mass `c_i` of its tree: `Σ (c_i − c) × F_i`, W axes, N m.
     fn orbital_moment(&self, state: &State<S>, rate: &Rate<S>) -> Vec3<S> {
         let trees = || self.trees.iter().zip(&state.trees);
         let centers: Vec<_> = trees().map(|(tree, state)| center_of_mass(&tree.data, &state.q)).collect();

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State<S> {
     pub(crate) trees: Vec<TreeState<S>>,
-    /// Time integral of the moments about the common centre of mass of the external forces, taken to act at
-    /// the centres of mass of the trees, W axes, N m s; zero for a single tree.
+    /// Time integral of the moments of the external forces about the common centre of mass of all trees, with
+    /// each force acting at the centre of mass of its tree, W axes, N m s; zero for a single tree.
     pub(crate) orbital: Vec3<S>,
 }
 

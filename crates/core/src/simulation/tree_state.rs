@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 /// Integrated quantities of one tree: configuration, velocity, momentum and energies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TreeState<S> {
-    /// Configuration, `(nq,)`.
+    /// Configuration, `(nq,)`, m and rad.
     pub(crate) q: Vec<S>,
-    /// Velocity, `(nv,)`.
+    /// Velocity, `(nv,)`, m/s and rad/s.
     pub(crate) v: Vec<S>,
     /// Momentum at the start of the run, W axes. It changes only with a change of the reference orbit.
     pub(crate) initial_momentum: Momentum<S>,
@@ -43,7 +43,7 @@ pub(crate) struct TreeRate<S> {
     pub(crate) rotation_rate: Vec3<S>,
     /// Velocity at the stage, `(nv,)`, of which only the joint rates, `[BASE_NV..]`, are integrated.
     pub(crate) v: Vec<S>,
-    /// Acceleration, `(nv,)`.
+    /// Acceleration, `(nv,)`, m/s² and rad/s².
     pub(crate) a: Vec<S>,
     /// Time derivative of the momentum: the sum of the external forces, and of their moments about the centre
     /// of mass, W axes, N and N m.

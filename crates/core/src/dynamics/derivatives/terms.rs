@@ -17,9 +17,9 @@ pub struct Derivatives<S> {
     base: Vec<Row<S, 3>>,
     /// Columns of `Mbm`: `I_C S` about the base origin.
     pub(super) coupling: Vec<Force<S>>,
-    /// Generalized accelerations, `(nv,)`.
+    /// Generalized accelerations, `(nv,)`, m/s² and rad/s².
     pub(super) acceleration: Vec<S>,
-    /// Generalized forces, `(nv,)`.
+    /// Generalized forces, `(nv,)`, N and N m.
     pub(super) force: Vec<S>,
 }
 

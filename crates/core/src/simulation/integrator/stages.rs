@@ -23,7 +23,7 @@ pub(crate) struct Stages<S> {
 
 /// First stage of one tree; its velocity is relative to W.
 pub(crate) struct FirstStage<S> {
-    /// Acceleration at the start of the step, `(nv,)`.
+    /// Acceleration at the start of the step, `(nv,)`, m/s² and rad/s².
     pub(crate) acceleration: Vec<S>,
     /// Sum of the external forces at the start of the step, W axes, N.
     pub(crate) force: Vec3<S>,

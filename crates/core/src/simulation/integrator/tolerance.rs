@@ -43,7 +43,7 @@ pub(crate) struct TreeControl {
 }
 
 impl StepControl {
-    /// Creates the control of `trees` trees before the first step.
+    /// Creates the step-size control of `trees` trees before the first step.
     pub(super) fn new(trees: usize) -> Self {
         Self { step: 0.0, error: 0.0, short_steps: 0, trees: vec![TreeControl::default(); trees] }
     }
