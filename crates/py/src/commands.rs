@@ -1,4 +1,4 @@
-//! Commands to joints and wrenches that the caller of a stepper gives to a run.
+//! Commands to joints, and wrenches, that the caller of a stepper sends to a run.
 
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
@@ -19,7 +19,7 @@ impl PyStepper {
         self.try_with(tau.py(), |stepper| stepper.command(system, &torques))
     }
 
-    /// Sends a constant command to a control of a system: positions, velocities, accelerations, efforts.
+    /// Sends a constant command to a control of a system: positions, velocities, accelerations and efforts.
     pub(crate) fn send_to(
         &self,
         py: Python<'_>,
@@ -31,7 +31,8 @@ impl PyStepper {
         self.try_with(py, |stepper| stepper.send(system, control, command))
     }
 
-    /// Sends a trajectory, with its start, times and positions, and its velocities and accelerations, to a control.
+    /// Sends a trajectory to a control: its start, times and positions, and optional velocities and
+    /// accelerations.
     pub(crate) fn send_trajectory_to(
         &self,
         py: Python<'_>,
@@ -45,7 +46,7 @@ impl PyStepper {
         self.try_with(py, |stepper| stepper.send(system, control, command))
     }
 
-    /// Applies a wrench, given by its force, its torque and its axes, at the origin of a frame of a system.
+    /// Applies a wrench at the origin of a frame of a system; the arguments are force, torque and axes.
     pub(crate) fn wrench_on(
         &self,
         py: Python<'_>,
@@ -67,7 +68,7 @@ impl PyStepper {
         Ok(names.unbind())
     }
 
-    /// Returns what the gains of each external control of a system track.
+    /// Returns, for each external control of a system, the quantity that its gains can track.
     pub(crate) fn interfaces_of(&self, py: Python<'_>, system: usize) -> PyResult<Py<PyDict>> {
         let interfaces = PyDict::new(py);
         for control in self.with(py, |stepper| stepper.external(system))? {
@@ -112,7 +113,7 @@ fn trajectory(
     })
 }
 
-/// Reads a wrench in the axes `frame`.
+/// Reads a wrench, given in the axes `frame`.
 fn wrench(
     py: Python<'_>,
     force: Optional<'_, '_>,
@@ -133,7 +134,7 @@ fn wrench(
     Ok(WrenchCommand { force: vector(force, "force")?, torque: vector(torque, "torque")?, axes })
 }
 
-/// Reads an array with a number of axes.
+/// Reads an array with the given number of axes.
 fn array(value: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<f64>> {
     let input = Input::new(value, name)?;
     if input.shape().len() != axes {

@@ -1,4 +1,4 @@
-//! Runs that are advanced step by step.
+//! Runs that the caller advances.
 
 use crate::arrays::constant;
 use crate::checkpoint::{PyCheckpoint, Since, checkpoint_of, columns_since};
@@ -15,11 +15,11 @@ use std::sync::Arc;
 
 type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
-/// Run that is advanced step by step, as returned by :meth:`Simulation.start`.
+/// Run that the caller advances, as returned by :meth:`Simulation.start`.
 ///
 /// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. If
-/// the current time lies within a step, the state is computed by dense output (adaptive steps) or by a shorter
-/// step; the whole step is taken later.
+/// the current time is within a step, the state at that time is computed by dense output (adaptive steps) or
+/// by a shorter trial step. The whole step is computed later.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
     pub(crate) run: SharedRun,
@@ -35,20 +35,20 @@ impl PyStepper {
         self.with(py, |stepper| stepper.time())
     }
 
-    /// Planned end of the run, s; None without one.
+    /// Planned end of the run, s; None if the run has no planned end.
     #[getter]
     fn duration(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.with(py, |stepper| stepper.duration())
     }
 
-    /// Configuration at the current time, a read-only (nq,) array: base position in W, m; base quaternion xyzw;
-    /// joint positions, rad or m.
+    /// Configuration at the current time as a read-only (nq,) array: base position in W, m; base quaternion
+    /// xyzw; joint positions, rad or m.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.state(py, self.only("q")?).map(|(q, _)| constant(py, &q))
     }
 
-    /// Velocity at the current time, a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
+    /// Velocity at the current time as a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
     /// rates, rad/s or m/s.
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
@@ -65,7 +65,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// InputError
-    ///     If ``dt`` is not positive and finite, or leads past the planned end; the run is unchanged.
+    ///     If ``dt`` is not positive and finite, or extends beyond the planned end; the run does not change.
     /// RunInterrupted
     ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
     ///     be advanced further.
@@ -90,7 +90,8 @@ impl PyStepper {
     /// Raises
     /// ------
     /// InputError
-    ///     If ``t`` is not finite, in the past, or after the planned end; the run is unchanged.
+    ///     If ``t`` is not finite, before the current time, or after the planned end; the run does not
+    ///     change.
     /// RunInterrupted
     ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
     ///     be advanced further.
@@ -105,15 +106,15 @@ impl PyStepper {
 
     /// Set the joint torques, which are held from the current time until the next command.
     ///
-    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose controller
-    /// returns the same torques at the same times; with an adaptive integrator, the lengths of the steps before
-    /// these times may differ.
+    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose
+    /// controller returns the same torques at the same times; with an adaptive integrator, the lengths of the
+    /// steps before these times may differ.
     ///
     /// Parameters
     /// ----------
     /// tau : (n,) array or dict of float
-    ///     Torques of all joints, or torques by joint name, N m (N for a prismatic joint). Joints that are not
-    ///     named keep their torques.
+    ///     Torques of all joints, or torques by joint name, N m (N for a prismatic joint). Joints that are
+    ///     not named keep their torques.
     ///
     /// Raises
     /// ------
@@ -130,26 +131,30 @@ impl PyStepper {
 
     /// Send a command to the joints of an :class:`External` controller.
     ///
-    /// It takes effect at the next update of the controllers (``control_period``), or now if one is due, and is held.
+    /// The command takes effect at the next update of the controllers (``control_period``), or at the current
+    /// time if an update is due, and is held until the next command.
     ///
     /// Parameters
     /// ----------
     /// control : str
-    ///     Name of the control: a key of :attr:`external`; a single controller of all joints is ``control``.
+    ///     Name of the control, which is a key of :attr:`external`; a single controller of all joints is
+    ///     named ``control``.
     /// position : (k,) array, optional
-    ///     Positions of the joints of the control, rad or m; without ``velocity`` they are held at rest.
+    ///     Positions of the joints of the control, rad or m; without ``velocity``, they are held at rest.
     /// velocity : (k,) array, optional
-    ///     Velocities, rad/s or m/s; without ``position`` there is no position error.
+    ///     Velocities, rad/s or m/s; without ``position``, there is no position error.
     /// effort : (k,) array, optional
-    ///     Torques, N m (N for a prismatic joint): the torques if given alone, otherwise they are added.
+    ///     Torques, N m (N for a prismatic joint). They are added to the torques of position and velocity, if
+    ///     given.
     /// acceleration : (k,) array, optional
-    ///     Accelerations that are added to the law of position and velocity, rad/s² or m/s².
+    ///     Accelerations, rad/s² or m/s², which are added to those computed from position and velocity.
     ///
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     If there is no such :class:`External` control, it has ended, a gain that the command requires is zero, or an
-    ///     array is missing, has the wrong length or is not finite; the run is unchanged.
+    ///     If there is no such :class:`External` control or it has ended, if the command requires a gain that
+    ///     is zero, or if an array is missing, has the wrong length or is not finite; the run does not
+    ///     change.
     #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None))]
     fn send(
         &self,
@@ -166,9 +171,10 @@ impl PyStepper {
 
     /// Send a motion through points to the joints of an :class:`External` controller.
     ///
-    /// Between the points the motion is interpolated as by ROS's joint_trajectory_controller: linearly, with cubics if
-    /// velocities are given, and with quintics if accelerations are given too. It begins with the desired state at the
-    /// update at which it takes effect (where nothing is desired: the actual one), and holds the last positions.
+    /// Between the points, the motion is interpolated as by ROS's joint_trajectory_controller: linearly, by
+    /// cubic polynomials if velocities are given, and by quintic polynomials if accelerations are given as
+    /// well. The motion begins at the update at which the trajectory takes effect, with the desired state at
+    /// that time or, if there is none, the actual state. After the last point, its positions are held.
     ///
     /// Parameters
     /// ----------
@@ -183,13 +189,14 @@ impl PyStepper {
     /// accelerations : (K, k) array, optional
     ///     Accelerations, rad/s² or m/s²; require velocities.
     /// start : float, optional
-    ///     Simulation time of the start, s; default: now. Until a later start the previous command is held; with an
-    ///     earlier one, the points that have passed are skipped.
+    ///     Simulation time of the start, s; default: the current time. Until a later start, the previous
+    ///     command is held; for an earlier start, the points that have passed are skipped.
     ///
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     As :meth:`send`; also if times do not increase, or the trajectory is over.
+    ///     As for :meth:`send`; also if ``times`` do not increase, or if the trajectory ends before the
+    ///     current time.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -205,7 +212,7 @@ impl PyStepper {
         self.send_trajectory_to(py, system, control, (start, times, positions), [velocities, accelerations])
     }
 
-    /// Apply a wrench to a body from the current time until the next wrench on it.
+    /// Apply a wrench to a body from the current time until the next wrench on the same body.
     ///
     /// The current time becomes the end of a step. With ``record_wrenches``, the wrench is
     /// ``trace.wrenches["wrench_command"]`` in runs with an :class:`External` controller.
@@ -213,18 +220,19 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// body : str
-    ///     Link or frame; as that of :class:`BodyWrench`, the force acts at its origin.
+    ///     Link or frame. As for :class:`BodyWrench`, the force acts at its origin.
     /// force : (3,) array, optional
     ///     Force, N; default: 0.
     /// torque : (3,) array, optional
     ///     Torque, N m; default: 0.
     /// frame : {"world", "body"}
-    ///     Axes in which force and torque are constant: those of W, or those of the body.
+    ///     Axes in which force and torque are constant: W axes, or the axes of the body.
     ///
     /// Raises
     /// ------
     /// FrameError, InputError, ShapeError, EngineError
-    ///     If there is no such body, a number is not finite, or the engine is another one; the run is unchanged.
+    ///     If there is no such body, if a number is not finite, or if the engine is not the native one; the
+    ///     run does not change.
     #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
     fn wrench(
         &self,
@@ -245,7 +253,8 @@ impl PyStepper {
         self.external_of(py, system)
     }
 
-    /// What the gains of each :class:`External` controller track: ``position``, ``velocity`` or (none) ``effort``.
+    /// Quantity that the gains of each :class:`External` controller can track: ``position``, ``velocity`` or,
+    /// without gains, ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         let system = self.only("interfaces")?;
@@ -254,7 +263,7 @@ impl PyStepper {
 
     /// Trigger an event that happens on command, at the current time.
     ///
-    /// The current time becomes the end of a step; the event happens at the start of the next one.
+    /// The current time becomes the end of a step; the event happens at the start of the next step.
     ///
     /// Parameters
     /// ----------
@@ -264,18 +273,20 @@ impl PyStepper {
     /// Raises
     /// ------
     /// WorldError
-    ///     If there is no such event, it has happened, or it does not happen on command; the run is unchanged.
+    ///     If there is no such event, if it has already happened, or if it does not happen on command; the
+    ///     run does not change.
     fn trigger(&self, py: Python<'_>, name: &str) -> PyResult<()> {
         self.try_with(py, |stepper| stepper.trigger(name))
     }
 
-    /// Events of the world in the steps that are complete, in order of time; those of the current step follow at its end.
+    /// Events of the world during the steps that are complete, in order of time. Events of the current step
+    /// are added at its end.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEventRecord>> {
         self.with(py, |stepper| self.systems.events(stepper))
     }
 
-    /// Return the view of the system with this name.
+    /// Return the view of the system ``name``.
     ///
     /// Raises
     /// ------
@@ -315,14 +326,14 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     First row to return; in a world, systems may record different numbers of rows: a dict has the first row
-    ///     by the name of the system (default: 0).
+    ///     First row to return; default: 0. In a world, systems may record different numbers of rows; a dict
+    ///     specifies the first row by the name of the system.
     ///
     /// Returns
     /// -------
     /// dict of array
-    ///     Rows (k, width) of each column of the trace by its name, in the unit of the column. In a world of several
-    ///     systems, the names are paths such as ``chaser/q``.
+    ///     Rows (k, width) of each column of the trace, by the name of the column and in its unit. In a world
+    ///     of several systems, the names are paths such as ``chaser/q``.
     #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
     fn columns(&self, py: Python<'_>, since: Since) -> PyResult<Py<PyDict>> {
         let since = since.rows(py, &self.systems)?;
@@ -338,7 +349,8 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     First row of ``columns``, as for :meth:`columns`; a checkpoint can be resumed only if it contains all rows.
+    ///     First row of ``columns``, as for :meth:`columns`. A run can be resumed only from a checkpoint with
+    ///     all rows.
     ///
     /// Returns
     /// -------
@@ -347,7 +359,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// ControlError
-    ///     If the state of a Python controller cannot be saved; the run is unchanged.
+    ///     If the state of a Python controller cannot be saved; the run does not change.
     #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
     fn checkpoint(&self, py: Python<'_>, since: Since) -> PyResult<PyCheckpoint> {
         let wall_s = self.run.lock(py)?.wall_s;
@@ -369,7 +381,8 @@ impl PyStepper {
         Self { run, number, systems }
     }
 
-    /// Returns the number of the only system, whose attribute `what` was asked for.
+    /// Returns the number of the only system. Otherwise returns an error, in which `what` names the requested
+    /// attribute.
     fn only(&self, what: &str) -> PyResult<usize> {
         self.systems.only("stepper", what).map(|()| 0)
     }

@@ -1,4 +1,4 @@
-//! Joint-space control that follows commands from outside of the run.
+//! Joint-space control that follows external commands.
 
 use super::control_law::{ControlLaw, EffortInput, EffortWork, Interface, JointCommand};
 use super::error::ControlError;
@@ -8,44 +8,47 @@ use crate::model::Model;
 use crate::reference::JointSample;
 use serde::{Deserialize, Serialize};
 
-/// Law of joints whose commands come from outside of the run, through [`Stepper::send`](crate::simulation::Stepper::send).
+/// Law of joints that follow external commands, which are sent with
+/// [`Stepper::send`](crate::simulation::Stepper::send).
 ///
-/// A command is held until the next one. If it has positions or rates, the torque is that of [`JointComputedTorque`],
-/// `τ = M* (a + kd (vd − q̇) + kp (qd − q)) + c* − Q* + f`, plus the commanded effort; the position term is absent without
-/// positions, and a position without a rate is to be held at rest. A command of efforts alone is the torque.
+/// A command is held until the next command. If a command has positions or rates, the torque is that of
+/// [`JointComputedTorque`], `τ = M* (a + kd (vd − q̇) + kp (qd − q)) + c* − Q* + f`, plus the commanded
+/// effort. Without positions there is no position term; a position without a rate is to be held at rest. If a
+/// command has only efforts, they are the torques.
 ///
-/// Before its first command a group holds its initial positions if `kp` is not zero, else damps its rates if `kd` is not
-/// zero, else has no torque.
+/// Before the first command, a group holds its initial positions if `kp` is not zero, otherwise damps its
+/// rates if `kd` is not zero, and otherwise has no torque.
 #[derive(Clone, Debug)]
 pub struct External {
-    /// Computed torque of commands with positions or rates.
+    /// Computed-torque law that is used for commands with positions or rates.
     pub law: JointComputedTorque,
-    /// Time after the last command, or after the end of the last trajectory, at which `on_timeout` applies, s.
+    /// Time after the last command, or after the end of the last trajectory, at which `on_timeout` applies,
+    /// s.
     pub timeout: Option<f64>,
-    /// What happens when no command comes.
+    /// Behaviour after the timeout.
     pub on_timeout: OnTimeout,
     pub(super) memory: ExternalMemory,
 }
 
-/// What an [`External`] law does when no command comes.
+/// Behaviour of an [`External`] law when no further command is received.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OnTimeout {
-    /// Hold the commanded positions or, after a command without positions, those at the timeout.
+    /// Hold the commanded positions or, after a command without positions, the positions at the timeout.
     #[default]
     Hold,
-    /// Bring the joints to rest by `kd`.
+    /// Bring the joints to rest by means of `kd`.
     Damp,
-    /// No torque.
+    /// Exert no torque.
     Zero,
 }
 
-/// State of an [`External`] law.
+/// State of an [`External`] law, for checkpoints.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ExternalMemory {
-    /// Command that has not taken effect yet, and the time at which it was sent, s.
+    /// Command that has not yet taken effect, and the time at which it was sent, s.
     pending: Option<(f64, ExternalCommand)>,
     current: ExternalCommand,
-    /// Time at which the last command times out, s.
+    /// Time at which the present command times out, s.
     deadline: Option<f64>,
 }
 
@@ -56,12 +59,12 @@ impl Default for ExternalMemory {
 }
 
 impl External {
-    /// Returns a law with these gains and without a timeout.
+    /// Creates a law with the gains of `law` and without a timeout.
     pub fn new(law: JointComputedTorque) -> Self {
         Self { law, timeout: None, on_timeout: OnTimeout::Hold, memory: ExternalMemory::default() }
     }
 
-    /// Returns what the gains track: positions, or rates, or else efforts.
+    /// Returns the quantity that the gains can track: positions, otherwise rates, otherwise efforts.
     pub fn interface(&self) -> Interface {
         match (self.law.kp.is_positive(), self.law.kd.is_positive()) {
             (true, _) => Interface::Position,
@@ -73,8 +76,8 @@ impl External {
     /// Checks the gains and the timeout for a group of `count` joints.
     ///
     /// # Errors
-    /// [`ControlError`] if a gain is invalid, the timeout is not positive, or the behaviour after the timeout requires a gain
-    /// that is zero.
+    /// [`ControlError`] if a gain is invalid, if the timeout is not positive, or if the behaviour after the
+    /// timeout requires a gain that is zero.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         self.law.check(count)?;
         let Some(timeout) = self.timeout else { return Ok(()) };
@@ -91,7 +94,7 @@ impl External {
         }
     }
 
-    /// Checks a command to control `control` of `count` joints that is sent at `now`, s.
+    /// Checks a command for the `count` joints of control `control` that is sent at `now`, s.
     pub(super) fn check_command(
         &self,
         command: &ExternalCommand,
@@ -114,18 +117,18 @@ impl External {
         Ok(())
     }
 
-    /// Accepts a checked command at `now`, s; it replaces one that has not taken effect yet.
+    /// Accepts a checked command at `now`, s. It replaces a command that has not yet taken effect.
     pub(super) fn send(&mut self, command: ExternalCommand, now: f64) {
         self.memory.deadline = self.timeout.map(|timeout| command.end(now) + timeout);
         self.memory.pending = Some((now, command));
     }
 
-    /// Returns true if a command takes effect at `now`, s, or before.
+    /// Returns true if a command takes effect at `now`, s, or earlier.
     pub(super) fn has_due_command(&self, now: f64) -> bool {
         self.memory.pending.as_ref().is_some_and(|(sent, command)| command.begin(*sent) <= now)
     }
 
-    /// Sets what the law does before its first command, at the positions `q` of the group.
+    /// Sets the behaviour before the first command, with the initial positions `q` of the group.
     pub(super) fn start(&mut self, q: impl Iterator<Item = f64>) {
         let zeros = |q: Vec<f64>| vec![0.0; q.len()];
         let setpoint = match External::interface(self) {
@@ -145,8 +148,8 @@ impl External {
         }
     }
 
-    /// Takes the command that is due at the control tick at `t`, s, or else applies the timeout. `now` is the latest time
-    /// that counts as the same, s; `state` holds the positions and rates of the group.
+    /// Applies the command that is due at the control tick at `t`, s, or otherwise the timeout. Times up to
+    /// `now`, s, are treated as equal to `t`; `state` holds the positions and rates of the group.
     pub(super) fn follow(&mut self, t: f64, now: f64, state: &mut JointSample) {
         let memory = &mut self.memory;
         if let Some((_, command)) = memory.pending.take_if(|(sent, command)| command.begin(*sent) <= now) {
@@ -167,18 +170,19 @@ impl External {
         });
     }
 
-    /// Computes the desired motion at `t`, s; `out` holds the positions and rates of the group, which remain where none is
-    /// commanded.
+    /// Computes the desired motion at `t`, s. On entry `out` holds the positions and rates of the group;
+    /// those that are not commanded do not change.
     pub(super) fn sample(&self, t: f64, out: &mut JointSample) {
         self.memory.current.sample(t, out);
     }
 
-    /// Returns the state for a checkpoint.
+    /// Returns the state of the law for a checkpoint.
     pub(super) fn memory(&self) -> &ExternalMemory {
         &self.memory
     }
 
-    /// Restores the state of a law of `count` joints; returns false if it does not fit.
+    /// Restores the state of a law for `count` joints. Returns false if the state is invalid for these
+    /// joints.
     pub(super) fn restore(&mut self, memory: &ExternalMemory, control: &str, count: usize) -> bool {
         let fits = |command: &ExternalCommand| {
             let is_none = *command == ExternalCommand::Setpoint(Setpoint::default());

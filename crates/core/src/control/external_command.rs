@@ -1,23 +1,23 @@
-//! Commands to joints from outside of a run.
+//! External commands to joints.
 
 use super::error::ControlError;
 use crate::reference::JointSample;
 use crate::spatial::KnotInterval;
 use serde::{Deserialize, Serialize};
 
-/// Largest number in a command, SI units.
+/// Largest accepted magnitude of a number in a command, SI units.
 const LARGEST: f64 = 1e60;
 
 /// Command to the joints of an [`External`](super::External) law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ExternalCommand {
-    /// Constant values.
+    /// Constant setpoint.
     Setpoint(Setpoint),
-    /// A motion through points.
+    /// Motion through points.
     Trajectory(JointTrajectory),
 }
 
-/// Constant command, `(k,)` each: one number per joint of the group.
+/// Constant command. Each entry is `(k,)`, with one number per joint of the group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setpoint {
     /// Positions, rad or m.
@@ -30,12 +30,12 @@ pub struct Setpoint {
     pub effort: Option<Vec<f64>>,
 }
 
-/// Motion through points, as a `JointTrajectory` message of ROS.
+/// Motion through points, like the `JointTrajectory` message of ROS.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointTrajectory {
-    /// Time of the start, s of simulation.
+    /// Start time, s of simulation.
     pub start: f64,
-    /// Times of the points since the start, `(K,)`, s.
+    /// Times of the points relative to the start, `(K,)`, s.
     pub times: Vec<f64>,
     /// Positions, `(K, k)`, rad or m.
     pub positions: Vec<f64>,
@@ -46,7 +46,7 @@ pub struct JointTrajectory {
 }
 
 impl ExternalCommand {
-    /// Checks a command that control `control` of `count` joints gets at `now`, s.
+    /// Checks a command for the `count` joints of control `control` that is received at `now`, s.
     pub(super) fn check(&self, control: &str, count: usize, now: f64) -> Result<(), ControlError> {
         match self {
             Self::Setpoint(setpoint) => setpoint.check(control, count),
@@ -54,12 +54,12 @@ impl ExternalCommand {
         }
     }
 
-    /// Returns true if the command is one of `count` joints.
+    /// Returns true if the arrays of the command have the sizes for `count` joints.
     pub(super) fn check_sizes(&self, control: &str, count: usize) -> bool {
         self.check(control, count, f64::NEG_INFINITY).is_ok()
     }
 
-    /// Returns the time at which the command takes effect, s; `sent` is the time at which it was sent.
+    /// Returns the time at which a command sent at `sent`, s, takes effect, s.
     pub(super) fn begin(&self, sent: f64) -> f64 {
         match self {
             Self::Setpoint(_) => sent,
@@ -67,7 +67,8 @@ impl ExternalCommand {
         }
     }
 
-    /// Returns the time at which a command that was sent at `sent`, s, ends: that of the last point of a trajectory.
+    /// Returns the time at which a command sent at `sent`, s, ends, s; for a trajectory, the time of its last
+    /// point.
     pub(super) fn end(&self, sent: f64) -> f64 {
         match self {
             Self::Setpoint(_) => sent,
@@ -75,12 +76,13 @@ impl ExternalCommand {
         }
     }
 
-    /// Returns true if the efforts of the joints are given.
+    /// Returns true if the command has only efforts.
     pub(super) fn is_effort(&self) -> bool {
         matches!(self, Self::Setpoint(Setpoint { position: None, velocity: None, .. }))
     }
 
-    /// Returns the positions that the joints are to keep after the command; `None` if it has none.
+    /// Returns the positions that the joints are to hold after the command; `None` if the command has no
+    /// positions.
     pub(super) fn last_position(&self) -> Option<&[f64]> {
         match self {
             Self::Setpoint(setpoint) => setpoint.position.as_deref(),
@@ -91,8 +93,8 @@ impl ExternalCommand {
         }
     }
 
-    /// Computes the desired motion at `t`, s. `out` holds the current positions and rates, which remain where none is
-    /// commanded.
+    /// Computes the desired motion at `t`, s. On entry `out` holds the current positions and rates; those
+    /// that are not commanded do not change.
     pub(super) fn sample(&self, t: f64, out: &mut JointSample) {
         match self {
             Self::Setpoint(setpoint) => setpoint.sample(out),
@@ -102,17 +104,17 @@ impl ExternalCommand {
 }
 
 impl Setpoint {
-    /// Returns a command to hold positions, `(k,)`, rad or m.
+    /// Creates a command to hold positions, `(k,)`, rad or m.
     pub fn position(position: Vec<f64>) -> Self {
         Self { position: Some(position), ..Self::default() }
     }
 
-    /// Returns a command of rates, `(k,)`, rad/s or m/s.
+    /// Creates a command of rates, `(k,)`, rad/s or m/s.
     pub fn velocity(velocity: Vec<f64>) -> Self {
         Self { velocity: Some(velocity), ..Self::default() }
     }
 
-    /// Returns a command of efforts, `(k,)`, N m or N.
+    /// Creates a command of efforts, `(k,)`, N m or N.
     pub fn effort(effort: Vec<f64>) -> Self {
         Self { effort: Some(effort), ..Self::default() }
     }
@@ -188,7 +190,7 @@ impl JointTrajectory {
         Ok(())
     }
 
-    /// Inserts the state at `t`, s, as the first point, unless the first point lies before it.
+    /// Inserts the state at `t`, s, as the first point, unless the first point is earlier than `t`.
     pub(super) fn start_from(&mut self, t: f64, state: &JointSample) {
         let first = t - self.start;
         if self.times[0] <= first {
@@ -204,8 +206,9 @@ impl JointTrajectory {
         }
     }
 
-    /// Interpolates at `t`, s of simulation: by quintics if the points have velocities and accelerations, by cubics if they
-    /// have velocities only, and otherwise linearly. After the last point the motion rests there.
+    /// Interpolates at `t`, s of simulation: by quintic polynomials if the points have velocities and
+    /// accelerations, by cubic polynomials if they have only velocities, and otherwise linearly. After the
+    /// last point, its positions are held at rest.
     fn sample(&self, t: f64, out: &mut JointSample) {
         let Self { start, times, positions, velocities, accelerations } = self;
         let (n, last) = (out.q.len(), times.len() - 1);

@@ -1,5 +1,5 @@
-//! Advances a run to any time and evaluates it there. A step that ends later is tried and then undone, so that the
-//! steps do not depend on the times at which the run is evaluated.
+//! Advance of a run to any time, and its evaluation at that time. A step that ends later is tried and then
+//! undone, so that the steps do not depend on the times at which the run is evaluated.
 
 use super::checkpoint::Progress;
 use super::equations::EquationsOfMotion;
@@ -13,11 +13,12 @@ use super::tree::Tree;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
 
-/// Number of fixed native steps between two calls of the monitor.
+/// Number of steps of a fixed-step integrator between two calls of the monitor.
 const MONITOR_EVERY: usize = 64;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Takes all steps that end at or before `t`. Stops at the end of a step if the monitor returns `Break`.
+    /// Computes all steps that end at or before `t`, s. Stops at the end of a step if the monitor returns
+    /// `Break`.
     pub(super) fn advance_to(
         &mut self,
         t: f64,
@@ -47,8 +48,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Returns true if the step in `interval` ends at or before `t`, although `interval` ends later, because the mode
-    /// of a joint changes or because the tolerance requires a shorter step. Takes a trial step without recording rows.
+    /// Returns true if the step in `interval` ends at or before `t`, although `interval` ends later. This
+    /// happens if the mode of a joint changes or the tolerance requires a shorter step. The step is a trial
+    /// step, without rows.
     fn step_ends_by(&mut self, t: f64, interval: &Interval, after: Cursor) -> Result<bool, SimulationError> {
         if !self.mover.may_end_early(&self.equations) {
             return Ok(false);
@@ -61,8 +63,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Calls `work` and then returns to the current state. While `work` runs, only rows before the time
-    /// `records_before` are recorded. The state of the controllers, which may be user-defined, is not restored: if
-    /// `work` has updated them at the current cut, they are not updated there again.
+    /// `records_before` are recorded. The state of the controllers, which may be user-defined, is not
+    /// restored: if `work` has updated them at the current cut, they are not updated there again.
     fn peek<R>(
         &mut self,
         records_before: f64,
@@ -79,8 +81,8 @@ impl<S: Scalar> RunState<'_, S> {
         result
     }
 
-    /// Keeps torques and requested accelerations of every system before the first update of the controllers in a trial
-    /// step; does nothing otherwise.
+    /// Stores the torques and requested accelerations of every system before the first update of the
+    /// controllers in a trial step. Outside trial steps, does nothing.
     pub(super) fn keep_commands(&mut self) {
         if std::mem::take(&mut self.keeps_commands) {
             let held = self.commands();
@@ -88,7 +90,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns torques and requested accelerations of the joints of every system.
+    /// Returns the torques and requested accelerations of the joints of every system.
     fn commands(&self) -> Vec<(Vec<S>, Vec<Option<f64>>)> {
         let EquationsOfMotion { trees, members, .. } = &self.equations;
         let system = |number| members.system(number, trees, &self.state.trees).1;
@@ -96,7 +98,7 @@ impl<S: Scalar> RunState<'_, S> {
         (0..self.systems.len()).map(|number| of(system(number))).collect()
     }
 
-    /// Sets torques and requested accelerations of the joints of every system.
+    /// Sets the torques and requested accelerations of the joints of every system.
     fn set_commands(&mut self, commands: Vec<(Vec<S>, Vec<Option<f64>>)>) {
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
         for (place, (command, requested)) in members.places.iter().zip(commands) {
@@ -113,8 +115,9 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Calls `record` with the torques that were held before the controllers were updated at the current cut, as a row
-    /// before a jump at this cut has them; a trial step may have updated them.
+    /// Calls `record` with the torques that were held before the controllers were updated at the current cut.
+    /// A row before a jump at this cut contains these torques, even if a trial step has already updated the
+    /// controllers.
     pub(super) fn with_held_commands(
         &mut self,
         record: impl FnOnce(&mut Self) -> Result<(), SimulationError>,
@@ -141,7 +144,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Writes the configuration and the velocity of a system at the current time, relative to W, to `q` and `v`.
+    /// Writes the configuration and the velocity of a system at the current time, relative to W, to `q` and
+    /// `v`.
     pub(super) fn read_state(
         &mut self,
         system: usize,
@@ -170,8 +174,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Copies the state to the row buffer: the dense output of the last step at the current time if `is_dense`,
-    /// otherwise the state at the current cut.
+    /// Copies the state to the row buffer. This is the dense output of the last step at the current time if
+    /// `is_dense`, otherwise the state at the current cut.
     fn copy_state(&mut self, is_dense: bool) {
         let Self { state, mover, row_buffers: (copy, _), time, .. } = self;
         match mover.integration().filter(|_| is_dense) {
@@ -180,8 +184,8 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Steps from the current cut to the current time. An adaptive integrator takes its whole step, within which the
-    /// current time then lies; returns true in this case.
+    /// Steps from the current cut to the current time. An adaptive integrator computes its whole step, which
+    /// may extend beyond the current time; the function then returns true.
     fn step_to_current_time(&mut self) -> Result<bool, SimulationError> {
         match self.schedule.following() {
             Some((interval, after)) if self.mover.is_adaptive() => {
@@ -192,18 +196,18 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Adds the rows before the current time, and one at the current time.
+    /// Adds the rows before the current time, and a row at the current time.
     pub(super) fn record_current_time(&mut self) -> Result<(), SimulationError> {
         if !self.schedule.is_later(self.time, self.schedule.now()) {
             return self.record_end();
         }
-        self.records_before = self.time; // an adaptive step goes past the current time
+        self.records_before = self.time; // an adaptive step may end after the current time
         let crossed = self.step_to_current_time();
         self.records_before = f64::INFINITY;
         if crossed? { self.record_within(self.time) } else { self.record_end() }
     }
 
-    /// Returns the rows recorded so far and one at the current time, as if the run ended there.
+    /// Returns the rows recorded so far, plus a row at the current time, as if the run ended there.
     pub(super) fn recording(&mut self) -> Result<GroupRecording, SimulationError> {
         self.peek(f64::INFINITY, |run| {
             run.record_current_time()?;

@@ -1,4 +1,5 @@
-//! State of a run between two steps. A run restored to this state continues with bit-identical results.
+//! State of a run between two steps. A run that is restored to this state continues with bit-identical
+//! results.
 
 use super::accuracy::Accuracy;
 use super::checkpoint::{
@@ -28,10 +29,10 @@ use crate::spatial::Scalar;
 use crate::world::{FrameIndex, Layout};
 use std::sync::Arc;
 
-/// State of a run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the evaluation at
-/// times within a step in `look_ahead.rs`.
+/// State of a run in progress. Steps are in `step.rs`, the recording of rows in `record.rs`, and the
+/// evaluation at times within a step in `look_ahead.rs`.
 pub(super) struct RunState<'a, S> {
-    /// Names of the systems and of their joints; all lists with one entry per system have this order.
+    /// Names of the systems and of their joints. All lists with one entry per system are in this order.
     pub(super) layout: Layout,
     /// Number in the world of each system.
     pub(super) numbers: Vec<usize>,
@@ -41,11 +42,12 @@ pub(super) struct RunState<'a, S> {
     /// Controllers and recorder of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
-    /// Frames of systems in which references of other systems are given; their systems have the numbers of the run.
+    /// Frames of systems in which references of other systems are given. The systems have the numbers of the
+    /// run.
     pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,
     pub(super) ledger: Ledger,
-    /// Balance of the group; without rows if it has a single system.
+    /// Balance of the group; has no rows if the group consists of a single system.
     pub(super) balance: GroupBalance,
     pub(super) mover: Mover<'a, S>,
     pub(super) step_settings: StepSettings,
@@ -54,17 +56,18 @@ pub(super) struct RunState<'a, S> {
     /// True if every step is recorded as a row of the trace.
     pub(super) has_every_step: bool,
     pub(super) accuracy: Accuracy<S>,
-    /// Steps taken so far.
+    /// Number of steps computed so far.
     pub(super) steps: usize,
     /// Current time, s: the current cut, or a time within the step that begins at the cut.
     pub(super) time: f64,
     /// True if the controllers have been updated at the current cut.
     pub(super) controllers_updated: bool,
-    /// True while [`RunState::peek`] takes trial steps that have not updated the controllers yet.
+    /// True while [`RunState::peek`] computes trial steps that have not yet updated the controllers.
     pub(super) keeps_commands: bool,
-    /// True if an event has happened at the current cut, whose row is then due.
+    /// True if an event has happened at the current cut, for which a row is then due.
     pub(super) has_event: bool,
-    /// Only rows before this time are recorded, s; infinity except while [`RunState::peek`] takes trial steps.
+    /// Time before which rows are recorded, s; infinity, except while [`RunState::peek`] computes trial
+    /// steps.
     pub(super) records_before: f64,
     /// Buffers for the state and the stages of rows that are not at the start of a step.
     pub(super) row_buffers: (State<S>, Stages<S>),
@@ -76,7 +79,7 @@ pub(super) struct RunState<'a, S> {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns the state of everything that a step changes, except the controllers.
+    /// Returns everything that a step changes, except the state of the controllers.
     pub(super) fn progress(&self) -> Progress {
         let (step_control, idle_steps) = self.mover.save();
         let tree = |(number, tree): (usize, &Tree<'_, S>)| {
@@ -106,7 +109,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Restores the state that [`RunState::progress`] returned and removes the rows recorded since then.
+    /// Restores the state that [`RunState::progress`] returned, and removes the rows recorded since then.
     pub(super) fn restore(&mut self, progress: Progress) -> Result<(), SimulationError> {
         self.restore_world(progress.world)?;
         self.state = progress.state.map(|x| S::of(*x));
@@ -139,7 +142,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Passes the events that have happened to the controllers, and the times at which others are due to the schedule.
+    /// Passes the events that have happened to the controllers, and the times of events that are due to the
+    /// schedule.
     pub(super) fn events_changed(&mut self) {
         let step = self.schedule.time_step();
         let seatings = self.connections.active.welds.iter().filter_map(|weld| weld.seating);
@@ -149,7 +153,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.systems.iter_mut().for_each(|run| run.controllers.set.set_events(&happened));
     }
 
-    /// Returns a checkpoint of the current state. The rows recorded so far are not part of it.
+    /// Returns a checkpoint of the current state. The checkpoint does not contain the rows recorded so far.
     pub(super) fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError> {
         let EquationsOfMotion { trees, members, loads, .. } = &self.equations;
         let systems = self.systems.iter().enumerate();
@@ -200,7 +204,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Checks that the checkpoint contains error estimates if, and only if, this run computes them.
+    /// Checks that the checkpoint contains error estimates if and only if this run computes them.
     fn check_estimates(&self, progress: &Progress) -> Result<(), CheckpointError> {
         for (number, saved) in progress.trees.iter().enumerate() {
             let (errors, checks) = self.accuracy.save(number);
@@ -212,8 +216,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds to the traces the results that do not follow from the rows: error estimates, changes of the reference
-    /// orbit and outcomes of goals.
+    /// Adds to the traces the results that cannot be computed from the rows: error estimates, changes of the
+    /// reference orbit, and outcomes of goals.
     pub(super) fn conclude(&mut self) {
         let local = self.equations.loads.local_reference();
         let rereferenced = local.map_or_else(Vec::new, |local| local.times.clone());
@@ -247,7 +251,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Keeps the error estimates of the current trees, before they change.
+    /// Stores the error estimates of the current trees before the trees change.
     pub(super) fn conclude_trees(&mut self) {
         for number in 0..self.systems.len() {
             let estimates = self.estimates(number);

@@ -1,4 +1,4 @@
-//! Stepper: a run that the caller advances.
+//! Stepper, with which a caller advances a run.
 
 use super::checkpoint::Checkpoint;
 use super::error::{RunFailure, SimulationError};
@@ -7,9 +7,9 @@ use super::steps::{Monitor, Steps};
 use super::trace::Trace;
 use std::ops::ControlFlow;
 
-/// A run that the caller advances; see [`Simulation::start`](super::Simulation::start).
+/// Run that the caller advances; see [`Simulation::start`](super::Simulation::start).
 ///
-/// The steps are those of [`Simulation::run`](super::Simulation::run), regardless of the times to which the run is
+/// The steps are those of [`Simulation::run`](super::Simulation::run), whatever the times to which the run is
 /// advanced.
 pub struct Stepper<'a> {
     pub(super) groups: Vec<Group<'a>>,
@@ -20,16 +20,16 @@ pub struct Stepper<'a> {
     status: Status,
 }
 
-/// Systems that may interact, and their run. Systems of different groups never interact.
+/// Systems that may interact, and the run of these systems. Systems of different groups never interact.
 pub(super) struct Group<'a> {
     pub(super) numbers: Vec<usize>,
     pub(super) run: Box<dyn Steps + 'a>,
 }
 
-/// Number of regular steps by which the groups of a run with several groups advance in turn.
+/// Number of regular steps by which each group advances before the next group does, if there are several.
 const STEPS_IN_TURN: f64 = 64.0;
 
-/// Fraction of a turn by which its end may differ from the end of a step by rounding.
+/// Fraction of such an advance within which the end of a step is treated as the end of the advance.
 const TURN_ROUNDING: f64 = 1e-6;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl<'a> Stepper<'a> {
 
     /// Returns the current time, s.
     pub fn time(&self) -> f64 {
-        // the groups differ only after an advance that the monitor stopped
+        // times of groups differ only after an advance that the monitor stopped
         self.groups.iter().map(|group| group.run.time()).fold(f64::INFINITY, f64::min)
     }
 
@@ -63,7 +63,7 @@ impl<'a> Stepper<'a> {
     /// Advances the run by `dt`, s.
     ///
     /// # Errors
-    /// [`SimulationError::NotPositive`], and the errors of [`Stepper::advance_to`].
+    /// [`SimulationError::NotPositive`] for `dt`, and the errors of [`Stepper::advance_to`].
     pub fn advance(&mut self, dt: f64) -> Result<(), SimulationError> {
         self.advance_to(self.time_after(dt)?)
     }
@@ -71,24 +71,25 @@ impl<'a> Stepper<'a> {
     /// Returns the current time plus `dt`, s.
     ///
     /// # Errors
-    /// [`SimulationError::NotPositive`].
+    /// [`SimulationError::NotPositive`] for `dt`.
     pub fn time_after(&self, dt: f64) -> Result<f64, SimulationError> {
         SimulationError::check_positive("dt", dt)?;
         Ok(self.time() + dt)
     }
 
-    /// Advances the run to the time `t`, s. If `t` lies within a step, the state at `t` comes from dense output or
-    /// from a shorter trial step, and the step itself is taken by a later advance.
+    /// Advances the run to the time `t`, s. If `t` is within a step, the state at `t` is computed by dense
+    /// output or by a shorter trial step, and the step itself is computed in a later advance.
     ///
     /// # Errors
-    /// [`SimulationError::NotPositive`], [`SimulationError::PastTime`], [`SimulationError::AfterEnd`], and
-    /// [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`, leave the run unchanged. Every
-    /// other error, such as [`SimulationError::Diverged`], ends the run.
+    /// [`SimulationError::NotPositive`], [`SimulationError::PastTime`] and [`SimulationError::AfterEnd`] for
+    /// an invalid `t`, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`;
+    /// the run does not change. Any other error, such as [`SimulationError::Diverged`], ends the run.
     pub fn advance_to(&mut self, t: f64) -> Result<(), SimulationError> {
         self.advance_until(t, &mut |_| ControlFlow::Continue(())).map(|_| ())
     }
 
-    /// Advances the run like [`Stepper::advance_to`], but stops at the end of a step if the monitor returns `Break`.
+    /// Advances the run like [`Stepper::advance_to`], but stops at the end of a step if the monitor returns
+    /// `Break`.
     ///
     /// # Errors
     /// The errors of [`Stepper::advance_to`].
@@ -103,13 +104,13 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Advances all groups, several in turn by a few steps each.
+    /// Advances all groups to `t`, s. Several groups advance alternately, by a few steps each.
     fn advance_groups(&mut self, t: f64, monitor: Monitor<'_>) -> Result<ControlFlow<()>, SimulationError> {
         if let [group] = &mut self.groups[..] {
             return group.run.advance_to(t, monitor);
         }
         let turn = STEPS_IN_TURN * self.time_step;
-        // the end of a turn may be a rounding error later than the step that ends there
+        // because of rounding, the end of an advance may be slightly later than the step that ends there
         let mut turns = (self.time() / turn + TURN_ROUNDING).floor();
         loop {
             turns += 1.0;
@@ -126,7 +127,8 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Writes the configuration `(nq,)` and the velocity `(nv,)` of a system at the current time to `q` and `v`.
+    /// Writes the configuration `(nq,)` and the velocity `(nv,)` of a system at the current time to `q` and
+    /// `v`.
     ///
     /// # Errors
     /// The errors of a step, which end the run; [`SimulationError::Ended`] if the run has ended.
@@ -137,12 +139,13 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Sets the joint torques `tau`, `(n,)`, N m (N), of a system, which are held from the current time on; `None` leaves the
-    /// torque of a joint unchanged. The current step ends at the current time.
+    /// Sets the joint torques `tau`, `(n,)`, N m (N), of a system, which are held from the current time on.
+    /// `None` leaves the torque of a joint unchanged. The current step ends at the current time.
     ///
     /// # Errors
-    /// [`SimulationError::WrongLength`], [`SimulationError::NotFinite`] and, for a joint of an active control,
-    /// [`SimulationError::CommandedJoint`] leave the run unchanged. The errors of a step end the run.
+    /// [`SimulationError::WrongLength`] and [`SimulationError::NotFinite`] for `tau`, and
+    /// [`SimulationError::CommandedJoint`] for a joint of an active control; the run does not change. The
+    /// errors of a step end the run.
     pub fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.check()?;
         let (run, system) = self.run_of(system);
@@ -151,23 +154,23 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Returns a checkpoint, from which the run can be resumed together with the rows of [`Stepper::rows`].
+    /// Returns a checkpoint. Together with the rows of [`Stepper::rows`], the run can be resumed from it.
     ///
     /// # Errors
-    /// The error of a user-defined controller whose state cannot be saved; it leaves the run unchanged.
+    /// The error of a user-defined controller whose state cannot be saved; the run does not change.
     pub fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
         self.check()?;
         let groups = self.groups.iter().map(|group| group.run.checkpoint());
         Ok(Checkpoint::new(groups.collect::<Result<_, _>>()?))
     }
 
-    /// Returns the rows of a system recorded so far, which do not include a row at the current time.
+    /// Returns the rows of a system recorded so far. A row at the current time is not included.
     pub fn rows(&self, system: usize) -> &Trace {
         let (group, system) = self.places[system];
         self.groups[group].run.rows(system)
     }
 
-    /// Returns the recording that the run would have if it ended now, with the last rows at the current time.
+    /// Returns the recording of the run as if it ended now, with a last row at the current time.
     ///
     /// # Errors
     /// The errors of a step, which end the run; [`SimulationError::Ended`] if the run has ended.
@@ -178,10 +181,12 @@ impl<'a> Stepper<'a> {
         Ok(Recording::of(self.groups.iter().map(|group| &group.numbers[..]).zip(parts)))
     }
 
-    /// Ends the run at the current time and returns its recording; after an error, it has the rows recorded before it.
+    /// Ends the run at the current time and returns its recording. After an error, this contains the rows
+    /// before the error.
     ///
     /// # Errors
-    /// An error in computing the last row, with the rows before it; [`SimulationError::Ended`] if called a second time.
+    /// The error that occurs when the last row is computed, with the rows before it;
+    /// [`SimulationError::Ended`] if the run has already been finished.
     pub fn finish(&mut self) -> Result<Recording, RunFailure> {
         let last_row = match self.status {
             Status::Running => self.groups.iter_mut().try_for_each(|group| group.run.record_current_time()),
@@ -202,8 +207,8 @@ impl<'a> Stepper<'a> {
         self.status != Status::Running
     }
 
-    /// Returns true if an error has ended the run; [`Stepper::finish`] then returns the rows recorded before the
-    /// error.
+    /// Returns true if an error has ended the run, in which case [`Stepper::finish`] returns the rows before
+    /// the error.
     pub fn has_failed(&self) -> bool {
         self.status == Status::Failed
     }

@@ -1,4 +1,4 @@
-//! Commands that the caller of a stepper gives to a run.
+//! Commands that the caller of a stepper sends to a run.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -11,12 +11,13 @@ use crate::control::{Control, External, ExternalCommand, Interface};
 use crate::spatial::Scalar;
 
 impl Stepper<'_> {
-    /// Gives the joints of a control with the law [`External`](crate::control::External) a command, which takes effect at
-    /// the next control tick, or at the current time if that is one. It is held until the next command.
+    /// Sends a command to a control with the law [`External`](crate::control::External). The command takes
+    /// effect at the next control tick, or at the current time if that is a tick, and is held until the next
+    /// command.
     ///
     /// # Errors
-    /// [`SimulationError::Control`] for a control that does not exist, follows no commands or has ended, and for an invalid
-    /// command; the run is unchanged.
+    /// [`SimulationError::Control`] for an invalid command, and for a control that does not exist, does not
+    /// follow commands or has ended; the run does not change.
     pub fn send(
         &mut self,
         system: usize,
@@ -28,12 +29,12 @@ impl Stepper<'_> {
         run.send(system, control, command)
     }
 
-    /// Applies a wrench at the origin of a frame (index) of a system, from the current time until the next one at this frame.
-    /// The current step ends at the current time.
+    /// Applies a wrench at the origin of a frame (index) of a system, from the current time until the next
+    /// wrench on the same frame. The current step ends at the current time.
     ///
     /// # Errors
     /// [`SimulationError::UnknownFrame`], [`SimulationError::NotFinite`] and, with an external engine,
-    /// [`SimulationError::EngineOfWorld`] leave the run unchanged. The errors of a step end the run.
+    /// [`SimulationError::EngineOfWorld`]; the run does not change. The errors of a step end the run.
     pub fn wrench(
         &mut self,
         system: usize,
@@ -47,7 +48,7 @@ impl Stepper<'_> {
         self.ended_by(result)
     }
 
-    /// Returns the controls of a system that follow commands from outside of the run.
+    /// Returns the controls of a system that follow external commands.
     pub fn external(&self, system: usize) -> Vec<ExternalControl> {
         let (group, system) = self.places[system];
         self.groups[group].run.external(system)
@@ -74,7 +75,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Holds joint torques from the current time on, where they are given.
+    /// Sets those joint torques that are given; they are held from the current time on.
     pub(super) fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.cut_at_current_time()?;
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
@@ -85,7 +86,7 @@ impl<S: Scalar> RunState<'_, S> {
         };
         set.command(tau);
         for (j, tau) in tau.iter().enumerate() {
-            // a control may have become active in the step that ended here
+            // a control may have become active during the step that ended here
             if let Some(tau) = tau.filter(|_| set.driver_of(j, self.time).is_none()) {
                 moved.command[j] = S::of(tau);
             }
@@ -97,7 +98,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Gives a control a command at the current time.
+    /// Sends a command to a control at the current time.
     pub(super) fn send(
         &mut self,
         system: usize,
@@ -108,7 +109,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(self.systems[system].controllers.set.send(control, command, time)?)
     }
 
-    /// Returns the controls of a system that follow commands.
+    /// Returns the controls of a system that follow external commands.
     pub(super) fn external(&self, system: usize) -> Vec<ExternalControl> {
         let joints = &self.layout.systems()[system].joints;
         let controls = self.systems[system].controllers.set.external();
@@ -143,7 +144,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Holds a wrench at a frame from the current time on.
+    /// Sets the wrench on a frame, which is held from the current time on.
     pub(super) fn wrench(
         &mut self,
         system: usize,
@@ -157,8 +158,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Returns true if the controllers of a system, already updated at `t`, s, by a trial step, are due again because of a
-    /// command that was given since.
+    /// Returns true if the controllers of a system, which a trial step has already updated at `t`, s, are due
+    /// again because of a later command.
     pub(super) fn has_new_command(&self, system: usize, t: f64) -> bool {
         let set = &self.systems[system].controllers.set;
         let has_wrench = || self.equations.loads.commands.changed_at() == Some(t);

@@ -12,11 +12,12 @@ use crate::control::ExternalCommand;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
 
-/// Callback that receives the time reached, s, at intervals during an advance. Returning `Break` stops the advance at
-/// the end of the current step.
+/// Callback that receives the time reached, s, at regular intervals during an advance. If it returns `Break`,
+/// the advance stops at the end of the current step.
 pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
-/// Interface of the run of a group, independent of its scalar type. Systems are given by their number in the group.
+/// Interface of the run of a group, independent of the scalar type. Systems are specified by their number in
+/// the group.
 pub(super) trait Steps: Send {
     fn time(&self) -> f64;
     fn duration(&self) -> Option<f64>;
@@ -34,15 +35,16 @@ pub(super) trait Steps: Send {
         wrench: &WrenchCommand,
     ) -> Result<(), SimulationError>;
     fn wrench(&mut self, system: usize, frame: usize, wrench: WrenchCommand) -> Result<(), SimulationError>;
-    /// Returns the controls that follow commands from outside.
+    /// Returns the controls that follow external commands.
     fn external(&self, system: usize) -> Vec<ExternalControl>;
     /// Returns the names of the events.
     fn events(&self) -> Vec<String>;
     /// Returns the events that have happened.
     fn records(&self) -> &[EventRecord];
-    /// Returns the controls whose frames are rigidly connected to those that they follow.
+    /// Returns the controls whose frames are rigidly connected to the frames that they follow.
     fn attached_controls(&self) -> Vec<AttachedControl>;
-    /// Returns the number of the event with this name if it can be triggered; `None` if there is none.
+    /// Returns the number of the event with this name if it can be triggered; `None` if there is no such
+    /// event.
     fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError>;
     fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;
     fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
@@ -50,7 +52,7 @@ pub(super) trait Steps: Send {
     fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
     /// Adds a row at the current time.
     fn record_current_time(&mut self) -> Result<(), SimulationError>;
-    /// Removes and returns the rows recorded so far, with the error estimates and the outcomes of goals.
+    /// Removes the rows recorded so far and returns them with the error estimates and the outcomes of goals.
     fn take_rows(&mut self) -> GroupRecording;
 }
 

@@ -1,4 +1,4 @@
-//! Compliance of a tool.
+//! Compliance control of a tool.
 
 use super::gains::gains;
 use super::native_law::{Group, NativeLaw, same_robot};
@@ -12,29 +12,30 @@ use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Compliance of a tool by a virtual spring and damper: ``tau = Jg^T (K e + D e') - k N qdot``.
+/// Compliance control of a tool by a virtual spring and damper: ``tau = Jg^T (K e + D e') - k N qdot``.
 ///
-/// The law is passive; in free fall there is no gravity load to compensate. Friction is not compensated and
-/// may keep the tool from reaching its goal. Because torques are held between control ticks, the motion is
-/// unstable if the damping exceeds about twice the inertia of the tool divided by the control period.
+/// The law is passive, and in free fall there is no gravity load to compensate. Friction is not compensated
+/// and may prevent the tool from reaching its goal. Because torques are held between control ticks, the
+/// motion is unstable if the damping exceeds about twice the inertia of the tool divided by the control
+/// period.
 ///
 /// Parameters
 /// ----------
 /// model : Model
 ///     Robot.
 /// tool : str
-///     Frame of the robot.
+///     Frame of the robot to which the spring is attached.
 /// stiffness : float, (6,) or (6, 6) array
-///     ``K``, linear rows first, N/m and N m/rad.
+///     Stiffness ``K`` of the spring, linear rows first, N/m and N m/rad.
 /// damping : float, (6,) or (6, 6) array
-///     ``D``, linear rows first, N s/m and N m s/rad.
+///     Damping ``D``, linear rows first, N s/m and N m s/rad.
 /// null_space_damping : float
-///     ``k``, damping of joint motion that does not move the tool, N m s/rad.
+///     Damping ``k`` of joint motion that does not move the tool, N m s/rad.
 ///
 /// Raises
 /// ------
 /// ControlError, FrameError, ShapeError
-///     If a gain is invalid, the frame does not exist, or a gain has the wrong shape.
+///     If a gain is invalid, if the frame does not exist, or if a gain has the wrong shape.
 #[pyclass(name = "Compliance", frozen, module = "onorbit_rs")]
 pub(crate) struct PyCompliance {
     law: Compliance,

@@ -12,7 +12,8 @@ use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Computed torque on the generalized Jacobian: Eq. (6)-(8) of the OnOrbitROS paper with the exact drift.
+/// Task-space computed torque with the generalized Jacobian: Eq. (6)-(8) of the OnOrbitROS paper with the
+/// exact drift.
 ///
 /// Parameters
 /// ----------
@@ -25,8 +26,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// kd : float, (6,) or (6, 6) array, optional
 ///     Velocity gain, linear rows first, 1/s; default: 20.
 /// damping : float
-///     The inverse of the generalized Jacobian ``Jg`` is damped while ``tr[(Jg Jgᵀ)⁻¹]^(-1/2)``, a lower bound
-///     of its smallest singular value, is below this value.
+///     The inverse of the generalized Jacobian ``Jg`` is damped while ``tr[(Jg Jgᵀ)⁻¹]^(-1/2)``, a lower
+///     bound of its smallest singular value, is below this value.
 /// null_space_damping : float
 ///     Damping of joint motion that does not move the tool, 1/s.
 /// compensate_environment : bool
@@ -39,8 +40,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Raises
 /// ------
 /// ControlError, FrameError, ShapeError
-///     If a gain is invalid or fewer than six joints move the tool, the frame does not exist, or a gain has the
-///     wrong shape.
+///     If a gain is invalid or has the wrong shape, if the frame does not exist, or if it is moved by fewer
+///     than six joints.
 #[pyclass(name = "ComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,
@@ -49,7 +50,7 @@ pub(crate) struct PyComputedTorque {
 }
 
 impl PyComputedTorque {
-    /// Returns an error if `model` is not the robot of this law.
+    /// Returns an error if `model` is not the robot for which this law was constructed.
     pub(crate) fn check_model(&self, py: Python<'_>, model: &Arc<Model>) -> PyResult<()> {
         same_robot(py, &self.model, model)
     }

@@ -1,4 +1,4 @@
-//! Controls: laws with their joints, references, goals and times.
+//! Controls: control laws with their joints, references, goals and times.
 
 use super::LAWS;
 use super::gains::per_joint;
@@ -14,17 +14,18 @@ use pyo3::types::PyDict;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Goal of a control with tolerances, as in the joint trajectory controller of ROS.
+/// Tolerances with which a control must follow its reference, as in the joint trajectory controller of ROS.
 ///
-/// The outcome is in ``trace.results``. After a failure the control holds the current pose or joint positions.
+/// The outcome is stored in ``trace.results``. After a failure, the control holds the current pose or joint
+/// positions.
 ///
 /// Parameters
 /// ----------
 /// tolerance : float or array
-///     Permitted error at the end of the reference: a number for all components, or (m, rad) for a task, or
-///     (k,) for joints, rad or m (rad/s or m/s where the reference commands rates).
+///     Permitted error at the end of the reference: a number for all components, (m, rad) for a task, or (k,)
+///     for joints, rad or m (rad/s or m/s if the reference commands rates).
 /// path_tolerance : float or array, optional
-///     Permitted error during the motion, as ``tolerance``; default: unlimited.
+///     Permitted error during the motion, in the form of ``tolerance``; default: unlimited.
 /// time : float, optional
 ///     Time allowed after the end of the reference, s; default: unlimited.
 #[pyclass(name = "Goal", frozen, module = "onorbit_rs")]
@@ -54,7 +55,7 @@ impl PyGoal {
     }
 }
 
-/// One of several controllers of a robot, with its joints, reference and times.
+/// Controller of some or all joints of a robot, with its reference and times.
 ///
 /// Joints that belong to no control have no motor torque, unless :meth:`Stepper.command` sets one.
 ///
@@ -69,18 +70,20 @@ impl PyGoal {
 /// tool : str, optional
 ///     Frame of the reference of a Python controller; default: that of the simulation.
 /// name : str, optional
-///     Name of the control in the trace and the results; default: ``control_`` and its index in the list.
+///     Name of the control in the trace and the results; default: ``control_`` followed by its index in the
+///     list.
 /// start : float
-///     Simulation time at which the control starts, s; not used with ``after``.
+///     Simulation time at which the control starts, s; ignored if ``after`` is given.
 /// end : float, optional
 ///     Simulation time at which the control ends, s; default: the end of the run.
 /// after : str, optional
-///     Name of another control, when whose decided goal or end this one starts, or of an event of the world. A control
-///     that an event starts replaces those that drive its joints.
+///     Name of another control or of an event of the world. The control starts when the goal of the other
+///     control is decided or the other control ends, or when the event happens. A control started by an event
+///     replaces those that drive its joints.
 /// goal : Goal, optional
 ///     Goal with tolerances.
 /// starts_at_present : bool
-///     If True, the reference is moved so that it begins at the current pose or joint positions.
+///     If True, the reference is shifted so that it begins at the current pose or joint positions.
 #[pyclass(name = "Control", frozen, module = "onorbit_rs")]
 pub(crate) struct PyControl {
     controller: Py<PyAny>,
@@ -138,7 +141,8 @@ impl PyControl {
     }
 }
 
-/// Returns the controls of a run: a single controller with the reference of the run, or a list of `Control`.
+/// Returns the controls of a run, given as a single controller with the reference of the run or as a list of
+/// `Control`.
 pub(crate) fn controls_of(
     controller: Any<'_, '_>,
     reference: Option<Any<'_, '_>>,
@@ -164,7 +168,7 @@ pub(crate) fn controls_of(
     items.iter().zip(&names).map(|(item, name)| item.get().bind(py, name, &names, robot)).collect()
 }
 
-/// Returns an entry of a list of controls.
+/// Returns an entry of a list of controls, or an error if it has another type.
 fn one_control(item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
     item.cast_into::<PyControl>().map_err(|error| no_controller(&error.into_inner()))
 }
@@ -205,7 +209,7 @@ impl PyControl {
     }
 }
 
-/// Returns the law in a Python object, with its reference; None if the object is not a controller.
+/// Returns the control law for a Python object and its reference; None if the object is not a controller.
 fn law_of(
     controller: Any<'_, '_>,
     reference: Option<Any<'_, '_>>,
@@ -224,7 +228,8 @@ fn law_of(
         (None, _) => None,
         (Some(reference), Some(tool)) => Some((tool, reference::extract(reference, &robot.around)?)),
         (Some(_), None) => {
-            let message = "a controller with a reference requires the frame that tracks it; give 'tool'";
+            let message =
+                "a controller with a reference requires a frame that tracks the reference; give 'tool'";
             return Err(plain(controller.py(), "ControlError", message));
         }
     };

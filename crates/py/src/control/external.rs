@@ -1,4 +1,4 @@
-//! Joint-space control that follows commands from outside of the run.
+//! Joint-space control that follows external commands.
 
 use super::gains::{one_count, per_joint};
 use super::native_law::{Group, NativeLaw};
@@ -9,31 +9,31 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Joint control whose commands come from outside of the run: :meth:`Stepper.send` and
+/// Joint control that follows external commands, which are sent with :meth:`Stepper.send` and
 /// :meth:`Stepper.send_trajectory`.
 ///
-/// A command is held until the next one. If it has positions or velocities, the torque is that of
-/// :class:`JointComputedTorque` with the errors of what is given, plus the commanded effort: a position without a
-/// velocity is to be held at rest, and a velocity without a position has no position error. A command of efforts alone
-/// is the torque. Before the first command, the joints hold their initial positions if ``kp`` is positive, are brought
-/// to rest if only ``kd`` is, and have no torque without gains.
+/// A command is held until the next command. If a command has positions or velocities, the torque is that of
+/// :class:`JointComputedTorque` plus the commanded effort. A position without a velocity is to be held at
+/// rest, and a velocity without a position causes no position error. If a command has only efforts, they are
+/// the torques. Before the first command, the joints hold their initial positions if ``kp`` is positive, are
+/// brought to rest if only ``kd`` is positive, and have no torque if both are zero.
 ///
 /// Parameters
 /// ----------
 /// kp : float or (k,) array
-///     Position gain, 1/s²; positions and trajectories require it. For example 100.
+///     Position gain, 1/s², such as 100; required for commands of positions and for trajectories.
 /// kd : float or (k,) array
-///     Rate gain, 1/s; velocities require it. For example 20.
+///     Rate gain, 1/s, such as 20; required for commands of velocities.
 /// timeout : float, optional
-///     Time after the last command, or after the end of the last trajectory, at which ``on_timeout`` applies, s;
-///     default: never.
+///     Time after the last command, or after the end of the last trajectory, at which ``on_timeout`` applies,
+///     s; default: never.
 /// on_timeout : {"hold", "damp", "zero"}
-///     ``hold``: the commanded positions are held at rest; after a command without positions, those of the joints at
-///     the timeout. ``damp``: ``kd`` brings the joints to rest. ``zero``: no torque.
+///     ``hold``: the commanded positions are held at rest or, after a command without positions, the
+///     positions at the timeout. ``damp``: ``kd`` brings the joints to rest. ``zero``: no torque.
 /// compensate_environment : bool
-///     As for :class:`JointComputedTorque`, while positions or velocities are commanded.
+///     As for :class:`JointComputedTorque`; applies while positions or velocities are commanded.
 /// compensate_friction : bool
-///     As for :class:`JointComputedTorque`, while positions or velocities are commanded.
+///     As for :class:`JointComputedTorque`; applies while positions or velocities are commanded.
 ///
 /// Raises
 /// ------

@@ -9,8 +9,8 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Joint-space computed torque on the reduced model: every joint error obeys ``e'' + kd e' + kp e = 0``,
-/// regardless of the motion of the base.
+/// Joint-space computed torque on the reduced model. Every joint error ``e`` obeys ``e'' + kd e' + kp e =
+/// 0``, whatever the motion of the base.
 ///
 /// Parameters
 /// ----------

@@ -9,33 +9,36 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// PID controller for each joint, as in ROS Control: ``tau = p e + i ∫e dt + d e'``.
+/// PID controller for each joint, as in ROS Control: ``tau = p e + i ∫e dt + d e'`` with the error ``e`` of
+/// the commanded quantity.
 ///
-/// At least one gain is required, except for ``effort``. The integral does not grow further at a limit.
-/// Friction is not compensated: a joint that sticks moves only once the effort exceeds its static friction.
+/// At least one gain is required, except for the interface ``effort``. At a limit, the integral does not
+/// increase further. Friction is not compensated: a joint that sticks does not move until the effort exceeds
+/// its static friction.
 ///
 /// Parameters
 /// ----------
 /// interface : {"position", "velocity", "effort"}
-///     Quantity that the reference commands. For ``effort`` its positions are efforts, N m or N, and there
-///     are no gains.
+///     Quantity that the reference commands. For ``effort``, the positions of the reference are efforts, N m
+///     or N, and no gains may be given.
 /// p, i, d : float or (k,) array, optional
-///     Proportional, integral and derivative gain; for ``position`` in N m/rad, N m/(rad s) and N m s/rad, or
-///     N/m, N/(m s) and N s/m for prismatic joints.
+///     Proportional, integral and derivative gains. For ``position`` they are in N m/rad, N m/(rad s) and N m
+///     s/rad, or N/m, N/(m s) and N s/m for prismatic joints.
 /// i_limit : float or (k,) array, optional
 ///     Limit of the integral term, N m or N.
 /// effort_limit : float or (k,) array, optional
-///     Limit of the effort, N m or N; default: the limits of the URDF, where it has any;
-///     ``inf`` for no limit.
+///     Limit of the effort, N m or N; ``inf`` for no limit. Default: the effort limits in the URDF, if there
+///     are any.
 ///
 /// Raises
 /// ------
 /// ControlError, ShapeError
-///     If the interface is unknown, a value is invalid, all gains are missing, or a value has the wrong shape.
+///     If the interface is unknown, a value is invalid, all gains are missing, or a value has the wrong
+///     shape.
 #[pyclass(name = "JointPid", frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointPid {
     law: JointPid,
-    /// True if the effort limits are those of the robot.
+    /// True if the effort limits of the robot apply.
     uses_robot_limits: bool,
     constructor_call: ConstructorCall,
 }

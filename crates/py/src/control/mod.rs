@@ -1,6 +1,6 @@
-//! Controllers: native laws, Python controllers, and controls of groups of joints.
+//! Controllers: control laws of the core, Python controllers, and controls of groups of joints.
 //!
-//! `docs/howto/controller.md`, "Add a law to the engine", lists all places of a law.
+//! `docs/howto/controller.md`, "Add a law to the engine", lists all places that a new law requires.
 
 mod compliance;
 mod computed_torque;
@@ -24,7 +24,7 @@ use joint_pid::PyJointPid;
 pub(crate) use native_law::Robot;
 use native_law::{LawOf, law_of};
 
-/// Control laws of the core. A new law requires a file, an entry in this list and a class in this module.
+/// Control laws of the core. To add a law, add a file, an entry in this list and a class in this module.
 const LAWS: [LawOf; 5] = [
     law_of::<PyComputedTorque>,
     law_of::<PyJointComputedTorque>,

@@ -12,14 +12,14 @@ use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Robot, tool and orbit of the controls.
+/// Robot, tool and orbit to which the controls belong.
 pub(crate) struct Robot<'a> {
     pub(crate) model: &'a Arc<Model>,
     pub(crate) tool: Option<usize>,
     pub(crate) around: Around<'a>,
 }
 
-/// Reference, joints and robot of a control, from which its law is constructed.
+/// Reference, joints and robot of a control, from which its law is created.
 pub(super) struct Group<'a, 'py> {
     pub(super) reference: Option<Any<'a, 'py>>,
     pub(super) joints: &'a [usize],
@@ -27,12 +27,12 @@ pub(super) struct Group<'a, 'py> {
 }
 
 impl Group<'_, '_> {
-    /// Returns the reference as one of a tool.
+    /// Returns the reference as a reference of a tool.
     pub(super) fn task(&self, py: Python<'_>) -> PyResult<TaskReference> {
         reference::extract(self.required(py)?, &self.robot.around)
     }
 
-    /// Returns the reference as one of joints.
+    /// Returns the reference as a reference of joints.
     pub(super) fn joint_path(&self, py: Python<'_>) -> PyResult<JointReference> {
         reference::extract_joints(self.required(py)?)
     }
@@ -43,13 +43,13 @@ impl Group<'_, '_> {
     }
 }
 
-/// Python class of a control law of the core.
+/// Python class of a control law that the core implements.
 pub(super) trait NativeLaw: PyClass<Frozen = True> + Sync {
-    /// Returns the law for a group of joints, with its reference.
+    /// Creates the law for a group of joints, with its reference.
     fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law>;
 }
 
-/// Returns the law of a group if the controller is an instance of one class.
+/// Function that creates the law of a group if the controller is an instance of one class.
 pub(super) type LawOf = fn(Any<'_, '_>, &Group<'_, '_>) -> Option<PyResult<Law>>;
 
 /// Implements [`LawOf`] for the class `L`.
@@ -57,7 +57,7 @@ pub(super) fn law_of<L: NativeLaw>(controller: Any<'_, '_>, group: &Group<'_, '_
     Some(controller.cast::<L>().ok()?.get().law(controller.py(), group))
 }
 
-/// Returns an error if `model` is not the robot `own` of a law.
+/// Returns an error if `model` is not the robot `own` for which a law was constructed.
 pub(super) fn same_robot(py: Python<'_>, own: &Arc<Model>, model: &Arc<Model>) -> PyResult<()> {
     if Arc::ptr_eq(own, model) || own.is_like(model) {
         return Ok(());

@@ -6,7 +6,7 @@ use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// State that a Python controller receives; its arrays are copies.
+/// State passed to a Python controller. Its arrays are copies.
 #[pyclass(name = "State", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyState {
     /// Configuration, (nq,), m and rad.
@@ -44,7 +44,7 @@ impl PyState {
     }
 }
 
-/// Python object with `update(t, state)` as a controller of the core.
+/// Controller of the core that calls a Python object with `update(t, state)`.
 pub(crate) struct PythonController {
     pub(crate) object: Py<PyAny>,
 }
@@ -92,7 +92,7 @@ impl Controller for PythonController {
 }
 
 impl PythonController {
-    /// Calls a method of the object, or that of the base class for an object that only has `update`.
+    /// Calls a method of the object. If the object has no such method, calls the method of the base class.
     fn call<'py>(&self, py: Python<'py>, name: &str, arguments: impl PyCallArgs<'py>) -> PyResult<Py<PyAny>> {
         let object = self.object.bind(py);
         let method = match object.getattr_opt(name)? {
@@ -107,12 +107,12 @@ impl PythonController {
     }
 }
 
-/// Returns the module that converts plain data to text and back.
+/// Returns the module that converts plain data to text and vice versa.
 fn plain_data(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
     py.import("onorbit_rs.simulation.controller_state")
 }
 
-/// Returns a Python exception as an error, so that the same object is raised again.
+/// Wraps a Python exception as an error, so that the same object is raised again later.
 fn raised(error: PyErr) -> ControlError {
     ControlError::User(Box::new(error))
 }

@@ -29,8 +29,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Parameters
 /// ----------
 /// model : Model or World
-///     Robot, or a world of systems. A world has its own initial states, environment and controllers; only
-///     ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be given with it.
+///     Robot, or a world of systems. Because a world has its own initial states, environment and controllers,
+///     only
+///     ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be given
+///     with it.
 /// q : (nq,) array, optional
 ///     Initial configuration, m and rad; required for a robot.
 /// v : (nv,) array, optional
@@ -40,10 +42,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// earth : Earth, optional
 ///     Epoch and orientation of the Earth.
 /// gravity_mode : {"true", "carried"}
-///     Behaviour for a reference orbit that is not in free fall. ``true``: the robot drifts away from it.
-///     ``carried``: the robot moves along with it; only tidal gravity acts, and drag and radiation pressure
-///     act without their common acceleration. ``trace.reference_residual`` is the omitted gravitational
-///     acceleration.
+///     Behaviour for a reference orbit that is not in free fall. ``true``: the robot falls in the modelled
+///     gravity and so moves away from the reference. ``carried``: the robot moves along with the reference.
+///     Only tidal gravity then acts, and drag and radiation pressure act without their common acceleration.
+///     ``trace.reference_residual`` is the gravitational acceleration that is omitted.
 /// environment : list of Effect, optional
 ///     Effects on the bodies.
 /// controller : control law, object or list of Control, optional
@@ -52,20 +54,20 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// reference : Reference or JointReference, optional
 ///     Reference of the controller.
 /// tool : str, optional
-///     Frame of the reference; default: that of the controller.
+///     Frame that tracks the reference; default: the tool of the controller.
 /// time_step : float
-///     Length of fixed steps, s; with ``dormand_prince`` the spacing of the recorded rows.
+///     Length of fixed steps, s; with ``dormand_prince``, the spacing of the recorded rows.
 /// control_period : float, optional
 ///     Time between calls of the controller, s; default: every step.
 /// integrator : {"rk4", "semi_implicit_euler", "dormand_prince"}
 ///     Integrator; ``dormand_prince`` is adaptive.
 /// record_every : int
-///     Number of steps per recorded row.
+///     Number of steps from one recorded row to the next.
 /// reference_start_tolerance : (float, float), optional
 ///     Permitted initial deviation of the tool from its reference, m and rad; default: (0.05, 0.1).
 /// tolerance : float
-///     Permitted error per step of ``dormand_prince``, relative to one radian, the robot's size, and the
-///     rates.
+///     Permitted error per step of ``dormand_prince``, relative to one radian, to the robot's size, and to
+///     the rates.
 /// enforce_limits : bool
 ///     If True, position limits of joints are rigid stops.
 /// restitution : float
@@ -74,40 +76,41 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     If True, ``trace.wrenches`` contains the wrench of every effect on every body.
 /// rereference_beyond : float
 ///     Distance of the base from the reference orbit, m, beyond which integration continues about a new,
-///     freely falling reference, unless a controller tracks a pose in W. ``trace.rereferenced`` holds the
-///     times; the rows remain in W.
+///     freely falling reference orbit, unless a controller tracks a pose in W. ``trace.rereferenced`` holds
+///     the times; recorded quantities still refer to W.
 /// engine : object, optional
-///     Another physics engine in place of the native equations of motion, such as
-///     ``onorbit_rs.engines.Mujoco``: an object with a method ``step`` (see Notes).
+///     External physics engine that replaces the native engine, such as ``onorbit_rs.engines.Mujoco``. It is
+///     an object with a method ``step`` (see Notes).
 ///
 /// Notes
 /// -----
 /// ``engine.step(start, end, q, v, tau, wrenches)`` returns a tuple: ``q`` and ``v`` at ``end``, the
-/// acceleration at ``start`` (nv,), the integral of the external forces and of their moments about the
-/// centre of mass (6,), N s and N m s, the work done on the robot less the energy lost in its joints, J,
-/// and that loss, J. ``wrenches(t, q, v)`` returns the wrenches of the environment, (bodies, 6), W axes:
-/// the force, N, through the centre of mass of each body, and the torque about it, N m. The object must not
-/// keep state between calls. ``integrator``, ``enforce_limits``, ``restitution`` and ``rereference_beyond``
-/// apply only to the native equations of motion.
+/// acceleration at ``start`` (nv,), the integral of the external forces and of their moments about the centre
+/// of mass (6,), N s and N m s, the work done on the robot less the energy lost in its joints, J, and the
+/// energy lost in its joints, J. ``wrenches(t, q, v)`` returns the wrenches of the environment, (bodies, 6),
+/// W axes: the force, N, through the centre of mass of each body, and the torque about the centre of mass, N
+/// m. The object must not keep state between calls. ``integrator``, ``enforce_limits``, ``restitution`` and
+/// ``rereference_beyond`` apply only to the native engine.
 ///
-/// A world of several systems needs ``engine.step_world(start, end, q, v, tau, wrenches, welds)``. Its arrays,
-/// and those of ``wrenches``, hold the values of all systems one after another. ``welds`` lists the rigid
-/// connections during the step: ``(system, body)`` of the capturing and of the captured side, by index; the
-/// origin of the captured frame in the axes of each body, (2, 3), m; and the rotation from the axes of the
-/// second body to those of the first, (3, 3). It returns a tuple: ``q``, ``v``, the acceleration, then for
-/// each system the impulse (systems, 6), the work (systems,) and the loss (systems,) as above; the impulse,
-/// (systems, 6), and the work, (systems,), of the connections on each system; and the integral of the moments
-/// of the external forces, acting at the centres of mass of the systems, about the common centre of mass,
-/// (3,), N m s. Captures have no impact then: the engine removes the relative velocity during the next steps.
+/// A world of several systems needs ``engine.step_world(start, end, q, v, tau, wrenches, welds)``. Its
+/// arrays, and those of ``wrenches``, hold the values of all systems, one system after another. ``welds``
+/// lists the rigid connections during the step. Each consists of ``(system, body)`` of the capturing side and
+/// of the captured side, by index; the origin of the captured frame in the axes of each body, (2, 3), m; and
+/// the rotation from axes of the second body to axes of the first, (3, 3). The method returns a tuple: ``q``,
+/// ``v`` and the acceleration; for each system the impulse (systems, 6), the work (systems,) and the loss
+/// (systems,) as above; the impulse (systems, 6) and the work (systems,) of the connections on each system;
+/// and the integral of the moments of the external forces about the common centre of mass, with each force
+/// acting at the centre of mass of its system, (3,), N m s. With such an engine, captures cause no impact:
+/// the engine removes the relative velocity during the next steps.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     run: SharedRun,
     systems: Arc<Systems>,
     orbit: Option<Arc<dyn Orbit>>,
-    /// Integration step, s.
+    /// Length of an integration step, s.
     #[pyo3(get)]
     time_step: f64,
-    /// Number of steps per recorded row.
+    /// Number of steps from one recorded row to the next.
     #[pyo3(get)]
     record_every: usize,
 }
@@ -193,7 +196,7 @@ impl PySimulation {
         Ok(Self { run: SharedRun::new(simulation), systems, orbit, time_step, record_every })
     }
 
-    /// Robots by the name of the system; a single robot is named after its model.
+    /// Robots by the name of the system. The name of a single robot is that of its model.
     #[getter]
     fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -205,21 +208,22 @@ impl PySimulation {
 
     /// Simulate from the initial state and return the trace.
     ///
-    /// This ends a run that :meth:`start` began.
+    /// If :meth:`start` began a run that is still in progress, that run ends.
     ///
     /// Parameters
     /// ----------
     /// duration : float
     ///     Simulated time, s.
     /// progress : callable, optional
-    ///     ``progress(t, duration)``, called at regular intervals of wall-clock time.
+    ///     Function ``progress(t, duration)``, called at regular intervals of wall-clock time.
     /// checkpoint : callable, optional
-    ///     ``checkpoint(c)``, called with a :class:`Checkpoint`. If it returns False, the next checkpoint
-    ///     contains the same rows again.
+    ///     Function ``checkpoint(c)``, called with a :class:`Checkpoint`. If it returns False, the next
+    ///     checkpoint contains the same rows again.
     /// checkpoint_every : float, optional
-    ///     Wall-clock time between checkpoints, s (at most twenty per second); there is also one at Ctrl-C.
+    ///     Wall-clock time between checkpoints, s (at most twenty per second); Ctrl-C causes a checkpoint as
+    ///     well.
     /// resume : Checkpoint, optional
-    ///     Checkpoint from which the run continues, with identical bits.
+    ///     Checkpoint from which the run resumes with identical bits.
     ///
     /// Returns
     /// -------
@@ -244,7 +248,7 @@ impl PySimulation {
     ) -> PyResult<Py<PyAny>> {
         let every = period(py, "checkpoint_every", checkpoint_every)?;
         let stepper = self.start(py, Some(duration), resume)?;
-        let rows = stepper.row_counts(py)?; // those of the checkpoint
+        let rows = stepper.row_counts(py)?; // the rows of the checkpoint
         let mut saver =
             checkpoint.map(|to| CheckpointCallback::new(to, self.systems.names.clone(), every, rows));
         stepper.run_to_end(py, duration, &mut |py, stepper, wall_s| {
@@ -266,15 +270,16 @@ impl PySimulation {
     /// Start a run that is advanced step by step.
     ///
     /// The steps are those of :meth:`run`, whatever the times to which the stepper is advanced. A simulation
-    /// has one run at a time: starting another run ends the current one.
+    /// has one run at a time: starting another run ends the current run.
     ///
     /// Parameters
     /// ----------
     /// duration : float, optional
-    ///     Planned end of the run, s. The last step ends there, and the adaptive integrator and the
-    ///     certificate measure errors over this time. Default: no planned end.
+    ///     Planned end of the run, s. The last step ends at this time, for which the adaptive integrator and
+    ///     the certificate measure errors. Default: no planned end.
     /// resume : Checkpoint, optional
-    ///     Checkpoint from which the run continues, with identical bits; its duration is the default.
+    ///     Checkpoint from which the run resumes with identical bits; the default of ``duration`` is that of
+    ///     the checkpoint.
     ///
     /// Returns
     /// -------
@@ -285,7 +290,7 @@ impl PySimulation {
     /// InputError
     ///     If the duration is not positive and finite.
     /// CheckpointError
-    ///     If the checkpoint belongs to another simulation.
+    ///     If the checkpoint belongs to a different simulation.
     #[pyo3(signature = (*, duration=None, resume=None))]
     fn start(
         &self,
@@ -300,7 +305,7 @@ impl PySimulation {
         let from = resume.map(|checkpoint| checkpoint.get().read(py, &self.systems.names)).transpose()?;
         let begin = from.as_ref().map_or(0.0, |from| from.0.time());
         if let Some(orbit) = &self.orbit {
-            prepare(py, &**orbit, &[begin])?; // can be interrupted by Ctrl-C
+            prepare(py, &**orbit, &[begin])?; // Ctrl-C can interrupt this call
         }
         let wall_s = resume.map_or(0.0, |checkpoint| checkpoint.get().wall_s);
         let number = self.run.start(py, duration, from, wall_s)?;

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Returns the number of the system with this name.
+/// Returns the number of the system `name`.
 pub(super) fn find(py: Python<'_>, names: &[String], name: &str) -> PyResult<usize> {
     names.iter().position(|known| known == name).ok_or_else(|| {
         let message = format!("there is no system '{name}'; the systems are: {}", names.join(", "));
@@ -22,7 +22,7 @@ pub(super) fn find(py: Python<'_>, names: &[String], name: &str) -> PyResult<usi
     })
 }
 
-/// Returns the error for an attribute that each of several systems has.
+/// Returns the error for an attribute that exists once per system, in a world of several systems.
 pub(super) fn attribute_of_systems(names: &[String], owner: &str, attribute: &str) -> PyErr {
     let examples: Vec<String> = names.iter().map(|name| format!("{owner}[\"{name}\"].{attribute}")).collect();
     PyAttributeError::new_err(format!(
@@ -49,17 +49,18 @@ impl Systems {
         }
     }
 
-    /// Returns the number of the system with this name.
+    /// Returns the number of the system `name`.
     pub(crate) fn find(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
         find(py, &self.names, name)
     }
 
-    /// Returns the events of a run so far.
+    /// Returns the events of a run that have happened so far.
     pub(crate) fn events(&self, stepper: &Stepper<'_>) -> Vec<PyEventRecord> {
         stepper.events().into_iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
     }
 
-    /// Returns an error unless there is a single system; `attribute` of `owner` belongs to a system.
+    /// Returns an error if there are several systems, because `attribute` of `owner` then belongs to each of
+    /// them.
     pub(crate) fn only(&self, owner: &str, attribute: &str) -> PyResult<()> {
         if self.names.len() == 1 {
             return Ok(());
@@ -67,7 +68,7 @@ impl Systems {
         Err(attribute_of_systems(&self.names, owner, attribute))
     }
 
-    /// Wraps a recording: a trace for a single system, otherwise the trace of a world.
+    /// Converts a recording to the trace of the only system or, for several systems, to the trace of a world.
     pub(crate) fn wrap(
         &self,
         py: Python<'_>,
@@ -98,14 +99,14 @@ pub(crate) struct PySystemStepper {
 
 #[pymethods]
 impl PySystemStepper {
-    /// Configuration at the current time, a read-only (nq,) array: base position in W, m; base quaternion xyzw;
-    /// joint positions, rad or m.
+    /// Configuration at the current time as a read-only (nq,) array: base position in W, m; base quaternion
+    /// xyzw; joint positions, rad or m.
     #[getter]
     fn q<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
         self.stepper.get().state(py, self.system).map(|(q, _)| constant(py, &q))
     }
 
-    /// Velocity at the current time, a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
+    /// Velocity at the current time as a read-only (nv,) array: base twist in base axes, m/s and rad/s; joint
     /// rates, rad/s or m/s.
     #[getter]
     fn v<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
@@ -117,8 +118,8 @@ impl PySystemStepper {
     /// Parameters
     /// ----------
     /// tau : (n,) array or dict of float
-    ///     Torques of all joints, or torques by joint name, N m (N for a prismatic joint). Joints that are not
-    ///     named keep their torques.
+    ///     Torques of all joints, or torques by joint name, N m (N for a prismatic joint). Joints that are
+    ///     not named keep their torques.
     ///
     /// Raises
     /// ------
@@ -132,7 +133,8 @@ impl PySystemStepper {
         self.stepper.get().command_system(self.system, tau)
     }
 
-    /// Send a command to the joints of an :class:`External` controller of this system; see :meth:`Stepper.send`.
+    /// Send a command to the joints of an :class:`External` controller of this system; see
+    /// :meth:`Stepper.send`.
     ///
     /// Parameters
     /// ----------
@@ -221,7 +223,8 @@ impl PySystemStepper {
         self.stepper.get().external_of(py, self.system)
     }
 
-    /// What the gains of each :class:`External` controller of this system track, by the name of the control: ``position``,
+    /// What the gains of each :class:`External` controller of this system track, by the name of the control:
+    /// ``position``,
     /// ``velocity`` or, without gains, ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
