@@ -1,14 +1,14 @@
-//! Description of a control that follows commands from outside of the run.
+//! Description of a control that follows external commands.
 
 use crate::control::Interface;
 
-/// A control that follows commands from outside of the run.
+/// Control that follows external commands.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExternalControl {
     /// Name of the control.
     pub name: String,
-    /// Names of its joints.
+    /// Names of the joints of the control.
     pub joints: Vec<String>,
-    /// What its gains track: positions, or rates, or else efforts.
+    /// Quantity that the gains of the control can track: positions, otherwise rates, otherwise efforts.
     pub interface: Interface,
 }
