@@ -174,7 +174,7 @@ EXPECTED = {
     "plugin_nested_deep": LOADS,
     "point_mass_off_axis": LOADS,
     "point_mass_on_axis": physics("nothing resists the motion of joint 'shoulder'"),
-    "prefixed_link": malformed("<drake:link> is not URDF"),
+    "prefixed_link": malformed("<drake:link> has a prefix that URDF does not define"),
     "quaternion_beside_rpy": warns("quat_xyzw"),
     "quaternion_in_version_1_0": warns("quat_xyzw"),
     "quaternion_origin": LOADS,

@@ -54,7 +54,7 @@ BAD: dict[str, Bad] = {
         {"link": "base"},
     ),
     "massless leaf": Bad(
-        massless_leaf, "ModelError", ("arm", "hinge", "give"), {"link": "arm", "joint": "hinge"}
+        massless_leaf, "ModelError", ("arm", "hinge", "add an inertial"), {"link": "arm", "joint": "hinge"}
     ),
     "inertia without mass": Bad(lambda: link(mass=None), "ModelError", ("require a mass",)),
     # joints and names

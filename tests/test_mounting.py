@@ -270,7 +270,7 @@ def test_warnings_are_issued_once(files: Path) -> None:
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plte"}]},
          "robot.arms[0]: there is no frame 'plte'; did you mean 'plate'?"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate"}] * 2},
-         "robot.arms[1]: both robots have a link or frame 'base'; give the attached one a prefix"),
+         "robot.arms[1]: both robots have a link or frame 'base'; give the attached robot a prefix"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf", "at": "plate", "prefix": "a_"}] * 2},
          "robot.arms[1]: with the prefix 'a_', both robots have a link or frame 'a_base'"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "amr.urdf", "at": "plate"}]},

@@ -30,7 +30,7 @@ def test_a_time_that_is_not_positive_is_rejected(dt: float) -> None:
         (-1.0, "t is -1 s, which is before the current time"),
         (np.nan, "t is NaN s; it must be positive and finite"),
         (np.inf, "t is inf s; it must be positive and finite"),
-        (1.1, "t is 1.1 s, but the planned end of the run is 1 s; start it with a longer duration"),
+        (1.1, "t is 1.1 s, but the planned end of the run is 1 s; start the run with a longer duration"),
     ],
 )
 def test_times_that_cannot_be_reached_are_rejected(t: float, message: str) -> None:

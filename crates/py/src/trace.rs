@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Result of a run with one row per recorded step. The first row is the initial state, and the last row is
 /// the final state.
 ///
-/// The columns are read-only views in SI units; columns that do not apply to the run are None.
+/// The columns are read-only views in SI units; columns that do not apply to the run have the value None.
 /// ``onorbit_rs.COLUMNS`` describes the shape, unit, frame and meaning of each column.
 #[pyclass(name = "Trace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyTrace {
