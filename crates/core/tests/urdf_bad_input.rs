@@ -102,7 +102,10 @@ fn unreadable_files_are_refused() {
     let path = write("broken.urdf", b"<robot>\n<link></robot>");
     let broken = load(&path);
     assert_eq!((broken.file.as_deref(), broken.line), (Some(path.as_path()), Some(2)));
-    assert!(broken.to_string().starts_with(&format!("{}:2: the text is not XML", path.display())), "{broken}");
+    assert!(
+        broken.to_string().starts_with(&format!("{}:2: the text is not XML", path.display())),
+        "{broken}"
+    );
     fs::remove_dir_all(folder).unwrap();
 }
 
