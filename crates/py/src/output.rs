@@ -52,7 +52,7 @@ impl<'py> Output<'py> {
         }
     }
 
-    /// Returns the array.
+    /// Returns the array with the results, and ends its borrow.
     pub(crate) fn into_array(self) -> Bound<'py, PyArrayDyn<f64>> {
         self.array
     }

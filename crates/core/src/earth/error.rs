@@ -60,7 +60,7 @@ pub enum EarthError {
         name: &'static str,
         /// Given value.
         value: f64,
-        /// Row of the table, from 0.
+        /// Number of the row of the table, counted from 0.
         row: usize,
         /// Accepted range.
         expected: &'static str,
@@ -68,7 +68,7 @@ pub enum EarthError {
     /// A table of Earth-orientation parameters cannot be read.
     #[error("line {line} of the Earth-orientation table: {problem}")]
     Table {
-        /// Line, from 1.
+        /// Number of the line, counted from 1.
         line: usize,
         /// Description of the problem.
         problem: String,

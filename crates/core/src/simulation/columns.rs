@@ -17,7 +17,7 @@ pub enum Length {
     Fixed(usize),
     /// Number of coordinates of the robot, `nq`.
     Nq,
-    /// Number of velocities of the robot, `nv`.
+    /// Number of velocity components of the robot, `nv`.
     Nv,
     /// Number of joints of the robot, `n`.
     Joints,

@@ -19,9 +19,7 @@ pub enum WorldError {
     SystemTwice { name: String },
     #[error("two events have the name '{name}'; give each event a different name")]
     EventTwice { name: String },
-    #[error(
-        "the event '{event}' captures '{system}' by itself; the two frames must belong to different systems"
-    )]
+    #[error("both frames of the event '{event}' belong to '{system}'; they must belong to different systems")]
     OwnSystem { event: String, system: String },
     #[error(
         "a reference of the system '{system}' is given in a frame of the system itself, or in a frame that does not exist"

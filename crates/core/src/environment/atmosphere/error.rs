@@ -90,7 +90,7 @@ pub enum AtmosphereError {
     /// A table of space weather cannot be read.
     #[error("space weather, line {line}: {problem}")]
     Table {
-        /// Line, from 1.
+        /// Number of the line, counted from 1.
         line: usize,
         /// Description of the problem.
         problem: String,

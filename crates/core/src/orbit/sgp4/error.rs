@@ -20,7 +20,7 @@ pub enum ElementSetError {
     Column {
         /// Line number, 1 or 2.
         line: u8,
-        /// First column of the field, from 1.
+        /// First column of the field, counted from 1.
         column: usize,
         /// Text in the column.
         got: String,

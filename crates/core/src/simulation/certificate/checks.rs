@@ -100,7 +100,7 @@ impl PairChecks {
 pub struct Check {
     /// Name of the field of [`Certificate`].
     pub name: &'static str,
-    /// Value of the field.
+    /// Value of that field.
     pub value: f64,
     /// Largest value that passes.
     pub gate: f64,

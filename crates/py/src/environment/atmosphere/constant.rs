@@ -1,4 +1,4 @@
-//! Constant density.
+//! Atmosphere with constant density.
 
 use super::PyAtmosphere;
 use crate::errors::{IntoPython, fields};
