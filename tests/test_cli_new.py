@@ -149,7 +149,7 @@ def test_joints_hold_if_no_motion_can_be_simulated_in_time(
     assert "trial runs of arm motions failed: too slow to simulate (2 runs), the damping" in text
     assert "  - name: hold                  # all joints keep" in text
     assert summary["simulated_s"] == 1.0
-    with pytest.raises(ScenarioError, match=r"too slow to simulate \(3 runs\), the damper of j"):
+    with pytest.raises(ScenarioError, match=r"too slow to simulate \(3 runs\), the damping of j"):
         drafted(stiff.replace(' friction="5"', ""), tmp_path)
 
 

@@ -150,4 +150,7 @@ def test_the_command_writes_external_controllers(tmp_path: Path) -> None:
     assert re.search(
         r'kind: "external" +# .*: type: effort_controllers/JointGroupEffortController', done.stdout
     )
-    assert "gains of a PID, N m per error, do not fit computed torque: kp 100 1/s², kd 20 1/s" in done.stderr
+    assert (
+        "PID gains (N m per error) do not apply to computed torque, which uses kp 100 1/s², kd 20 1/s"
+        in done.stderr
+    )

@@ -156,7 +156,7 @@ def test_the_command_line(scenario: Path, tmp_path: Path, capsys: pytest.Capture
 @pytest.mark.filterwarnings("ignore:event 'grasp' did not happen", "ignore:systems.chaser.controllers.1")
 def test_without_commands_there_is_a_warning(scenario: Path) -> None:
     with pytest.warns(
-        UserWarning, match=r"controllers\[0\]: external gets no commands.*initial positions.*--commands"
+        UserWarning, match=r"controllers\[0\]: external receives no commands.*initial positions.*--commands"
     ):
         run = oo.run(scenario, quiet=True)
     chaser = run.trace["chaser"]
@@ -180,7 +180,7 @@ BAD = [
     ('{"time": 0.1, "system": "chaser", "control": "arm", "position": [0]}', "has 1 number; expected 5"),
     ('{"time": 0.1, "system": "chaser", "control": "arm", "position": "up"}', "list of finite numbers"),
     ('{"time": 0.1, "system": "chaser", "control": "wrist", "position": [0, 0]}', "require kp > 0"),
-    ('{"time": 0.1, "system": "chaser", "control": "arm"}', "none of position"),
+    ('{"time": 0.1, "system": "chaser", "control": "arm"}', "give one of position"),
     ('{"time": 0.1, "system": "chaser", "control": "arm", "trajectory": {"times": [1]}}', "'times' and"),
     ('{"time": 0.1, "system": "target", "body": "bsu", "force": [1, 0, 0]}', "did you mean 'bus'"),
     ('{"time": 0.1, "system": "target", "body": "bus", "force": [1, 0]}', "force has shape"),
@@ -221,5 +221,5 @@ def test_a_log_of_one_robot_and_entries_of_a_program() -> None:
     again = simulation.start()
     replay_commands(again, [*log.entries, {"time": 0.0, "body": "bus", "torque": [0, 0, 1.0]}], until=0.1)
     assert np.array_equal(again.q, end)
-    with pytest.raises(oo.exceptions.NotFoundError, match="no file of commands"):
+    with pytest.raises(oo.exceptions.NotFoundError, match="no such file of commands"):
         read_commands("missing.jsonl")

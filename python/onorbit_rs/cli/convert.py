@@ -23,7 +23,8 @@ def convert(
         str | None, typer.Option(metavar="NAME", help="Controller to convert, if there are several.")
     ] = None,
     external: Annotated[
-        bool, typer.Option("--external", help="Joints with a PID follow commands, as of onorbit ros2.")
+        bool,
+        typer.Option("--external", help="Joints with a PID follow commands, such as those of onorbit ros2."),
     ] = False,
     keep_going: Annotated[bool, typer.Option("--keep-going", help="Ignore unknown keys.")] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,

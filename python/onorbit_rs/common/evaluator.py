@@ -38,7 +38,7 @@ class Evaluator(ast.NodeVisitor, ABC):
     binary: ClassVar[Mapping[type[ast.operator], Callable[[Any, Any], Any]]] = {}
 
     def generic_visit(self, node: ast.AST) -> Any:
-        """Raise an error for a node that is not allowed."""
+        """Raise the error of :meth:`refused` for a kind of node that is not allowed."""
         raise self.refused(node)
 
     def visit_Constant(self, node: ast.Constant) -> Any:

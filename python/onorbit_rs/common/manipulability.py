@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def manipulability(jacobians: Floats) -> Floats:
     """Return Yoshikawa's manipulability `√det(J Jᵀ)`, (...), of Jacobians (..., m, n).
 
-    It is computed as the product of the singular values, which for m > n is `√det(Jᵀ J)`.
+    The manipulability is computed as the product of the singular values, which for m > n is `√det(Jᵀ J)`.
 
     Source: Yoshikawa, Int. J. Robotics Research 4(2), 1985.
     """

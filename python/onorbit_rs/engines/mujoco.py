@@ -97,7 +97,7 @@ class Mujoco:
 
     @property
     def version(self) -> str:
-        """Version of MuJoCo."""
+        """Version of the installed MuJoCo, such as ``4.0.1``."""
         return str(self._mujoco.__version__)
 
     def step(

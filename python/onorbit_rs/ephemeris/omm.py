@@ -66,7 +66,9 @@ def _from_xml(text: str) -> list[dict[str, Any]]:
     from sgp4 import omm
 
     if "<!DOCTYPE" in text:  # its entities can expand to any length
-        raise ElementSetError("the OMM has a document type (<!DOCTYPE>), which is not allowed; remove it")
+        raise ElementSetError(
+            "the OMM has a document type (<!DOCTYPE>), which is not allowed; remove that tag"
+        )
     try:
         messages = list(omm.parse_xml(io.StringIO(text)))
     except (ParseError, LookupError, ValueError) as error:  # LookupError: unknown encoding

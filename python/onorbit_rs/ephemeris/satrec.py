@@ -48,7 +48,7 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
     Raises
     ------
     InputError
-        If it is not a ``Satrec``.
+        If ``satrec`` is not a ``Satrec``.
     ElementSetError
         If a number is not finite, no Earth model has these gravity constants, or the ``Satrec`` is in AFSPC
         mode and ``by_reference`` is False, since only the reference code implements that mode.

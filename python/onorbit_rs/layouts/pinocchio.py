@@ -1,4 +1,4 @@
-"""Pinocchio: siblings are sorted by name, unbounded joints are cosine and sine; the rest as here."""
+"""Pinocchio: siblings sorted by name, unbounded joints as cosine and sine; otherwise as in onorbit_rs."""
 
 from __future__ import annotations
 

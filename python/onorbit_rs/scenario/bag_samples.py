@@ -1,4 +1,4 @@
-"""Reads motions of joints from bags of ROS: MCAP and SQLite of ROS 2, bags of ROS 1."""
+"""Reads joint motions from ROS bags: MCAP and SQLite files of ROS 2, bags of ROS 1."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SUFFIXES = (".mcap", ".db3", ".bag")
 
 
 class Sample(NamedTuple):
-    """Positions of joints at a time."""
+    """Positions and rates of joints at one time."""
 
     time: int
     """Time, ns: since the first message, or since the start of a trajectory."""
@@ -48,7 +48,7 @@ def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
     Raises
     ------
     NotFoundError, ReadError
-        If there is no such file, it is not a bag or is damaged, or has no such topic.
+        If the file does not exist, is not a bag, is damaged, or does not contain the topic.
     Ros2Error
         If rosbags is not installed.
     """
@@ -75,7 +75,7 @@ def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
 
 @contextmanager
 def _opened(path: Path) -> Iterator[Any]:
-    """Open a bag; the many errors that a damaged file raises become a :class:`ReadError`."""
+    """Open a bag; all errors of the reader are converted to :class:`ReadError`."""
     from rosbags.highlevel import AnyReader
     from rosbags.typesys import Stores, get_typestore
 
@@ -84,12 +84,12 @@ def _opened(path: Path) -> Iterator[Any]:
             yield reader
     except OnOrbitError:
         raise
-    except Exception as error:  # of struct, zstd, sqlite3 and others, besides those of rosbags
+    except Exception as error:  # errors of struct, zstd, sqlite3 and others, in addition to those of rosbags
         raise _error(path, f"it is not a bag, or it is damaged or truncated ({error})") from error
 
 
 def _choice(path: Path, topic: str | None, of_joints: list[str], topics: list[str]) -> str:
-    """Return the topic to read."""
+    """Return the name of the topic to read; raise ReadError if it is missing or not unique."""
     known = ", ".join(of_joints)
     if not of_joints:
         held = ", ".join(topics) or "none"
@@ -106,9 +106,9 @@ def _choice(path: Path, topic: str | None, of_joints: list[str], topics: list[st
 
 
 def _samples_of_states(contents: list[tuple[int, Any]]) -> list[Sample]:
-    """Return the samples of JointState messages, with times since the first."""
+    """Return the samples of JointState messages, with times since the first message."""
     stamps = [_nanoseconds(content.header.stamp) for _, content in contents]
-    if not any(stamps):  # not set: the times of recording
+    if not any(stamps):  # the headers have no times; the times of recording are used
         stamps = [time for time, _ in contents]
     return [
         Sample(stamp - stamps[0], tuple(content.name), content.position, content.velocity)

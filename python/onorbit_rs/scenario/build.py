@@ -232,5 +232,5 @@ def _waiting(scenario: Scenario) -> set[str]:
 
 
 def _reference(part: AnyReference | None, start: Start) -> _core.Reference | _core.JointReference | None:
-    """Return the reference of the engine; None for a controller without a reference."""
+    """Return the engine's reference object; None for a controller without a reference."""
     return None if part is None else part.build(start)

@@ -50,7 +50,7 @@ class BuiltWorld:
     orbit: _core.Orbit | None
     earth: _core.Earth | None
     simulation: _core.Simulation
-    """Simulation of the world."""
+    """Simulation of all systems of the world."""
     warnings: tuple[str, ...] = ()
     """Warnings about valid settings that are probably not intended."""
 

@@ -36,7 +36,7 @@ class _Weld:
 
 
 SEATING_JOINTS = 2
-"""Joints of a seating: one prismatic and one revolute joint."""
+"""Number of joints of a seating: one prismatic and one revolute joint."""
 
 
 def stages(scenario: WorldScenario) -> list[Stage]:

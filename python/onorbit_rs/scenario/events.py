@@ -86,7 +86,9 @@ class When(Part):
     def _exactly_one(self) -> Self:
         given = [self.at is not None, self.after is not None, self.on_command, self.latch is not None]
         if sum(given) != 1:
-            raise invalid("give exactly one of 'at', 'after', 'on_command: true' and 'latch'")
+            raise invalid(
+                f"give exactly one of 'at', 'after', 'on_command: true' and 'latch'; {sum(given)} are given"
+            )
         if self.delay and self.after is None:
             raise inconsistent("delay", "a delay requires 'after'; add the name of an event")
         return self
@@ -127,11 +129,13 @@ class Action(Part):
         if (self.capture is None) == (self.release is None):
             raise invalid("give exactly one of 'capture' and 'release'")
         if self.impulse is not None and self.release is None:
-            raise inconsistent("impulse", "an impulse requires 'release'")
+            raise inconsistent("impulse", "'impulse' requires 'release'; add 'release' or omit 'impulse'")
         if self.seat is not None and self.capture is None:
-            raise inconsistent("seat", "'seat' requires 'capture'")
+            raise inconsistent("seat", "'seat' requires 'capture'; add 'capture' or omit 'seat'")
         if self.pose is not None and self.seat is None:
-            raise inconsistent("pose", "'pose' requires 'seat', the time in which the pose is reached")
+            raise inconsistent(
+                "pose", "'pose' requires 'seat', the time in which the pose is reached; add 'seat'"
+            )
         return self
 
 
@@ -212,4 +216,6 @@ def _check_release(event: Event, by_name: dict[str, Event], refuse: Callable[...
     if name not in by_name:
         raise refuse("do", "release", message=f"no event is named {name!r}{did_you_mean(name, captures)}")
     if event.when.latch is not None:
-        raise refuse("when", "latch", message="a latch belongs to a capture; give 'at' or 'after'")
+        raise refuse(
+            "when", "latch", message="'latch' applies only to captures; give 'at', 'after' or 'on_command'"
+        )

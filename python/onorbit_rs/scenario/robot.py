@@ -36,7 +36,9 @@ def _from_diagonal(value: Any) -> Any:
             ]
         if all(rows) and all(len(row) == 3 for row in value):
             return value
-    raise invalid("an inertia must be three numbers (the diagonal) or a 3 x 3 matrix")
+    raise invalid(
+        f"an inertia must be three numbers (the diagonal) or a 3 x 3 matrix, not {shortened(value)}"
+    )
 
 
 InertiaMatrix = Annotated[list[list[Inertia]], BeforeValidator(_from_diagonal)]
@@ -112,7 +114,7 @@ class PlainRobot(Part):
         if self.urdf is None:
             for name in ("package_paths", "xacro_arguments", "xacro"):
                 if getattr(self, name):
-                    raise invalid(f"{name!r} requires a 'urdf'; add one or omit {name!r}")
+                    raise invalid(f"{name!r} requires 'urdf'; add 'urdf' or omit {name!r}")
         if self.rigid_body is not None and self.links:
             raise invalid("'links' applies only to robots from files; give mass and inertia in 'rigid_body'")
         return self

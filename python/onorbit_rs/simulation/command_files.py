@@ -1,4 +1,4 @@
-"""Commands in the folder of a run, and warnings of controllers that get none."""
+"""Commands in the folder of a run, and warnings about controllers that receive no commands."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def write_commands(folder: OutputFolder, commands: Sequence[Command]) -> None:
 
 
 def saved_commands(folder: OutputFolder) -> list[Command]:
-    """Return the commands of the run in a folder; empty if it has none.
+    """Return the commands of the run in a folder; empty if the folder contains no commands.
 
     Raises
     ------
@@ -47,6 +47,7 @@ def warnings_without(scenario: Scenario | WorldScenario) -> Iterator[str]:
             if isinstance(law, ExternalController):
                 where = "controller" if alone.controllers is None else f"controllers[{index}]"
                 yield (
-                    f"{prefix}{where}: external gets no commands in this run, so {law.without_commands()}; "
-                    "give commands with onorbit run --commands FILE, or from Python with Stepper.send"
+                    f"{prefix}{where}: external receives no commands in this run, so "
+                    f"{law.without_commands()}; give commands with onorbit run --commands FILE, or from "
+                    "Python with Stepper.send"
                 )

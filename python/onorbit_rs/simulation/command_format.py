@@ -38,7 +38,7 @@ _MOST = 1 << 30
 
 
 class Command(dict[str, Any]):
-    """A checked entry; ``where`` names its place in a file, such as ``commands.jsonl:3``."""
+    """A valid command; ``where`` is its location in a file, such as ``commands.jsonl:3``."""
 
     where: str = ""
 
@@ -49,7 +49,7 @@ class Command(dict[str, Any]):
 
 
 def checked(entry: Mapping[str, Any], where: str = "") -> Command:
-    """Return an entry with plain numbers; raise an error for wrong keys or values."""
+    """Return an entry as a command with plain numbers; raise InputError for invalid keys or values."""
     if not isinstance(entry, Mapping):
         raise invalid(where, f'a command must be a mapping such as {{"time": 1.0, …}}, not {entry!r:.40}')
     command = Command({key: _plain(value) for key, value in entry.items()})
@@ -75,7 +75,7 @@ def checked(entry: Mapping[str, Any], where: str = "") -> Command:
         _check_trajectory(command)
     content = [name for name in (*SETPOINT, "values", "trajectory") if name in command]
     if "control" in command and not content:
-        raise invalid(where, f"the command has none of {', '.join(SETPOINT)} and trajectory; give one")
+        raise invalid(where, f"the command has no setpoint; give one of {', '.join(SETPOINT)} and trajectory")
     if len(content) > 1 and not set(content) <= set(SETPOINT):
         raise invalid(where, f"give either {content[-1]!r} or {content[0]!r}, not both")
     return command
@@ -100,6 +100,7 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     Parameters
     ----------
     file : str or path
+        File with one command per line.
 
     Returns
     -------
@@ -111,11 +112,11 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     NotFoundError, ReadError
         If the file does not exist or cannot be read.
     InputError
-        If a line is no valid command, or times decrease; the message names the line.
+        If a line is not a valid command, or times decrease; the message contains the line.
     """
     path = Path(file)
     if not path.is_file():
-        raise NotFoundError(f"there is no file of commands {path}", path=str(path), kind="commands")
+        raise NotFoundError(f"no such file of commands: {path}", path=str(path), kind="commands")
     with open_to_read(path) as stream:
         content = read_bounded(stream, _MOST)
     try:
@@ -126,7 +127,7 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
 
 
 def parse_commands(text: str, name: str) -> list[Command]:
-    """Return the commands in the text of a file with this name."""
+    """Return the commands in ``text``, the content of a file; ``name`` is the file name in messages."""
     commands: list[Command] = []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip():
@@ -143,7 +144,7 @@ def parse_commands(text: str, name: str) -> list[Command]:
 
 
 def in_order(commands: Iterable[Command]) -> list[Command]:
-    """Return the commands; raise an error if a time is earlier than the one before."""
+    """Return the commands; raise an error if a time is earlier than that of the previous command."""
     found: list[Command] = []
     for command in commands:
         if found and command.time < found[-1].time:
@@ -174,7 +175,7 @@ def _is_number(value: Any) -> bool:
     """Return True for a finite number."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    return abs(value) <= _LARGEST  # an integer may exceed all floats
+    return abs(value) <= _LARGEST  # an integer may be larger than any float
 
 
 def _is_array(value: Any) -> bool:
@@ -189,5 +190,5 @@ def _not_finite(text: str) -> float:
 
 
 def invalid(where: str, message: str) -> InputError:
-    """Return the error of a command; ``where`` names its place in a file."""
+    """Return the error for an invalid command; ``where`` is its location in a file."""
     return InputError(f"{where}: {message}" if where else message, name="commands")

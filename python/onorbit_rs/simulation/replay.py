@@ -1,4 +1,4 @@
-"""Repeats the commands of a log over a run, with the bits of the run in which they were given."""
+"""Repeats the commands of a log in a run, with results that are bit-identical to the original run."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Simulation, Stepper
 
 _SAME_INSTANT = 1e-9
-"""Fraction of a step by which two instants may differ and count as the same, as in the engine."""
+"""Largest difference, as a fraction of a step, of two times that are considered equal, as in the engine."""
 
 
 def replay_commands(
     stepper: Stepper, entries: Iterable[Mapping[str, Any]], until: float | None = None
 ) -> None:
-    """Advance a run and give it the commands of a log at their times.
+    """Advance a run and apply the commands of a log at their times.
 
     Parameters
     ----------
     stepper : Stepper
-        Run; commands before its current time are left out.
+        Run to be advanced; commands before its current time are omitted.
     entries : iterable of mapping
         Commands in the order of their times, such as those of :func:`read_commands`.
     until : float, optional
@@ -34,9 +34,9 @@ def replay_commands(
     Raises
     ------
     InputError
-        If an entry is invalid or times decrease; no command is then given.
+        If an entry is invalid or times decrease; in this case no command is applied.
     OnOrbitError
-        The errors of the stepper.
+        The errors of the methods of the stepper.
     """
     queue = Queue(entries, stepper.time)
     while queue.commands:
@@ -48,13 +48,13 @@ def replay_commands(
 
 
 class Queue:
-    """Commands that a run has not been given yet."""
+    """Commands of a log that have not been applied to the run yet."""
 
     def __init__(self, entries: Iterable[Mapping[str, Any]], start: float, *, step: float = 0.0) -> None:
         """Keep the commands from the time ``start``, s, on; the steps of the run have the length ``step``, s.
 
-        A command at the time of a checkpoint may have been given before it was saved. Giving it again changes
-        nothing, because no step lies in between.
+        A command at the time of a checkpoint may have been applied before the checkpoint was saved. Applying
+        the command again changes nothing, because no step lies in between.
         """
         commands = in_order(entry if isinstance(entry, Command) else checked(entry) for entry in entries)
         self._tolerance = max(_SAME_INSTANT * step, 1e-15 * start)
@@ -65,18 +65,18 @@ class Queue:
         return min(self.commands[0].time, end) if self.commands else end
 
     def apply_due(self, stepper: Stepper) -> None:
-        """Give the run the commands whose time it has reached."""
+        """Apply all commands whose time the run has reached."""
         tolerance = max(self._tolerance, 1e-15 * stepper.time)
         while self.commands and self.commands[0].time <= stepper.time + tolerance:
             self.apply_next(stepper)
 
     def apply_next(self, stepper: Stepper) -> None:
-        """Give the run the next command."""
+        """Apply the next command to the run."""
         give(stepper, self.commands.popleft())
 
 
 def check_commands(simulation: Simulation, commands: Sequence[Command], duration: float) -> None:
-    """Raise an error if a command does not fit a run, before it starts: all are given to it at time zero."""
+    """Raise an error for a command that a run would reject, by applying all commands at time zero."""
     stepper = simulation.start()
     for command in commands:
         if command.time > duration:

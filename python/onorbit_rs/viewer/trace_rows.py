@@ -80,7 +80,7 @@ class TraceRows:
         return len(self.columns["time"])
 
     def decimated(self, most: int) -> TraceRows:
-        """Return at most ``most`` evenly spaced rows, including the last."""
+        """Return at most ``most`` evenly spaced rows, including the last row."""
         if len(self) <= most:
             return self
         return self.at(evenly_spaced(len(self), most))

@@ -76,7 +76,7 @@ def box_around(shape: Shape) -> tuple[Floats, Floats]:
 
 
 def _corners(model: Model, q: Floats, shape: Shape) -> Floats:
-    """Return the corners (8, 3) of the box around a shape in W, m."""
+    """Return the corners (8, 3) in W, m, of the box around a shape."""
     in_link, half = box_around(shape)
     pose = np.asarray(model.frame_pose(q, shape.link)).reshape(4, 4) @ in_link
     signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])

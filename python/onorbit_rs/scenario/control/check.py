@@ -43,7 +43,7 @@ def check_control(scenario: Scenario, events: list[str], systems: list[str]) -> 
         _check_frame(scenario.reference, systems, ())
     elif scenario.reference is not None:
         raise inconsistent(
-            "reference", "a reference requires a 'controller' that tracks it; add one or remove the reference"
+            "reference", "a reference requires a 'controller'; add a controller or remove the reference"
         )
 
 

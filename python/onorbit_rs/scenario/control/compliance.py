@@ -27,7 +27,7 @@ class ComplianceController(TaskLaw):
     """Damping of joint motion that does not move the tool, N m s/rad."""
 
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
-        """Return the control law of the engine."""
+        """Return the engine's control law object."""
         return task_law(
             _core.Compliance, model, tool, stiffness=self.stiffness, damping=self.damping,
             null_space_damping=self.null_space_damping,

@@ -32,7 +32,7 @@ class ComputedTorqueController(TaskLaw):
     """Whether damping and Coulomb friction of the joints are compensated, including at rest."""
 
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
-        """Return the control law of the engine."""
+        """Return the engine's control law object."""
         return task_law(
             _core.ComputedTorque, model, tool, kp=self.kp, kd=self.kd, damping=self.damping,
             null_space_damping=self.null_space_damping, compensate_environment=self.compensate_environment,

@@ -37,7 +37,7 @@ class ExternalController(JointLaw):
     commanded."""
 
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
-        """Return the control law of the engine."""
+        """Return the engine's control law object."""
         return _core.External(
             **arguments(kp=self.kp, kd=self.kd, timeout=self.timeout),
             on_timeout=self.on_timeout,

@@ -66,7 +66,7 @@ JointTolerance = Annotated[_PerJoint, _per_joint_reader(units.ANGLE, units.LENGT
 def _task_tolerance(value: object) -> list[float]:
     if not isinstance(value, list) or len(value) != 2:
         raise QuantityError(
-            "the tolerance of a tool must be a distance and an angle, such as [1 mm, 0.1 deg]",
+            f"the tolerance of a tool is {value!r:.60}; it must be a distance and an angle: [1 mm, 0.1 deg]",
             text=value,
             expected="a length and an angle",
         )

@@ -27,7 +27,7 @@ class JointComputedTorqueController(JointLaw):
     """Whether damping and Coulomb friction of the joints are compensated, including at rest."""
 
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
-        """Return the control law of the engine."""
+        """Return the engine's control law object."""
         return _core.JointComputedTorque(
             **arguments(kp=self.kp, kd=self.kd),
             compensate_environment=self.compensate_environment,

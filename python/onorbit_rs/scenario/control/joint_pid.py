@@ -49,7 +49,7 @@ class JointPidController(JointLaw):
         return self
 
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
-        """Return the control law of the engine."""
+        """Return the engine's control law object."""
         return _core.JointPid(
             interface=self.interface,
             **arguments(p=self.p, i=self.i, d=self.d, i_limit=self.i_limit, effort_limit=self.effort_limit),

@@ -26,7 +26,7 @@ class Law(Part, ABC):
 
     @abstractmethod
     def build_law(self, model: Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:
-        """Return the control law of the engine.
+        """Return the engine's control law object.
 
         Parameters
         ----------

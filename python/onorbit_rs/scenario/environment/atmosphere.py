@@ -21,7 +21,7 @@ class ConstantAir(Part):
     density: Annotated[Density, NotNegative]
 
     def build(self, folder: Path) -> _core.Atmosphere:
-        """Return the atmosphere of the engine."""
+        """Return the engine's atmosphere object."""
         return _core.ConstantAtmosphere(self.density)
 
 
@@ -34,7 +34,7 @@ class ExponentialAir(Part):
     scale_height: Annotated[Length, Positive] | None = None
 
     def build(self, folder: Path) -> _core.Atmosphere:
-        """Return the atmosphere of the engine."""
+        """Return the engine's atmosphere object."""
         return _core.ExponentialAtmosphere(
             density=self.density, altitude=self.altitude, scale_height=self.scale_height
         )
@@ -48,7 +48,7 @@ class HarrisPriesterAir(Part):
     lag: Angle | None = None
 
     def build(self, folder: Path) -> _core.Atmosphere:
-        """Return the atmosphere of the engine."""
+        """Return the engine's atmosphere object."""
         lag = {} if self.lag is None else {"lag": self.lag}
         return _core.HarrisPriester(exponent=self.exponent, **lag)
 
@@ -81,7 +81,7 @@ class Nrlmsise00Air(Part):
     three_hourly: bool = True
 
     def build(self, folder: Path) -> _core.Atmosphere:
-        """Return the atmosphere of the engine."""
+        """Return the engine's atmosphere object."""
         table = None if self.table is None else folder / self.table
         return _core.Nrlmsise00(
             f107=self.f107, f107a=self.f107a, ap=self.ap, table=table, three_hourly=self.three_hourly

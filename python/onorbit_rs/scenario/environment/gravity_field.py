@@ -33,7 +33,7 @@ class GravityFieldEffect(Part):
         return self.model.endswith(".gfc")
 
     def build(self, _model: _core.Model | None, folder: Path) -> _core.GravityField:
-        """Return the effect of the engine."""
+        """Return the engine's effect object."""
         degree = {} if self.degree is None else {"degree": self.degree}
         if self.is_file:
             return _core.GravityField.from_gfc(folder / self.model, order=self.order, **degree)

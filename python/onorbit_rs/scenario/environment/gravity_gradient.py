@@ -15,5 +15,5 @@ class GravityGradientEffect(Part):
     kind: Literal["gravity_gradient"] = "gravity_gradient"
 
     def build(self, _model: _core.Model | None, _folder: Path) -> _core.GravityGradient:
-        """Return the effect of the engine."""
+        """Return the engine's effect object."""
         return _core.GravityGradient()

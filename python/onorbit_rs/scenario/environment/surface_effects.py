@@ -74,7 +74,7 @@ class DragEffect(SurfaceEffect):
     atmosphere: Air = Field(default_factory=ExponentialAir)
 
     def build(self, _model: _core.Model | None, folder: Path) -> _core.Effect:
-        """Return the effect of the engine."""
+        """Return the engine's effect object."""
         return _core.Drag(self.atmosphere.build(folder), surfaces=self.build_surfaces())
 
 
@@ -88,7 +88,7 @@ class RadiationPressureEffect(SurfaceEffect):
     earth_radius: Annotated[Length, Positive] | None = None
 
     def build(self, _model: _core.Model | None, _folder: Path) -> _core.Effect:
-        """Return the effect of the engine."""
+        """Return the engine's effect object."""
         radius = {} if self.earth_radius is None else {"earth_radius": self.earth_radius}
         return _core.RadiationPressure(
             surfaces=self.build_surfaces(), flux=self.flux, shadow=self.shadow, **radius

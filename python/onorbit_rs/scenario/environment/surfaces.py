@@ -22,7 +22,7 @@ class FacesSurface(Part):
     diffuse: Coefficient = 0.0
 
     def build(self) -> _core.Surface:
-        """Return the surface of the engine."""
+        """Return the engine's surface object."""
         return _core.Faces(
             drag_coefficient=self.drag_coefficient, specular=self.specular, diffuse=self.diffuse
         )
@@ -37,7 +37,7 @@ class CannonballSurface(Part):
     reflectivity: Coefficient = 1.0
 
     def build(self) -> _core.Surface:
-        """Return the surface of the engine."""
+        """Return the engine's surface object."""
         return _core.Cannonball(
             self.area, drag_coefficient=self.drag_coefficient, reflectivity=self.reflectivity
         )
@@ -61,7 +61,7 @@ class PlatesSurface(Part):
     diffuse: Coefficient = 0.0
 
     def build(self) -> _core.Surface:
-        """Return the surface of the engine."""
+        """Return the engine's surface object."""
         return _core.Plates(
             [plate.area for plate in self.plates],
             [plate.normal for plate in self.plates],

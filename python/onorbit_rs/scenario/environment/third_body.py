@@ -16,5 +16,5 @@ class ThirdBodyEffect(Part):
     body: Literal["sun", "moon"]
 
     def build(self, _model: _core.Model | None, _folder: Path) -> _core.ThirdBody:
-        """Return the effect of the engine."""
+        """Return the engine's effect object."""
         return _core.ThirdBody(self.body)

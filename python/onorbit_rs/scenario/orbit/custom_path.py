@@ -68,7 +68,9 @@ class CustomPathOrbit(Part):
         if self.file is not None:
             extra = [name for name in ("velocities", "accelerations", "attitudes") if getattr(self, name)]
             if inline or extra:
-                raise invalid(f"'file' defines the path; omit it or {', '.join(map(repr, inline + extra))}")
+                raise invalid(
+                    f"'file' defines the path; omit 'file' or {', '.join(map(repr, inline + extra))}"
+                )
         elif len(inline) != 2:
             raise invalid("give 'times' and 'positions', or a 'file' with them")
         return self

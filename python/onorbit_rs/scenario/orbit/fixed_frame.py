@@ -25,6 +25,6 @@ class FixedFrameOrbit(Part):
     gravity_mode: GravityMode = "true"
 
     def build(self, _folder: Path) -> _core.FixedFrame:
-        """Return the orbit of the engine."""
+        """Return the engine's orbit object."""
         attitude = quaternion_of(self.attitude)
         return _core.FixedFrame(position=np.array(self.position), attitude=attitude, mu=self.mu)

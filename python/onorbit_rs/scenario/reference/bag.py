@@ -36,7 +36,7 @@ class BagReference(Part):
     """Time at which the recording starts; the first message is at this time."""
 
     def build(self, at: Start) -> _core.JointSampled:
-        """Return the reference of the engine, for the joints of the group."""
+        """Return the engine's reference object, for the joints of the group."""
         path = at.folder / self.file
         topic, samples = read_samples(path, self.topic)
         try:

@@ -31,7 +31,7 @@ class CircleReference(TimedReference):
     profile."""
 
     def build(self, at: Start) -> _core.Reference:
-        """Return the reference of the engine."""
+        """Return the engine's reference object."""
         start = self.first_pose(at)
         return _core.Circle(start, **self._shape(start))
 
@@ -50,6 +50,6 @@ class ScrewReference(CircleReference):
     """Displacement along the axis over the whole angle."""
 
     def build(self, at: Start) -> _core.Reference:
-        """Return the reference of the engine."""
+        """Return the engine's reference object."""
         start = self.first_pose(at)
         return _core.Screw(start, advance=self.advance, **self._shape(start))

@@ -36,7 +36,7 @@ class TargetFrame(Part):
     target: TargetMotion
 
     def build(self) -> _core.Target:
-        """Return the target of the engine."""
+        """Return the engine's target object."""
         motion = self.target
         return _core.Target(
             motion.transform(), velocity=np.array(motion.velocity), spin=np.array(motion.spin)

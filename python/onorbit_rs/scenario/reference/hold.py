@@ -17,5 +17,5 @@ class HoldReference(TaskReference):
     kind: Literal["hold"] = "hold"
 
     def build(self, at: Start) -> _core.Hold:
-        """Return the reference of the engine."""
+        """Return the engine's reference object."""
         return _core.Hold(self.first_pose(at), frame=self.engine_frame())

@@ -21,5 +21,5 @@ class JointHoldReference(Part):
     joints: JointPositions = Field(default_factory=list)
 
     def build(self, at: Start) -> _core.JointHold:
-        """Return the reference of the engine, for the joints of the group."""
+        """Return the engine's reference object, for the joints of the group."""
         return _core.JointHold(at.of_group(joint_values("joints", self.joints, at.joint_positions, at.model)))

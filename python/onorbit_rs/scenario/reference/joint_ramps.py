@@ -52,6 +52,6 @@ class JointRampsReference(JointTiming):
         return self
 
     def build(self, at: Start) -> _core.JointWaypoints:
-        """Return the reference of the engine, for the joints of the group."""
+        """Return the engine's reference object, for the joints of the group."""
         moves = [move.index_and_position(at.group) for move in self.moves]
         return _core.JointWaypoints.one_by_one(at.of_group(at.joint_positions), moves, **self.timing())

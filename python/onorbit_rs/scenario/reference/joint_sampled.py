@@ -23,7 +23,7 @@ class JointSampledReference(Part):
     """CSV file with values in s, rad and m; its path is relative to the scenario."""
 
     def build(self, at: Start) -> _core.JointSampled:
-        """Return the reference of the engine, for the joints of the group."""
+        """Return the engine's reference object, for the joints of the group."""
         group = at.group
         table = read_table(at.folder / self.file, {name: (name,) for name in ("time", *group)}, ("time",))
         time = table.pop("time").ravel()

@@ -30,7 +30,7 @@ class JointWaypointsReference(JointTiming):
         return self
 
     def build(self, at: Start) -> _core.JointWaypoints:
-        """Return the reference of the engine, for the joints of the group."""
+        """Return the engine's reference object, for the joints of the group."""
         positions = [at.joint_positions]
         for point in self.points:
             positions.append(joint_values("points", point, positions[-1], at.model))

@@ -18,6 +18,6 @@ class LineReference(TimedReference):
     goal: Goal
 
     def build(self, at: Start) -> _core.Line:
-        """Return the reference of the engine."""
+        """Return the engine's reference object."""
         start = self.first_pose(at)
         return _core.Line(start, self.goal.pose(start), frame=self.engine_frame(), **self.limits())

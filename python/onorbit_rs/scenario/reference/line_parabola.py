@@ -26,7 +26,7 @@ class LineParabolaReference(TaskReference):
     duration: Annotated[Time, Positive]
 
     def build(self, at: Start) -> _core.LineParabola:
-        """Return the reference of the engine."""
+        """Return the engine's reference object."""
         return _core.LineParabola(
             self.first_pose(at), displacement=np.array(self.displacement), height=np.array(self.height),
             duration=self.duration, frame=self.engine_frame(),

@@ -34,7 +34,7 @@ class SampledReference(TaskReference):
     """Whether the motion is transformed rigidly so that it begins at the pose ``start``."""
 
     def build(self, at: Start) -> _core.Sampled:
-        """Return the reference of the engine."""
+        """Return the engine's reference object."""
         start = self.first_pose(at)
         table = read_table(at.folder / self.file, COLUMNS, ("time", "position", "attitude"))
         quats, velocities = table["attitude"], table.get("velocity")

@@ -82,7 +82,7 @@ class TaskReference(Part, ABC):
 
     @abstractmethod
     def build(self, at: Start) -> _core.Reference:
-        """Return the reference of the engine, for a robot in the state ``at``."""
+        """Return the engine's reference object, for a robot in the state ``at``."""
 
     def engine_frame(self) -> Any:
         """Return the frame as the engine's references expect it in the argument ``frame``."""

@@ -32,7 +32,7 @@ class WaypointsReference(LimitedReference):
         return self
 
     def build(self, at: Start) -> _core.Waypoints:
-        """Return the reference of the engine."""
+        """Return the engine's reference object."""
         start = self.first_pose(at)
         poses = np.array([start, *(goal.pose(start) for goal in self.points)])
         return _core.Waypoints(

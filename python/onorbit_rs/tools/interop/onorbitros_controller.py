@@ -99,7 +99,7 @@ def _trajectory(source: Source) -> None:
     source.put(("simulation", "duration"), seconds, key)
     source.comments.pop(("reference", "kind"))
     source.comments[("reference", "displacement")] = (
-        "the target was sent over a ROS topic; give it here, m, W axes"
+        "the target was sent over a ROS topic; give its displacement here, m, W axes"
     )
     source.note(
         key, "understood", f"{seconds:g} s; OnOrbitROS receives the target over a topic; give 'displacement'"

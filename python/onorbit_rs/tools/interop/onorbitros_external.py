@@ -1,4 +1,4 @@
-"""Converts controllers of ROS Control that a node drives over a topic to joints that follow commands."""
+"""Converts controllers of ROS Control that receive setpoints over a topic to joints that follow commands."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ KP, KD = 100.0, 20.0
 
 
 def forwards_efforts(part: dict[str, Any]) -> bool:
-    """Return whether a controller passes efforts from a topic on to the joints."""
+    """Return whether a controller forwards efforts from a topic to the joints."""
     return part.get("type") in _EFFORTS
 
 
 def read_efforts(source: Source) -> None:
-    """Convert a controller that passes efforts on, which needs no gains."""
+    """Convert a controller that forwards efforts, which requires no gains."""
     source.refuse_unknown(_KEYS)
     joints = joint_names(source)
     source.put(("kind",), "external", "type")
@@ -31,7 +31,7 @@ def read_efforts(source: Source) -> None:
 
 
 def read_driven(source: Source) -> None:
-    """Convert a PID whose setpoints a node sends to computed torque that follows commands."""
+    """Convert a PID controller, whose setpoints a node sends, to computed torque that follows commands."""
     source.refuse_unknown(PID_KEYS)
     joints = joint_names(source)
     interface = INTERFACES[str(source.data["type"]).partition("/")[2]]
@@ -44,7 +44,9 @@ def read_driven(source: Source) -> None:
     what = "JointTrajectory" if "Trajectory" in str(source.data["type"]) else f"{interface} commands"
     source.note("type", "understood", f"{what}: send them to {_topic(source)} of onorbit ros2")
     kept = f"kp {KP:g} 1/s², kd {KD:g} 1/s" if interface == "position" else f"kd {KD:g} 1/s"
-    source.note(key, "corrected", f"gains of a PID, N m per error, do not fit computed torque: {kept}")
+    source.note(
+        key, "corrected", f"PID gains (N m per error) do not apply to computed torque, which uses {kept}"
+    )
     for extra in PID_KEYS[5:]:
         if extra in source.data:
             source.note(

@@ -59,7 +59,7 @@ def read_orbit(source: Source) -> None:
     given = {MISSPELT.get(key, key): key for key in source.data}
     for wrong, right in MISSPELT.items():
         if wrong in source.data and right in source.data:
-            raise source.fail(wrong, f"{right!r} is also given; remove one of them")
+            raise source.fail(wrong, f"{right!r} is also given; remove one of the two keys")
     values = {name: _element(source, name, given.get(name)) for name in _KEYS}
     a_m = values["semi_major_axis"] = values["semi_major_axis"] * 1e3
     values["mean_anomaly_ini"] += _since_perigee(source, a_m)

@@ -52,7 +52,7 @@ def read_pid(source: Source) -> None:
     source.comments[("p",)] = f"{source.file.name}: {key}"
     for extra in KEYS[5:]:
         if extra in data:
-            source.note(extra, "no meaning", "there are neither action goals nor topics")
+            source.note(extra, "no meaning", "a scenario has neither action goals nor topics")
 
 
 def joint_names(source: Source) -> list[str]:

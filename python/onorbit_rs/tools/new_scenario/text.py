@@ -62,7 +62,7 @@ def _what(plan: Plan) -> str:
 
 
 def robot_entry(robot: dict[str, Any] | str, indent: int = 0) -> str:
-    """Return the ``robot`` entry of a scenario or of a system."""
+    """Return the text of the ``robot`` entry of a scenario or of a system."""
     if isinstance(robot, dict) and "bus" in robot:
         return textwrap.indent(_bus(robot), " " * indent)
     return keyed_line("robot", robot, "a bundled name, or a URDF or xacro file relative to this file", indent)
