@@ -42,7 +42,7 @@ def layout(
     has_notes: bool,
     is_live: bool = False,
 ) -> rrb.Blueprint:
-    """Return the layout of one run."""
+    """Return the layout of the viewer for a run with one robot."""
     name = f"{setting.label}: camera follows the base, axes of {axes_of_camera(rows)}"
     contents = ["$origin/**", "- $origin/flight/**", "- $origin/near/**"]
     robot = scene_view(name, contents, FOLLOW, viewpoint, [setting])

@@ -13,7 +13,7 @@ import rerun as rr
 from onorbit_rs.exceptions import ViewerError
 
 FLUSH_TIMEOUT_S = 300.0
-"""Timeout of rerun's encoder, s; it usually takes seconds."""
+"""Timeout of rerun's encoder, s; encoding usually takes a few seconds."""
 
 _MAGIC, _FOOTER_BYTES = b"RRF2", 12
 """First bytes of a complete file, and size of its footer, bytes."""
