@@ -17,7 +17,7 @@ def check_output_file(file: Path | None, *, force: bool) -> None:
     OutputNotEmptyError
         If the file exists and ``force`` is false.
     OutputFolderError
-        If it is a folder, a link or a device, or its folder does not exist or is not writable.
+        If the file is a folder, a link or a device, or its folder does not exist or is not writable.
     """
     if file is None:
         return
@@ -45,7 +45,7 @@ def check_bag_file(option: str, file: Path | None, suffix: str, *, force: bool) 
     InputError
         If it has another suffix.
     OutputNotEmptyError, OutputFolderError
-        As :func:`check_output_file`.
+        As for :func:`check_output_file`.
     """
     if file is not None and file.suffix != suffix:
         raise InputError(

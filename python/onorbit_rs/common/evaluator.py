@@ -14,9 +14,9 @@ def parsed(text: str, longest: int) -> ast.expr:
     Raises
     ------
     ValueError
-        If it has more than ``longest`` characters or is nested too deeply.
+        If the text has more than ``longest`` characters or is nested too deeply.
     SyntaxError
-        If it is not a Python expression.
+        If the text is not a Python expression.
     """
     if len(text) > longest:
         raise ValueError(f"the expression has {len(text)} characters; at most {longest} are allowed")

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 class FrameMotion(NamedTuple):
-    """Motion of a frame relative to another one, in the axes of the latter; each (T, 3)."""
+    """Motion of a frame relative to a second frame, in axes of the second frame; arrays (T, 3)."""
 
     position: Floats
     """Position of the origin, m."""
     rotation: Floats
     """Attitude as a rotation vector of at most π, rad."""
     velocity: Floats
-    """Velocity of the origin relative to the other frame, as a point fixed to it, m/s."""
+    """Velocity of the origin as observed in the second frame, m/s."""
     rate: Floats
     """Relative angular velocity, rad/s."""
 

@@ -31,7 +31,7 @@ def import_mujoco() -> ModuleType:
     Raises
     ------
     EngineError
-        If it is not installed.
+        If MuJoCo is not installed.
     """
     try:
         import mujoco

@@ -70,7 +70,7 @@ def from_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> 
     Raises
     ------
     OnOrbitError
-        As :func:`to_drake`.
+        As for :func:`to_drake`.
     """
     order = _order(model, joints)
     return _LAYOUT.to_model("q", checked_vectors(q=(q, model.nq), v=(v, model.nv)), order)

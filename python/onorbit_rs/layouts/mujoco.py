@@ -67,7 +67,7 @@ def from_mujoco(model: Model, qpos: ArrayLike, qvel: ArrayLike, joints: Any = No
     Raises
     ------
     OnOrbitError
-        As :func:`to_mujoco`.
+        As for :func:`to_mujoco`.
     """
     order = _order(model, joints)
     return _LAYOUT.to_model("qpos", checked_vectors(qpos=(qpos, model.nq), qvel=(qvel, model.nv)), order)

@@ -92,7 +92,7 @@ def from_pinocchio(
     Raises
     ------
     OnOrbitError
-        As :func:`to_pinocchio`.
+        As for :func:`to_pinocchio`.
     """
     order, is_unbounded = _layout(model, joints, unbounded)
     q_other, v_other = checked_vectors(q=(q, model.nq + sum(is_unbounded)), v=(v, model.nv))

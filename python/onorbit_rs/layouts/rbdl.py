@@ -74,7 +74,7 @@ def from_rbdl(
     Raises
     ------
     OnOrbitError
-        As :func:`to_rbdl`.
+        As for :func:`to_rbdl`.
     """
     order = order_of(model, joints)
     return _LAYOUT.to_model("q", checked_vectors(q=(q, model.nq), v=(v, model.nv)), order)

@@ -113,7 +113,7 @@ def from_spart(
     Raises
     ------
     OnOrbitError
-        As :func:`to_spart`.
+        As for :func:`to_spart`.
     """
     order, com = order_of(model, joints), _com(model, base_com)
     n = len(order)

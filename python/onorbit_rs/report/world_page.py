@@ -98,7 +98,7 @@ def _certificates(summary: dict[str, Any]) -> str:
 
 
 def _figures(pictures: Mapping[str, Sequence[Picture]]) -> str:
-    """Return the HTML of the figures of all systems together, then of those of each system."""
+    """Return the HTML of the figures of all systems together, then of each system's figures."""
     parts = []
     for name, own in pictures.items():
         if own:

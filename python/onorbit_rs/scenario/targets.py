@@ -49,6 +49,6 @@ def targets(scenario: Scenario) -> tuple[Target, ...]:
 
 
 def task_references(scenario: Scenario) -> Iterator[Any]:
-    """Yield the references of tools, which, unlike those of joints, have a frame."""
+    """Yield the references of tools; references of joints, which have no frame, are omitted."""
     parts = [scenario.reference, *(control.reference for control in scenario.controllers or [])]
     return (part for part in parts if hasattr(part, "frame"))

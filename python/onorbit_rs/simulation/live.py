@@ -105,7 +105,7 @@ def _advance(
 
 
 def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
-    """Return the exception with the recorded rows; after a signal within a step, that of the stepper."""
+    """Return the exception with the recorded rows; a signal within a step has already created it."""
     if isinstance(signal, RunInterrupted):
         return signal
     message = f"the run was interrupted at t = {stepper.time:g} s"

@@ -164,7 +164,7 @@ def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
 
 
 def _radius_km(mu: float, rows: TraceRows) -> float:
-    """Return the radius, km, of a sphere of the assumed density; at most that of the path's lowest point."""
+    """Return the radius, km, of a sphere of the assumed density, limited to keep the path above it."""
     radius = (3.0 * mu / (4.0 * math.pi * _GRAVITATION * MEAN_DENSITY)) ** (1.0 / 3.0)
     lowest = float(np.linalg.norm(rows["position_eci"], axis=1).min())
     return float(min(radius, 0.95 * lowest)) / 1e3

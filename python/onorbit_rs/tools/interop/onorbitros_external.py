@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 _EFFORTS = ("effort_controllers/JointEffortController", "effort_controllers/JointGroupEffortController")
 _KEYS = ("type", "joint", "joints")
 KP, KD = 100.0, 20.0
-"""Gains in place of those of a PID, 1/s² and 1/s: critically damped, with a time constant of 0.1 s."""
+"""Gains that replace PID gains, 1/s² and 1/s: critically damped, with a time constant of 0.1 s."""
 
 
 def forwards_efforts(part: dict[str, Any]) -> bool:
