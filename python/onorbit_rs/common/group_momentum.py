@@ -27,6 +27,7 @@ def group_momentum(momenta: Sequence[Floats], centers: Sequence[Floats], masses:
     centers : sequence of (T, 3) array, m
         Centres of mass in W.
     masses : sequence of float, kg
+        Masses of the systems.
     """
     found, places = np.array(momenta, dtype=np.float64), np.array(centers, dtype=np.float64)
     common = np.einsum("k,kti->ti", np.array(masses), places) / sum(masses)

@@ -27,6 +27,7 @@ def check_regular(path: str | os.PathLike[str], kind: str = "file") -> None:
     Parameters
     ----------
     path : path
+        Path of the file.
     kind : str
         Kind of the file, for messages.
 
@@ -53,6 +54,7 @@ def read_bytes(path: str | os.PathLike[str], limit: int, kind: str = "file") -> 
     Parameters
     ----------
     path : path
+        Path of the file.
     limit : int
         Size limit, bytes.
     kind : str
@@ -86,6 +88,7 @@ def read_text(path: str | os.PathLike[str], limit: int = LARGEST_TEXT, kind: str
     Parameters
     ----------
     path : path
+        Path of the file.
     limit : int
         Size limit, bytes.
     kind : str

@@ -18,7 +18,9 @@ def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -
     Parameters
     ----------
     sets : iterable of (name, number, set)
+        Element sets with the names and catalogue numbers of their satellites.
     satellite : str
+        Name or catalogue number of the satellite.
     where : str
         Name of the source in messages.
 

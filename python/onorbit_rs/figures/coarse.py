@@ -28,6 +28,7 @@ def coarse(parts: Sequence[Part], size: float, most: int) -> list[tuple[Floats, 
     Parameters
     ----------
     parts : sequence of Part
+        Meshes to be reduced.
     size : float
         Size of the robot, m.
     most : int

@@ -40,7 +40,9 @@ def manipulability(trace: Trace, model: Model, tool: str, joints: Sequence[str] 
     Parameters
     ----------
     trace : Trace
+        Trace of the run.
     model : Model
+        Robot.
     tool : str
         Name of the tool frame.
     joints : sequence of str, optional

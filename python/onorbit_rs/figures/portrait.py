@@ -31,6 +31,7 @@ def portrait(model: Model, q: Floats, frames: Sequence[str] = ()) -> Figure:
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) array
         Configuration.
     frames : sequence of str

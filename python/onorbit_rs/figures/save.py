@@ -38,6 +38,7 @@ def save_all(
     Parameters
     ----------
     subject : Subject
+        Run to be drawn.
     folder : Path
         Folder for the figures; created if it does not exist.
     formats : sequence of str

@@ -31,6 +31,7 @@ def robot_polygons(model: Model, q: Floats) -> list[tuple[Floats, Floats]]:
     Parameters
     ----------
     model : Model
+        Robot.
     q : (k, nq) array
         Configurations.
 

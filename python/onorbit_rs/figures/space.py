@@ -51,7 +51,9 @@ def fit(axes: Axes3D, points: Floats, *, room: tuple[float, float], least: float
     Parameters
     ----------
     axes : Axes3D
+        Axes whose limits are set.
     points : (k, 3) array
+        Points that must be visible.
     room : pair of float
         Width and height available for the projected box, relative to half its space diagonal.
     least : float

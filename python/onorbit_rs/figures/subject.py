@@ -34,6 +34,7 @@ class Subject:
     Attributes
     ----------
     trace : Trace
+        Trace of the run.
     model : Model or None
         Robot; None if its file cannot be read or was changed since the run.
     tools : tuple of Tool
@@ -43,11 +44,13 @@ class Subject:
     mu : float or None
         Gravitational parameter, m³/s²; None without a planet.
     earth : Earth or None
+        Earth of the run, if it has one.
     is_the_papers : bool
         Whether the run is the paper's experiment.
     is_carried : bool
         Whether the robot moves with a reference that is not in free fall.
     targets : tuple of Target
+        Target spacecraft that references follow.
     """
 
     trace: Trace

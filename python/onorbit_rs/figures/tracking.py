@@ -51,6 +51,7 @@ def control_errors(trace: Trace, name: str, joints: list[str], model: Model | No
     Parameters
     ----------
     trace : Trace
+        Trace of the run.
     name : str
         Name of the control.
     joints : list of str

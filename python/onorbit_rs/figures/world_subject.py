@@ -28,6 +28,7 @@ class WorldSubject:
     Attributes
     ----------
     trace : WorldTrace
+        Trace of the run.
     models : dict of Model
         Robots by system, except those whose file cannot be read or was changed since the run.
     events : tuple of EventMark

@@ -25,6 +25,7 @@ def to_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> tu
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) or (B, nq) array
         Configuration of onorbit_rs, rad and m.
     v : (nv,) or (B, nv) array
@@ -53,6 +54,7 @@ def from_drake(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> 
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) or (B, nq) array
         Positions ``[quat_wxyz, p, joints]``.
     v : (nv,) or (B, nv) array

@@ -24,6 +24,7 @@ def to_mujoco(model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None) -> t
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) or (B, nq) array
         Configuration of onorbit_rs, rad and m.
     v : (nv,) or (B, nv) array
@@ -52,8 +53,11 @@ def from_mujoco(model: Model, qpos: ArrayLike, qvel: ArrayLike, joints: Any = No
     Parameters
     ----------
     model : Model
+        Robot.
     qpos : (nq,) or (B, nq) array
+        MuJoCo's configuration.
     qvel : (nv,) or (B, nv) array
+        MuJoCo's velocity.
     joints : sequence of str or mujoco.MjModel, optional
         As in :func:`to_mujoco`.
 

@@ -35,6 +35,7 @@ def to_pinocchio(
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) or (B, nq) array
         Configuration of onorbit_rs, rad and m.
     v : (nv,) or (B, nv) array
@@ -75,6 +76,7 @@ def from_pinocchio(
     Parameters
     ----------
     model : Model
+        Robot.
     q, v : array
         Configuration and velocity of Pinocchio, one state or a batch.
     joints : sequence of str or pin.Model, optional

@@ -27,6 +27,7 @@ def to_rbdl(
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) or (B, nq) array
         Configuration of onorbit_rs, rad and m.
     v : (nv,) or (B, nv) array
@@ -57,6 +58,7 @@ def from_rbdl(
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) or (B, nq) array
         ``Q``.
     v : (nv,) or (B, nv) array

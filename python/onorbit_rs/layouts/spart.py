@@ -46,6 +46,7 @@ def to_spart(
     Parameters
     ----------
     model : Model
+        Robot.
     q : (nq,) or (B, nq) array
         Configuration of onorbit_rs, rad and m.
     v : (nv,) or (B, nv) array
@@ -94,6 +95,7 @@ def from_spart(
     Parameters
     ----------
     model : Model
+        Robot.
     position : (R0, r0, qm)
         Rotation matrix of the base, its centre of mass and joint positions.
     velocity : (u0, um)

@@ -42,6 +42,7 @@ def summarize(
     Parameters
     ----------
     trace : Trace
+        Trace of the run.
     built : Built
         The scenario and the objects built from it.
     status : str

@@ -25,6 +25,7 @@ def create_controller(part: PythonController, folder: Path) -> Any:
     Parameters
     ----------
     part : PythonController
+        Controller in the scenario.
     folder : path
         Folder of the scenario; relative paths start there.
 

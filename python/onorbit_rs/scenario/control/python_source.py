@@ -37,6 +37,7 @@ def source_of(part: PythonController, folder: Path) -> str:
     Parameters
     ----------
     part : PythonController
+        Controller in the scenario.
     folder : path
         Folder of the scenario, at which a relative path starts.
 
@@ -65,6 +66,7 @@ def inspect_source(part: PythonController, folder: Path) -> Placeholder:
     Parameters
     ----------
     part : PythonController
+        Controller in the scenario.
     folder : path
         Folder of the scenario, at which a relative path starts.
 
