@@ -44,7 +44,7 @@ ALONE_STEP = STEP
 
 
 def free_again() -> tuple[float, float]:
-    """Return the largest errors of q and v after a release, against separate runs from the state then."""
+    """Return the largest errors of q and v after a release, against runs from the state at the release."""
     crafts = [slow(2002), slow(2003)]
     systems = [system(name, craft) for name, craft in zip(NAMES, crafts, strict=False)]
     events: list[oo.Capture | oo.Release] = [
