@@ -85,7 +85,7 @@ class Run:
         """
         if isinstance(self.scenario, WorldScenario):
             names = ", ".join(f"models[{name!r}]" for name in self.scenario.systems)
-            raise AttributeError(f"the run has several systems ({names}); use models[NAME] instead of model")
+            raise AttributeError(f"the run has several systems; instead of model, use {names}")
         if self._ran is not None and not isinstance(self._ran, dict):
             return self._ran
         return _loaded(self.scenario, self.summary)
