@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 from ros2_runs import DOMAIN, Peer, needs_ros2, spinning, wait_for_subscriber
-from stepper_runs import assert_same_bits, scenario
+from stepper_runs import assert_same_bits, passive, scenario
 from world_runs import built, data
 
 import onorbit_rs as oo
@@ -19,6 +19,7 @@ import onorbit_rs as oo
 needs_ros2()
 
 from onorbit_rs.ros2 import Node, loopback  # noqa: E402
+from onorbit_rs.ros2.series import Series  # noqa: E402
 
 EVENTS = ("/events", "diagnostic_msgs/msg/DiagnosticArray")
 STATES = ("/joint_states", "sensor_msgs/msg/JointState")
@@ -84,6 +85,49 @@ def test_the_bits_are_those_of_the_run_also_without_listeners_and_in_real_time()
         with node_of(scenario(), pace=pace) as node:
             assert_same_bits(node.spin(0.1), alone)
     assert node.jitter["ticks"] == 100
+
+
+class Counting(oo.Controller):
+    """Commands torques that grow with the number of its updates."""
+
+    def __init__(self) -> None:
+        self.updates = 0
+
+    def update(self, t: float, state: Any) -> Any:
+        self.updates += 1
+        return np.full(7, 1e-4 * self.updates)
+
+
+def test_a_controller_in_python_is_updated_as_often_as_in_a_run() -> None:
+    alone = passive(controller=Counting(), control_period=0.01).run(0.1)
+    with node_of(passive(controller=Counting(), control_period=0.01), pace="fast") as node:
+        assert_same_bits(node.spin(0.1), alone)
+
+
+def test_a_reset_sets_a_controller_in_python_back(peer: Peer) -> None:
+    alone = passive(controller=Counting(), control_period=0.01).run(0.1)
+    with node_of(passive(controller=Counting(), control_period=0.01), pace="stepped") as node:
+        heard(peer, EVENTS)
+        with spinning(node, 0.1) as found:
+            for topic, kind, values in (
+                ("/step", "std_msgs/msg/Float64", {"data": 0.05}),
+                ("/reset", "std_msgs/msg/Empty", {}),
+                ("/step", "std_msgs/msg/Float64", {"data": 0.1}),
+            ):
+                peer.say(topic, kind, values)
+                assert answers(peer, 1)[0][0] == 0
+    assert_same_bits(found[0], alone)
+
+
+def test_topics_without_subscribers_are_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    computed: list[str] = []
+    messages = Series.messages
+    monkeypatch.setattr(
+        Series, "messages", lambda self, rows: computed.append(self.name) or messages(self, rows)
+    )
+    with contextlib.closing(Node(scenario(), pace="fast", domain=231)) as node:  # where nobody listens
+        assert node.spin(0.05).time[-1] == 0.05
+    assert computed == []
 
 
 def test_real_time_takes_the_time_of_the_clock() -> None:

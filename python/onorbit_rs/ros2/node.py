@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import InputError, OnOrbitError
+from onorbit_rs.exceptions import ControlError, InputError, OnOrbitError
 from onorbit_rs.ros2.inbox import Arrived, Entry, Inbox, add_run_topics, add_system_topics
 from onorbit_rs.ros2.live_rows import LiveRows
 from onorbit_rs.ros2.pace import PACES, RealTime
 from onorbit_rs.ros2.participant import Participant
 from onorbit_rs.ros2.publisher import Publisher
 from onorbit_rs.ros2.recording import Recording
-from onorbit_rs.ros2.rows import rows_of_columns
+from onorbit_rs.ros2.rows import rows_of_trace
 from onorbit_rs.ros2.stopping import noted_stop
 from onorbit_rs.ros2.topics import ERROR, OK, WARN, Topics, topics
 from onorbit_rs.scenario import WorldScenario, load
@@ -25,7 +25,7 @@ from onorbit_rs.scenario.build_world import build_world
 from onorbit_rs.simulation.commands import CommandLog
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Model, Simulation, Stepper, Trace, WorldTrace
+    from onorbit_rs._core import Checkpoint, Model, Simulation, Stepper, Trace, WorldTrace
 
 NAME = "onorbit"
 """Name of the node."""
@@ -38,6 +38,7 @@ _DELIVERY_S = 1.0
 """Longest time that a node waits for subscribers that have not received all messages at its end, s."""
 _FAR_S = 3600.0
 """A trajectory that starts so long after the current time, s, was probably stamped by another clock."""
+_UNSAVED = "a controller in Python cannot be set back; give it get_state() and set_state()"
 _SHORTEST_TICK = 1e-3
 """Shortest simulated time between two looks at the topics, unless the time step is longer, s."""
 
@@ -107,11 +108,10 @@ class Node:
         self._end = np.inf
         self.duration: float | None = None
         self._clock = RealTime(self._tick)
-        probe = simulation.start()
-        probe.advance_to(simulation.time_step)
-        self.topics: Topics = topics(self._models, rows_of_columns(probe.columns(), self._models))
-        self._participant = Participant(domain, network=network)
+        self._beginning = self._beginning_of(simulation)
         self._start()
+        self.topics: Topics = topics(self._models, rows_of_trace(self._stepper.trace(), self._models))
+        self._participant = Participant(domain, network=network)
         self._recording = None if record is None else Recording(record, self.topics)
         self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
         self._inbox = Inbox(self._participant)
@@ -157,8 +157,16 @@ class Node:
         """Names and types of the topics that the node listens to."""
         return list(self._inbox.topics())
 
+    @staticmethod
+    def _beginning_of(simulation: Simulation) -> Checkpoint | None:
+        """Return the state at the start, with that of controllers in Python; None if it cannot be saved."""
+        try:
+            return simulation.start().checkpoint()
+        except ControlError:
+            return None
+
     def _start(self) -> None:
-        self._stepper: Stepper = self._simulation.start()
+        self._stepper: Stepper = self._simulation.start(resume=self._beginning)
         self._rows = LiveRows(self._stepper, self._models)
         self._events = 0
         self._log = CommandLog(self._file)
@@ -248,6 +256,9 @@ class Node:
             self._say(OK, arrived.topic, "paused" if self._is_paused else "running")
         elif "reset" in entry and self._recording is not None:
             self._say(ERROR, arrived.topic, "refused: the run is recorded, and times in a bag do not go back")
+            return False
+        elif "reset" in entry and self._beginning is None:
+            self._say(ERROR, arrived.topic, f"refused: {_UNSAVED}")
             return False
         elif "reset" in entry:
             self._log.close()
