@@ -18,8 +18,8 @@ type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 /// Run that the caller advances, as returned by :meth:`Simulation.start`.
 ///
 /// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. If
-/// the current time is within a step, the state at that time is computed by dense output (adaptive steps) or
-/// by a shorter trial step. The whole step is computed later.
+/// the current time is within a step, the state is computed by dense output (adaptive steps) or by a shorter
+/// trial step. The whole step is computed later.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
     pub(crate) run: SharedRun,
@@ -65,7 +65,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// InputError
-    ///     If ``dt`` is not positive and finite, or extends beyond the planned end; the run does not change.
+    ///     If ``dt`` is not positive and finite, or extends beyond the planned end; the run is unchanged.
     /// RunInterrupted
     ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
     ///     be advanced further.
@@ -90,8 +90,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// InputError
-    ///     If ``t`` is not finite, before the current time, or after the planned end; the run does not
-    ///     change.
+    ///     If ``t`` is not finite, before the current time, or after the planned end; the run is unchanged.
     /// RunInterrupted
     ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
     ///     be advanced further.
@@ -106,9 +105,8 @@ impl PyStepper {
 
     /// Set the joint torques, which are held from the current time until the next command.
     ///
-    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose
-    /// controller returns the same torques at the same times; with an adaptive integrator, the lengths of the
-    /// steps before these times may differ.
+    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose controller
+    /// returns these torques at these times, except that the steps of an adaptive integrator may differ.
     ///
     /// Parameters
     /// ----------
@@ -131,30 +129,26 @@ impl PyStepper {
 
     /// Send a command to the joints of an :class:`External` controller.
     ///
-    /// The command takes effect at the next update of the controllers (``control_period``), or at the current
-    /// time if an update is due, and is held until the next command.
+    /// The command takes effect at the next update of the controllers, or now if one is due, and is held.
     ///
     /// Parameters
     /// ----------
     /// control : str
-    ///     Name of the control, which is a key of :attr:`external`; a single controller of all joints is
-    ///     named ``control``.
+    ///     Name of the control, a key of :attr:`external`; ``control`` for a single controller of all joints.
     /// position : (k,) array, optional
     ///     Positions of the joints of the control, rad or m; without ``velocity``, they are held at rest.
     /// velocity : (k,) array, optional
     ///     Velocities, rad/s or m/s; without ``position``, there is no position error.
     /// effort : (k,) array, optional
-    ///     Torques, N m (N for a prismatic joint). They are added to the torques of position and velocity, if
-    ///     given.
+    ///     Torques, N m (N for a prismatic joint), which are added to those of position and velocity.
     /// acceleration : (k,) array, optional
     ///     Accelerations, rad/s² or m/s², which are added to those computed from position and velocity.
     ///
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     If there is no such :class:`External` control or it has ended, if the command requires a gain that
-    ///     is zero, or if an array is missing, has the wrong length or is not finite; the run does not
-    ///     change.
+    ///     If there is no such :class:`External` control or it has ended, if a required gain is zero, or if an
+    ///     array is missing, has the wrong length or is not finite; the run is unchanged.
     #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None))]
     fn send(
         &self,
@@ -173,8 +167,8 @@ impl PyStepper {
     ///
     /// Between the points, the motion is interpolated as by ROS's joint_trajectory_controller: linearly, by
     /// cubic polynomials if velocities are given, and by quintic polynomials if accelerations are given as
-    /// well. The motion begins at the update at which the trajectory takes effect, with the desired state at
-    /// that time or, if there is none, the actual state. After the last point, its positions are held.
+    /// well. The motion begins when the trajectory takes effect, with the desired state or, if there is none,
+    /// the actual state. After the last point, its positions are held.
     ///
     /// Parameters
     /// ----------
@@ -195,8 +189,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     As for :meth:`send`; also if ``times`` do not increase, or if the trajectory ends before the
-    ///     current time.
+    ///     As for :meth:`send`; also if ``times`` do not increase, or the trajectory has already ended.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -231,8 +224,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// FrameError, InputError, ShapeError, EngineError
-    ///     If there is no such body, if a number is not finite, or if the engine is not the native one; the
-    ///     run does not change.
+    ///     If there is no such body, a number is not finite, or the engine is external; the run is unchanged.
     #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
     fn wrench(
         &self,
@@ -253,8 +245,7 @@ impl PyStepper {
         self.external_of(py, system)
     }
 
-    /// Quantity that the gains of each :class:`External` controller can track: ``position``, ``velocity`` or,
-    /// without gains, ``effort``.
+    /// Quantity that the gains of each :class:`External` controller track; ``effort`` without gains.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         let system = self.only("interfaces")?;
@@ -273,14 +264,12 @@ impl PyStepper {
     /// Raises
     /// ------
     /// WorldError
-    ///     If there is no such event, if it has already happened, or if it does not happen on command; the
-    ///     run does not change.
+    ///     If there is no such event, or it has happened or is not ``on_command``; the run is unchanged.
     fn trigger(&self, py: Python<'_>, name: &str) -> PyResult<()> {
         self.try_with(py, |stepper| stepper.trigger(name))
     }
 
-    /// Events of the world during the steps that are complete, in order of time. Events of the current step
-    /// are added at its end.
+    /// Events of the world in the completed steps, in order of time.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEventRecord>> {
         self.with(py, |stepper| self.systems.events(stepper))
@@ -326,8 +315,7 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     First row to return; default: 0. In a world, systems may record different numbers of rows; a dict
-    ///     specifies the first row by the name of the system.
+    ///     First row to return (default: 0); in a world, optionally a dict with the first row of each system.
     ///
     /// Returns
     /// -------
@@ -349,8 +337,7 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     First row of ``columns``, as for :meth:`columns`. A run can be resumed only from a checkpoint with
-    ///     all rows.
+    ///     First row, as for :meth:`columns`. A run can be resumed only from a checkpoint with all rows.
     ///
     /// Returns
     /// -------
@@ -359,7 +346,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// ControlError
-    ///     If the state of a Python controller cannot be saved; the run does not change.
+    ///     If the state of a Python controller cannot be saved; the run is unchanged.
     #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
     fn checkpoint(&self, py: Python<'_>, since: Since) -> PyResult<PyCheckpoint> {
         let wall_s = self.run.lock(py)?.wall_s;
@@ -381,8 +368,7 @@ impl PyStepper {
         Self { run, number, systems }
     }
 
-    /// Returns the number of the only system. Otherwise returns an error, in which `what` names the requested
-    /// attribute.
+    /// Returns the number of the only system, or an error in which `what` names the requested attribute.
     fn only(&self, what: &str) -> PyResult<usize> {
         self.systems.only("stepper", what).map(|()| 0)
     }
