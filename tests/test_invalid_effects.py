@@ -175,7 +175,7 @@ def test_rereferencing_can_be_turned_off(never: Any) -> None:
     scenario = load(SCENARIO | {"simulation": SCENARIO["simulation"] | {"rereference_beyond": never}})
     build(scenario).simulation.run(0.01)
     assert load(scenario.resolved()).simulation.rereference_beyond == "never"
-    with pytest.raises(ScenarioError, match=r"0\.5 m is too short; give at least 1 m, or never"):
+    with pytest.raises(ScenarioError, match=r"0\.5 m is too short; give at least 1 m, or 'never'"):
         load(SCENARIO | {"simulation": SCENARIO["simulation"] | {"rereference_beyond": 0.5}})
 
 

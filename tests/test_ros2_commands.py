@@ -159,7 +159,7 @@ REFUSED = [
     (PATH, TRAJECTORY,
      {"joint_names": ARM, "points": [point(0.2, positions=HERE), point(0.1, positions=HERE)]}, "times"),
     (PATH, TRAJECTORY, PAST | {"joint_names": ARM, "points": [point(0.1, positions=HERE)]}, "ends"),
-    ("/joint_commands", STATE, {"name": ["knee"], "position": [0.0]}, "no external control drives knee"),
+    ("/joint_commands", STATE, {"name": ["knee"], "position": [0.0]}, "drives joint knee"),
     ("/joint_commands", STATE, {"name": ARM}, "neither position nor velocity nor effort"),
     ("/joint_commands", STATE, {}, "the message names no joints"),
     ("/joint_commands", STATE, {"name": ARM[:2], "effort": [0.0, 0.0]}, "expected "),

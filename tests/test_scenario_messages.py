@@ -234,7 +234,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "drift, a word": (
         ROBOT + "simulation: {duration: 1, rereference_beyond: always}\n",
         "2: simulation.rereference_beyond",
-        ("is not a length", "or never"),
+        ("is not a length", "or 'never'"),
     ),
     "a switch": (
         ROBOT + "simulation: {duration: 1, enforce_limits: perhaps}\n",

@@ -127,7 +127,7 @@ def test_a_quaternion_without_unit_norm_is_rejected() -> None:
         (b"a\0b", "binary"),
         (b"", "this is empty"),
         (b"- 1\n- 2\n", "this is a list"),
-        (b"42", "this is a int"),
+        (b"42", "this is a number"),
         (b"orbit: [kepler", "invalid YAML"),
         (b"tab:\n\t- x: 1", "invalid YAML"),
         (b"robot: *nope", "undefined alias"),

@@ -1,4 +1,4 @@
-"""Figures of a run: the paper's Fig. 4-7, base reaction, momentum and energy, environment and orbit.
+"""Figures of a run: Fig. 4-7 of the OnOrbitROS paper, base reaction, momentum, energy, environment and orbit.
 
 Each figure is drawn by a function that returns a ``matplotlib.figure.Figure`` and changes no global state.
 Only this folder imports matplotlib.

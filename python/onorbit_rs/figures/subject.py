@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from onorbit_rs.scenario import Scenario
 
 PAPER = "humanoid_reach"
-"""The bundled scenario of the paper's experiment."""
+"""The bundled scenario of the experiment in the OnOrbitROS paper."""
 
 
 class Tool(NamedTuple):
@@ -46,7 +46,7 @@ class Subject:
     earth : Earth or None
         Earth of the run, if it has one.
     is_the_papers : bool
-        Whether the run is the paper's experiment.
+        Whether the run is the experiment of the OnOrbitROS paper.
     is_carried : bool
         Whether the robot moves with a reference that is not in free fall.
     targets : tuple of Target

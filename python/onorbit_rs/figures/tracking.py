@@ -1,4 +1,4 @@
-"""Figures 6 and 7 of the paper: tracking errors and joint torques."""
+"""Figures 6 and 7 of the OnOrbitROS paper: tracking errors and joint torques."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures 4 and 5 of the paper: the trajectory in space, desired and obtained."""
+"""Figures 4 and 5 of the OnOrbitROS paper: the trajectory in space, desired and obtained."""
 
 from __future__ import annotations
 

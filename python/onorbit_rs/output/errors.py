@@ -1,4 +1,4 @@
-"""Errors for output folders and files that may not be written."""
+"""Errors for output folders and files that must not be overwritten or cannot be written."""
 
 from __future__ import annotations
 

@@ -125,9 +125,10 @@ def _changed(folder: Path, name: str, expected: Entry | None, got: Entry) -> Int
     if expected is None:
         what = f"{name} in {folder} was not written by the run of this folder"
     elif got.size != expected.size:
-        what = f"{name} in {folder} was changed since the run wrote it: {got.size} bytes, not {expected.size}"
+        what = f"{name} in {folder} has changed since the run wrote it: {got.size} bytes, not {expected.size}"
     else:
-        what = f"{name} in {folder} was changed since the run wrote it: its SHA-256 differs from {MANIFEST}'s"
+        why = f"its SHA-256 differs from that in {MANIFEST}"
+        what = f"{name} in {folder} has changed since the run wrote it: {why}"
     again = f"onorbit run {shell_word(folder / SCENARIO)} --out DIR"
     fix = f"undo the change, or repeat the run: {again}"
     return IntegrityError(

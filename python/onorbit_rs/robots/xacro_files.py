@@ -121,7 +121,10 @@ def _is_package(folder: Path) -> bool:
 
 
 def _real(folder: Path) -> set[Path]:
-    """Return the real paths of a folder and of linked files in it (ROS's ``--symlink-install``)."""
+    """Return the real path of a folder and, if it has a ``package.xml``, of the folder of the real file.
+
+    The two differ if ``colcon build --symlink-install`` linked the file.
+    """
     manifest = folder / "package.xml"
     return {folder.resolve()} | ({manifest.resolve().parent} if manifest.is_file() else set())
 

@@ -165,7 +165,10 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
         names, entries = list(content.name), []
         known = {joint for joints in controls.values() for joint in joints}
         if unknown := [name for name in names if name not in known]:
-            raise RefusedError(f"no external control drives {', '.join(unknown)}")
+            raise RefusedError(
+                f"no external control drives joint {', '.join(unknown)}; "
+                f"driven are {', '.join(sorted(known))}"
+            )
         for control, joints in controls.items():
             own = [name for name in names if name in joints]
             if not own:

@@ -79,7 +79,7 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows]) -> Topics:
     models : mapping of str to Model
         Robots by the name of the system; the topics of a single robot have no prefix.
     first : mapping of str to Rows
-        Some rows of each system, which tell the columns that the run records.
+        Some rows of each system; their columns are those that the run records.
     """
     names = ros_names(models, "system")
     prefixes = {name: f"{ros}/" if len(models) > 1 else "" for name, ros in names.items()}

@@ -17,6 +17,9 @@ from onorbit_rs.scenario.yaml_lines import Lines, read_yaml
 
 AnyScenario = Scenario | WorldScenario
 
+_KINDS = {bool: "a truth value", int: "a number", float: "a number", str: "text", list: "a list"}
+"""Words for the types that YAML yields besides mappings."""
+
 
 def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> AnyScenario:
     """Return a validated scenario.
@@ -87,7 +90,7 @@ def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
     Several ``systems`` give a :class:`WorldScenario`; a single system or robot gives a :class:`Scenario`.
     """
     if not isinstance(data, dict):
-        what = "empty" if data is None else f"a {type(data).__name__}"
+        what = "empty" if data is None else _KINDS.get(type(data), f"of type {type(data).__name__}")
         message = (
             f"this is {what}; a scenario must be a mapping of keys to values (onorbit new writes a template)"
         )

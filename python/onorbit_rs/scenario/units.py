@@ -183,6 +183,8 @@ def _example_units(dimension: Dimension) -> str:
 def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> QuantityError:
     units = "; ".join(filter(None, (_example_units(dimension) for dimension in allowed)))
     fix = (
-        f"give a number in SI, or a number with a unit: {units}" if units else "give a number without a unit"
+        f"give a number in SI units, or a number with a unit ({units})"
+        if units
+        else "give a number without a unit"
     )
     return QuantityError(f"{shortened(value)} {why}; {fix}", text=value, expected=_any_of(allowed))

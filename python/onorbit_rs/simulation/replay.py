@@ -1,4 +1,4 @@
-"""Repeats the commands of a log in a run, with results that are bit-identical to the original run."""
+"""Repeats the commands of a log in a run, with the same bits as those of the original run."""
 
 from __future__ import annotations
 

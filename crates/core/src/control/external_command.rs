@@ -206,7 +206,7 @@ impl JointTrajectory {
         }
     }
 
-    /// Interpolates at `t`, s of simulation: by quintic polynomials if the points have velocities and
+    /// Interpolates at simulation time `t`, s: by quintic polynomials if the points have velocities and
     /// accelerations, by cubic polynomials if they have only velocities, and otherwise linearly. After the
     /// last point, its positions are held at rest.
     fn sample(&self, t: f64, out: &mut JointSample) {

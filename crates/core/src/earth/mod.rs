@@ -124,7 +124,7 @@ impl Earth {
         self.sun_moon.as_ref().map(|sun_moon| sun_moon.epoch)
     }
 
-    /// Checks that the rotation of the Earth is known at `t` s of simulation. Runs call this method once,
+    /// Checks that the rotation of the Earth is known at simulation time `t`, s. Runs call this method once,
     /// before they start.
     ///
     /// # Errors
@@ -160,7 +160,7 @@ impl Earth {
         }
     }
 
-    /// Returns the rotation from components in `I` to components in `F` at `t` s of simulation.
+    /// Returns the rotation from components in `I` to components in `F` at simulation time `t`, s.
     ///
     /// Outside the span that the Earth [covers](Self::covers), the parameters and the pole are those at the
     /// nearest end of the span.
@@ -204,7 +204,7 @@ impl Earth {
         Ok(sun_moon.moon(t, |t| self.rot_ig(t)))
     }
 
-    /// Returns the modified Julian date of UTC and the seconds since midnight at `t` s of simulation; leap
+    /// Returns the modified Julian date of UTC and the seconds since midnight at simulation time `t`, s; leap
     /// seconds after the epoch are not counted.
     ///
     /// # Errors

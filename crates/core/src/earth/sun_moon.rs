@@ -54,7 +54,7 @@ impl SunMoon {
         Self::new(self.epoch, self.kernel.clone())
     }
 
-    /// Returns the modified Julian date of UTC and the seconds since midnight at `t` s of simulation.
+    /// Returns the modified Julian date of UTC and the seconds since midnight at simulation time `t`, s.
     pub(super) fn utc(&self, t: f64) -> (i64, f64) {
         let seconds = self.utc.1 + t;
         let days = (seconds / DAY).floor();

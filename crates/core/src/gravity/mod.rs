@@ -127,7 +127,7 @@ impl Gravity {
         Err(GravityError::OtherPlanet { field: self.mu, orbit: mu })
     }
 
-    /// Returns the acceleration, m/s², at position `r` from the planet's centre, m, and `t` s of simulation;
+    /// Returns the acceleration, m/s², at position `r` from the planet's centre, m, and simulation time `t`, s;
     /// axes of `I`.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ pub trait ThirdBody: Send + Sync + std::fmt::Debug {
     /// Returns the gravitational parameter, m³/s².
     fn mu(&self) -> f64;
 
-    /// Returns the position at `t` s of simulation from the planet's centre, axes of `I`, m.
+    /// Returns the position, m, from the planet's centre at simulation time `t`, s, axes of `I`.
     ///
     /// Implementations must be pure functions of `t`, must take less than 100 ns and must not allocate
     /// memory.

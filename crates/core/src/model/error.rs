@@ -58,13 +58,14 @@ pub enum ModelError {
     #[error("joint '{joint}': {what} is {value}, but must not be negative", value = short(*value))]
     Negative { joint: String, what: &'static str, value: f64 },
     #[error(
-        "joint '{joint}': its static friction {at_rest} is below its kinetic friction {moving}; give at \
-         least {moving}, or omit it",
+        "joint '{joint}': its static friction {at_rest} N m (N) is below its kinetic friction {moving} N m \
+         (N); give at least {moving}, or omit it",
         at_rest = unlike(*at_rest, &[*moving]), moving = short(*moving)
     )]
     StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
     #[error(
-        "joint '{joint}': lower limit {lower} is above upper limit {upper}; exchange the two limits",
+        "joint '{joint}': lower limit {lower} rad (m) is above upper limit {upper} rad (m); exchange the \
+         two limits",
         lower = unlike(*lower, &[*upper]), upper = short(*upper)
     )]
     LimitsReversed { joint: String, lower: f64, upper: f64 },
@@ -164,7 +165,7 @@ fn base_advice(joints: &[String]) -> String {
         joints fixed"
             .to_owned(),
         1 => format!(
-            "give it an inertial, or remove both it and the joint {}; the robot floats without them",
+            "give it an inertial, or remove both it and the joint {}; the robot floats even without them",
             names[0]
         ),
         _ => format!(

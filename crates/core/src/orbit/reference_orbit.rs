@@ -16,7 +16,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// Returns the state at `t` seconds of simulation, axes of `I`.
+    /// Returns the state at simulation time `t`, s, axes of `I`.
     ///
     /// # Errors
     /// [`OrbitError`] if `t` is not finite or the orbit is not defined at `t`.
@@ -95,7 +95,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         self.lvlh(t).map(PathFrame::from)
     }
 
-    /// Returns the local orbital frame (Hill, RSW) at `t` seconds of simulation.
+    /// Returns the local orbital frame (Hill, RSW) at simulation time `t`, s.
     ///
     /// # Errors
     /// The errors of [`Orbit::state`], and [`OrbitError::UndefinedFrame`] if the reference is at rest or

@@ -87,7 +87,7 @@ impl Target {
         Ok(Self { start, velocity })
     }
 
-    /// Returns the motion of the target in W at `t`, s of simulation.
+    /// Returns the motion of the target in W at simulation time `t`, s.
     pub fn sample(&self, t: f64) -> TaskSample<f64> {
         TaskSample {
             rot_wd: exp_so3(self.velocity.angular * t).matrix() * self.start.rot_fd,
@@ -98,7 +98,7 @@ impl Target {
     }
 }
 
-/// Returns the motion of L in W at `t`, s of simulation.
+/// Returns the motion of L in W at simulation time `t`, s.
 pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, ReferenceError> {
     let state = orbit.state(t)?;
     let lvlh = orbit.lvlh(t)?;

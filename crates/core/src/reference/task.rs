@@ -22,7 +22,7 @@ impl<P: TaskPath + 'static> From<P> for TaskReference {
 }
 
 impl TaskReference {
-    /// Returns the desired motion at `t`, s of simulation, on a path that starts at `start`, s. It is in W
+    /// Returns the desired motion at simulation time `t`, s, on a path that starts at `start`, s. It is in W
     /// axes, or in base axes if [`TaskReference::is_relative_to_base`]. For a frame of another system, the
     /// present motion of that frame is used.
     ///

@@ -65,8 +65,8 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Completes the checks of the last step, which ended at time `t`, s. Requires projected base twists in
-    /// `state`, and its kinematics in `equations`.
+    /// Completes the checks of the last step, which ended at time `t`, s. Requires base twists in
+    /// `state` that are projected onto the momentum, and the kinematics of `state` in `equations`.
     pub(super) fn end_step(&mut self, t: f64, state: &State<S>, equations: &Equations<'_, S>) {
         for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, &equations.trees)) {
             every_step.end(t, state, tree);

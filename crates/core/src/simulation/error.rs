@@ -46,14 +46,14 @@ pub enum SimulationError {
     #[error("restitution is {value}; it must be between 0 and 1", value = short(*value))]
     Restitution { value: f64 },
     #[error(
-        "joint '{joint}' starts at {value}; start it within its limits, {lower} to {upper}, or \
+        "joint '{joint}' starts at {value} rad (m); start it within its limits, {lower} to {upper}, or \
          set enforce_limits to false",
         value = unlike(*value, &[*lower, *upper]), lower = short(*lower), upper = short(*upper)
     )]
     OutsideLimits { joint: String, value: f64, lower: f64, upper: f64 },
     #[error(
-        "at t = {time} s, even a step of {step} s exceeds the tolerance; increase tolerance, or reduce gains \
-         and stiff effects",
+        "at t = {time} s, the error exceeds the tolerance even with a step of {step} s; increase tolerance, or \
+         reduce gains or the stiffness of effects",
         time = short(*time), step = short(*step)
     )]
     StepTooSmall { time: f64, step: f64 },

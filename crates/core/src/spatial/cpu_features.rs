@@ -31,7 +31,7 @@ pub(super) fn has_fma() -> bool {
     DETECTED.fma
 }
 
-/// Returns true if the processor has AVX-512 F, DQ and VL, and [`has_fma`].
+/// Returns true if the processor has AVX-512 F, DQ and VL, and if [`has_fma`] is true.
 #[inline(always)]
 pub(super) fn has_avx512() -> bool {
     DETECTED.avx512

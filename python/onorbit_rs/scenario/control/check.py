@@ -31,7 +31,8 @@ def check_control(scenario: Scenario, events: list[str], systems: list[str]) -> 
         if scenario.reference is not None:
             raise inconsistent(
                 "reference",
-                "each of the 'controllers' has a 'reference'; move this reference into one of them",
+                "with 'controllers', references belong to the single controllers; move this 'reference' into "
+                "one of them",
             )
         _check_names(scenario.controllers, events)
         for index, control in enumerate(scenario.controllers):

@@ -74,7 +74,7 @@ class BagReference(Part):
         if not found:
             group, names = ", ".join(at.group), ", ".join(wanted.values()) or "none"
             raise _BadRecordingError(
-                f"it has no joint that is controlled: it has {names}, controlled are {group}"
+                f"none of its joints is controlled; it has {names}, and the controlled joints are {group}"
             )
         return found
 

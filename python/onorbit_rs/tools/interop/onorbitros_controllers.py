@@ -63,7 +63,10 @@ def _together(parts: dict[str, Any], names: list[str]) -> tuple[list[str], str]:
 
 
 def _read_several(source: Source, names: list[str], external: bool) -> None:
-    """Convert controllers to ``controllers``; the longest trajectory determines the duration of the run."""
+    """Convert the named controllers to entries of the key ``controllers``.
+
+    The longest trajectory determines the duration of the run.
+    """
     entries: list[dict[str, Any]] = []
     for name in names:
         inside = source.inside(name, apart=True)

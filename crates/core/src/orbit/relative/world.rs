@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 /// differ by 1e-6.
 const SAME_PLANET: f64 = 1e-5;
 
-/// Returns the position of `orbit` in the frame W of `reference` at `t` s of simulation, `r - r_ref` in m,
+/// Returns the position of `orbit` in the frame W of `reference` at simulation time `t`, s, `r - r_ref` in m,
 /// and its time derivative in m/s.
 ///
 /// `t` is the simulation time of the reference. An orbit with an epoch, such as one of an element set, is
