@@ -270,7 +270,7 @@ fn quaternions_need_version_1_1() {
     }
     for version in ["", "version='1.0'"] {
         let (warnings, cosine) = robot(version);
-        assert!(warnings[0].starts_with("line 3: quat_xyzw is ignored in version 1.0"), "{warnings:?}");
+        assert!(warnings[0].starts_with("line 3: quat_xyzw is ignored in URDF version 1.0"), "{warnings:?}");
         assert_eq!(cosine, 1.0);
     }
 }
