@@ -174,7 +174,10 @@ def test_a_full_device_at_stdout_is_reported_in_one_line() -> None:
 def test_invalid_arguments_are_reported_in_one_line(tmp_path: Path) -> None:
     assert "NAME_OR_FILE" in refusal("run")
     assert "No such option" in refusal("run", "humanoid_reach", "--bar")
-    assert "Commands are: run, resume, list, check, show, info, convert, new, report" in refusal("rum")
+    assert (
+        "Commands are: run, resume, ros2, list, check, show, info, convert, new, report, export"
+        in refusal("rum")
+    )
     assert "did you mean 'humanoid_reach'" in refusal("run", "humanoid_rech")
     assert "no such folder" in refusal("show", tmp_path / "nowhere")
     assert "no run in this folder" in refusal("show", tmp_path)

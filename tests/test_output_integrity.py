@@ -158,7 +158,7 @@ def test_a_file_edited_by_the_user_is_named_with_a_fix(recorded: Path, tmp_path:
         file.write_bytes(content)
         for ask in (write_report, oo.compare):
             with pytest.raises(
-                IntegrityError, match=f"{name} in .* was changed since the run.*{why}"
+                IntegrityError, match=f"{name} in .* has changed since the run.*{why}"
             ) as caught:
                 ask(out)
             assert caught.value.path == str(file) and "onorbit run " in str(caught.value)

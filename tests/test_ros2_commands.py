@@ -232,21 +232,24 @@ def test_the_timeout_acts_when_a_sender_vanishes() -> None:
 
 
 class FakeReader:
-    def __init__(self, topic: str, kind: str, payloads: list[bytes]) -> None:
-        self.topic, self.kind, self.payloads = topic, kind, payloads
+    def __init__(self, topic: str, kind: str, payloads: list[bytes], sent: int) -> None:
+        self.topic, self.kind, self.payloads, self.sent = topic, kind, payloads, sent
 
-    def take(self) -> list[tuple[bytes, int]]:
-        return [(payload, 1) for payload in self.payloads]
+    def take(self) -> list[tuple[int, int, bytes]]:
+        return [(self.sent, 1, payload) for payload in self.payloads]
 
 
 class FakeParticipant:
     """Readers that have received bytes."""
 
     def __init__(self, payloads: list[bytes]) -> None:
-        self.payloads = payloads
+        self.payloads, self.topics = payloads, 0
 
     def reader(self, topic: str, kind: str) -> FakeReader:
-        return FakeReader(topic, kind, self.payloads)
+        self.topics += 1
+        return FakeReader(
+            topic, kind, self.payloads, -self.topics
+        )  # each topic is sent before the one before
 
 
 def test_malformed_bytes_are_refused_on_every_topic() -> None:
@@ -256,10 +259,14 @@ def test_malformed_bytes_are_refused_on_every_topic() -> None:
     inbox: Any = Inbox(FakeParticipant(payloads))  # type: ignore[arg-type]
     add_run_topics(inbox)
     add_system_topics(inbox, "robot", "", ROBOT, {"arm": list(ARM)})
-    found = list(inbox.take())
+    found = inbox.take()
     assert len(found) == len(payloads) * len(list(inbox.topics()))
     refused = [one for one in found if one.refusal is not None]
     assert any(one.refusal.startswith("the message is malformed (") for one in refused)
     assert all(not one.entries for one in refused)
+    topics = [one.topic for one in found]
+    assert topics == sorted(topics, key=[name for name, _ in inbox.topics()][::-1].index), (
+        "in order of sending"
+    )
     run = {"/pause", "/reset", "/step", "/trigger"}
     assert {one.topic for one in found if one.refusal is None} <= run, "random bytes never name joints"

@@ -6,6 +6,7 @@ import contextlib
 import socket
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,23 @@ def node_of(simulation: oo.Simulation, **options: Any) -> Iterator[Node]:
         yield node
     finally:
         node.close()
+
+
+def test_a_run_without_a_row_can_be_advanced_and_ended() -> None:
+    short = passive(time_step=0.01)
+    with node_of(short, pace="fast") as node:
+        assert len(node.spin(0.0005)) == 2
+    adaptive = passive(time_step=0.01, integrator="dormand_prince")
+    with node_of(adaptive, pace="fast") as node:
+        assert_same_bits(node.spin(0.05), adaptive.run(0.05))
+
+
+def test_a_log_replaces_a_file_only_when_the_node_has_joined(tmp_path: Path) -> None:
+    log = tmp_path / "commands.jsonl"
+    log.write_text("precious")
+    with pytest.raises(oo.exceptions.InputError, match="network is 'wifi'"):
+        Node(passive(), domain=DOMAIN, network="wifi", log=log)
+    assert log.read_text() == "precious"
 
 
 def heard(peer: Peer, *topics: tuple[str, str]) -> None:

@@ -20,7 +20,7 @@ REFUSED: dict[str, tuple[dict[str, Any], type[OnOrbitError], tuple[str, ...]]] =
     "reference of none": (
         two(arm("right"), reference=LINE, tool="right_tool"),
         ScenarioError,
-        ("reference", "move this reference"),
+        ("reference", "move this 'reference'"),
     ),
     "task for joints": (
         one(controller=JOINT, reference=LINE),

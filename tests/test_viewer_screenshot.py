@@ -60,7 +60,7 @@ def test_a_viewer_with_much_output_before_it_exits_is_read(
 ) -> None:
     """Its stderr was once an unread pipe: it blocked, and the error said that it had printed nothing."""
     viewer_is(monkeypatch, LOUD, refusals=10**9)
-    with pytest.raises(ViewerError, match="did not start: no such device; it needs a Vulkan driver"):
+    with pytest.raises(ViewerError, match="did not start: no such device; install a Vulkan driver"):
         viewer.take_screenshot(folder / "run.rrd", folder / "run.png")
 
 

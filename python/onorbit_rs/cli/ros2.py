@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
-from onorbit_rs.cli.output_files import check_bag_file
+from onorbit_rs.cli.output_files import check_bag_file, check_output_file
 from onorbit_rs.common.printable import printable
 
 if TYPE_CHECKING:
@@ -23,7 +23,9 @@ NetworkOption = Annotated[str, typer.Option(metavar="NETWORK", help="loopback, o
 RecordOption = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Record messages and obeyed commands as MCAP.")
 ]
-RecordForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing file of --record.")]
+RecordForceOption = Annotated[
+    bool, typer.Option("--force", help="Replace existing files of --record and --log.")
+]
 PausedOption = Annotated[bool, typer.Option("--paused", help="Wait for /pause false before the first step.")]
 LogOption = Annotated[
     Path | None,
@@ -58,6 +60,7 @@ def ros2(
             print_error(text)
 
     check_bag_file("--record", record, ".mcap", force=force)
+    check_output_file(log, force=force)
     options = {"pace": pace, "domain": domain, "network": network, "is_paused": paused, "log": log}
     node = Node.of_scenario(scenario, **options, record=record, on_message=tell)
     if not quiet:

@@ -66,13 +66,19 @@ class Inbox:
         for route in self._routes:
             yield route.reader.topic, route.reader.kind
 
-    def take(self) -> Iterator[Arrived]:
-        """Return the messages that have arrived since the last call, in the order of the topics."""
-        for route in self._routes:
-            for data, sender in route.reader.take():
-                is_second = bool(route.senders) and sender not in route.senders
-                route.senders.add(sender)
-                yield _arrived(route, data, is_second)
+    def take(self) -> list[Arrived]:
+        """Return the messages that have arrived since the last call, in the order in which they were sent."""
+        taken = [
+            (sent, route, sender, data)
+            for route in self._routes
+            for sent, sender, data in route.reader.take()
+        ]
+        found = []
+        for _, route, sender, data in sorted(taken, key=lambda message: message[0]):
+            is_second = bool(route.senders) and sender not in route.senders
+            route.senders.add(sender)
+            found.append(_arrived(route, data, is_second))
+        return found
 
 
 def _arrived(route: Route, data: bytes, is_second: bool) -> Arrived:

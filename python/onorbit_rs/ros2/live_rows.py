@@ -27,8 +27,8 @@ class LiveRows:
         since = self._counts if len(self._models) > 1 else next(iter(self._counts.values()))
         columns = self._stepper.columns(since)
         for system in self._models:
-            name = f"{system}/time"
-            self._counts[system] += len(columns[name if name in columns else "time"])
+            # without a new row the columns are missing
+            self._counts[system] += len(columns.get(f"{system}/time", columns.get("time", ())))
         return self._after(rows_of_columns(columns, self._models))
 
     def take_present(self) -> dict[str, Rows]:

@@ -106,6 +106,7 @@ class Node:
         self._models: Mapping[str, Model] = simulation.models
         self._tick = _tick(simulation)
         self._end = np.inf
+        self._is_stopped: Callable[[], bool] = lambda: False
         self.duration: float | None = None
         self._clock = RealTime(self._tick)
         self._beginning = self._beginning_of(simulation)
@@ -113,6 +114,7 @@ class Node:
         self.topics: Topics = topics(self._models, rows_of_trace(self._stepper.trace(), self._models))
         self._participant = Participant(domain, network=network)
         self._recording = None if record is None else Recording(record, self.topics)
+        self._log = CommandLog(log)  # after everything that may fail, since it replaces the file
         self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
         self._inbox = Inbox(self._participant)
         add_run_topics(self._inbox)
@@ -169,7 +171,7 @@ class Node:
         self._stepper: Stepper = self._simulation.start(resume=self._beginning)
         self._rows = LiveRows(self._stepper, self._models)
         self._events = 0
-        self._log = CommandLog(self._file)
+        self._log = CommandLog()
 
     def _of(self, stepper: Stepper, system: str) -> Any:
         return stepper[system] if len(self._models) > 1 else stepper
@@ -191,13 +193,17 @@ class Node:
                 name="duration", got=duration, expected="a positive number of seconds",
             )  # fmt: skip
         try:
-            with noted_stop() as is_stopped:
-                while self._stepper.time < self._end and not is_stopped():
+            with noted_stop() as self._is_stopped:
+                while self._stepper.time < self._end and not self._is_stopped():
                     self._turn()
-                if is_stopped():
+                if self._is_stopped():
                     self._say(OK, "run", "stopped")
         except KeyboardInterrupt:
             self._say(OK, "run", "stopped")
+        except OnOrbitError as error:
+            self._publish()
+            self._say(ERROR, "run", f"failed: {error}")
+            raise
         self._publish()
         trace = self._stepper.finish()
         self._publisher.rows(self._rows.take_last(trace))
@@ -223,6 +229,14 @@ class Node:
     def _advance(self, t: float) -> None:
         self._stepper.advance_to(min(t, self._end))
         self._publish()
+
+    def _advance_by(self, length: float) -> None:
+        """Advance by a length of simulated time, s, in blocks, between which a signal stops the node."""
+        end = min(self._stepper.time + length, self._end)
+        before = -np.inf
+        while before < self._stepper.time < end and not self._is_stopped():
+            before = self._stepper.time
+            self._advance(min(self._next(), end))
 
     def _publish(self) -> None:
         """Publish the rows and events since the last call."""
@@ -257,6 +271,9 @@ class Node:
         elif "reset" in entry and self._recording is not None:
             self._say(ERROR, arrived.topic, "refused: the run is recorded, and times in a bag do not go back")
             return False
+        elif "reset" in entry and self._file is not None:
+            self._say(ERROR, arrived.topic, "refused: the commands are logged, and a log has one run")
+            return False
         elif "reset" in entry and self._beginning is None:
             self._say(ERROR, arrived.topic, f"refused: {_UNSAVED}")
             return False
@@ -279,7 +296,7 @@ class Node:
         elif not 0.0 < length < np.inf:
             self._say(ERROR, topic, f"refused: the step is {length!r} s; it must be positive and finite")
         else:
-            self._advance(self._stepper.time + length)
+            self._advance_by(length)
             self._publish_present()
             self._say(OK, topic, f"advanced to t = {self._stepper.time:.9g} s")
             return True

@@ -142,8 +142,8 @@ class Reader:
         self._entity = entity
         self.topic, self.kind = topic, kind
 
-    def take(self) -> list[tuple[bytes, int]]:
-        """Return the payloads received since the last call, in CDR, each with a number of its sender.
+    def take(self) -> list[tuple[int, int, bytes]]:
+        """Return the messages received since the last call: time of sending, ns, number of the sender, CDR.
 
         Raises
         ------
@@ -154,7 +154,9 @@ class Reader:
         if isinstance(taken, int):
             raise Ros2Error(f"CycloneDDS could not read {self.topic}: {DDSException(taken).msg}")
         # a sender that leaves adds a sample without data
-        return [(data, info.publication_handle) for data, info in taken if info.valid_data]
+        return [
+            (info.source_timestamp, info.publication_handle, data) for data, info in taken if info.valid_data
+        ]
 
 
 def _qos(kind: str, is_latched: bool = False) -> Qos:

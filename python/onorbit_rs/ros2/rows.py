@@ -125,5 +125,6 @@ def rows_of_columns(columns: Mapping[str, Floats], models: Mapping[str, Model]) 
         wrenches = {
             path.removeprefix(start): held for path, held in columns.items() if path.startswith(start)
         }
+        own.setdefault("time", np.empty((0, 1)))  # columns without rows are missing
         found[system] = Rows.at_distinct_times(own, wrenches)
     return found

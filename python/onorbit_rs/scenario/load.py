@@ -17,7 +17,7 @@ from onorbit_rs.scenario.yaml_lines import Lines, read_yaml
 
 AnyScenario = Scenario | WorldScenario
 
-_KINDS = {bool: "a truth value", int: "a number", float: "a number", str: "text", list: "a list"}
+_KINDS = {bool: "true or false", int: "a number", float: "a number", str: "text", list: "a list"}
 """Words for the types that YAML yields besides mappings."""
 
 

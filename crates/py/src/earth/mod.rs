@@ -23,8 +23,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Parameters
 /// ----------
 /// epoch : str or datetime, optional
-///     Time zero: text with its time scale, such as ``2024-03-01T12:00:00 UTC`` (or ``Z``, TAI, TT, TDB), or
-///     a
+///     Time zero: text with its time scale, such as ``2024-03-01T12:00:00 UTC`` (or ``Z``, TAI, TT, TDB), or a
 ///     ``datetime`` with a time zone. ``iau2006`` requires an epoch.
 /// rotation : {"iau2006", "about_z"}
 ///     ``iau2006`` is the precession of IAU 2006 with the nutation of 2000A (accurate to 2 mas); ``about_z``
@@ -34,6 +33,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     UT1 - UTC for ``iau2006``, constant during the run, s; default: 0.
 /// polar_motion : (2,) array, optional
 ///     Coordinates of the pole for ``iau2006``, constant during the run, rad; default: 0.
+/// eop : path or (N, 4) array, optional
 ///     Table of Earth orientation parameters, which replaces ``ut1_minus_utc`` and ``polar_motion``: a file
 ///     (``finals2000A`` or ``eopc04`` of the IERS, or CSV with the header
 ///     ``mjd,x_arcsec,y_arcsec,ut1_minus_utc_s``), or rows of MJD (UTC), coordinates of the pole, rad, and

@@ -22,8 +22,7 @@ use std::sync::Arc;
 /// surfaces : Surface or dict of str to Surface, optional
 ///     Surfaces of the bodies: ``Faces`` for all bodies, any surface for a robot with a single body, or a
 ///     dict by link or frame, in which bodies that are not listed have no drag. In a world of several systems
-///     the keys are
-///     ``SYSTEM/LINK``, or ``SYSTEM`` for all of its bodies. Default: the surfaces of each ``System`` or, if
+///     the keys are ``SYSTEM/LINK``, or ``SYSTEM`` for all of its bodies. Default: the surfaces of each ``System`` or, if
 ///     none are given, ``Faces()``: the visual geometry with C_D = 2.2. Bodies without visual geometry then
 ///     have no drag, and a warning is issued.
 #[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]

@@ -89,8 +89,7 @@ impl PyGravityField {
     /// ------
     /// GravityError
     ///     If ``degree`` is out of range, if a number is invalid, or if ``degree`` is given together with any
-    ///     of ``j``,
-    ///     ``mu`` and ``radius``, or only some of the latter are given.
+    ///     of ``j``, ``mu`` and ``radius``, or only some of the latter are given.
     #[staticmethod]
     #[pyo3(signature = (degree=None, *, j=None, mu=None, radius=None))]
     fn zonal<'py>(

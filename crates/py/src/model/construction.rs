@@ -21,8 +21,8 @@ impl PyModel {
     /// path : path
     ///     Path of the file.
     /// package_paths : list of path, optional
-    ///     ROS packages or folders that contain them, searched for ``package://`` and ``$(find ...)``.
     ///     Folders that are ROS packages or contain them, searched for ``package://`` and ``$(find ...)``.
+    /// xacro_arguments : dict of str to object, optional
     ///     Values of ``$(arg name)``.
     /// xacro : bool
     ///     If True, the file is expanded as xacro regardless of its name.

@@ -30,8 +30,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// ----------
 /// model : Model or World
 ///     Robot, or a world of systems. Because a world has its own initial states, environment and controllers,
-///     only
-///     ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be given
+///     only ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be given
 ///     with it.
 /// q : (nq,) array, optional
 ///     Initial configuration, m and rad; required for a robot.

@@ -224,8 +224,7 @@ impl PySystemStepper {
     }
 
     /// What the gains of each :class:`External` controller of this system track, by the name of the control:
-    /// ``position``,
-    /// ``velocity`` or, without gains, ``effort``.
+    /// ``position``, ``velocity`` or, without gains, ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         self.stepper.get().interfaces_of(py, self.system)

@@ -63,8 +63,7 @@ impl Attitude {
     /// wrench jumps at the second row, `ω̇₁⁻` may be unknown. It is then taken from the parabola through the
     /// other data:
     /// `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. The error of the parabola
-    /// is
-    /// `d h⁴/72` with the third derivative `d` of the rates, which is estimated from the neighbouring
+    /// is `d h⁴/72` with the third derivative `d` of the rates, which is estimated from the neighbouring
     /// intervals.
     #[inline]
     pub(super) fn add(&mut self, before: &BaseMotion, now: &BaseMotion) {

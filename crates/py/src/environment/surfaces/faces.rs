@@ -16,10 +16,10 @@ use pyo3::prelude::*;
 /// ----------
 /// drag_coefficient : float
 ///     Drag coefficient C_D.
+/// specular : float
 ///     Fraction of the light that is reflected specularly.
-///     Specularly reflected fraction of the light.
+/// diffuse : float
 ///     Fraction of the light that is reflected diffusely; the remainder is absorbed.
-///     Diffusely reflected fraction of the light; the remainder is absorbed.
 #[pyclass(name = "Faces", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyFaces;
 
