@@ -196,7 +196,7 @@ def test_ctrl_c_while_the_viewer_is_updated_keeps_the_rows_and_a_checkpoint(
 
     kept: list[oo.Checkpoint] = []
     monkeypatch.setattr(live, "open_live", lambda *_: Impatient())
-    monkeypatch.setattr(live, "UPDATE_EVERY_S", 0.0)
+    monkeypatch.setattr("onorbit_rs.simulation.live.UPDATE_EVERY_S", 0.0)
     with pytest.raises(oo.exceptions.RunInterrupted) as caught:
         watched(built_reach(duration=80.0), None, kept.append, checkpoint_every=1e3)  # type: ignore[arg-type]
     assert 0.0 < caught.value.time < 80.0 and len(caught.value.trace) > 1 and len(kept) == 1
@@ -212,7 +212,7 @@ def test_a_watched_run_writes_every_row_and_state(accepts: bool, monkeypatch: py
         return accepts
 
     monkeypatch.setattr(live, "open_live", lambda *_: eye)
-    monkeypatch.setattr(live, "UPDATE_EVERY_S", 0.05)
+    monkeypatch.setattr("onorbit_rs.simulation.live.UPDATE_EVERY_S", 0.05)
     trace = watched(built_reach(duration=80.0), None, writer, checkpoint_every=0.0)  # type: ignore[arg-type]
     assert len(given) > 2, "the run ended before a third update"
     assert 0 < eye.seen < len(trace) and eye.ended == [trace]

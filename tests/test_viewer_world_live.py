@@ -101,7 +101,7 @@ def test_a_watched_run_passes_its_rows_to_the_view(tmp_path: Path, monkeypatch: 
     world = built(values)
     opened = view_into(tmp_path / "live.rrd", world)
     monkeypatch.setattr(world_live, "open_world_live", lambda *_: opened)
-    monkeypatch.setattr("onorbit_rs.viewer.live.UPDATE_EVERY_S", 0.01)
+    monkeypatch.setattr("onorbit_rs.simulation.live.UPDATE_EVERY_S", 0.01)
     trace: Any = watched(world, None)
     np.testing.assert_array_equal(trace["chaser"].q, ran(world)["chaser"].q)
     assert rows_by_entity(tmp_path / "live.rrd")[0]["/plots/chaser/base_rate"] > 1

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 CHECKPOINT_EVERY = 30.0
 """Wall-clock time between two checkpoints, s."""
 
+UPDATE_EVERY_S = 0.5
+"""Wall-clock time between two updates of the viewer, s."""
+
 _SLICE_S = 0.05
 """Wall-clock time between two updates of the progress bar, s."""
 
@@ -79,8 +82,6 @@ def _advance(
     queue: Queue,
 ) -> None:
     """Advance to the end in slices of wall-clock time; in between, give commands, and show and save rows."""
-    from onorbit_rs.viewer.live import UPDATE_EVERY_S
-
     last = time.monotonic()
     try:
         queue.apply_due(stepper)

@@ -77,6 +77,8 @@ class Queue:
 
 def check_commands(simulation: Simulation, commands: Sequence[Command], duration: float) -> None:
     """Raise an error for a command that a run would reject, by applying all commands at time zero."""
+    if not commands:
+        return
     stepper = simulation.start()
     for command in commands:
         if command.time > duration:

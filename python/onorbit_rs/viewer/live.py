@@ -33,9 +33,6 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-UPDATE_EVERY_S = 0.5
-"""Wall-clock time between two updates, s."""
-
 MOST_ROWS = 500
 """Largest number of rows per update."""
 
