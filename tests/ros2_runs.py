@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import onorbit_rs as oo
 from onorbit_rs.exceptions import Ros2Error
 from onorbit_rs.ros2.extra import require
 
@@ -62,6 +63,18 @@ class Peer:
         self.process.stdin.close()
         self.process.wait(5)
         self.process.stdout.close()
+
+
+@contextmanager
+def node_of(run: oo.Simulation, **options: Any) -> Iterator[Node]:
+    """A node in the domain of this process, which leaves it at the end of the block."""
+    from onorbit_rs.ros2 import Node
+
+    node = Node(run, domain=DOMAIN, **options)
+    try:
+        yield node
+    finally:
+        node.close()
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ros2_runs import DOMAIN, Peer, needs_ros2, spinning
+from ros2_runs import Peer, needs_ros2, node_of, spinning
 from stepper_runs import assert_same_bits
 
 import onorbit_rs as oo
@@ -47,15 +46,6 @@ def simulation(**wrist: Any) -> oo.Simulation:
 def peer() -> Iterator[Peer]:
     with Peer() as found:
         yield found
-
-
-@contextlib.contextmanager
-def node_of(run: oo.Simulation, **options: Any) -> Iterator[Node]:
-    node = Node(run, domain=DOMAIN, **options)
-    try:
-        yield node
-    finally:
-        node.close()
 
 
 def answer(peer: Peer) -> tuple[int, str, str]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ros2_runs import DOMAIN, Peer, needs_ros2, spinning, wait_for_subscriber
+from ros2_runs import DOMAIN, Peer, needs_ros2, node_of, spinning, wait_for_subscriber
 from stepper_runs import assert_same_bits, passive, scenario
 from world_runs import built, data
 
@@ -30,15 +30,6 @@ STATES = ("/joint_states", "sensor_msgs/msg/JointState")
 def peer() -> Iterator[Peer]:
     with Peer() as found:
         yield found
-
-
-@contextlib.contextmanager
-def node_of(simulation: oo.Simulation, **options: Any) -> Iterator[Node]:
-    node = Node(simulation, domain=DOMAIN, **options)
-    try:
-        yield node
-    finally:
-        node.close()
 
 
 def test_a_run_without_a_row_can_be_advanced_and_ended() -> None:

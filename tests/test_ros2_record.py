@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 import signal
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +16,7 @@ import pytest
 import world_runs
 from bag_files import differences, expected, numbers, read_mcap, read_rosbags
 from commands import SPIN, refusal
-from ros2_runs import DOMAIN, Peer, spinning
+from ros2_runs import DOMAIN, Peer, node_of, spinning
 from stepper_runs import assert_same_bits
 
 import onorbit_rs as oo
@@ -34,15 +32,6 @@ def simulation() -> oo.Simulation:
     control = oo.Control(oo.External(kp=100.0, kd=20.0), joints=ROBOT.joint_names, name="arm")
     orbit = oo.Kepler(semi_major_axis=7e6)
     return oo.Simulation(ROBOT, ROBOT.neutral(), np.zeros(ROBOT.nv), orbit=orbit, controller=[control])
-
-
-@contextlib.contextmanager
-def node_of(run: oo.Simulation, **options: Any) -> Iterator[Node]:
-    node = Node(run, domain=DOMAIN, **options)
-    try:
-        yield node
-    finally:
-        node.close()
 
 
 def wanted_of(run: oo.Simulation, trace: Any) -> Any:

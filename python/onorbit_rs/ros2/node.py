@@ -171,7 +171,6 @@ class Node:
         self._stepper: Stepper = self._simulation.start(resume=self._beginning)
         self._rows = LiveRows(self._stepper, self._models)
         self._events = 0
-        self._log = CommandLog()
 
     def _of(self, stepper: Stepper, system: str) -> Any:
         return stepper[system] if len(self._models) > 1 else stepper
@@ -278,8 +277,8 @@ class Node:
             self._say(ERROR, arrived.topic, f"refused: {_UNSAVED}")
             return False
         elif "reset" in entry:
-            self._log.close()
             self._start()
+            self._log = CommandLog()
             self._clock.restart(0.0)
             self._publish_present()
             self._say(OK, arrived.topic, "reset to t = 0 s")

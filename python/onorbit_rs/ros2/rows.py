@@ -39,16 +39,17 @@ class Rows:
         """Return rows of which the last counts where several have the same time, as at a capture."""
         time = columns["time"].reshape(-1)
         chosen = np.append(time[1:] != time[:-1], np.ones(min(1, len(time)), dtype=bool))
-        if chosen.all():
-            return cls(columns, wrenches)
-        return cls(*({name: held[chosen] for name, held in part.items()} for part in (columns, wrenches)))
+        rows = cls(columns, wrenches)
+        return rows if chosen.all() else rows.at(chosen)
+
+    def at(self, chosen: NDArray[np.bool_] | slice) -> Rows:
+        """Return chosen rows."""
+        parts = (self.columns, self.wrenches)
+        return Rows(*({name: held[chosen] for name, held in part.items()} for part in parts))
 
     def after(self, time: float) -> Rows:
         """Return the rows after a time, s."""
-        later = self.time > time
-        return Rows(
-            *({name: held[later] for name, held in part.items()} for part in (self.columns, self.wrenches))
-        )
+        return self.at(self.time > time)
 
     @property
     def time(self) -> Floats:
@@ -78,10 +79,7 @@ class Rows:
 
     def between(self, start: float, end: float) -> Rows:
         """Return the rows from ``start`` to before ``end``, s."""
-        rows = slice(*np.searchsorted(self.time, [start, end]))
-        return Rows(
-            *({name: held[rows] for name, held in part.items()} for part in (self.columns, self.wrenches))
-        )
+        return self.at(slice(*np.searchsorted(self.time, [start, end])))
 
     def __getitem__(self, name: str) -> Floats:
         """Return a column."""
