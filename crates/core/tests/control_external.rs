@@ -133,6 +133,69 @@ fn after_a_timeout_the_joint_holds_stops_or_is_free() {
     }
 }
 
+/// A joint that moves at a commanded rate, with a trajectory that starts long after the timeout of the rate.
+fn with_later_trajectory(stepper: &mut Stepper<'_>) {
+    send(stepper, Setpoint::velocity(vec![0.3]));
+    stepper.advance_to(0.1).unwrap();
+    let trajectory = JointTrajectory {
+        start: 1.5,
+        times: vec![0.5],
+        positions: vec![0.2],
+        velocities: Some(vec![0.1]),
+        accelerations: None,
+    };
+    stepper.send(0, "control", ExternalCommand::Trajectory(trajectory)).unwrap();
+}
+
+#[test]
+fn a_trajectory_with_a_later_start_does_not_suspend_the_timeout() {
+    let make = || simulation(KP, KD, Some(0.2), OnTimeout::Zero);
+    let mut first = make();
+    let mut stepper = first.start(Some(2.5)).unwrap();
+    with_later_trajectory(&mut stepper);
+    let whole = finished(stepper, 2.5);
+    let torque = |t: f64| whole.tau[whole.time.iter().position(|time| (time - t).abs() < 1e-9).unwrap()];
+    assert!(torque(0.19) != 0.0 && torque(0.21) == 0.0, "the timeout of the running command");
+    assert!(torque(1.6) != 0.0 && torque(2.19) != 0.0 && torque(2.21) == 0.0, "that of the trajectory");
+    for stop in [0.15, 0.25, 1.55, 2.1] {
+        let mut one = make();
+        let mut stepper = one.start(Some(2.5)).unwrap();
+        with_later_trajectory(&mut stepper);
+        stepper.advance_to(stop).unwrap();
+        let read = Checkpoint::from_json(&stepper.checkpoint().unwrap().to_json()).unwrap();
+        let rows = stepper.rows(0).clone();
+        drop(stepper);
+        let mut second = make();
+        assert_same_bits(&finished(second.resume(None, read, vec![rows]).unwrap(), 2.5), &whole);
+    }
+}
+
+#[test]
+fn the_present_row_is_the_last_row_of_the_recording() {
+    let mut simulation = simulation(KP, KD, None, OnTimeout::Hold);
+    let mut stepper = simulation.start(None).unwrap();
+    for t in [0.0, 0.1, 0.1234567] {
+        if t > 0.0 {
+            stepper.advance_to(t).unwrap();
+        }
+        let row = Recording { systems: stepper.present_rows().unwrap(), ..Recording::default() }.only();
+        let all = stepper.recording().unwrap().only();
+        assert_eq!((row.rows(), row.time[0]), (1, t));
+        for ((name, one), (_, column)) in row.columns().zip(all.columns()) {
+            assert_eq!(one[..], column[column.len() - one.len()..], "{name}");
+            assert_eq!(one.is_empty(), column.is_empty(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_checked_command_is_not_sent() {
+    let mut simulation = simulation(KP, KD, None, OnTimeout::Hold);
+    let stepper = simulation.start(None).unwrap();
+    stepper.check_send(0, "control", &ExternalCommand::Setpoint(Setpoint::position(vec![0.4]))).unwrap();
+    assert_eq!(end(&finished(stepper, 0.1)), (0.0, 0.0));
+}
+
 /// Sends trajectories with later starts, and wrenches, at times within steps.
 fn drive(stepper: &mut Stepper<'_>, commands: std::ops::Range<usize>) {
     for k in commands {

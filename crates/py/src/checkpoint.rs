@@ -94,7 +94,7 @@ impl PyCheckpoint {
 }
 
 /// Returns the prefix of the column names of a system in a run of `count` systems.
-fn prefix(system: &str, count: usize) -> String {
+pub(crate) fn prefix(system: &str, count: usize) -> String {
     if count == 1 { String::new() } else { format!("{system}/") }
 }
 
@@ -153,13 +153,26 @@ pub(crate) fn columns_since<'py>(
             let message = format!("since is {since}, but {whose} has {}", count(rows, "row"));
             return Err(raise(py, "InputError", &message, &fields!(py, "name": "since", "got": since)));
         }
-        for (name, column) in trace.columns().filter(|(_, column)| !column.is_empty()) {
-            let width = column.len() / rows;
-            let values = array_of(py, &[rows - since, width], &column[since * width..]);
-            columns.set_item(format!("{prefix}{name}"), values)?;
-        }
+        add_columns(py, &columns, &prefix, trace, since)?;
     }
     Ok(columns)
+}
+
+/// Adds the rows of a trace from row `since` on to a dict of columns, with `prefix` before their names.
+pub(crate) fn add_columns(
+    py: Python<'_>,
+    columns: &Bound<'_, PyDict>,
+    prefix: &str,
+    trace: &Trace,
+    since: usize,
+) -> PyResult<()> {
+    let rows = trace.rows();
+    for (name, column) in trace.columns().filter(|(_, column)| !column.is_empty()) {
+        let width = column.len() / rows;
+        let values = array_of(py, &[rows - since, width], &column[since * width..]);
+        columns.set_item(format!("{prefix}{name}"), values)?;
+    }
+    Ok(())
 }
 
 /// Creates a checkpoint of a run with its rows; `since` is the index of the first row for each system.

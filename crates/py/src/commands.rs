@@ -20,15 +20,20 @@ impl PyStepper {
     }
 
     /// Sends a constant command to a control of a system: positions, velocities, accelerations and efforts.
+    /// If `check_only`, the command is checked and not sent.
     pub(crate) fn send_to(
         &self,
         py: Python<'_>,
         system: usize,
         control: &str,
         values: [Optional<'_, '_>; 4],
+        check_only: bool,
     ) -> PyResult<()> {
         let command = ExternalCommand::Setpoint(setpoint(values)?);
-        self.try_with(py, |stepper| stepper.send(system, control, command))
+        self.try_with(py, |stepper| match check_only {
+            true => stepper.check_send(system, control, &command),
+            false => stepper.send(system, control, command),
+        })
     }
 
     /// Sends a trajectory to a control: its start, times and positions, and optional velocities and

@@ -1,14 +1,13 @@
 //! Runs that the caller advances.
 
 use crate::arrays::constant;
-use crate::checkpoint::{PyCheckpoint, Since, checkpoint_of, columns_since};
+use crate::checkpoint::{PyCheckpoint, Since, add_columns, checkpoint_of, columns_since, prefix};
 use crate::errors::{SimulationErrorExt, plain};
 use crate::interrupt::period;
 use crate::shared_run::SharedRun;
 use crate::world::{PyEventRecord, PySystemStepper, Systems};
 use numpy::PyArrayDyn;
 use onorbit_core::number_text::short;
-use onorbit_core::simulation::{SimulationError, Stepper};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -143,13 +142,15 @@ impl PyStepper {
     ///     Torques, N m (N for a prismatic joint), which are added to those of position and velocity.
     /// acceleration : (k,) array, optional
     ///     Accelerations, rad/s² or m/s², which are added to those computed from position and velocity.
+    /// check_only : bool
+    ///     If True, the command is checked and not sent.
     ///
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
     ///     If there is no such :class:`External` control or it has ended, if a required gain is zero, or if an
     ///     array is missing, has the wrong length or is not finite; the run is unchanged.
-    #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None))]
+    #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None, check_only=false))]
     fn send(
         &self,
         py: Python<'_>,
@@ -158,9 +159,10 @@ impl PyStepper {
         velocity: Optional<'_, '_>,
         effort: Optional<'_, '_>,
         acceleration: Optional<'_, '_>,
+        check_only: bool,
     ) -> PyResult<()> {
         let system = self.only("send")?;
-        self.send_to(py, system, control, [position, velocity, acceleration, effort])
+        self.send_to(py, system, control, [position, velocity, acceleration, effort], check_only)
     }
 
     /// Send a motion through points to the joints of an :class:`External` controller.
@@ -332,6 +334,23 @@ impl PyStepper {
         Ok(columns.unbind())
     }
 
+    /// Return the row at the current time as columns, as if the run ended now.
+    ///
+    /// The cost does not depend on the number of rows of the run.
+    ///
+    /// Returns
+    /// -------
+    /// dict of array
+    ///     Columns (1, width), named as those of :meth:`columns`.
+    fn present(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
+        let rows = self.try_with(py, |stepper| stepper.present_rows())?;
+        let columns = PyDict::new(py);
+        for (name, row) in self.systems.names.iter().zip(&rows) {
+            add_columns(py, &columns, &prefix(name, rows.len()), row, 0)?;
+        }
+        Ok(columns.unbind())
+    }
+
     /// Return a checkpoint, from which :meth:`Simulation.start` resumes with identical bits.
     ///
     /// Parameters
@@ -371,24 +390,6 @@ impl PyStepper {
     /// Returns the number of the only system, or an error in which `what` names the requested attribute.
     fn only(&self, what: &str) -> PyResult<usize> {
         self.systems.only("stepper", what).map(|()| 0)
-    }
-
-    pub(crate) fn with<R>(&self, py: Python<'_>, work: impl FnOnce(&mut Stepper<'_>) -> R) -> PyResult<R> {
-        self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
-    }
-
-    /// Calls `work`, in which a Python controller may run, and converts its error.
-    pub(crate) fn try_with<R>(
-        &self,
-        py: Python<'_>,
-        work: impl FnOnce(&mut Stepper<'_>) -> Result<R, SimulationError>,
-    ) -> PyResult<R> {
-        let mut runs = self.run.lock(py)?;
-        let wall_s = runs.wall_s;
-        let result = runs.with(self.number, |stepper| {
-            work(stepper).map_err(|error| self.failed(py, stepper, error, wall_s))
-        });
-        result.ok_or_else(|| ended(py))?
     }
 }
 

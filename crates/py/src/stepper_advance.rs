@@ -16,6 +16,24 @@ use std::time::{Duration, Instant};
 pub(crate) type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResult<()>;
 
 impl PyStepper {
+    pub(crate) fn with<R>(&self, py: Python<'_>, work: impl FnOnce(&mut Stepper<'_>) -> R) -> PyResult<R> {
+        self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
+    }
+
+    /// Calls `work`, in which a Python controller may run, and converts its error.
+    pub(crate) fn try_with<R>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Stepper<'_>) -> Result<R, SimulationError>,
+    ) -> PyResult<R> {
+        let mut runs = self.run.lock(py)?;
+        let wall_s = runs.wall_s;
+        let result = runs.with(self.number, |stepper| {
+            work(stepper).map_err(|error| self.failed(py, stepper, error, wall_s))
+        });
+        result.ok_or_else(|| ended(py))?
+    }
+
     /// Runs to the end and returns the whole trace; `pause` is called at regular intervals.
     pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<Py<PyAny>> {
         let mut runs = self.run.lock(py)?;

@@ -23,7 +23,7 @@ pub struct External {
     /// Computed-torque law that is used for commands with positions or rates.
     pub law: JointComputedTorque,
     /// Time after the last command, or after the end of the last trajectory, at which `on_timeout` applies,
-    /// s.
+    /// s. Until a trajectory with a later start begins, the timeout of the running command applies.
     pub timeout: Option<f64>,
     /// Behaviour after the timeout.
     pub on_timeout: OnTimeout,
@@ -48,7 +48,7 @@ pub(super) struct ExternalMemory {
     /// Command that has not yet taken effect, and the time at which it was sent, s.
     pending: Option<(f64, ExternalCommand)>,
     current: ExternalCommand,
-    /// Time at which the present command times out, s.
+    /// Time at which the current command times out, s; that of a pending command is set when it begins.
     deadline: Option<f64>,
 }
 
@@ -119,7 +119,6 @@ impl External {
 
     /// Accepts a checked command at `now`, s. It replaces a command that has not yet taken effect.
     pub(super) fn send(&mut self, command: ExternalCommand, now: f64) {
-        self.memory.deadline = self.timeout.map(|timeout| command.end(now) + timeout);
         self.memory.pending = Some((now, command));
     }
 
@@ -141,18 +140,15 @@ impl External {
 
     /// Returns true if a command, or the timeout, takes effect at `now`, s.
     pub(super) fn is_due(&self, now: f64) -> bool {
-        let ExternalMemory { pending, deadline, .. } = &self.memory;
-        match pending {
-            Some(_) => self.has_due_command(now),
-            None => deadline.is_some_and(|deadline| deadline <= now),
-        }
+        self.has_due_command(now) || self.memory.deadline.is_some_and(|deadline| deadline <= now)
     }
 
     /// Applies the command that is due at the control tick at `t`, s, or otherwise the timeout. Times up to
     /// `now`, s, are treated as equal to `t`; `state` holds the positions and rates of the group.
     pub(super) fn follow(&mut self, t: f64, now: f64, state: &mut JointSample) {
         let memory = &mut self.memory;
-        if let Some((_, command)) = memory.pending.take_if(|(sent, command)| command.begin(*sent) <= now) {
+        if let Some((sent, command)) = memory.pending.take_if(|(sent, command)| command.begin(*sent) <= now) {
+            memory.deadline = self.timeout.map(|timeout| command.end(sent) + timeout);
             let before = std::mem::replace(&mut memory.current, command);
             if let ExternalCommand::Trajectory(trajectory) = &mut memory.current {
                 before.sample(t, state);

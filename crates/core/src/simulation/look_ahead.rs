@@ -9,6 +9,7 @@ use super::recording::GroupRecording;
 use super::run_state::RunState;
 use super::schedule::{Cursor, Interval};
 use super::steps::Monitor;
+use super::trace::Trace;
 use super::tree::Tree;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
@@ -205,6 +206,14 @@ impl<S: Scalar> RunState<'_, S> {
         let crossed = self.step_to_current_time();
         self.records_before = f64::INFINITY;
         if crossed? { self.record_within(self.time) } else { self.record_end() }
+    }
+
+    /// Returns the row of each system at the current time, as if the run ended there.
+    pub(super) fn present_rows(&mut self) -> Result<Vec<Trace>, SimulationError> {
+        self.peek(f64::INFINITY, |run| {
+            run.record_current_time()?;
+            Ok(run.systems.iter().map(|system| system.recorder.last_row()).collect())
+        })
     }
 
     /// Returns the rows recorded so far, plus a row at the current time, as if the run ended there.

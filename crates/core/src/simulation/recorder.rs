@@ -221,6 +221,25 @@ impl Recorder {
         }
     }
 
+    /// Returns a trace with the columns of the last row only.
+    pub(super) fn last_row(&self) -> Trace {
+        let trace = &self.trace;
+        let named = |columns: &[NamedColumn]| {
+            let empty = |column: &NamedColumn| NamedColumn {
+                name: column.name.clone(),
+                width: column.width,
+                values: Vec::new(),
+            };
+            columns.iter().map(empty).collect()
+        };
+        let (tracking, wrenches) = (named(&trace.tracking), named(&trace.wrenches));
+        let mut row = Trace { tracking, wrenches, ..Trace::default() };
+        for (((_, to), (_, from)), width) in row.columns_mut().zip(trace.columns()).zip(&self.widths) {
+            to.extend_from_slice(&from[from.len() - width..]);
+        }
+        row
+    }
+
     /// Removes the last row, which is incomplete.
     pub(super) fn drop_last_row(&mut self) {
         self.truncate(self.trace.rows().saturating_sub(1));

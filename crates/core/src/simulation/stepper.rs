@@ -181,6 +181,18 @@ impl<'a> Stepper<'a> {
         Ok(Recording::of(self.groups.iter().map(|group| &group.numbers[..]).zip(parts)))
     }
 
+    /// Returns the row of each system at the current time, as if the run ended now, without the rows before
+    /// it: the cost does not depend on their number.
+    ///
+    /// # Errors
+    /// The errors of [`Stepper::recording`].
+    pub fn present_rows(&mut self) -> Result<Vec<Trace>, SimulationError> {
+        self.check()?;
+        let parts: Result<Vec<_>, _> = self.groups.iter_mut().map(|group| group.run.present_rows()).collect();
+        let mut parts = self.ended_by(parts)?;
+        Ok(self.places.iter().map(|(group, system)| std::mem::take(&mut parts[*group][*system])).collect())
+    }
+
     /// Ends the run at the current time and returns its recording. After an error, this contains the rows
     /// before the error.
     ///

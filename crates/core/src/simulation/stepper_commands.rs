@@ -29,6 +29,21 @@ impl Stepper<'_> {
         run.send(system, control, command)
     }
 
+    /// Checks a command to a control without sending it.
+    ///
+    /// # Errors
+    /// The errors of [`Stepper::send`].
+    pub fn check_send(
+        &self,
+        system: usize,
+        control: &str,
+        command: &ExternalCommand,
+    ) -> Result<(), SimulationError> {
+        self.check()?;
+        let (group, system) = self.places[system];
+        self.groups[group].run.check_send(system, control, command)
+    }
+
     /// Applies a wrench at the origin of a frame (index) of a system, from the current time until the next
     /// wrench on the same frame. The current step ends at the current time.
     ///
@@ -107,6 +122,17 @@ impl<S: Scalar> RunState<'_, S> {
     ) -> Result<(), SimulationError> {
         let time = self.time;
         Ok(self.systems[system].controllers.set.send(control, command, time)?)
+    }
+
+    /// Checks a command to a control at the current time.
+    pub(super) fn check_send(
+        &self,
+        system: usize,
+        control: &str,
+        command: &ExternalCommand,
+    ) -> Result<(), SimulationError> {
+        self.systems[system].controllers.set.check_send(control, command, self.time)?;
+        Ok(())
     }
 
     /// Returns the controls of a system that follow external commands.

@@ -28,6 +28,12 @@ pub(super) trait Steps: Send {
     fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError>;
     fn send(&mut self, system: usize, control: &str, command: ExternalCommand)
     -> Result<(), SimulationError>;
+    fn check_send(
+        &self,
+        system: usize,
+        control: &str,
+        command: &ExternalCommand,
+    ) -> Result<(), SimulationError>;
     fn check_wrench(
         &self,
         system: usize,
@@ -50,6 +56,8 @@ pub(super) trait Steps: Send {
     fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
     fn rows(&self, system: usize) -> &Trace;
     fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
+    /// Returns the row of each system at the current time.
+    fn present_rows(&mut self) -> Result<Vec<Trace>, SimulationError>;
     /// Adds a row at the current time.
     fn record_current_time(&mut self) -> Result<(), SimulationError>;
     /// Removes the rows recorded so far and returns them with the error estimates and the outcomes of goals.
@@ -106,6 +114,15 @@ impl<S: Scalar> Steps for RunState<'_, S> {
         RunState::send(self, system, control, command)
     }
 
+    fn check_send(
+        &self,
+        system: usize,
+        control: &str,
+        command: &ExternalCommand,
+    ) -> Result<(), SimulationError> {
+        RunState::check_send(self, system, control, command)
+    }
+
     fn check_wrench(
         &self,
         system: usize,
@@ -157,6 +174,10 @@ impl<S: Scalar> Steps for RunState<'_, S> {
 
     fn recording(&mut self) -> Result<GroupRecording, SimulationError> {
         RunState::recording(self)
+    }
+
+    fn present_rows(&mut self) -> Result<Vec<Trace>, SimulationError> {
+        RunState::present_rows(self)
     }
 
     fn record_current_time(&mut self) -> Result<(), SimulationError> {

@@ -16,7 +16,6 @@ use crate::shared_run::SharedRun;
 use crate::stepper::PyStepper;
 use crate::world::{PyWorld, RobotSettings, Systems};
 use build::{of_robot, of_world};
-use onorbit_core::orbit::Orbit;
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -105,13 +104,18 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 pub(crate) struct PySimulation {
     run: SharedRun,
     systems: Arc<Systems>,
-    orbit: Option<Arc<dyn Orbit>>,
+    /// Reference orbit; None without one.
+    #[pyo3(get)]
+    orbit: Option<Py<PyOrbit>>,
     /// Length of an integration step, s.
     #[pyo3(get)]
     time_step: f64,
     /// Number of steps from one recorded row to the next.
     #[pyo3(get)]
     record_every: usize,
+    /// Name of the integrator.
+    #[pyo3(get)]
+    integrator: String,
 }
 
 #[pymethods]
@@ -163,7 +167,9 @@ impl PySimulation {
             ("restitution", restitution != 0.0),
             ("rereference_beyond", rereference_beyond != 1e5),
         ];
+        let mut own_orbit = orbit.map(|orbit| orbit.clone().unbind());
         let mut simulation = if let Ok(world) = model.cast::<PyWorld>() {
+            own_orbit = world.get().orbit(py);
             of_world(world, &given)?
         } else {
             let settings = RobotSettings {
@@ -190,9 +196,9 @@ impl PySimulation {
             simulation.engine = Some(Box::new(PythonEngine::new(engine, &simulation)?));
             simulation.check().map_err(|error| error.into_python_with(py, None))?;
         }
-        let orbit = simulation.orbit.clone();
         let systems = Arc::new(Systems::of(&simulation));
-        Ok(Self { run: SharedRun::new(simulation), systems, orbit, time_step, record_every })
+        let (run, integrator) = (SharedRun::new(simulation), integrator.to_owned());
+        Ok(Self { run, systems, orbit: own_orbit, time_step, record_every, integrator })
     }
 
     /// Robots by the name of the system. The name of a single robot is that of its model.
@@ -304,7 +310,7 @@ impl PySimulation {
         let from = resume.map(|checkpoint| checkpoint.get().read(py, &self.systems.names)).transpose()?;
         let begin = from.as_ref().map_or(0.0, |from| from.0.time());
         if let Some(orbit) = &self.orbit {
-            prepare(py, &**orbit, &[begin])?; // Ctrl-C can interrupt this call
+            prepare(py, &*orbit.get().orbit, &[begin])?; // Ctrl-C can interrupt this call
         }
         let wall_s = resume.map_or(0.0, |checkpoint| checkpoint.get().wall_s);
         let number = self.run.start(py, duration, from, wall_s)?;

@@ -112,6 +112,11 @@ impl PyWorld {
 }
 
 impl PyWorld {
+    /// Returns the reference orbit.
+    pub(crate) fn orbit(&self, py: Python<'_>) -> Option<Py<PyOrbit>> {
+        self.orbit.as_ref().map(|orbit| orbit.clone_ref(py))
+    }
+
     /// Creates a simulation of the world with default settings of the integration.
     pub(crate) fn simulation(&self, py: Python<'_>) -> PyResult<Simulation> {
         let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));

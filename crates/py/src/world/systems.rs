@@ -148,7 +148,9 @@ impl PySystemStepper {
     ///     Torques, N m (N for a prismatic joint).
     /// acceleration : (k,) array, optional
     ///     Accelerations, rad/s² or m/s².
-    #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None))]
+    /// check_only : bool
+    ///     If True, the command is checked and not sent.
+    #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None, check_only=false))]
     fn send(
         &self,
         py: Python<'_>,
@@ -157,8 +159,10 @@ impl PySystemStepper {
         velocity: Optional<'_, '_>,
         effort: Optional<'_, '_>,
         acceleration: Optional<'_, '_>,
+        check_only: bool,
     ) -> PyResult<()> {
-        self.stepper.get().send_to(py, self.system, control, [position, velocity, acceleration, effort])
+        let values = [position, velocity, acceleration, effort];
+        self.stepper.get().send_to(py, self.system, control, values, check_only)
     }
 
     /// Send a motion through points to the joints of an :class:`External` controller of this system; see

@@ -17,9 +17,21 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// Sends a command to the control `name` at `now`, s. The command takes effect at the next update.
     ///
     /// # Errors
-    /// [`ControlError`] for an invalid command, and for a control that does not exist, does not follow
-    /// commands or has ended. Nothing is changed then.
+    /// The errors of [`ControllerSet::check_send`]. Nothing is changed then.
     pub fn send(&mut self, name: &str, command: ExternalCommand, now: f64) -> Result<(), ControlError> {
+        let number = self.check_send(name, &command, now)?;
+        if let Some(law) = self.controls[number].law.external_mut() {
+            law.send(command, now);
+        }
+        Ok(())
+    }
+
+    /// Returns the index of the control `name` if it accepts a command at `now`, s.
+    ///
+    /// # Errors
+    /// [`ControlError`] for an invalid command, and for a control that does not exist, does not follow
+    /// commands or has ended.
+    pub fn check_send(&self, name: &str, command: &ExternalCommand, now: f64) -> Result<usize, ControlError> {
         let names =
             |list: &mut dyn Iterator<Item = &Control>| list.map(|control| control.name.clone()).collect();
         let Some(number) = self.controls.iter().position(|control| control.name == name) else {
@@ -31,14 +43,12 @@ impl<S: Scalar> ControllerSet<'_, S> {
             return Err(ControlError::ControlEnded { control });
         }
         let count = self.controls[number].joints.len();
-        if self.controls[number].law.external().is_none() {
+        let Some(law) = self.controls[number].law.external() else {
             let known = names(&mut self.external());
             return Err(ControlError::NotExternal { control, known });
-        }
-        let Some(law) = self.controls[number].law.external_mut() else { return Ok(()) };
-        law.check_command(&command, name, count, now)?;
-        law.send(command, now);
-        Ok(())
+        };
+        law.check_command(command, name, count, now)?;
+        Ok(number)
     }
 
     /// Returns true if a command takes effect at `t`, s.
