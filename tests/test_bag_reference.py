@@ -179,6 +179,8 @@ SHORT = [*states()[:5], state(1.7e9 + 1, NAMES, [1, 2])]
 NAN = state(2e9, NAMES, [np.nan] * 7, [0] * 7)
 PART = [*states()[:5], state(1.7e9 + 1, NAMES[:3], [1, 2, 3])]
 
+TWICE = [state(1.7e9 + time, [NAMES[0], NAMES[0]], [0, 1]) for time in TIMES]
+
 INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError], str]] = {
     "no joints": ({"/chatter": [STRING]}, {}, ReadError, "no topic with JointState .* its topics: /chatter"),
     "several": ({"/a": ONE, "/b": ONE}, {}, ReadError, "give one as 'topic': /a, /b"),
@@ -188,6 +190,7 @@ INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError
     ),
     "one message": ({"/a": ONE}, {}, ReadError, "it has 1 message; a motion requires two or more"),
     "back in time": ({"/a": BACK}, {}, ReadError, r"message 6 is at 0.04 s, after 0.08 s"),
+    "doubled": ({"/a": TWICE}, {}, ReadError, f"message 1 names {NAMES[0]} more than once"),
     "too short": ({"/a": SHORT}, {}, ReadError, "message 6 has 7 names, 2 positions and 0 velocities"),
     "only some": ({"/a": PART}, {}, ReadError, "message 6 lacks arm_joint_4, "),
     "unknown in the bag": (

@@ -20,6 +20,7 @@ needs_ros2()
 
 from onorbit_rs.ros2 import Node  # noqa: E402
 from onorbit_rs.ros2.inbox import Inbox, add_run_topics, add_system_topics  # noqa: E402
+from onorbit_rs.ros2.transforms import frames_of  # noqa: E402
 
 ROBOT = oo.robots.load("humanoid_torso")
 ARM, WRIST = ROBOT.joint_names[:4], ROBOT.joint_names[4:]
@@ -92,9 +93,8 @@ def test_every_kind_of_command_moves_the_robot_and_the_log_repeats_the_run(
             peer.say("/arm/joint_trajectory", TRAJECTORY, {"joint_names": backwards, "points": points})
             obeyed(node, 3)
             step(peer, 0.3)
-            both = {"name": [*WRIST, *ARM], "position": [0.0] * 7, "velocity": [0.0] * 7, "effort": [0.0] * 7}
-            peer.say("/joint_commands", STATE, both)
-            assert answer(peer)[2].startswith("refused: "), "the wrist has no gains for a position"
+            back = {"name": ARM, "position": [0.0] * 4, "velocity": [0.0] * 4, "effort": [0.0] * 4}
+            peer.say("/joint_commands", STATE, back)
             obeyed(node, 4)
             peer.say("/joint_commands", STATE, {"name": WRIST, "effort": [0.0, 0.0, -0.01]})
             wrench = {"force": {"x": 1.0, "y": 0.0, "z": 0.0}, "torque": {"x": 0.0, "y": 0.0, "z": 0.1}}
@@ -200,10 +200,46 @@ def test_of_two_senders_the_last_message_holds(peer: Peer) -> None:
             for count, sender, effort in ((1, peer, 0.01), (2, other, 0.02), (3, other, 0.03)):
                 sender.say("/wrist/commands", FLOATS, {"data": [effort, 0.0, 0.0]})
                 obeyed(node, count)
-            assert answer(peer) == (1, "/wrist/commands", "has several senders; the last message holds")
+                if count == 2:
+                    name = next(iter(simulation().models))
+                    text = f"several processes send to wrist of {name}; the last message holds"
+                    assert answer(peer) == (1, "/wrist/commands", text)
             step(peer, 0.02)
     assert (found[0].tau[:, 4] == 0.03).all()
     assert [entry["values"][0] for entry in node.commands] == [0.01, 0.02, 0.03]
+
+
+def test_a_sender_that_left_is_not_a_second_sender(peer: Peer) -> None:
+    """The other topics of a control count too; a sender that ends in order may come back."""
+    with node_of(simulation(), pace="stepped") as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.02):
+            for count in (1, 2):
+                with Peer() as other:
+                    other.say("/wrist/commands", FLOATS, {"data": [0.01 * count, 0.0, 0.0]})
+                    obeyed(node, count)
+            time.sleep(0.2)
+            with Peer() as other:
+                other.say("/wrist/commands", FLOATS, {"data": [0.01, 0.0, 0.0]})
+                obeyed(node, 3)
+                peer.say("/joint_commands", STATE, {"name": WRIST, "effort": [0.0] * 3})
+                level, topic, text = answer(peer)
+                assert (level, topic) == (1, "/joint_commands") and "send to wrist" in text, "only here"
+            step(peer, 0.02)
+
+
+def test_a_message_to_two_controls_is_obeyed_or_refused_as_a_whole(peer: Peer) -> None:
+    with node_of(simulation(), pace="stepped") as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.02) as found:
+            both = {"name": [*ARM, *WRIST], "position": [0.1] * 7}
+            peer.say("/joint_commands", STATE, both)
+            assert answer(peer)[2].startswith("refused: "), "the wrist has no gains for a position"
+            step(peer, 0.02)
+    assert node.commands == []
+    assert not found[0].tau[:, :4].any()
 
 
 def test_the_timeout_acts_when_a_sender_vanishes() -> None:
@@ -228,6 +264,9 @@ class FakeReader:
     def take(self) -> list[tuple[int, int, bytes]]:
         return [(self.sent, 1, payload) for payload in self.payloads]
 
+    def sender(self, publication: int) -> object:
+        return publication
+
 
 class FakeParticipant:
     """Readers that have received bytes."""
@@ -248,7 +287,7 @@ def test_malformed_bytes_are_refused_on_every_topic() -> None:
     payloads = [b"\0\1\0\0" + rng.bytes(size) for size in sizes] + [rng.bytes(size) for size in sizes]
     inbox: Any = Inbox(FakeParticipant(payloads))  # type: ignore[arg-type]
     add_run_topics(inbox)
-    add_system_topics(inbox, "robot", "", ROBOT, {"arm": list(ARM)})
+    add_system_topics(inbox, "robot", "", frames_of("", ROBOT), {"arm": list(ARM)})
     found = inbox.take()
     assert len(found) == len(payloads) * len(list(inbox.topics()))
     refused = [one for one in found if one.refusal is not None]

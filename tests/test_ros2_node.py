@@ -20,6 +20,7 @@ import onorbit_rs as oo
 needs_ros2()
 
 from onorbit_rs.ros2 import Node, loopback  # noqa: E402
+from onorbit_rs.ros2.pace import Delays  # noqa: E402
 from onorbit_rs.ros2.series import Series  # noqa: E402
 
 EVENTS = ("/events", "diagnostic_msgs/msg/DiagnosticArray")
@@ -39,9 +40,7 @@ def test_a_run_without_a_row_can_be_advanced_and_ended() -> None:
     adaptive = passive(time_step=0.01, integrator="dormand_prince")
     with node_of(adaptive, pace="fast") as node:
         trace = node.spin(0.05)
-    stepper = adaptive.start()  # without an end, like the node, so that the adaptive steps are the same
-    stepper.advance_to(0.05)
-    assert_same_bits(trace, stepper.finish())
+    assert_same_bits(trace, adaptive.run(0.05))
 
 
 def test_a_log_replaces_a_file_only_when_the_node_has_joined(tmp_path: Path) -> None:
@@ -177,15 +176,21 @@ def test_who_joins_late_gets_the_robot_and_its_fixed_frames(peer: Peer) -> None:
 def test_a_run_is_stepped_paused_and_reset_by_messages(peer: Peer) -> None:
     with node_of(scenario(), pace="stepped") as node:
         heard(peer, STATES, EVENTS)
+        wait_for_subscriber(node, "/joint_states")
         with spinning(node, 0.1) as found:
+            assert [stamp(state) for state in peer.take("/joint_states", 1)] == [0.0], "before the first step"
             assert peer.say("/step", "std_msgs/msg/Float64", {"data": 0.025})
             assert answers(peer, 1) == [(0, "/step", "advanced to t = 0.025 s")]
-            states = peer.take("/joint_states", 26)
-            assert len(states) == 26 and stamp(states[-1]) == 0.025, "the row at the new time is published"
-            for step in (-1.0, float("nan"), 0.0):
+            states = peer.take("/joint_states", 25)
+            assert len(states) == 25 and stamp(states[-1]) == 0.025, "the row at the new time is published"
+            for step in (-1.0, float("nan"), 0.0, 1e-12):
                 peer.say("/step", "std_msgs/msg/Float64", {"data": step})
-            refused = answers(peer, 3)
-            assert [level for level, _, _ in refused] == [2, 2, 2]
+            refused = answers(peer, 4)
+            assert [level for level, _, _ in refused] == [2, 2, 2, 2]
+            assert refused[3][2] == "refused: the step is 1e-12 s; the clock resolves 1e-09 s"
+            for is_paused in (False, True):
+                peer.say("/pause", "std_msgs/msg/Bool", {"data": is_paused})
+                assert answers(peer, 1) == [(1, "/pause", "in pace stepped the run advances on /step only")]
             assert refused[0][2] == "refused: the step is -1.0 s; it must be positive and finite"
             peer.say("/step", "std_msgs/msg/Float64", {"data": 0.025})
             assert answers(peer, 1) == [(0, "/step", "advanced to t = 0.05 s")]
@@ -269,3 +274,32 @@ def test_bytes_that_are_not_dds_do_not_disturb_a_node(peer: Peer) -> None:
                         sender.sendto(head + rng.bytes(size), ("127.0.0.1", port))
             peer.say("/step", "std_msgs/msg/Float64", {"data": 0.01})
             assert answers(peer, 1) == [(0, "/step", "advanced to t = 0.01 s")]
+
+
+def test_a_node_runs_once() -> None:
+    with node_of(scenario(), pace="fast") as node:
+        with pytest.raises(oo.exceptions.InputError, match="the duration is nan s; it must be positive"):
+            node.spin(float("nan"))
+        node.spin(0.01)
+        with pytest.raises(oo.exceptions.Ros2Error, match="has ended; create another Node"):
+            node.spin(0.01)
+
+
+def test_a_second_simulator_in_the_domain_is_pointed_out() -> None:
+    said: list[str] = []
+    with node_of(scenario(), pace="stepped") as other, node_of(scenario(), on_message=said.append) as node:
+        node.spin(1.5)
+        assert other.published
+    (text,) = said
+    assert text.startswith("/clock: another node publishes the time in domain") and "--domain" in text
+
+
+def test_delays_are_counted_in_bounded_memory() -> None:
+    late = Delays(1e-3)
+    values = np.abs(np.random.default_rng(1).normal(scale=4e-4, size=20_000))
+    for value in (0.0, *values, 5.0):
+        late.add(value)
+    assert (late.count, late.largest, late.missed) == (20_002, 5.0, int(np.sum(values > 1e-3)) + 1)
+    for fraction in (0.5, 0.99):
+        assert late.quantile(fraction) == pytest.approx(np.quantile(values, fraction), rel=0.02)
+    assert late._counts.nbytes < 30_000

@@ -22,7 +22,7 @@ from onorbit_rs.ros2.messages import decode  # noqa: E402
 from onorbit_rs.ros2.names import ros_names  # noqa: E402
 from onorbit_rs.ros2.rows import Rows, rows_of_trace  # noqa: E402
 from onorbit_rs.ros2.topics import topics  # noqa: E402
-from onorbit_rs.ros2.transforms import SystemFrames, fixed_frames  # noqa: E402
+from onorbit_rs.ros2.transforms import SystemFrames, fixed_frames, frames_of  # noqa: E402
 
 
 def matrix(pose: Any) -> Any:
@@ -80,8 +80,8 @@ def test_frames_are_those_of_the_engine(name: str) -> None:
     q[:, 3:7] = rng.normal(size=(4, 4))
     q[:, 3:7] /= np.linalg.norm(q[:, 3:7], axis=1, keepdims=True)
     q[:, 7:] = rng.uniform(-2.0, 2.0, (4, len(model.joint_names)))
-    moving = SystemFrames("", model)
-    links, poses = fixed_frames("", model)
+    moving = SystemFrames("", model, frames_of("", model))
+    links, poses = fixed_frames("", model, frames_of("", model))
     for k, row in enumerate(moving.poses(Rows({"time": np.zeros(4), "q": q}))):
         found = chained([*moving.links, *links], [*row, *poses])
         assert set(found) == {"world", "base", *model.body_names, *(frame.name for frame in model.frames)}
@@ -92,12 +92,12 @@ def test_frames_are_those_of_the_engine(name: str) -> None:
 def test_a_rerooted_robot_has_joints_beside_the_origins_of_links() -> None:
     """Negative control: without the anchors, the chain of a rerooted robot would be wrong."""
     model = next(model for name, model in ROBOTS.items() if "from" in name)
-    frames = SystemFrames("", model)
+    frames = SystemFrames("", model, frames_of("", model))
     assert frames._anchor.any()
     frames._anchor = np.zeros_like(frames._anchor)
     q = model.neutral()
     q[7:] = 1.0
-    links, poses = fixed_frames("", model)
+    links, poses = fixed_frames("", model, frames_of("", model))
     found = chained(
         [*frames.links, *links], [*frames.poses(Rows({"time": np.zeros(1), "q": q[None]}))[0], *poses]
     )
@@ -227,3 +227,55 @@ def test_names_that_ros_does_not_allow_are_mapped_and_named() -> None:
     with pytest.warns(UserWarning, match="topics of a link use: 'a-b' → 'a_b_2'$"):
         assert ros_names(["a-b", "a_b"], "link") == {"a-b": "a_b_2", "a_b": "a_b"}
     assert ros_names(["tool", "tool_2"], "link") == {"tool": "tool", "tool_2": "tool_2"}
+
+
+CLASHING = """<robot name="r">
+{links}
+<joint name="a" type="revolute">
+<parent link="{root}"/><child link="base"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
+<limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
+<joint name="b" type="revolute">
+<parent link="base"/><child link="world"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
+<limit effort="1" velocity="1" lower="-1" upper="1"/></joint>
+<joint name="c" type="fixed"><parent link="world"/><child link="lvlh"/></joint>
+<joint name="d" type="fixed"><parent link="world"/><child link="base_2"/></joint>
+</robot>"""
+
+
+def clashing(root: str = "eci") -> oo.Model:
+    """Returns a robot whose links and frames have the names of other frames of the tree."""
+    body = (
+        '<link name="{}"><inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    )
+    links = "".join(map(body.format, [root, "base", "world"])) + '<link name="lvlh"/><link name="base_2"/>'
+    return oo.Model.from_urdf_string(CLASHING.format(root=root, links=links))
+
+
+def test_links_with_names_of_other_frames_get_names_of_their_own() -> None:
+    model = clashing()
+    with pytest.warns(
+        UserWarning, match="'eci' → 'eci_2', 'base' → 'base_3', 'world' → 'world_2', 'lvlh' → "
+    ):
+        names = frames_of("", model)
+    assert names == {
+        "eci": "eci_2", "base": "base_3", "world": "world_2", "lvlh": "lvlh_2", "base_2": "base_2",
+    }  # fmt: skip
+    moving, (links, _) = SystemFrames("", model, names), fixed_frames("", model, names)
+    children = [link.child for link in (*moving.links, *links)]
+    assert sorted(children) == sorted(["base", *names.values()]), "each frame once"
+    parents = {link.child: link.parent for link in (*moving.links, *links)}
+    assert parents["base"] == "world" and parents["eci_2"] == "base" and parents["base_3"] == "eci_2"
+    read = oo.Model.from_urdf_string(urdf_text(model, names))
+    assert set(read.body_names) | {frame.name for frame in read.frames} == set(names.values())
+    with pytest.warns(UserWarning, match="become: 'base' → 'base_3'$"):
+        assert frames_of("chaser/", model)["world"] == "world", "chaser/world is another frame"
+
+
+def test_a_root_link_named_base_is_the_base() -> None:
+    """A robot whose root has the name keeps it, without a warning."""
+    model = oo.Model.from_urdf_string(
+        '<robot name="r"><link name="base"><inertial><mass value="1"/>'
+        '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
+    )
+    assert frames_of("", model) == {"base": "base"}

@@ -54,11 +54,13 @@ def ros2(
     from onorbit_rs.cli.exit_codes import fail
     from onorbit_rs.cli.text_output import print_error, print_text
     from onorbit_rs.ros2 import Node
+    from onorbit_rs.ros2.node import check_duration
 
     def tell(text: str) -> None:
         if not quiet:
             print_error(text)
 
+    check_duration(for_)  # before files are opened
     check_bag_file("--record", record, ".mcap", force=force)
     check_output_file(log, force=force)
     options = {"pace": pace, "domain": domain, "network": network, "is_paused": paused, "log": log}

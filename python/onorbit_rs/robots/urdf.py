@@ -11,15 +11,23 @@ from onorbit_rs.common.rotations import quaternion_from_matrix, roll_pitch_yaw
 from onorbit_rs.exceptions import ModelError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import ArrayLike
 
     from onorbit_rs._core import Body, Frame, Joint, Model, Visual
 
 
-def urdf_text(model: Model) -> str:
+def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     """Return a robot as URDF, with shapes, limits and losses; named frames become links without mass.
 
     Lengths and angles are written in full precision. Paths of meshes are absolute.
+
+    Parameters
+    ----------
+    model : Model
+    names : mapping of str to str, optional
+        Name in the text of each link and frame; default: their own.
 
     Raises
     ------
@@ -27,6 +35,7 @@ def urdf_text(model: Model) -> str:
         If the axis of a joint does not pass through the origin of its child link, which URDF cannot express
         (a joint that ``Model.rerooted`` or ``attach`` reversed).
     """
+    names = names or {}
     robot = xml.Element("robot", name=model.name)
     shapes = [("visual", shape) for shape in model.visuals] + [
         ("collision", shape) for shape in model.collisions
@@ -41,6 +50,10 @@ def urdf_text(model: Model) -> str:
         if frame.name not in links:
             _link(robot, frame.name, shapes)
             _add_fixed(robot, frame)
+    for element in robot.iter("link"):
+        element.set("name", names.get(element.get("name", ""), element.get("name", "")))
+    for element in robot.iterfind("joint/*[@link]"):
+        element.set("link", names.get(element.get("link", ""), element.get("link", "")))
     xml.indent(robot)
     return xml.tostring(robot, encoding="unicode") + "\n"
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from onorbit_rs.ros2.messages import decode
 from onorbit_rs.ros2.names import ros_names
+from onorbit_rs.ros2.transforms import BASE
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Model
     from onorbit_rs.ros2.participant import Participant, Reader
 
 FLOATS = "std_msgs/msg/Float64MultiArray"
@@ -34,7 +34,6 @@ class Route:
 
     reader: Reader
     convert: Callable[[Any], list[Entry]]
-    senders: set[int] = field(default_factory=set)
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,8 @@ class Arrived:
     data: bytes
     entries: list[Entry]
     refusal: str | None = None
-    is_second_sender: bool = False
+    contested: tuple[str, ...] = ()
+    """Controls, links or topics to which several processes send, found with this message."""
 
 
 class Inbox:
@@ -56,6 +56,7 @@ class Inbox:
         """Subscribe nothing yet."""
         self._participant = participant
         self._routes: list[Route] = []
+        self._senders: dict[str, set[object]] = {}
 
     def subscribe(self, topic: str, kind: str, convert: Callable[[Any], list[Entry]]) -> None:
         """Subscribe a topic."""
@@ -69,28 +70,54 @@ class Inbox:
     def take(self) -> list[Arrived]:
         """Return the messages that have arrived since the last call, in the order in which they were sent."""
         taken = [
-            (sent, route, sender, data)
+            (sent, route, publication, data)
             for route in self._routes
-            for sent, sender, data in route.reader.take()
+            for sent, publication, data in route.reader.take()
         ]
         found = []
-        for _, route, sender, data in sorted(taken, key=lambda message: message[0]):
-            is_second = bool(route.senders) and sender not in route.senders
-            route.senders.add(sender)
-            found.append(_arrived(route, data, is_second))
+        for _, route, publication, data in sorted(taken, key=lambda message: message[0]):
+            arrived = _arrived(route, data)
+            found.append(
+                replace(arrived, contested=self._contested(arrived, route.reader.sender(publication)))
+            )
         return found
 
+    def _contested(self, arrived: Arrived, sender: object) -> tuple[str, ...]:
+        """Return what a message commands for which another process is a sender too.
 
-def _arrived(route: Route, data: bytes, is_second: bool) -> Arrived:
+        A process counts as long as it publishes any of the topics: one that left may come back.
+        """
+        if sender is None:
+            return ()
+        targets = []
+        for target in dict.fromkeys(_target(entry, arrived.topic) for entry in arrived.entries):
+            senders = self._senders.setdefault(target, set())
+            if sender in senders:
+                continue
+            if senders:
+                senders &= set[object]().union(*(route.reader.senders() for route in self._routes))
+            if senders:
+                targets.append(target)
+            senders.add(sender)
+        return tuple(targets)
+
+
+def _target(entry: Entry, topic: str) -> str:
+    """Return the name of what an entry commands: a control, a link, or the topic itself."""
+    name = entry.get("control", entry.get("body"))
+    return topic if name is None else f"{name} of {entry['system']}"
+
+
+def _arrived(route: Route, data: bytes) -> Arrived:
     message = route.reader.topic, route.reader.kind, data
     try:
         content = decode(data, route.reader.kind)
     except Exception as error:  # the decoder raises errors of many types for malformed bytes
-        return Arrived(*message, [], f"the message is malformed ({type(error).__name__})", is_second)
+        return Arrived(*message, [], f"the message is malformed ({type(error).__name__})")
     try:
-        return Arrived(*message, route.convert(content), None, is_second)
+        return Arrived(*message, route.convert(content))
     except RefusedError as refusal:
-        return Arrived(*message, [], str(refusal), is_second)
+        return Arrived(*message, [], str(refusal))
 
 
 def add_run_topics(inbox: Inbox) -> None:
@@ -102,9 +129,12 @@ def add_run_topics(inbox: Inbox) -> None:
 
 
 def add_system_topics(
-    inbox: Inbox, system: str, prefix: str, model: Model, controls: Mapping[str, list[str]]
+    inbox: Inbox, system: str, prefix: str, frames: Mapping[str, str], controls: Mapping[str, list[str]]
 ) -> None:
-    """Subscribe the topics of a system: those of its external controls, and wrenches on its links."""
+    """Subscribe the topics of a system: those of its external controls, and wrenches on its links.
+
+    ``frames`` has the name in the tree of each link and frame, beginning with the root link.
+    """
     for control, name in ros_names(controls, "control").items():
         to = {"system": system, "control": control}
         joints = controls[control]
@@ -112,7 +142,7 @@ def add_system_topics(
         inbox.subscribe(f"/{prefix}{name}/joint_trajectory", TRAJECTORY, _trajectory(to, joints))
     if controls:
         inbox.subscribe(f"/{prefix}joint_commands", JOINT_STATE, _joint_commands(system, controls))
-    inbox.subscribe(f"/{prefix}wrench_command", WRENCH, _wrench(system, prefix, model))
+    inbox.subscribe(f"/{prefix}wrench_command", WRENCH, _wrench(system, prefix, frames))
 
 
 def _values(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
@@ -197,17 +227,17 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
     return convert
 
 
-def _wrench(system: str, prefix: str, model: Model) -> Callable[[Any], list[Entry]]:
+def _wrench(system: str, prefix: str, frames: Mapping[str, str]) -> Callable[[Any], list[Entry]]:
     """Return the conversion of wrenches at the origin and in the axes of the frame of the header."""
-    root = model.body_names[0]
-    known = list(dict.fromkeys([*model.body_names, *(frame.name for frame in model.frames)]))
+    bodies = {frame: body for body, frame in frames.items()}
+    bodies |= dict.fromkeys(("", BASE), next(iter(frames)))
 
     def convert(content: Any) -> list[Entry]:
-        frame = content.header.frame_id.removeprefix(prefix)
-        body = root if frame in ("", "base") else frame
-        if body not in known:
+        body = bodies.get(content.header.frame_id.removeprefix(prefix))
+        if body is None:
             raise RefusedError(
-                f"frame_id {content.header.frame_id!r} is no frame of the robot; they are {', '.join(known)}"
+                f"frame_id {content.header.frame_id!r} is no frame of the robot; they are "
+                f"{', '.join(frames.values())}"
             )
         force, torque = ([v.x, v.y, v.z] for v in (content.wrench.force, content.wrench.torque))
         if not np.isfinite(force + torque).all():

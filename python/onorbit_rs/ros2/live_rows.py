@@ -32,13 +32,14 @@ class LiveRows:
         return self._after(rows_of_columns(columns, self._models))
 
     def take_present(self) -> dict[str, Rows]:
-        """Return the row of each system at the current time, which a later :meth:`take` leaves out.
-
-        The cost grows with the number of rows of the run.
-        """
-        rows = self.take_last(self._stepper.trace())
+        """Return the row of each system at the current time, once; a later :meth:`take` omits it."""
+        rows = self._after(self.present())
         self._taken_until = self._stepper.time
         return rows
+
+    def present(self) -> dict[str, Rows]:
+        """Return the row of each system at the current time."""
+        return rows_of_columns(self._stepper.present(), self._models)
 
     def take_last(self, trace: Trace | WorldTrace) -> dict[str, Rows]:
         """Return the rows that a trace of the run has after those taken."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 _INVALID = re.compile(r"[^A-Za-z0-9_]")
 
@@ -40,6 +40,37 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     if changed:
         warnings.warn(
             f"ROS names contain letters, digits and single underscores; the topics of a {kind} use: "
+            f"{', '.join(changed)}",
+            UserWarning,
+            stacklevel=3,
+        )
+    return found
+
+
+def frame_names(names: Iterable[str], reserved: Collection[str]) -> dict[str, str]:
+    """Return a distinct name for each frame; warn where it differs. Only reserved names get another one.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Links and frames of a robot.
+    reserved : collection of str
+        Names of other frames of the tree, such as ``world``.
+    """
+    given = dict.fromkeys(names)
+    taken = {*given, *reserved}
+    found: dict[str, str] = {}
+    for name in given:
+        number, candidate = 1, name
+        while name in reserved and candidate in taken:
+            number += 1
+            candidate = f"{name}_{number}"
+        taken.add(candidate)
+        found[name] = candidate
+    changed = [f"{name!r} → {other!r}" for name, other in found.items() if name != other]
+    if changed:
+        warnings.warn(
+            f"the tree of frames has other frames of these names; links and frames of the robot become: "
             f"{', '.join(changed)}",
             UserWarning,
             stacklevel=3,

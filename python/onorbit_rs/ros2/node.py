@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from collections.abc import Callable, Mapping
@@ -9,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import ControlError, InputError, OnOrbitError
+from onorbit_rs.exceptions import ControlError, InputError, OnOrbitError, Ros2Error
 from onorbit_rs.ros2.inbox import Arrived, Entry, Inbox, add_run_topics, add_system_topics
 from onorbit_rs.ros2.live_rows import LiveRows
-from onorbit_rs.ros2.pace import PACES, RealTime
+from onorbit_rs.ros2.messages import nanoseconds
+from onorbit_rs.ros2.pace import PACES, RealTime, few_collections
 from onorbit_rs.ros2.participant import Participant
 from onorbit_rs.ros2.publisher import Publisher
 from onorbit_rs.ros2.recording import Recording
-from onorbit_rs.ros2.rows import rows_of_trace
 from onorbit_rs.ros2.stopping import noted_stop
 from onorbit_rs.ros2.topics import ERROR, OK, WARN, Topics, topics
 from onorbit_rs.scenario import WorldScenario, load
@@ -39,6 +40,8 @@ _DELIVERY_S = 1.0
 _FAR_S = 3600.0
 """A trajectory that starts so long after the current time, s, was probably stamped by another clock."""
 _UNSAVED = "a controller in Python cannot be set back; give it get_state() and set_state()"
+_RIVALS_S = 1.0
+"""Wall-clock time between two looks for other simulators in the domain, s."""
 _SHORTEST_TICK = 1e-3
 """Shortest simulated time between two looks at the topics, unless the time step is longer, s."""
 
@@ -109,19 +112,21 @@ class Node:
         self._is_stopped: Callable[[], bool] = lambda: False
         self.duration: float | None = None
         self._clock = RealTime(self._tick)
-        self._beginning = self._beginning_of(simulation)
-        self._start()
-        self.topics: Topics = topics(self._models, rows_of_trace(self._stepper.trace(), self._models))
+        self._has_ended = False
+        self._checked_rivals = -math.inf
+        self._start(None)
+        self.topics: Topics = topics(self._models, self._rows.present())
         self._participant = Participant(domain, network=network)
         self._recording = None if record is None else Recording(record, self.topics)
+        self._domain = domain
         self._log = CommandLog(log)  # after everything that may fail, since it replaces the file
         self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
         self._inbox = Inbox(self._participant)
         add_run_topics(self._inbox)
-        for system, model in self._models.items():
+        for system in self._models:
             prefix = self.topics.prefixes[system]
             controls = self._of(self._stepper, system).external
-            add_system_topics(self._inbox, system, prefix, model, controls)
+            add_system_topics(self._inbox, system, prefix, self.topics.frames[system], controls)
         self._participant.announce(NAME)
 
     @classmethod
@@ -159,16 +164,24 @@ class Node:
         """Names and types of the topics that the node listens to."""
         return list(self._inbox.topics())
 
-    @staticmethod
-    def _beginning_of(simulation: Simulation) -> Checkpoint | None:
-        """Return the state at the start, with that of controllers in Python; None if it cannot be saved."""
-        try:
-            return simulation.start().checkpoint()
+    def _start(self, end: float | None) -> None:
+        """Start the run; an adaptive one, whose steps depend on it, with its planned end, s."""
+        self._planned = end
+        try:  # the state at the start, with that of controllers in Python
+            self._beginning: Checkpoint | None = self._simulation.start(duration=end).checkpoint()
         except ControlError:
-            return None
+            self._beginning = None
+        self._restart()
 
-    def _start(self) -> None:
-        self._stepper: Stepper = self._simulation.start(resume=self._beginning)
+    def _plan(self, end: float) -> None:
+        """Start an adaptive run anew with its planned end, s, as ``onorbit run`` does."""
+        is_adaptive = self._simulation.integrator == "dormand_prince"
+        if is_adaptive and end < np.inf and self._beginning is not None:
+            self._restart()  # sets controllers in Python back
+            self._start(end)
+
+    def _restart(self) -> None:
+        self._stepper: Stepper = self._simulation.start(duration=self._planned, resume=self._beginning)
         self._rows = LiveRows(self._stepper, self._models)
         self._events = 0
 
@@ -178,21 +191,26 @@ class Node:
     def spin(self, duration: float | None = None) -> Trace | WorldTrace:
         """Run until a simulated time, s, or without an end, and return the trace; Ctrl-C ends the run too.
 
+        In a pause and in pace ``stepped``, the row at the start is published before the first step.
+
         Raises
         ------
         InputError
             If the duration is not positive.
+        Ros2Error
+            If the run of this node has ended.
         OnOrbitError
             Errors of the run.
         """
+        check_duration(duration)
+        if self._has_ended:
+            raise Ros2Error("the run of this node has ended; create another Node for another run")
+        self._has_ended = True
         self._end = np.inf if duration is None else duration
-        if not self._end > 0.0:
-            raise InputError(
-                f"the duration is {duration!r} s; it must be positive",
-                name="duration", got=duration, expected="a positive number of seconds",
-            )  # fmt: skip
+        self._plan(self._end)
         try:
-            with noted_stop() as self._is_stopped:
+            with noted_stop() as self._is_stopped, few_collections(self._pace == "real_time"):
+                self._publish_present()
                 while self._stepper.time < self._end and not self._is_stopped():
                     self._turn()
                 if self._is_stopped():
@@ -212,6 +230,7 @@ class Node:
     def _turn(self) -> None:
         """Obey the messages that have arrived, and advance to the next time unless the run waits."""
         self._obey()
+        self._warn_of_rivals()
         if self._is_paused or self._pace == "stepped":
             self._clock.restart(self._stepper.time)
             time.sleep(_IDLE_S)
@@ -252,17 +271,33 @@ class Node:
     def _obey(self) -> None:
         """Obey the messages that have arrived."""
         for arrived in self._inbox.take():
-            if arrived.is_second_sender:
-                self._say(WARN, arrived.topic, "has several senders; the last message holds")
+            if arrived.contested:
+                text = f"several processes send to {', '.join(arrived.contested)}; the last message holds"
+                self._say(WARN, arrived.topic, text)
             if arrived.refusal is not None:
                 self._say(ERROR, arrived.topic, f"refused: {arrived.refusal}")
             now = self._stepper.time
-            is_obeyed = [self._obey_entry(arrived, entry) for entry in arrived.entries]
-            if any(is_obeyed) and self._recording is not None:
+            if arrived.entries and self._obey_entries(arrived) and self._recording is not None:
                 self._recording.message(arrived.topic, arrived.kind, now, arrived.data)
 
-    def _obey_entry(self, arrived: Arrived, entry: Entry) -> bool:
-        """Obey a command or refuse it with an answer; return True if it is obeyed."""
+    def _warn_of_rivals(self) -> None:
+        """Warn of another node that publishes the time, as another simulator does."""
+        if time.monotonic() < self._checked_rivals + _RIVALS_S:
+            return
+        self._checked_rivals = time.monotonic()
+        if self._participant.has_new_rival("/clock"):
+            self._say(
+                WARN, "/clock",
+                f"another node publishes the time in domain {self._domain}: both nodes obey the same "
+                "commands; give one of them another domain, by --domain, Node(domain=…) or ROS_DOMAIN_ID",
+            )  # fmt: skip
+
+    def _obey_entries(self, arrived: Arrived) -> bool:
+        """Obey the entries of a message, or refuse all of them with an answer; return True if obeyed."""
+        entry = arrived.entries[0]
+        if "pause" in entry and self._pace == "stepped":
+            self._say(WARN, arrived.topic, "in pace stepped the run advances on /step only")
+            return False
         if "pause" in entry:
             self._is_paused = entry["pause"]
             self._publish_present()
@@ -277,7 +312,7 @@ class Node:
             self._say(ERROR, arrived.topic, f"refused: {_UNSAVED}")
             return False
         elif "reset" in entry:
-            self._start()
+            self._restart()
             self._log = CommandLog()
             self._clock.restart(0.0)
             self._publish_present()
@@ -285,7 +320,7 @@ class Node:
         elif "step" in entry:
             return self._step(arrived.topic, entry["step"])
         else:
-            return self._command(arrived.topic, entry)
+            return self._command(arrived)
         return True
 
     def _step(self, topic: str, length: float) -> bool:
@@ -294,6 +329,8 @@ class Node:
             self._say(ERROR, topic, "refused: the run is not paused; use pace stepped, or /pause first")
         elif not 0.0 < length < np.inf:
             self._say(ERROR, topic, f"refused: the step is {length!r} s; it must be positive and finite")
+        elif nanoseconds(self._stepper.time + length) == nanoseconds(self._stepper.time):
+            self._say(ERROR, topic, f"refused: the step is {length!r} s; the clock resolves 1e-09 s")
         else:
             self._advance_by(length)
             self._publish_present()
@@ -301,9 +338,13 @@ class Node:
             return True
         return False
 
-    def _command(self, topic: str, entry: Entry) -> bool:
+    def _command(self, arrived: Arrived) -> bool:
+        topic, entry = arrived.topic, arrived.entries[0]
         try:
-            self._log.apply(self._stepper, entry)
+            if len(arrived.entries) > 1:
+                self._log.apply_all(self._stepper, arrived.entries)
+            else:
+                self._log.apply(self._stepper, entry)
         except OnOrbitError as error:
             self._say(ERROR, topic, f"refused: {error}")
             return False
@@ -329,6 +370,15 @@ class Node:
             self._recording.close()
         self._participant.wait_for_delivery(_DELIVERY_S)
         self._participant.close()
+
+
+def check_duration(duration: float | None) -> None:
+    """Raise an InputError for a duration, s, that is not positive; None is an open end."""
+    if duration is not None and not duration > 0.0:
+        raise InputError(
+            f"the duration is {duration!r} s; it must be positive",
+            name="duration", got=duration, expected="a positive number of seconds",
+        )  # fmt: skip
 
 
 def _tick(simulation: Simulation) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 from weakref import WeakValueDictionary
 
 from cyclonedds._clayer import ddspy_take, ddspy_write
+from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
 from cyclonedds.core import DDSException, InstanceState, Policy, Qos, SampleState, ViewState
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.pub import DataWriter
@@ -73,6 +74,7 @@ class Participant:
             ) from error
         self._writers: list[Any] = []
         self._readers: list[Any] = []
+        self._found: Any = BuiltinDataReader(self._entity, BuiltinTopicDcpsPublication)
         topic = Topic(self._entity, graph.TOPIC, declared(graph.KIND))
         self._graph: Any = DataWriter(self._entity, topic, qos=_qos(graph.KIND, is_latched=True))
 
@@ -94,6 +96,15 @@ class Participant:
     def _topic(self, name: str, kind: str) -> Any:
         return Topic(self._entity, f"rt{name}", declared(kind))
 
+    def has_new_rival(self, topic: str) -> bool:
+        """Return True if another participant has begun to publish a topic since the last call."""
+        own = self._entity.get_guid()
+        try:
+            found = [each for each in self._found.take(_MOST) if each.topic_name == f"rt{topic}"]
+        except DDSException:  # what others announce must not end a run
+            return False
+        return any(each.participant_key != own for each in found)
+
     def wait_for_delivery(self, seconds: float) -> bool:
         """Wait until reliable subscribers have received all messages; return False if time, s, is up."""
         end = time.monotonic() + seconds
@@ -108,7 +119,7 @@ class Participant:
         """Leave the domain; no effect if this has been done."""
         self._writers.clear()
         self._readers.clear()
-        self._graph = self._entity = self._joined = None
+        self._found = self._graph = self._entity = self._joined = None
 
 
 class Writer:
@@ -142,8 +153,20 @@ class Reader:
         self._entity = entity
         self.topic, self.kind = topic, kind
 
+    def sender(self, publication: int) -> object:
+        """Return what identifies the process of a publication; None if it has left."""
+        try:
+            data = self._entity.get_matched_publication_data(publication)
+        except DDSException:
+            return None
+        return None if data is None else data.participant_key
+
+    def senders(self) -> set[object]:
+        """Return the processes that publish the topic now."""
+        return {self.sender(publication) for publication in self._entity.get_matched_publications()}
+
     def take(self) -> list[tuple[int, int, bytes]]:
-        """Return the messages received since the last call: time of sending, ns, number of the sender, CDR.
+        """Return the messages since the last call: time of sending, ns, number of the publication, CDR.
 
         Raises
         ------

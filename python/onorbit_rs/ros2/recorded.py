@@ -8,7 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from onorbit_rs._core import Model
+from onorbit_rs.common.coordinates import JOINTS_Q
 from onorbit_rs.exceptions import DtypeError, InputError
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.ros2.rows import Rows, rows_of_trace
@@ -63,7 +66,20 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
             name="run", got=source, expected="a folder, Run, Trace or WorldTrace",
         )  # fmt: skip
     by_name = _by_name(source, models)
+    _check_joints(source, by_name)
     return Recorded(by_name, rows_of_trace(source, by_name), getattr(source, "events", ()))
+
+
+def _check_joints(trace: Any, models: Mapping[str, Model]) -> None:
+    """Raise an error if a model does not have the joints of its system in the trace."""
+    for name, model in models.items():
+        own = trace[name] if hasattr(trace, "names") else trace
+        joints = np.asarray(own.q)[:, JOINTS_Q].shape[1]
+        if joints != len(model.joint_names):
+            raise InputError(
+                f"the model of {name} has {len(model.joint_names)} joints, but the trace has {joints}",
+                name="models", got=model, expected=f"a model with {joints} joints",
+            )  # fmt: skip
 
 
 def _read(folder: Path) -> Run:

@@ -23,6 +23,7 @@ from onorbit_rs.ros2.transforms import (
     OrbitFrames,
     SystemFrames,
     fixed_frames,
+    frames_of,
 )
 from onorbit_rs.ros2.wrenches import wrench_topics
 
@@ -56,6 +57,8 @@ class Topics:
     latched: tuple[Latched, ...]
     prefixes: Mapping[str, str]
     """Prefix of the topics and frames of each system, such as ``chaser/``; empty for one robot."""
+    frames: Mapping[str, Mapping[str, str]]
+    """Name in the tree of frames, without the prefix, of each link and frame of each system."""
 
     @property
     def names(self) -> list[tuple[str, str]]:
@@ -83,16 +86,17 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows]) -> Topics:
     """
     names = ros_names(models, "system")
     prefixes = {name: f"{ros}/" if len(models) > 1 else "" for name, ros in names.items()}
+    frames = {system: frames_of(prefixes[system], model) for system, model in models.items()}
     reference = next(iter(models))
     series = [clock(reference)]
     if _has_local_frame(first[reference]):
         series += orbit_topics(reference)
     for system, model in models.items():
-        series += system_topics(system, prefixes[system], model)
-        series += wrench_topics(system, prefixes[system], model, first[system])
-    latched = [static_topic(prefixes, models)]
-    latched += [description(prefixes[system], model) for system, model in models.items()]
-    return Topics(tuple(series), tuple(latched), prefixes)
+        series += system_topics(system, prefixes[system], model, frames[system])
+        series += wrench_topics(system, prefixes[system], model, frames[system], first[system])
+    latched = [static_topic(prefixes, models, frames)]
+    latched += [description(prefixes[system], model, frames[system]) for system, model in models.items()]
+    return Topics(tuple(series), tuple(latched), prefixes, frames)
 
 
 def _has_local_frame(rows: Rows) -> bool:
@@ -138,7 +142,7 @@ def _orbit_twist(rows: Rows) -> dict[str, Floats]:
     return {"v": v, "w": np.cross(r, v) / np.sum(r * r, axis=1, keepdims=True)}
 
 
-def system_topics(system: str, prefix: str, model: Model) -> list[Series]:
+def system_topics(system: str, prefix: str, model: Model, frames: Mapping[str, str]) -> list[Series]:
     """Return the topics of a system: frames, odometry and, if it has joints, their states."""
     joints = model.joint_names
 
@@ -159,7 +163,7 @@ def system_topics(system: str, prefix: str, model: Model) -> list[Series]:
         )  # fmt: skip
 
     found = [
-        _transforms(system, SystemFrames(prefix, model)),
+        _transforms(system, SystemFrames(prefix, model, frames)),
         Series(f"/{prefix}odom", system, Template(odometry), _odometry),
     ]
     if joints:
@@ -203,19 +207,21 @@ def tf_message(links: Sequence[Link], poses: Floats, marks: Marks) -> Any:
     return message(TF, transforms=transforms)
 
 
-def static_topic(prefixes: Mapping[str, str], models: Mapping[str, Model]) -> Latched:
+def static_topic(
+    prefixes: Mapping[str, str], models: Mapping[str, Model], frames: Mapping[str, Mapping[str, str]]
+) -> Latched:
     """Return the frames that are fixed to links."""
-    found = [fixed_frames(prefixes[name], model) for name, model in models.items()]
+    found = [fixed_frames(prefixes[name], model, frames[name]) for name, model in models.items()]
     links = [link for part, _ in found for link in part]
     poses = np.concatenate([part for _, part in found])
     template = Template(lambda marks: tf_message(links, marks.array("poses", poses.size), marks))
     return Latched("/tf_static", TF, template.fill(np.zeros(1), {"poses": poses.reshape(1, -1)})[0].tobytes())
 
 
-def description(prefix: str, model: Model) -> Latched:
-    """Return the robot as URDF."""
+def description(prefix: str, model: Model, frames: Mapping[str, str]) -> Latched:
+    """Return the robot as URDF, whose links have the names of the tree of frames."""
     kind = "std_msgs/msg/String"
-    return Latched(f"/{prefix}robot_description", kind, encode(message(kind, data=urdf_text(model))))
+    return Latched(f"/{prefix}robot_description", kind, encode(message(kind, data=urdf_text(model, frames))))
 
 
 def message_of_event(record: EventRecord) -> bytes:

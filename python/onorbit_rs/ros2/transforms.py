@@ -11,8 +11,11 @@ import numpy as np
 
 from onorbit_rs.common.coordinates import BASE_Q, JOINTS_Q
 from onorbit_rs.common.rotations import product, quaternion_from_matrix
+from onorbit_rs.ros2.names import frame_names
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Model
@@ -28,6 +31,15 @@ class Link(NamedTuple):
 
     parent: str
     child: str
+
+
+def frames_of(prefix: str, model: Model) -> dict[str, str]:
+    """Return the name in the tree, without the prefix, of each link and frame of a robot.
+
+    ``base`` is the frame of the root link. Without a prefix, no link has the name of a frame of the orbit.
+    """
+    reserved = {BASE} - {model.body_names[0]} | (set() if prefix else {ECI, WORLD, LVLH})
+    return frame_names([*model.body_names, *(frame.name for frame in model.frames)], reserved)
 
 
 class OrbitFrames:
@@ -50,10 +62,10 @@ class OrbitFrames:
 class SystemFrames:
     """The base of a system in ``world`` and its moving links in their parent links."""
 
-    def __init__(self, prefix: str, model: Model) -> None:
-        """Take the prefix of the frames of the system, such as ``chaser/``."""
+    def __init__(self, prefix: str, model: Model, names: Mapping[str, str]) -> None:
+        """Take the prefix of the frames of the system, such as ``chaser/``, and their names in the tree."""
         joints = model.joints
-        moving = (Link(prefix + joint.parent, prefix + joint.child) for joint in joints)
+        moving = (Link(prefix + names[joint.parent], prefix + names[joint.child]) for joint in joints)
         self.links = (Link(WORLD, prefix + BASE), *moving)
         pose = np.array([joint.pose for joint in joints]).reshape(-1, 4, 4)
         axis = np.array([joint.axis for joint in joints]).reshape(-1, 3)
@@ -94,15 +106,15 @@ class SystemFrames:
         return shift
 
 
-def fixed_frames(prefix: str, model: Model) -> tuple[list[Link], Floats]:
+def fixed_frames(prefix: str, model: Model, names: Mapping[str, str]) -> tuple[list[Link], Floats]:
     """Return the first link in the base frame, and every frame that is fixed to a link, with poses (k, 7)."""
-    names = {BASE, *(body.name for body in model.bodies)}
-    root = model.bodies[0].name
-    links = [] if root == BASE else [Link(prefix + BASE, prefix + root)]
+    bodies = set(model.body_names)
+    root = model.body_names[0]
+    links = [] if root == BASE else [Link(prefix + BASE, prefix + names[root])]
     poses = [np.eye(4)] * len(links)
     for frame in model.frames:
-        if frame.name not in names:
-            links.append(Link(prefix + frame.body, prefix + frame.name))
+        if frame.name not in bodies:
+            links.append(Link(prefix + names[frame.body], prefix + names[frame.name]))
             poses.append(np.array(frame.pose))
     pose = np.array(poses).reshape(-1, 4, 4)
     return links, np.concatenate([pose[:, :3, 3], quaternion_from_matrix(pose[:, :3, :3])], axis=1)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,25 +21,31 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
-def wrench_topics(system: str, prefix: str, model: Model, first: Rows) -> list[Series]:
+def wrench_topics(
+    system: str, prefix: str, model: Model, frames: Mapping[str, str], first: Rows
+) -> list[Series]:
     """Return a topic for each effect and link: the wrench at the link's origin, in the axes of the link."""
     effects = ros_names(first.wrenches, "effect")
-    links = ros_names(model.body_names, "link")
+    if not effects:
+        return []  # without a warning about links
+    links = ros_names((frames[name] for name in model.body_names), "link")
     return [
-        _topic(f"/{prefix}wrench/{name}/{links[body.name]}", system, prefix, effect, (index, body), model)
+        _topic(
+            f"/{prefix}wrench/{name}/{links[frames[body.name]]}", system, prefix + frames[body.name],
+            _values(effect, (index, body), model),
+        )
         for effect, name in effects.items()
         for index, body in enumerate(model.bodies)
-    ]
+    ]  # fmt: skip
 
 
-def _topic(name: str, system: str, prefix: str, effect: str, link: tuple[int, Body], model: Model) -> Series:
+def _topic(name: str, system: str, frame: str, values: Callable[[Rows], dict[str, Floats]]) -> Series:
     def build(marks: Marks) -> Any:
         force, torque = vector(marks.array("force", 3)), vector(marks.array("torque", 3))
         content = message("geometry_msgs/msg/Wrench", force=force, torque=torque)
-        header = marks.header(prefix + link[1].name)
-        return message("geometry_msgs/msg/WrenchStamped", header=header, wrench=content)
+        return message("geometry_msgs/msg/WrenchStamped", header=marks.header(frame), wrench=content)
 
-    return Series(name, system, Template(build), _values(effect, link, model))
+    return Series(name, system, Template(build), values)
 
 
 def _values(effect: str, link: tuple[int, Body], model: Model) -> Callable[[Rows], dict[str, Floats]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -35,8 +35,11 @@ def apply(stepper: Stepper, entry: Mapping[str, Any]) -> None:
     give(stepper, checked({"time": stepper.time, **entry}))
 
 
-def give(stepper: Stepper, entry: Command) -> None:
-    """Give a stepper the command of a checked entry; errors name its place in the file."""
+def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
+    """Give a stepper the command of a checked entry; errors name its place in the file.
+
+    With ``check_only``, a constant command to joints is checked and not given.
+    """
     try:
         if "trigger" in entry:
             stepper.trigger(entry["trigger"])
@@ -48,7 +51,7 @@ def give(stepper: Stepper, entry: Command) -> None:
             path = dict(entry["trajectory"])
             target.send_trajectory(entry["control"], path.pop("times"), path.pop("positions"), **path)
         else:
-            target.send(entry["control"], **_setpoint(target, entry))
+            target.send(entry["control"], **_setpoint(target, entry), check_only=check_only)
     except AttributeError as error:  # a world of several systems
         raise invalid(entry.where, f"'system' is missing: {error}") from None
     except OnOrbitError as error:
@@ -105,6 +108,34 @@ class CommandLog:
         """
         command = checked({**entry, "time": stepper.time})
         give(stepper, command)
+        self._add(command)
+
+    def apply_all(self, stepper: Stepper, entries: Iterable[Mapping[str, Any]]) -> None:
+        """Give a stepper several constant commands to joints: all of them, or none if one is refused.
+
+        Parameters
+        ----------
+        stepper : Stepper
+        entries : iterable of mapping
+            Commands with ``control`` and without ``trajectory``, as for :meth:`apply`.
+
+        Raises
+        ------
+        OnOrbitError
+            As :func:`apply`; no command has then been given or logged.
+        """
+        commands = [checked({**entry, "time": stepper.time}) for entry in entries]
+        for command in commands:
+            if "control" not in command or "trajectory" in command:
+                raise invalid("", "apply_all takes constant commands to joints only; use apply")
+        for check_only in (True, False):
+            for command in commands:
+                give(stepper, command, check_only=check_only)
+        for command in commands:
+            self._add(command)
+
+    def _add(self, command: Command) -> None:
+        """Add a command that was given to the log."""
         self.entries.append(command)
         if self._stream is not None and self._path is not None:
             with output_errors(self._path):

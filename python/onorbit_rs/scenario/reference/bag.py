@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Literal
 
@@ -99,6 +100,8 @@ def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
 def _check_lengths(number: int, sample: Sample) -> None:
     """Raise an error if a message has another number of values than of names."""
     joints = len(sample.names)
+    if doubled := [name for name, count in Counter(sample.names).items() if count > 1]:
+        raise _BadRecordingError(f"message {number} names {', '.join(doubled)} more than once")
     if len(sample.positions) != joints or len(sample.rates) not in (0, joints):
         raise _BadRecordingError(
             f"message {number} has {joints} names, {len(sample.positions)} positions and {len(sample.rates)} "
