@@ -57,7 +57,7 @@ def read_mcap(file: Path) -> Messages:
 def expected(source: Recorded) -> dict[str, list[tuple[int, list[float]]]]:
     """Returns times, ns, and numbers of each message of the topics with rows, in order."""
     found: dict[str, list[tuple[int, list[float]]]] = defaultdict(list)
-    for series in topics(source.models, source.rows).series:
+    for series in topics(source.models, source.rows, source.orbit).series:
         rows = source.rows[series.system]
         values = series.values(rows)
         if series.kind == "nav_msgs/msg/Odometry":  # with covariances

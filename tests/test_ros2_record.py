@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +37,7 @@ def simulation() -> oo.Simulation:
 
 def wanted_of(run: oo.Simulation, trace: Any) -> Any:
     models: Any = run.models if isinstance(trace, oo.WorldTrace) else next(iter(run.models.values()))
-    return expected(recorded(trace, models))
+    return expected(replace(recorded(trace, models), orbit=run.orbit))
 
 
 def test_commands_and_answers_are_recorded_and_a_reset_is_refused(tmp_path: Path) -> None:

@@ -279,3 +279,30 @@ def test_a_root_link_named_base_is_the_base() -> None:
         '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link></robot>'
     )
     assert frames_of("", model) == {"base": "base"}
+
+
+def test_the_rate_of_a_perturbed_orbit_is_that_of_its_recorded_attitude() -> None:
+    orbit = oo.Kepler(semi_major_axis=6.778e6, inclination=0.9, mean_anomaly=0.7, secular_j2=True)
+    model = oo.robots.load("target_satellite")
+    simulation = oo.Simulation(
+        model, model.neutral(), np.zeros(model.nv), orbit=orbit, gravity_mode="carried", time_step=1.0
+    )
+    assert simulation.orbit is orbit
+    rows = rows_of_trace(simulation.run(20.0), simulation.models)
+    (own,) = rows.values()
+    attitude = np.array([matrix([0.0, 0.0, 0.0, *quat])[:3, :3] for quat in own.orbit_attitude])
+    # [ω] = Ṙ Rᵀ, by central differences
+    spin = np.einsum("tij,tkj->tik", (attitude[2:] - attitude[:-2]) / 2.0, attitude[1:-1])
+    expected = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
+
+    def rates(orbit: oo.Orbit | None) -> Any:
+        found = topics(simulation.models, rows, orbit)
+        (twist,) = (topic for topic in found.series if topic.name == "/orbit/twist")
+        contents = [decode(raw.tobytes(), twist.kind) for raw in twist.messages(own)]
+        w = [content.twist.angular for content in contents]
+        return np.array([[one.x, one.y, one.z] for one in w])[1:-1]
+
+    scale = np.linalg.norm(expected[0])
+    exact = np.abs(rates(orbit) - expected).max() / scale
+    without = np.abs(rates(None) - expected).max() / scale
+    assert exact < 1e-6 < 1e-4 < without, (exact, without)

@@ -99,7 +99,7 @@ def export_bag(
 
 def _write(source: Recorded, bag: Bag, tell: Callable[[float], None]) -> None:
     """Write all topics of a run."""
-    found = topics(source.models, source.rows)
+    found = topics(source.models, source.rows, source.orbit)
     start = min(rows.time[0] for rows in source.rows.values())
     for latched in found.latched:
         number = bag.add_topic(latched.name, latched.kind, is_latched=True)

@@ -115,7 +115,7 @@ class Node:
         self._has_ended = False
         self._checked_rivals = -math.inf
         self._start(None)
-        self.topics: Topics = topics(self._models, self._rows.present())
+        self.topics: Topics = topics(self._models, self._rows.present(), simulation.orbit)
         self._participant = Participant(domain, network=network)
         self._recording = None if record is None else Recording(record, self.topics)
         self._domain = domain

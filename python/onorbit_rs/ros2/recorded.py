@@ -16,10 +16,11 @@ from onorbit_rs.exceptions import DtypeError, InputError
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.ros2.rows import Rows, rows_of_trace
 from onorbit_rs.scenario import WorldScenario
+from onorbit_rs.scenario.build import build_environment
 from onorbit_rs.simulation.run import Run
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import EventRecord, Trace, WorldTrace
+    from onorbit_rs._core import EventRecord, Orbit, Trace, WorldTrace
 
     Source = str | os.PathLike[str] | Run | Trace | WorldTrace
     Models = Model | Mapping[str, Model]
@@ -32,6 +33,8 @@ class Recorded:
     models: Mapping[str, Model]
     rows: Mapping[str, Rows]
     events: Sequence[EventRecord]
+    orbit: Orbit | None = None
+    """Reference orbit; None without one, and for a trace alone."""
 
 
 def recorded(source: Source, models: Models | None = None) -> Recorded:
@@ -55,10 +58,12 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
     """
     if isinstance(source, (str, os.PathLike)):
         source = _read(Path(source))
+    orbit = None
     if isinstance(source, Run):
         if models is not None:
             raise InputError("a run knows its robots; omit models", name="models", got=models)
         models = source.models if isinstance(source.scenario, WorldScenario) else source.model
+        orbit = _orbit(source)
         source = source.trace
     if not hasattr(source, "time"):
         raise DtypeError(
@@ -67,7 +72,15 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
         )  # fmt: skip
     by_name = _by_name(source, models)
     _check_joints(source, by_name)
-    return Recorded(by_name, rows_of_trace(source, by_name), getattr(source, "events", ()))
+    return Recorded(by_name, rows_of_trace(source, by_name), getattr(source, "events", ()), orbit)
+
+
+def _orbit(run: Run) -> Orbit | None:
+    """Return the reference orbit of a run."""
+    if run.scenario.orbit is None:
+        return None
+    model = None if isinstance(run.scenario, WorldScenario) else run.model
+    return build_environment(run.scenario, model).orbit
 
 
 def _check_joints(trace: Any, models: Mapping[str, Model]) -> None:

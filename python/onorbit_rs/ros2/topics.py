@@ -30,7 +30,7 @@ from onorbit_rs.ros2.wrenches import wrench_topics
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import EventRecord, Model
+    from onorbit_rs._core import EventRecord, Model, Orbit
 
     Floats = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ class Topics:
                 yield topic, topic.messages(rows[topic.system])
 
 
-def topics(models: Mapping[str, Model], first: Mapping[str, Rows]) -> Topics:
+def topics(models: Mapping[str, Model], first: Mapping[str, Rows], orbit: Orbit | None = None) -> Topics:
     """Return the topics of a run.
 
     Parameters
@@ -83,6 +83,8 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows]) -> Topics:
         Robots by the name of the system; the topics of a single robot have no prefix.
     first : mapping of str to Rows
         Some rows of each system; their columns are those that the run records.
+    orbit : Orbit, optional
+        Reference orbit, for the exact rate of ``lvlh``; without it, the turn of its plane is left out.
     """
     names = ros_names(models, "system")
     prefixes = {name: f"{ros}/" if len(models) > 1 else "" for name, ros in names.items()}
@@ -90,7 +92,7 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows]) -> Topics:
     reference = next(iter(models))
     series = [clock(reference)]
     if _has_local_frame(first[reference]):
-        series += orbit_topics(reference)
+        series += orbit_topics(reference, orbit)
     for system, model in models.items():
         series += system_topics(system, prefixes[system], model, frames[system])
         series += wrench_topics(system, prefixes[system], model, frames[system], first[system])
@@ -112,7 +114,7 @@ def clock(system: str) -> Series:
     return Series("/clock", system, template, lambda rows: {})
 
 
-def orbit_topics(system: str) -> list[Series]:
+def orbit_topics(system: str, orbit: Orbit | None) -> list[Series]:
     """Return the topics of the reference orbit: its frames, and pose and twist of ``lvlh`` in ``eci``."""
 
     def pose(marks: Marks) -> Any:
@@ -128,7 +130,7 @@ def orbit_topics(system: str) -> list[Series]:
     return [
         _transforms(system, OrbitFrames()),
         Series("/orbit/pose", system, Template(pose), _orbit_pose),
-        Series("/orbit/twist", system, Template(twist), _orbit_twist),
+        Series("/orbit/twist", system, Template(twist), lambda rows: _orbit_twist(rows, orbit)),
     ]
 
 
@@ -136,9 +138,12 @@ def _orbit_pose(rows: Rows) -> dict[str, Floats]:
     return {"p": rows["reference_position_eci"], "q": rows.orbit_attitude}
 
 
-def _orbit_twist(rows: Rows) -> dict[str, Floats]:
-    """Return the velocity of the origin, and the rate of L in its plane: `ω = r × v / r²`."""
+def _orbit_twist(rows: Rows, orbit: Orbit | None) -> dict[str, Floats]:
+    """Return the velocity of the origin, and the rate of L; without the orbit, its part `r × v / r²`."""
     r, v = rows["reference_position_eci"], rows["reference_velocity_eci"]
+    if orbit is not None:
+        rot_il, rate_l = orbit.lvlh(np.ascontiguousarray(rows.time))
+        return {"v": v, "w": np.einsum("tij,tj->ti", rot_il, rate_l)}
     return {"v": v, "w": np.cross(r, v) / np.sum(r * r, axis=1, keepdims=True)}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -76,18 +77,22 @@ class Queue:
 
 
 def check_commands(simulation: Simulation, commands: Sequence[Command], duration: float) -> None:
-    """Raise an error for a command that a run would reject, by applying all commands at time zero."""
+    """Raise an error for a command that a run would reject, by applying all commands at time zero.
+
+    Warns of commands after the end of the run, which are not applied.
+    """
     if not commands:
         return
+    if late := [command for command in commands if command.time > duration]:
+        warnings.warn(
+            f"{late[0].where or 'commands'}: {len(late)} of {len(commands)} commands are after the end of "
+            f"the run, {duration:g} s, and are not applied; for all of them, give the scenario a duration of "
+            f"at least {late[-1].time:g} s",
+            UserWarning,
+            stacklevel=3,
+        )
     stepper = simulation.start()
     for command in commands:
-        if command.time > duration:
-            message = (
-                f"time {command.time:g} s is after the end of the run, {duration:g} s; remove the command"
-            )
-            raise InputError(
-                f"{command.where}: {message}", name="commands", got=command.time, expected=duration
-            )
         give(stepper, command)
         path = command.get("trajectory")
         end = None if path is None or "start" not in path else path["start"] + path["times"][-1]
