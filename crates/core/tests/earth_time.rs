@@ -138,7 +138,7 @@ fn times_outside_a_table_are_refused() {
         vec![rows[0], [f64::NAN, 0.0, 0.0, 0.0]],
     ] {
         let refused = Earth::new(epoch("2024-03-01T12:00:00 UTC"), &table(&wrong));
-        assert!(matches!(refused, Err(EarthError::Parameter { .. } | EarthError::WrongLength { .. })));
+        assert!(matches!(refused, Err(EarthError::Parameter { .. } | EarthError::ShortTable { got: 1 })));
     }
 }
 

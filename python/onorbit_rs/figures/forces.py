@@ -47,9 +47,10 @@ DECADES = 1e5
 def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
     """Draw force and torque of every effect on every body; torques are about the body's centre of mass.
 
-    Rounding errors are not drawn: magnitudes below :data:`~onorbit_rs.common.display_units.ROUNDING` times
-    the largest force or torque of all effects, in which the force of an effect counts as a torque with a
-    lever of 1 m, and vice versa.
+    Rounding errors are not drawn. In the panel of an effect, these are magnitudes below
+    :data:`~onorbit_rs.common.display_units.ROUNDING` times the largest of three values: the largest magnitude
+    of the same quantity (force or torque) over all effects, and the largest force, N, and the largest torque,
+    N m, of the effect itself. Magnitudes below 1e-16 N or N m are never drawn.
 
     Parameters
     ----------

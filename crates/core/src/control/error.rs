@@ -168,12 +168,14 @@ pub enum ControlError {
     User(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Returns which of the controls that follow commands was meant.
+/// Returns the hint for an unknown control: the nearest name, or all names, of the controls that follow
+/// commands; without such controls, the advice to declare one.
 fn named(known: &[String], name: &str) -> String {
     if known.is_empty() { externals(known) } else { nearest(known, name) }
 }
 
-/// Returns how to send commands to those controls that follow them.
+/// Returns the hint for an unknown control: the names of the controls that follow commands or, without any,
+/// the advice to declare one.
 fn externals(known: &[String]) -> String {
     match known {
         [] => "; use an External controller for the joints to be commanded".to_owned(),

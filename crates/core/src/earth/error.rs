@@ -113,6 +113,23 @@ pub enum EarthError {
         /// Accepted range.
         expected: &'static str,
     },
+    /// A table of Earth orientation parameters has too few rows to be interpolated.
+    #[error("the table of Earth orientation parameters has {got}; give at least 2 rows", got = count(*got, "row"))]
+    ShortTable {
+        /// Number of rows.
+        got: usize,
+    },
+    /// A segment of a SPICE kernel does not consist of complete intervals.
+    #[error(
+        "a segment of the kernel has {got}; their number must be a positive multiple of 3 × {per_interval}, three components \
+         with {per_interval} per interval", got = count(*got, "coefficient")
+    )]
+    SegmentLength {
+        /// Number of coefficients.
+        got: usize,
+        /// Number of coefficients of one component in one interval.
+        per_interval: usize,
+    },
     /// An array has the wrong length.
     #[error("{name} holds {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength {

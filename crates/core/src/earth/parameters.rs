@@ -79,7 +79,7 @@ impl Parameters {
             }
             EarthParameters::Table(rows) => {
                 if rows.len() < 2 {
-                    return Err(EarthError::WrongLength { name: "the table", expected: 2, got: rows.len() });
+                    return Err(EarthError::ShortTable { got: rows.len() });
                 }
                 let mut last = f64::NEG_INFINITY;
                 let row = |(index, row): (usize, &EarthParameterRow)| {

@@ -37,13 +37,13 @@ impl SpiceKernel {
     /// Creates the kernel from the chains of segments that lead from the Earth to the Sun and to the Moon.
     ///
     /// # Errors
-    /// [`EarthError::WrongLength`] for a segment without complete intervals, [`EarthError::NotFinite`], and
+    /// [`EarthError::SegmentLength`] for a segment without complete intervals, [`EarthError::NotFinite`], and
     /// [`EarthError::Segment`] for implausible numbers, which could make positions overflow.
     pub fn new(sun: Vec<SpiceSegment>, moon: Vec<SpiceSegment>) -> Result<Self, EarthError> {
         for segment in sun.iter().chain(&moon) {
             let (got, size) = (segment.coefficients.len(), segment.count.saturating_mul(3));
             if size == 0 || got == 0 || got % size != 0 {
-                return Err(EarthError::WrongLength { name: "a segment of the kernel", expected: size, got });
+                return Err(EarthError::SegmentLength { got, per_interval: segment.count });
             }
             let numbers = [segment.sign, segment.start, segment.length];
             if let Some(&value) = numbers.iter().chain(&segment.coefficients).find(|x| !x.is_finite()) {

@@ -92,14 +92,15 @@ impl Wrenches {
         let unknown = EnvironmentError::UnknownBody { body, count: self.len() };
         let row = self.layout.row(body).ok_or(unknown)?;
         let Wrench { force, torque } = wrench;
-        self.add_lanes(row, WrenchLanes::<f64> { force: force.into(), torque: torque.into() });
+        let place = (row / WIDTH, row % WIDTH);
+        self.add_lanes(place, WrenchLanes::<f64> { force: force.into(), torque: torque.into() });
         Ok(())
     }
 
-    /// Adds `wrenches` to those on consecutive bodies, one per lane of `S`, starting at row `row`.
+    /// Adds `wrenches` to those on consecutive bodies, one per lane of `S`, starting at a row of a block.
     #[inline(always)]
-    pub(super) fn add_lanes<S: Real>(&mut self, row: usize, wrenches: WrenchLanes<S>) {
-        let (to, offset) = (&mut self.blocks[row / WIDTH], row % WIDTH);
+    pub(super) fn add_lanes<S: Real>(&mut self, (block, offset): (usize, usize), wrenches: WrenchLanes<S>) {
+        let to = &mut self.blocks[block];
         let sum = to.load(offset) + wrenches;
         store(&mut to.force, offset, sum.force);
         store(&mut to.torque, offset, sum.torque);
@@ -109,8 +110,8 @@ impl Wrenches {
     /// of `S`, starting with body `first`.
     #[inline(always)]
     pub(crate) fn lanes<S: Real>(&self, system: usize, first: usize) -> WrenchLanes<S> {
-        let row = self.layout.systems()[system].first + first;
-        self.blocks[row / WIDTH].load(row % WIDTH)
+        let (block, offset) = self.layout.systems()[system].place(first);
+        self.blocks[block].load(offset)
     }
 }
 

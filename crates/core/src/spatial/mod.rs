@@ -1,6 +1,7 @@
-//! Spatial algebra for a generic scalar: vectors, rotations, motions, forces and inertias.
+//! Spatial algebra for a generic scalar (vectors, rotations, motions, forces and inertias), curves through given
+//! points, and the choice of the instruction set.
 //!
-//! All types are plain data with `#[inline(always)]` methods, so that the arithmetic is compiled for the
+//! The algebraic types are plain data with `#[inline(always)]` methods, so that the arithmetic is compiled for the
 //! instruction set of the kernel that uses it. Linear parts precede angular parts.
 
 mod articulated;

@@ -26,6 +26,13 @@ impl IntoPython for EarthError {
             Self::WrongLength { name, expected, got } => {
                 fields!(py, "name": name, "got": got, "expected": expected)
             }
+            Self::ShortTable { got } => {
+                fields!(py, "name": "eop", "got": got, "expected": "at least 2 rows")
+            }
+            Self::SegmentLength { got, per_interval } => {
+                let expected = format!("a positive multiple of {}", per_interval.saturating_mul(3));
+                fields!(py, "name": "coefficients", "got": got, "expected": expected)
+            }
             _ => fields!(py,),
         };
         raise(py, "EarthError", &message, &fields)

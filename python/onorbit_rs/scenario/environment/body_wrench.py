@@ -42,7 +42,10 @@ class BodyWrenchEffect(Part):
         return [(("body",), self.body)]
 
     def of_system(self, name: str, systems: Collection[str]) -> Self | None:
-        """Return the wrench for a system alone, with the link's name; None if it acts on another system."""
+        """Return the wrench for the scenario of the system ``name`` alone; None if it acts on another system.
+
+        In that scenario, ``body`` is the name of the link without the name of the system.
+        """
         system, link = split_link(self.body, systems)
         return self.model_copy(update={"body": link}) if system == name else None
 

@@ -93,8 +93,8 @@ impl<'a> Meshes<'a> {
         let (name, path) = self.guessed.first()?;
         let files = mesh_files(self.guessed.len());
         Some(format!(
-            "{files} not at the given paths; files of the same name near them are drawn, such as {path} for \
-             '{name}'"
+            "{files} not found at the paths in the URDF; files of the same name in the folder of the URDF, or \
+             in its subfolder 'meshes', are drawn instead, such as {path} for '{name}'"
         ))
     }
 
