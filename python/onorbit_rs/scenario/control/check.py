@@ -31,8 +31,8 @@ def check_control(scenario: Scenario, events: list[str], systems: list[str]) -> 
         if scenario.reference is not None:
             raise inconsistent(
                 "reference",
-                "with 'controllers', each controller has its own reference; move this 'reference' into one of "
-                "the controllers",
+                "with 'controllers', each controller has its own reference; move this 'reference' into one "
+                "of the controllers",
             )
         _check_names(scenario.controllers, events)
         for index, control in enumerate(scenario.controllers):
