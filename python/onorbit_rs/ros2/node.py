@@ -14,7 +14,7 @@ from onorbit_rs.exceptions import ControlError, InputError, OnOrbitError, Ros2Er
 from onorbit_rs.ros2.inbox import Arrived, Entry, Inbox, add_run_topics, add_system_topics
 from onorbit_rs.ros2.live_rows import LiveRows
 from onorbit_rs.ros2.messages import nanoseconds
-from onorbit_rs.ros2.pace import PACES, RealTime, few_collections
+from onorbit_rs.ros2.pace import PACES, RealTime
 from onorbit_rs.ros2.participant import Participant
 from onorbit_rs.ros2.publisher import Publisher
 from onorbit_rs.ros2.recording import Recording
@@ -209,7 +209,7 @@ class Node:
         self._end = np.inf if duration is None else duration
         self._plan(self._end)
         try:
-            with noted_stop() as self._is_stopped, few_collections(self._pace == "real_time"):
+            with noted_stop() as self._is_stopped:
                 self._publish_present()
                 while self._stepper.time < self._end and not self._is_stopped():
                     self._turn()

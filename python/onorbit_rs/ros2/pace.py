@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import gc
 import math
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -89,17 +87,3 @@ class RealTime:
             "late_median_s": late.quantile(0.5), "late_99_s": late.quantile(0.99), "late_max_s": late.largest,
             "missed": late.missed / late.count, "slipped_s": self.slipped, "ticks": late.count,
         }  # fmt: skip
-
-
-@contextmanager
-def few_collections(is_wanted: bool) -> Iterator[None]:
-    """Exclude the objects that exist from garbage collection in the block, whose pauses are then short."""
-    if not is_wanted:
-        yield
-        return
-    gc.collect()
-    gc.freeze()
-    try:
-        yield
-    finally:
-        gc.unfreeze()

@@ -36,10 +36,10 @@ impl Bodies {
         with_velocity: bool,
         motion: impl Fn(usize) -> BodyMotion<S>,
     ) {
-        let rows = self.layout.systems()[system];
-        for first in (0..rows.count).step_by(S::LANES) {
-            let (block, offset) = rows.place(first);
-            let to = &mut self.blocks[block].motion;
+        let SystemRows { first: start, count, .. } = self.layout.systems()[system];
+        for first in (0..count).step_by(S::LANES) {
+            let row = start + first;
+            let (to, offset) = (&mut self.blocks[row / WIDTH].motion, row % WIDTH);
             let BodyMotion { com, rot_wk, velocity: [linear, angular] } = motion(first);
             store(&mut to.com, offset, com);
             store(&mut to.rot_wk.x, offset, rot_wk.x);
@@ -111,16 +111,14 @@ impl Bodies {
     /// Returns the bodies of a system in groups with one body per lane of `S`.
     #[inline(always)]
     pub(super) fn groups<S: Real>(&self, system: SystemRows) -> impl Iterator<Item = LaneGroup<'_>> {
-        let group = move |body| {
-            let place = system.place(body);
-            LaneGroup {
-                first: BodyIndex { system: system.number, body },
-                place,
-                count: (system.count - body).min(S::LANES),
-                block: &self.blocks[place.0],
-            }
+        let SystemRows { number, first, count } = system;
+        let group = move |body| LaneGroup {
+            first: BodyIndex { system: number, body },
+            row: first + body,
+            count: (count - body).min(S::LANES),
+            block: &self.blocks[(first + body) / WIDTH],
         };
-        (0..system.count).step_by(S::LANES).map(group)
+        (0..count).step_by(S::LANES).map(group)
     }
 }
 

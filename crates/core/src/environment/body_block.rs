@@ -1,7 +1,7 @@
 //! States of eight bodies as a structure of arrays.
 
 use super::body_index::BodyIndex;
-use super::soa::Column8;
+use super::soa::{Column8, WIDTH};
 use crate::spatial::{Mat3, Real, Sym3, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
@@ -76,8 +76,8 @@ impl BodyBlock {
 pub(super) struct LaneGroup<'a> {
     /// Body in the first lane.
     pub(super) first: BodyIndex,
-    /// Number of the block, and row of the first body in the block.
-    pub(super) place: (usize, usize),
+    /// Row of the first body.
+    pub(super) row: usize,
     /// Number of lanes in use.
     pub(super) count: usize,
     pub(super) block: &'a BodyBlock,
@@ -92,7 +92,7 @@ impl LaneGroup<'_> {
     /// Returns the row, within its block, of the first body.
     #[inline(always)]
     pub(super) fn offset(&self) -> usize {
-        self.place.1
+        self.row % WIDTH
     }
 
     #[inline(always)]

@@ -45,17 +45,6 @@ pub(super) struct SystemRows {
     pub(super) count: usize,
 }
 
-impl SystemRows {
-    /// Returns the number of the block that contains a body and its row in the block.
-    ///
-    /// The row follows from the number of the body alone, because every system starts a new block. The
-    /// compiler thus knows it for groups of eight bodies, and omits the checks of bounds.
-    #[inline(always)]
-    pub(super) fn place(&self, body: usize) -> (usize, usize) {
-        (self.first / WIDTH + body / WIDTH, body % WIDTH)
-    }
-}
-
 impl BlockLayout {
     /// Computes the layout of systems with the given numbers of bodies.
     pub(super) fn new(counts: &[usize]) -> Self {

@@ -122,7 +122,7 @@ impl<'a> Scene<'a> {
             || {
                 for system in systems {
                     for group in self.bodies.groups::<S>(*system) {
-                        wrenches.add_lanes(group.place, wrench_of(&group)?);
+                        wrenches.add_lanes(group.row, wrench_of(&group)?);
                     }
                 }
                 Ok(())

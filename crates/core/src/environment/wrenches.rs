@@ -92,15 +92,14 @@ impl Wrenches {
         let unknown = EnvironmentError::UnknownBody { body, count: self.len() };
         let row = self.layout.row(body).ok_or(unknown)?;
         let Wrench { force, torque } = wrench;
-        let place = (row / WIDTH, row % WIDTH);
-        self.add_lanes(place, WrenchLanes::<f64> { force: force.into(), torque: torque.into() });
+        self.add_lanes(row, WrenchLanes::<f64> { force: force.into(), torque: torque.into() });
         Ok(())
     }
 
-    /// Adds `wrenches` to those on consecutive bodies, one per lane of `S`, starting at a row of a block.
+    /// Adds `wrenches` to those on consecutive bodies, one per lane of `S`, starting at row `row`.
     #[inline(always)]
-    pub(super) fn add_lanes<S: Real>(&mut self, (block, offset): (usize, usize), wrenches: WrenchLanes<S>) {
-        let to = &mut self.blocks[block];
+    pub(super) fn add_lanes<S: Real>(&mut self, row: usize, wrenches: WrenchLanes<S>) {
+        let (to, offset) = (&mut self.blocks[row / WIDTH], row % WIDTH);
         let sum = to.load(offset) + wrenches;
         store(&mut to.force, offset, sum.force);
         store(&mut to.torque, offset, sum.torque);
@@ -110,8 +109,8 @@ impl Wrenches {
     /// of `S`, starting with body `first`.
     #[inline(always)]
     pub(crate) fn lanes<S: Real>(&self, system: usize, first: usize) -> WrenchLanes<S> {
-        let (block, offset) = self.layout.systems()[system].place(first);
-        self.blocks[block].load(offset)
+        let row = self.layout.systems()[system].first + first;
+        self.blocks[row / WIDTH].load(row % WIDTH)
     }
 }
 
