@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 
 _INVALID = re.compile(r"[^A-Za-z0-9_]")
 
@@ -25,26 +25,10 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     kind : str
         What they are, for the warning, such as ``system``.
     """
-    given = list(names)
-    taken = {name for name in given if ros_name(name) == name}
-    found: dict[str, str] = {}
-    for name in given:
-        base = ros_name(name)
-        number, candidate = 1, base
-        while candidate != name and candidate in taken:
-            number += 1
-            candidate = f"{base}_{number}"
-        taken.add(candidate)
-        found[name] = candidate
-    changed = [f"{name!r} → {other!r}" for name, other in found.items() if name != other]
-    if changed:
-        warnings.warn(
-            f"ROS names contain letters, digits and single underscores; the topics of a {kind} use: "
-            f"{', '.join(changed)}",
-            UserWarning,
-            stacklevel=3,
-        )
-    return found
+    wanted = {name: ros_name(name) for name in names}
+    kept = {name for name, ros in wanted.items() if ros == name}
+    reason = f"ROS names contain letters, digits and single underscores; the topics of a {kind} use"
+    return _numbered(wanted, kept, kept, reason)
 
 
 def frame_names(names: Iterable[str], reserved: Collection[str]) -> dict[str, str]:
@@ -57,22 +41,28 @@ def frame_names(names: Iterable[str], reserved: Collection[str]) -> dict[str, st
     reserved : collection of str
         Names of other frames of the tree, such as ``world``.
     """
-    given = dict.fromkeys(names)
-    taken = {*given, *reserved}
+    wanted = {name: name for name in names}
+    reason = "the tree of frames has other frames of these names; links and frames of the robot become"
+    return _numbered(wanted, wanted.keys() - reserved, {*wanted, *reserved}, reason)
+
+
+def _numbered(
+    wanted: Mapping[str, str], kept: Collection[str], taken: Collection[str], reason: str
+) -> dict[str, str]:
+    """Return the wanted names, with numbers where they are taken; warn of names that differ, with a reason.
+
+    The names in ``kept`` remain as they are.
+    """
+    used = set(taken)
     found: dict[str, str] = {}
-    for name in given:
-        number, candidate = 1, name
-        while name in reserved and candidate in taken:
+    for name, base in wanted.items():
+        number, candidate = 1, base
+        while name not in kept and candidate in used:
             number += 1
-            candidate = f"{name}_{number}"
-        taken.add(candidate)
+            candidate = f"{base}_{number}"
+        used.add(candidate)
         found[name] = candidate
     changed = [f"{name!r} → {other!r}" for name, other in found.items() if name != other]
     if changed:
-        warnings.warn(
-            f"the tree of frames has other frames of these names; links and frames of the robot become: "
-            f"{', '.join(changed)}",
-            UserWarning,
-            stacklevel=3,
-        )
+        warnings.warn(f"{reason}: {', '.join(changed)}", UserWarning, stacklevel=4)
     return found
