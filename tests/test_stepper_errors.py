@@ -224,5 +224,5 @@ def test_a_checkpoint_that_no_run_leaves_is_refused(path: str, value: Any) -> No
 def test_rows_that_are_missing_from_a_checkpoint_are_named() -> None:
     stepper = passive().start(duration=1.0)
     stepper.advance(0.1)
-    with pytest.raises(oo.exceptions.CheckpointError, match=r"needs the 100 rows .* but 50 are given"):
+    with pytest.raises(oo.exceptions.CheckpointError, match=r"after 100 rows, .* has 50 rows"):
         passive().start(resume=stepper.checkpoint(since=50))

@@ -1,5 +1,5 @@
-//! Jumps of the joint accelerations from the last stage of one step to the first stage of the next. They
-//! measure motion that the steps do not resolve.
+//! Jumps of the joint accelerations from the last stage of one step to the first stage of the next. Large
+//! jumps indicate motion that the steps do not resolve.
 
 use super::integrator::StepEnds;
 use crate::model::BASE_NV;
@@ -14,9 +14,10 @@ const SMALL: f64 = 1e-6;
 /// some of the steps.
 ///
 /// The last stage of a Runge-Kutta step is evaluated at a prediction of the state at the end of the step, and
-/// the first stage of the next step at that state itself. The resulting difference `h |Δq̈|/6`, with the step
-/// `h`, is the difference from a third-order solution. For an oscillation with `z = ω h` it is `z⁴/72`, and
-/// the error of a step is `z⁵/120 = 1.75 (z⁴/72)^(5/4)`.
+/// the first stage of the next step at that state itself. With the step length `h`, `h |Δq̈|/6` is the
+/// difference between the rate and an embedded third-order solution. For an oscillation with `z = ω h`, this
+/// difference is `z⁴/72` of the amplitude of the rate, and the error of a step is `z⁵/120` of it, which
+/// equals `1.75 (z⁴/72)^(5/4)`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct AccelerationJumps {
     /// Joint accelerations in the last stage of the previous step, rad/s² (m/s²).

@@ -27,9 +27,9 @@ pub(super) struct Accuracy<S> {
 }
 
 impl<S: Scalar> Accuracy<S> {
-    /// Creates the measurements of trees before their first step. `doubles` is true if step doubling measures
-    /// the errors of steps, and `checks` is true if the checks of the certificate are evaluated at every
-    /// step. `steps` is the planned number of steps.
+    /// Creates the error estimates of `trees` before their first step. `doubles` is true if step doubling
+    /// estimates the errors of steps, and `checks` is true if the checks of the certificate are evaluated at
+    /// every step. `steps` is the planned number of steps; `None` for an open-ended run.
     pub(super) fn of(
         trees: &[Tree<'_, S>],
         state: &State<S>,
@@ -105,8 +105,8 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Measures the step taken over `interval` to `state`; `is_smooth` is true if neither an event nor an
-    /// impact occurs at the start of the step.
+    /// Estimates the errors of the step over `interval` that ended at `state`; `is_smooth` is true if neither
+    /// an event nor an impact occurs at the start of the step.
     pub(super) fn measure_step(
         &mut self,
         interval: (f64, f64),

@@ -16,7 +16,6 @@ pub(super) struct LoadedSystem<'a, S> {
 
 /// Creates the bodies of systems, given by their numbers in the world and their models, at rest with their
 /// origins at the origin of W.
-/// at the origin of W.
 pub(super) fn bodies_of(numbers: &[usize], models: &[&Model]) -> Bodies {
     let at_rest = |node: &Node| BodyState {
         mass: node.mass,

@@ -20,8 +20,9 @@ impl Simulation {
     /// A [`SimulationError`] for the first invalid setting: an initial state of the wrong length, outside its
     /// range or with a quaternion that does not have unit norm; a joint that starts beyond its limits when
     /// these are enforced; a time step, tolerance or other number outside its range; an effect or a gravity
-    /// field without the orbit that it requires; an Earth whose epoch or axes differ from those of the orbit;
-    /// invalid controls; a reference that has no tool or starts too far from it.
+    /// field without the orbit that it requires; an effect that acts on no system, or twice on the same body;
+    /// an Earth whose epoch or axes differ from those of the orbit; invalid names, events or controls; a
+    /// reference without a tool; a reference that starts too far from the tool or the joints that follow it.
     pub fn check(&self) -> Result<(), SimulationError> {
         self.systems.iter().try_for_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;
@@ -124,7 +125,8 @@ impl Simulation {
     }
 }
 
-/// Checks that seating motions are long enough to be resolved by the schedule.
+/// Checks that every seating motion lasts at least a thousandth of `time_step`, so that the schedule can
+/// resolve it.
 fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> {
     for Event { name, action, .. } in events {
         let Action::Capture { seat: Some(Seat { duration, .. }), .. } = action else { continue };

@@ -22,7 +22,7 @@ use crate::spatial::InstructionSet;
 use crate::world::{Layout, SystemPlace};
 use serde::{Deserialize, Serialize};
 
-/// Largest number of steps of a run; counting up to twice this number does not overflow.
+/// Largest number of steps of a run; counting to twice this number does not overflow.
 const MOST_STEPS: usize = usize::MAX / 2;
 
 /// State of a run that its trace does not contain. A run that resumes from a checkpoint, together with the
@@ -45,7 +45,7 @@ pub(super) struct GroupCheckpoint {
     pub(super) schedule: Schedule,
     pub(super) progress: Progress,
     pub(super) local_reference: Option<LocalReference>,
-    /// Commanded wrenches from outside the run.
+    /// Wrenches that the caller of the stepper has commanded.
     #[serde(default, skip_serializing_if = "WrenchCommands::is_empty")]
     pub(super) wrenches: WrenchCommands,
     pub(super) controllers: SavedControllers,
@@ -161,7 +161,9 @@ impl Checkpoint {
     /// different version wrote it.
     pub fn from_json(text: &str) -> Result<Self, CheckpointError> {
         let own = env!("CARGO_PKG_VERSION");
-        let unreadable = |error: serde_json::Error| CheckpointError::Unreadable { reason: error.to_string() };
+        let unreadable = |error: serde_json::Error| CheckpointError::Unreadable {
+            reason: format!("its text cannot be read ({error})"),
+        };
         let value: serde_json::Value = serde_json::from_str(text).map_err(unreadable)?;
         match value.get("version").and_then(|version| version.as_str()) {
             Some(version) if version != own => {
@@ -171,8 +173,8 @@ impl Checkpoint {
         }
     }
 
-    /// Returns the checkpoints of `count` groups for a run that resumes on this machine, after checking
-    /// version and instruction set.
+    /// Returns the checkpoints of the groups. Checks that there are `count` groups, and that this machine
+    /// uses the instruction set of the checkpoint.
     pub(super) fn into_groups(self, count: usize) -> Result<Vec<GroupCheckpoint>, CheckpointError> {
         let own = own_instruction_set();
         if self.instruction_set != own {
@@ -185,8 +187,8 @@ impl Checkpoint {
 }
 
 impl GroupCheckpoint {
-    /// Checks that a run can resume from the checkpoint, given the layout of its state, its schedule, the
-    /// numbers of recorded rows and the number of events.
+    /// Checks that a run with this layout, this schedule and this number of events can resume from the
+    /// checkpoint; `rows` holds the number of recorded rows of each system.
     pub(super) fn check(
         &self,
         layout: &Layout,
@@ -278,7 +280,7 @@ impl GroupCheckpoint {
         let probed = errors.map(|errors| errors.step).max().unwrap_or(0);
         if probed > *steps || *steps.max(idle_steps) > MOST_STEPS {
             let reason = format!(
-                "a run cannot have {steps} steps, {idle_steps} idle steps and the last step doubling at step {probed}"
+                "its numbers of steps ({steps}), idle steps ({idle_steps}) and the last doubled step ({probed}) are inconsistent"
             );
             return Err(CheckpointError::Unreadable { reason });
         }
@@ -294,7 +296,7 @@ impl TreeProgress {
         ])?;
         check_each(self.errors.iter().flat_map(|errors| {
             let jumps = errors.jumps.joints().map(|got| ("joints with jumps of acceleration", got, n));
-            [("drifts", errors.drifts.len(), n + 1)].into_iter().chain(jumps)
+            [("step-doubling errors", errors.drifts.len(), n + 1)].into_iter().chain(jumps)
         }))
     }
 }

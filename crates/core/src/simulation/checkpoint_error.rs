@@ -1,6 +1,6 @@
 //! Errors of checkpoints.
 
-use crate::number_text::short;
+use crate::number_text::{count, short};
 use thiserror::Error;
 
 /// Reason why a run cannot resume from a checkpoint.
@@ -20,7 +20,9 @@ pub enum CheckpointError {
     )]
     OtherInstructionSet { found: String, own: String },
     #[error(
-        "the checkpoint needs the {expected} rows recorded before it, but {got} are given; pass all of these rows"
+        "the checkpoint was written after {expected}, but the given trace has {got}; pass all rows recorded before the \
+         checkpoint",
+        expected = count(*expected, "row"), got = count(*got, "row")
     )]
     MissingRows { got: usize, expected: usize },
     #[error(

@@ -226,7 +226,7 @@ macro_rules! column {
 macro_rules! trace_columns {
     ($then:ident) => {
         $then! {
-            time (T), "s", "", Always, WHOLE, "Time.";
+            time (T), "s", "", Always, WHOLE, "Time since the start of the run.";
             q (T, nq), "m; 1; rad or m", "W", Always, CONFIGURATION,
                 "Configuration: position and quaternion (x, y, z, w) of the base, then joint positions.";
             v (T, nv), "m/s; rad/s; rad/s or m/s", "B", Always, VELOCITY,
@@ -301,8 +301,8 @@ pub static REREFERENCED: Column = column!(
     "",
     Always,
     WHOLE,
-    "Times at which the robot had drifted too far from its reference orbit for accurate integration, which \
-     continued about a new orbit; recorded quantities still refer to W."
+    "Times at which integration changed to a new reference orbit, because the robot had drifted too far from \
+     the previous one; recorded quantities still refer to W."
 );
 
 /// Returns the descriptions of all recorded quantities.

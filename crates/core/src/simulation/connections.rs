@@ -50,8 +50,8 @@ impl Connections {
         found
     }
 
-    /// Removes a weld. Of the two systems that it connected, the one whose tree has no root any more becomes
-    /// the root of its tree.
+    /// Removes a weld, which separates its tree into two. In the tree that is left without a root, the system
+    /// that the weld connected becomes the root.
     pub(super) fn remove(&mut self, weld: usize) {
         let Weld { by, of, .. } = self.active.welds.remove(weld);
         for system in [by.system, of.system] {
@@ -70,7 +70,7 @@ impl Connections {
         self.active.roots.push(root);
     }
 
-    /// Returns the root of the tree that contains a system; `None` if the system has always been alone.
+    /// Returns the root of the tree that contains a system; `None` if the system has never been connected.
     fn root_of(&self, system: usize) -> Option<usize> {
         let tree = self.connected_to(system);
         self.active.roots.iter().copied().find(|root| tree.contains(root))
@@ -81,8 +81,9 @@ impl Connections {
         assemble(&self.prefixed, &self.active.welds, &self.active.roots)
     }
 
-    /// Returns the model and the members of the tree that consists of a system, its root, and those of the
-    /// systems `knows` that are connected to it through each other; `None` if no known system is connected.
+    /// Returns the model and the members of the tree whose root is `system`. Its other members are those
+    /// systems in `knows` to which welds among known systems connect it. Returns `None` if it has no other
+    /// members.
     pub(super) fn known_tree(
         &self,
         system: usize,
@@ -105,7 +106,7 @@ impl Connections {
         self.prefixed[system].frames().iter().map(|frame| tree.frame(&frame.name)).collect()
     }
 
-    /// Returns the name of a frame in the models of trees.
+    /// Returns the name of a frame in the models of trees, `SYSTEM/FRAME`.
     pub(super) fn frame_name(&self, place: FrameIndex) -> &str {
         &self.prefixed[place.system].frames()[place.frame].name
     }

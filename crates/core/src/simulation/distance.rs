@@ -4,8 +4,8 @@ use super::settings::Simulation;
 use crate::world::groups;
 
 /// Largest acceptable spacing of adjacent `f64` positions, m, which is reached at a distance of 4500 km. It
-/// is a tenth of the error of a long orbit at the tightest tolerance, and far below the resolution of sensors
-/// of relative motion.
+/// is a tenth of the position error of a run over many revolutions at the tightest tolerance, and far below
+/// the resolution of sensors of relative motion.
 const FINEST: f64 = 1e-9;
 
 /// System that starts far from the reference orbit.

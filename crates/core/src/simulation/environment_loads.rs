@@ -26,7 +26,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(super) struct EnvironmentLoads {
     effects: Vec<Arc<dyn Effect>>,
-    /// Commanded wrenches from outside the run.
+    /// Wrenches that the caller of the stepper has commanded.
     pub(super) commands: WrenchCommands,
     reads_velocities: bool,
     /// Orbit on which the origin of W moves.

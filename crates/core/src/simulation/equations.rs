@@ -25,7 +25,7 @@ pub(crate) struct EquationsOfMotion<'a, S, W> {
 }
 
 impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
-    /// Creates the equations of motion of systems, each of which is one of `trees`.
+    /// Creates the equations of motion of systems that are not connected: each of `trees` is one system.
     pub(crate) fn new(trees: Vec<Tree<'a, S>>, loads: W) -> Self {
         Self { members: Members::alone(trees.len()), trees, latches: Vec::new(), loads }
     }

@@ -74,7 +74,10 @@ pub enum SimulationError {
          bodies"
     )]
     EffectTwice { effect: String, body: String },
-    #[error("the {effect} acts on none of the {count} systems, which are numbered from 0")]
+    #[error(
+        "the {effect} acts on none of the systems of the run; assign it to a system with a number from 0 to {last}",
+        last = count.saturating_sub(1)
+    )]
     EffectOnNoSystem { effect: String, count: usize },
     #[error(
         "the controller tracks frame '{controller}', but the tool of the run is '{tool}'; use the same \
@@ -155,7 +158,7 @@ pub enum SimulationError {
         name: String,
         /// Setting that only the native engine supports.
         what: &'static str,
-        /// Remedy: what to change instead.
+        /// Change of the settings that avoids the error.
         remedy: &'static str,
     },
 }

@@ -39,7 +39,7 @@ struct Sums {
     balances: [Balance; 2],
     /// Kinetic energies, J.
     energies: [f64; 2],
-    /// Kinetic energy that corresponds to the changes of the velocities, J.
+    /// Kinetic energy `½ Δvᵀ M Δv` of the changes `Δv` of the velocities, J.
     energy_of_change: f64,
     /// Change of the momentum of the systems `pushed`.
     impulse: Force<f64>,
@@ -95,8 +95,9 @@ impl<S: Scalar> RunState<'_, S> {
         sums
     }
 
-    /// Returns the relative velocities of the two frames after a capture, as fractions of those before the
-    /// capture.
+    /// Returns the relative velocities of the two frames after a capture, linear and angular, as fractions of
+    /// those before the capture, or of 1 m/s and 1 rad/s if these are larger. Returns zeros for a release and
+    /// with an external engine.
     fn twist_left(&self, event: &Applied<'_>, after: &[Snapshot]) -> [f64; 2] {
         if event.kind != EventKind::Capture || self.mover.is_external() {
             return [0.0; 2]; // an external engine removes the relative velocity during the next steps

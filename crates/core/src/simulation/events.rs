@@ -73,7 +73,7 @@ impl Events {
         open.filter_map(|state| state.due).collect()
     }
 
-    /// Returns the numbers in the world of the events that have happened.
+    /// Returns the numbers, in the world, of the events that have happened.
     pub(super) fn happened(&self) -> Vec<usize> {
         let states = self.states.iter().zip(&self.numbers);
         states.filter(|(state, _)| state.happened.is_some()).map(|(_, number)| *number).collect()
@@ -84,7 +84,7 @@ impl Events {
         self.list.iter().position(|event| event.name == name)
     }
 
-    /// Checks that an event can be triggered.
+    /// Checks that an event happens on command and has not happened yet.
     pub(super) fn check_trigger(&self, number: usize) -> Result<(), SimulationError> {
         let (event, state) = (&self.list[number], &self.states[number]);
         let reason = match event.when {

@@ -1,5 +1,4 @@
-//! Checks of the certificate for one system, evaluated at every step of a run that does not record every
-//! step.
+//! Checks of the certificate for one tree, evaluated at every step of a run that does not record every step.
 
 use super::certificate::{BaseMotion, MassMotion, PairChecks, Stream, Sums};
 use super::environment_loads::EnvironmentLoads;
@@ -20,7 +19,7 @@ struct End {
     whole: MassMotion,
 }
 
-/// Checks of one system during a run.
+/// Checks of one tree during a run.
 pub(super) struct EveryStep {
     stream: Stream,
     /// Motion at the start of the current step. After the step, it also contains the accelerations and forces
@@ -106,8 +105,8 @@ impl EveryStep {
         self.record_end(t, state, system, loads)
     }
 
-    /// Records the end of the same step. Requires a base twist that is projected onto the momentum, and the
-    /// kinematics and loads of the state in `system`.
+    /// Records the end of a step whose base rows are checked. Requires a base twist that is projected onto
+    /// the momentum, and the kinematics and loads of the state in `system`.
     pub(super) fn record_end<S: Scalar>(
         &mut self,
         t: f64,

@@ -9,6 +9,7 @@ pub struct ExternalControl {
     pub name: String,
     /// Names of the joints of the control.
     pub joints: Vec<String>,
-    /// Quantity that the gains of the control can track: positions, otherwise rates, otherwise efforts.
+    /// Quantity that the control tracks: positions if its gains `kp` are positive, otherwise rates if its
+    /// gains `kd` are positive, otherwise efforts.
     pub interface: Interface,
 }

@@ -48,14 +48,16 @@ impl<'a> ExternalEngine<'a> {
         self.has_output.then(|| &self.output.acceleration[range.clone()])
     }
 
-    /// Returns the work done on a system in the last step less the energy that its joints dissipated, J.
+    /// Returns the work done on a system in the last step, including the work of its connections, less the
+    /// energy that its joints dissipated, J.
     pub(super) fn work_of_step(&self, system: usize) -> f64 {
         let done = &self.output.systems[system];
         done.work + done.weld_work
     }
 
     /// Subtracts from the totals of a group the impulses that the connections exchanged between its systems
-    /// in the last step. The work of the connections is kept: it is the energy that they absorb.
+    /// in the last step. The work of the connections remains in the totals; the energy that the connections
+    /// absorb is added to the dissipated energy.
     pub(super) fn remove_exchanged(&self, ledger: &mut Ledger) {
         for done in &self.output.systems {
             let impulse = Force::from_slice(&done.weld_impulse);

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// W|` relative to the sum of `Σ |ΔW|` and the largest kinetic energy `T`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupBalance {
-    /// Numbers of the systems.
+    /// Numbers of the systems in the world.
     pub systems: Vec<usize>,
     /// Values of `P − ∫F dt`, `L − ∫T dt` and `T − W` in the first row; `None` before that row.
     first: Option<(Momentum<f64>, f64)>,
@@ -71,7 +71,7 @@ impl GroupBalance {
         self.largest_energy = self.largest_energy.max(row.kinetic_energy);
     }
 
-    /// Returns the balance with the numbers of its systems set.
+    /// Returns the balance with `systems` as the numbers of its systems.
     pub(super) fn of_systems(self, systems: &[usize]) -> Self {
         Self { systems: systems.to_vec(), ..self }
     }

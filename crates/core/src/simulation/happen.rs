@@ -37,7 +37,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Opens and closes the latches at `t`, s.
+    /// Determines for which latches the conditions hold at `t`, s, and sets or clears the times at which
+    /// their captures are due.
     fn update_latches(&mut self, t: f64) {
         let EquationsOfMotion { trees, latches, .. } = &mut self.equations;
         for latch in latches {
@@ -87,8 +88,8 @@ impl<S: Scalar> RunState<'_, S> {
         if has_ended { self.keep_balance(|run| run.recompile(t)) } else { Ok(()) }
     }
 
-    /// Calls `change`, which assembles new trees, and preserves the balance of the group, because the
-    /// integrals of new trees start at zero.
+    /// Calls `change`, which assembles new trees, and corrects the ledger so that the totals of the group do
+    /// not change, although the integrals of new trees start at zero.
     fn keep_balance<T>(
         &mut self,
         change: impl FnOnce(&mut Self) -> Result<T, SimulationError>,
@@ -144,7 +145,8 @@ impl<S: Scalar> RunState<'_, S> {
         }))
     }
 
-    /// Removes a connection, and applies `impulse` to the system of the captured frame.
+    /// Removes a connection. Then applies `impulse`, N s and N m s, to the system of the captured frame, and
+    /// the opposite impulse to the other system.
     fn release(
         &mut self,
         number: usize,

@@ -26,8 +26,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Sets the tree known to the controllers of a system to the states of its systems. Adds the external
-    /// wrenches if the controllers compensate them. Requires the states of the parts.
+    /// Writes the states of the connected systems to the tree that the controllers of a system know. Adds the
+    /// external wrenches if the controllers compensate them. Requires the states of the parts.
     pub(super) fn update_known(&mut self, number: usize) {
         let members = &self.equations.members;
         let RunSystem { controllers, known_members, .. } = &mut self.systems[number];

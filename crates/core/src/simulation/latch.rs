@@ -6,7 +6,7 @@ use crate::dynamics::{frame_pose, frame_velocity};
 use crate::spatial::{Real, log_rotation};
 use crate::world::Envelope;
 
-/// Tolerance, as a fraction of the bounds of the envelope, within which the conditions hold.
+/// Fraction by which a value may exceed its bound in the envelope because of rounding errors.
 const ROUNDING: f64 = 1e-9;
 
 /// Latch that has not closed.

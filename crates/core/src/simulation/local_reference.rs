@@ -21,7 +21,8 @@ pub(super) struct LocalReference {
     pub(super) velocity: [f64; 3],
     /// Linear momentum that all changes of reference so far have removed, kg m/s.
     pub(super) momentum_taken: [f64; 3],
-    /// Work in W less work in `W'`, without the energy due to the velocity of the frame, J.
+    /// Work in W less work in `W'`, J, except the part that results from the present velocity `ṡ` of the
+    /// frame.
     pub(super) work_ahead: f64,
     /// Times of all changes of reference up to this one, s.
     pub(super) times: Vec<f64>,

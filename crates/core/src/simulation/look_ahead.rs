@@ -49,9 +49,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Returns true if the step in `interval` ends at or before `t`, although `interval` ends later. This
-    /// happens if the mode of a joint changes or the tolerance requires a shorter step. The step is a trial
-    /// step, without rows.
+    /// Returns true if the step in `interval` ends at or before `t`, s, although `interval` ends later. This
+    /// happens if the mode of a joint changes or the tolerance requires a shorter step. The function computes
+    /// the step as a trial, without rows, and undoes it.
     fn step_ends_by(&mut self, t: f64, interval: &Interval, after: Cursor) -> Result<bool, SimulationError> {
         if !self.mover.may_end_early(&self.equations) {
             return Ok(false);
@@ -63,7 +63,7 @@ impl<S: Scalar> RunState<'_, S> {
         })
     }
 
-    /// Calls `work` and then returns to the current state. While `work` runs, only rows before the time
+    /// Calls `work` and then restores the current state. While `work` runs, only rows before the time
     /// `records_before` are recorded. The state of the controllers, which may be user-defined, is not
     /// restored: if `work` has updated them at the current cut, they are not updated there again.
     fn peek<R>(
@@ -175,8 +175,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Copies the state to the row buffer. This is the dense output of the last step at the current time if
-    /// `is_dense`, otherwise the state at the current cut.
+    /// Writes a state to the row buffer: the dense output of the last step at the current time if `is_dense`,
+    /// otherwise the state at the current cut.
     fn copy_state(&mut self, is_dense: bool) {
         let Self { state, mover, row_buffers: (copy, _), time, .. } = self;
         match mover.integration().filter(|_| is_dense) {

@@ -97,9 +97,9 @@ impl<S: Scalar> Members<'_, S> {
 }
 
 impl<'a, S: Scalar> Part<'a, S> {
-    /// Creates the part that a system becomes; `tree` is the number of the tree and `share` the index of the
-    /// member. `state` and `own` are those at the instant at which the system joins the tree, before any
-    /// impulse.
+    /// Creates the part for a system that joins a tree; `tree` is the number of the tree and `share` the
+    /// index of the member. `state` and `own` are those at the instant at which the system joins the tree,
+    /// before any impulse.
     pub(super) fn new(
         (tree, share): (usize, usize),
         member: Member,
@@ -146,8 +146,8 @@ impl<'a, S: Scalar> Part<'a, S> {
         }
     }
 
-    /// Computes the impulse and the work of the system as the changes of its momentum and of its kinetic
-    /// energy since their initial values; they include those of its connections. Requires the state and the
+    /// Computes the impulse and the work of the system from the changes of its momentum and of its kinetic
+    /// energy. They include the impulse and the work of its connections. Requires the state and the
     /// kinematics of the system relative to W.
     pub(super) fn update_balance(&mut self) {
         let (h, energy, _) =

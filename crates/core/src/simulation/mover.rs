@@ -38,7 +38,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Computes which joints stick, slip or rest at a stop during the step.
+    /// Computes which joints stick, slip or rest at a stop during the step. With an external engine, computes
+    /// the friction compensation instead.
     pub(super) fn solve_modes(&self, equations: &mut Equations<'_, S>, state: &State<S>) {
         match self {
             Self::Native(_) => equations.solve_modes(state),
@@ -84,8 +85,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`; `None` if an external
-    /// engine returned none.
+    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`; `None` with an external
+    /// engine.
     pub(super) fn first_acceleration(&self, number: usize) -> Option<&[S]> {
         match self {
             Self::Native(method) => Some(&method.integration.stages.first[number].acceleration),
@@ -107,7 +108,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the work done on a tree in the last step, J; `state` is the state at the end of the step.
+    /// Returns the work done on a tree in the last step less the energy dissipated in its joints, J; `state`
+    /// is the state at the end of the step.
     pub(super) fn work_of_step(&self, number: usize, state: &TreeState<S>) -> f64 {
         match self {
             Self::Native(method) => (state.work - method.integration.stages.start.trees[number].work).value(),

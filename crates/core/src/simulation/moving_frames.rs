@@ -12,7 +12,7 @@ use crate::spatial::Scalar;
 use crate::world::WorldError;
 
 /// Returns the motion in W of a frame of a tree. The acceleration is computed without motor torques and
-/// environment.
+/// external wrenches.
 fn motion(model: &Model, q: &[f64], v: &[f64], frame: usize) -> TaskSample<f64> {
     let mut data = Data::<f64>::new(model);
     kinematics(model, &mut data, q, v);

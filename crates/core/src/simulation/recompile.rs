@@ -125,8 +125,8 @@ fn momentum_of<S: Scalar>(systems: &[Moving<'_>], center: Vec3<S>) -> Momentum<S
     Momentum { linear: lift(total.linear), angular: lift(total.angular) }
 }
 
-/// Makes the centres of mass of several trees follow their momenta, which is not necessary for a single tree.
-/// Requires the kinematics of the states.
+/// Starts the integration of the centres of mass of several trees from their momenta. A single tree does not
+/// need it. Requires the kinematics of the states in the trees.
 pub(super) fn follow_centers<S: Real>(trees: &[Tree<'_, S>], states: &mut [TreeState<S>]) {
     let is_needed = states.len() > 1;
     for (tree, state) in trees.iter().zip(states) {

@@ -143,7 +143,8 @@ impl Recorder {
         }
     }
 
-    /// Adds the wrench of every effect on every body to the last row, and transforms the row to W.
+    /// Adds the residual of the reference orbit and the recorded wrenches on every body to the last row, and
+    /// transforms the row to W.
     pub(super) fn record_wrenches(
         &mut self,
         model: &Model,
@@ -221,7 +222,7 @@ impl Recorder {
         }
     }
 
-    /// Returns a trace with the columns of the last row only.
+    /// Returns a trace that contains only the last row.
     pub(super) fn last_row(&self) -> Trace {
         let trace = &self.trace;
         let named = |columns: &[NamedColumn]| {
@@ -261,7 +262,7 @@ impl Recorder {
     }
 }
 
-/// Converts a sample that is relative to the base to the pose in W.
+/// Returns the pose in W, with zero velocity, for a sample that is relative to the base.
 #[inline(always)]
 fn relative_to_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
     let rot_wb = base_rotation(q);

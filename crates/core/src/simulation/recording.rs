@@ -75,11 +75,12 @@ pub struct EventRecord {
     /// of the momenta of its bodies.
     pub momentum_error: [f64; 2],
     /// Relative velocity and relative angular velocity of the connected frames after a capture, as fractions
-    /// of those before it, or of 1 m/s and 1 rad/s if these are larger; zero for a release.
+    /// of those before it, or of 1 m/s and 1 rad/s if these are larger; zero for a release and with an
+    /// external engine.
     pub twist_left: [f64; 2],
     /// Error of the energy balance, relative to the larger of the kinetic energies before and after the
     /// event. For a capture, the change of the kinetic energy is compared with `½ Δvᵀ M Δv`, for a release
-    /// with the work of the spring. Zero while a seating drives joints.
+    /// with the work of the spring. Zero while the motion of a seating capture drives joints.
     pub energy_error: f64,
 }
 

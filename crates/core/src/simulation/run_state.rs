@@ -42,8 +42,8 @@ pub(super) struct RunState<'a, S> {
     /// Controllers and recorder of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
-    /// Frames of systems in which references of other systems are given. The systems have the numbers of the
-    /// run.
+    /// Frames of systems in which references of other systems are given. Systems are specified by their
+    /// number in the group.
     pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,
     pub(super) ledger: Ledger,
@@ -142,8 +142,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Passes the events that have happened to the controllers, and the times of events that are due to the
-    /// schedule.
+    /// Passes the events that have happened to the controllers. Sets the times in the schedule at which
+    /// events are due and at which seating motions require the ends of steps.
     pub(super) fn events_changed(&mut self) {
         let step = self.schedule.time_step();
         let seatings = self.connections.active.welds.iter().filter_map(|weld| weld.seating);

@@ -38,8 +38,9 @@ pub struct Simulation {
     pub engine: Option<Box<dyn Engine>>,
     /// Integrator of the native engine.
     pub integrator: Integrator,
-    /// Permitted error of a step of the adaptive integrator. It is relative to one radian for attitude and
-    /// joints, to the robot's size or distance from the origin of W for lengths, and to the rates for rates.
+    /// Permitted error of a step of the adaptive integrator. Errors of the attitude and of revolute joints
+    /// are relative to 1 rad, those of lengths to the robot's size or its distance from the origin of W, and
+    /// those of rates to the magnitude of the rates.
     pub tolerance: f64,
     /// Distance between the base and the reference orbit, m, beyond which integration continues about a local
     /// reference orbit in free fall. The reference orbit is kept in `Carried` mode, without gravity, with an

@@ -33,8 +33,8 @@ impl Simulation {
     }
 
     /// Starts a run that the caller advances. `duration` is the planned end of the run, s, or `None` for an
-    /// open-ended run. The last step ends at `duration`, for which the adaptive integrator and the error
-    /// estimates are set up.
+    /// open-ended run. The last step ends at `duration`. The step sizes of the adaptive integrator and the
+    /// number of step-doubling probes also depend on it.
     ///
     /// # Errors
     /// The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not

@@ -144,8 +144,8 @@ impl Shared {
         Ok(run)
     }
 
-    /// Creates the model, the tree, and the controllers and the recorder of system `number`, which belongs to
-    /// the group `numbers` and records about `rows` rows.
+    /// Returns the model and creates the tree, the controllers and the recorder of system `number` of the
+    /// group `numbers`. The recorder reserves memory for `rows` rows.
     fn run_system<'a, S: Scalar>(
         &self,
         (number, numbers): (usize, &[usize]),

@@ -82,8 +82,9 @@ impl<'a> Stepper<'a> {
     ///
     /// # Errors
     /// [`SimulationError::NotPositive`], [`SimulationError::PastTime`] and [`SimulationError::AfterEnd`] for
-    /// an invalid `t`, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`;
-    /// the run does not change. Any other error, such as [`SimulationError::Diverged`], ends the run.
+    /// an invalid `t`, [`SimulationError::Earth`] if the orientation data of the Earth do not cover `t`, and
+    /// [`SimulationError::Ended`] if the run has ended; the run does not change. Any other error, such as
+    /// [`SimulationError::Diverged`], ends the run.
     pub fn advance_to(&mut self, t: f64) -> Result<(), SimulationError> {
         self.advance_until(t, &mut |_| ControlFlow::Continue(())).map(|_| ())
     }
@@ -143,9 +144,9 @@ impl<'a> Stepper<'a> {
     /// `None` leaves the torque of a joint unchanged. The current step ends at the current time.
     ///
     /// # Errors
-    /// [`SimulationError::WrongLength`] and [`SimulationError::NotFinite`] for `tau`, and
-    /// [`SimulationError::CommandedJoint`] for a joint of an active control; the run does not change. The
-    /// errors of a step end the run.
+    /// [`SimulationError::WrongLength`] and [`SimulationError::NotFinite`] for `tau`,
+    /// [`SimulationError::CommandedJoint`] for a joint of an active control, and [`SimulationError::Ended`]
+    /// if the run has ended; the run does not change. The errors of a step end the run.
     pub fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.check()?;
         let (run, system) = self.run_of(system);
@@ -154,10 +155,12 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Returns a checkpoint. Together with the rows of [`Stepper::rows`], the run can be resumed from it.
+    /// Returns a checkpoint from which the run can be resumed, together with the rows of each system
+    /// ([`Stepper::rows`]).
     ///
     /// # Errors
-    /// The error of a user-defined controller whose state cannot be saved; the run does not change.
+    /// The error of a user-defined controller whose state cannot be saved, and [`SimulationError::Ended`] if
+    /// the run has ended; the run does not change.
     pub fn checkpoint(&self) -> Result<Checkpoint, SimulationError> {
         self.check()?;
         let groups = self.groups.iter().map(|group| group.run.checkpoint());
@@ -181,8 +184,8 @@ impl<'a> Stepper<'a> {
         Ok(Recording::of(self.groups.iter().map(|group| &group.numbers[..]).zip(parts)))
     }
 
-    /// Returns the row of each system at the current time, as if the run ended now, without the rows before
-    /// it: the cost does not depend on their number.
+    /// Returns the row of each system at the current time, as if the run ended now. The rows before it are
+    /// not copied, so the cost does not depend on their number.
     ///
     /// # Errors
     /// The errors of [`Stepper::recording`].

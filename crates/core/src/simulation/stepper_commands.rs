@@ -17,7 +17,8 @@ impl Stepper<'_> {
     ///
     /// # Errors
     /// [`SimulationError::Control`] for an invalid command, and for a control that does not exist, does not
-    /// follow commands or has ended; the run does not change.
+    /// follow commands or has ended; [`SimulationError::Ended`] if the run has ended. The run does not
+    /// change.
     pub fn send(
         &mut self,
         system: usize,
@@ -48,8 +49,9 @@ impl Stepper<'_> {
     /// wrench on the same frame. The current step ends at the current time.
     ///
     /// # Errors
-    /// [`SimulationError::UnknownFrame`], [`SimulationError::NotFinite`] and, with an external engine,
-    /// [`SimulationError::EngineOfWorld`]; the run does not change. The errors of a step end the run.
+    /// [`SimulationError::UnknownFrame`], [`SimulationError::NotFinite`], [`SimulationError::Ended`] and,
+    /// with an external engine, [`SimulationError::EngineOfWorld`]; the run does not change. The errors of a
+    /// step end the run.
     pub fn wrench(
         &mut self,
         system: usize,
@@ -155,7 +157,7 @@ impl<S: Scalar> RunState<'_, S> {
     ) -> Result<(), SimulationError> {
         let place = &self.layout.systems()[system];
         if self.mover.is_external() {
-            let (what, remedy) = ("wrenches from outside", "give them as effects of the environment");
+            let (what, remedy) = ("a commanded wrench", "define it as an effect of the environment");
             return Err(SimulationError::EngineOfWorld { name: place.name.clone(), what, remedy });
         }
         let count = self.model(system).frames().len();

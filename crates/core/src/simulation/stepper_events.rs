@@ -1,4 +1,4 @@
-//! Events of a run that the caller advances by a stepper.
+//! Events of a run that the caller advances with a stepper.
 
 use super::attached::AttachedControl;
 use super::error::SimulationError;
@@ -26,7 +26,7 @@ impl Stepper<'_> {
         Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
     }
 
-    /// Returns the events during the steps that are complete, in order of time.
+    /// Returns the events that have happened during completed steps, in order of time.
     pub fn events(&self) -> Vec<&EventRecord> {
         let mut all: Vec<_> = self.groups.iter().flat_map(|group| group.run.records()).collect();
         all.sort_by(|a, b| a.time.total_cmp(&b.time));

@@ -12,8 +12,8 @@ use crate::control::ExternalCommand;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
 
-/// Callback that receives the time reached, s, at regular intervals during an advance. If it returns `Break`,
-/// the advance stops at the end of the current step.
+/// Callback that receives the time reached, s, repeatedly during an advance. If it returns `Break`, the
+/// advance stops at that time.
 pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
 /// Interface of the run of a group, independent of the scalar type. Systems are specified by their number in

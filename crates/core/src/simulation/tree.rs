@@ -26,7 +26,7 @@ pub(crate) struct Tree<'a, S> {
     /// is the velocity that the base's origin had at the start of the step; otherwise it is zero.
     frame_velocity: Vec3<S>,
     mass: S,
-    /// Modes of the joints, which state the joints that stick or rest at a stop.
+    /// Modes of the joints: whether each of them moves, sticks or rests at a stop.
     pub(crate) modes: JointModes,
     /// True if any joint has damping or friction.
     is_lossy: bool,
@@ -64,8 +64,8 @@ impl<'a, S: Real> Tree<'a, S> {
     ///
     /// The momentum `h` is integrated from the external wrenches alone, so without such wrenches it is
     /// conserved to rounding, whereas the integrated base twist has a truncation error. In a run with several
-    /// trees, the base is also shifted so that the centre of mass is the integral of its velocity `P/m`. The
-    /// function is called once per step.
+    /// trees, the base is also shifted so that the centre of mass is the integral of its velocity `P/m`.
+    /// Stages within a step are not projected.
     pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
         self.project_twist(state);
         if let Some(center) = state.center {

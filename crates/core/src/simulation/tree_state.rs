@@ -12,14 +12,16 @@ pub(crate) struct TreeState<S> {
     pub(crate) q: Vec<S>,
     /// Velocity, `(nv,)`, m/s and rad/s.
     pub(crate) v: Vec<S>,
-    /// Momentum at the start of the run, W axes. It changes only with a change of the reference orbit.
+    /// Momentum at the start of the run or, in a tree with several members, at its assembly, W axes. It
+    /// changes only with a change of the reference orbit.
     pub(crate) initial_momentum: Momentum<S>,
     /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N
     /// m s.
     pub(crate) impulse: Momentum<S>,
-    /// Work done on the tree since the start, J.
+    /// Work done by motors and external wrenches less the energy dissipated in the joints, J, since the start
+    /// of the run or, in a tree with several members, since its assembly.
     pub(crate) work: S,
-    /// Energy dissipated by damping, friction and stops of the joints since the start, J.
+    /// Energy dissipated by damping, friction and stops of the joints, J, in the same time.
     pub(crate) dissipated: S,
     /// Position of the centre of mass in W, which is the integral of `P/m`, m; `None` in a run with a single
     /// tree. Once per step the base is shifted accordingly, so that the angular momentum of several trees
@@ -48,7 +50,7 @@ pub(crate) struct TreeRate<S> {
     /// Time derivative of the momentum: the sum of the external forces, and of their moments about the centre
     /// of mass, W axes, N and N m.
     pub(crate) wrench: Momentum<S>,
-    /// Power of joint torques and external wrenches, W.
+    /// Power of the motors and external wrenches less the power dissipated in the joints, W.
     pub(crate) power: S,
     /// Power dissipated by damping and friction, W.
     pub(crate) loss: S,

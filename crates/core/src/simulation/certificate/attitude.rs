@@ -39,17 +39,18 @@ pub(in crate::simulation) struct Attitude {
     resolution: Drift,
     /// Bound of the rounding error contained in the residual, rad.
     rounding: f64,
-    /// Bound of the error of the parabola over intervals that end with a jump of the angular acceleration,
-    /// rad.
+    /// Bound of the error of the parabola of [`Attitude::add`] over intervals that end with a jump of the
+    /// angular acceleration, rad.
     unresolved: f64,
-    /// Difference between the cubic and the parabola, divided by `h⁴`, rad/s⁴, in the last interval without a
-    /// jump.
+    /// Difference between the integrals of the cubic and of the parabola of [`Attitude::add`], divided by
+    /// `h⁴`, rad/s⁴, in the last interval without a jump.
     snap: f64,
     /// Sum of `h⁴` over the intervals since the last interval without a jump, s⁴.
     since: f64,
 }
 
-/// Safety factor for an interval that ends with a jump, whose snap is taken from the neighbouring intervals.
+/// Safety factor for an interval that ends with a jump, where `snap` is taken from the neighbouring
+/// intervals.
 const JUMP: f64 = 4.0;
 
 impl Attitude {

@@ -66,7 +66,7 @@ impl Balance {
         self.energy_w = self.energy_w.max(now.kinetic_energy);
     }
 
-    /// Returns the largest radius of gyration of the robot, m.
+    /// Returns the largest radius of gyration of the robot in any row so far, m.
     pub(super) fn size(&self) -> f64 {
         self.size
     }
@@ -89,8 +89,8 @@ impl Balance {
 
     /// Returns the error of the energy balance relative to a scale. The scale is the sum of the magnitudes of
     /// the work done, the energy relative to the centre of mass, and a fraction of the energy in W that
-    /// covers its rounding error. The scale is at least the energy of a motion by a millionth of the robot's
-    /// size during the run.
+    /// covers its rounding error. The scale is at least the energy of a motion that covers a millionth of the
+    /// robot's size in the duration of the run.
     pub(super) fn energy(&self, work_done: f64) -> f64 {
         const ROUNDING: f64 = 1e-3;
         const REST: f64 = 1e-6;

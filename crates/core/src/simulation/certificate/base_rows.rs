@@ -131,7 +131,7 @@ impl Residuals {
     }
 }
 
-/// Returns the twist and the momentum of a body, both about the base's origin.
+/// Returns the twist and the momentum of a body, both about the base's origin and in base axes.
 fn about_base(body: &BodyData<f64>) -> (Motion<f64>, Force<f64>) {
     let momentum = body.inertia.momentum(body.velocity).from_point(body.pos_b);
     (body.velocity.referred_to(-body.pos_b), momentum)

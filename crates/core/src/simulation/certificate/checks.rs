@@ -31,7 +31,9 @@ pub(super) const ATTITUDE: f64 = 0.1;
 /// An integrator that integrates momentum conserves both momenta by construction; the other values are
 /// independent checks. Checks that compare successive steps are evaluated during the run if only some steps
 /// are recorded or if captures may connect the system to others. They are `None` for an adaptive integrator,
-/// whose rows are interpolated, and for an external engine if not every step is recorded.
+/// whose rows are interpolated, and for an external engine if not every step is recorded. Without external
+/// forces, however, the check of the centre of mass does not depend on the spacing of the rows and is always
+/// available.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
     /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` relative to the largest value of `Σ mₖ |vₖ − v_com|`
@@ -40,9 +42,9 @@ pub struct Certificate {
     /// Drift of angular momentum: `max |L − L₀ − ∫T dt|` relative to the largest value of `Σ |Lₖ|`, all about
     /// the system's centre of mass.
     pub angular_momentum_drift_rel: f64,
-    /// Error of the energy balance: `max |E − E₀ − W|` relative to the sum of `Σ |ΔW|` and the largest energy
-    /// in the centre-of-mass frame. The scale is at least the energy of a motion by a millionth of the
-    /// robot's size during the run.
+    /// Error of the energy balance: `max |E − E₀ − W|` relative to the sum of `Σ |ΔW|`, the largest energy in
+    /// the centre-of-mass frame and a thousandth of the largest energy in W. The scale is at least the energy
+    /// of a motion that covers a millionth of the robot's size in the duration of the run.
     pub energy_balance_error_rel: f64,
     /// Largest distance between the centre of mass and the integral of `P/m`, relative to the length of its
     /// path plus the robot's size.
@@ -50,12 +52,13 @@ pub struct Certificate {
     /// Difference between the base rows of inverse dynamics, computed from differences of the recorded
     /// velocities, and the mean external wrench, relative to the inertial forces of the bodies.
     pub base_rows_residual_rel: Option<f64>,
-    /// Largest value of `base_rows_residual_rel` that passes: the truncation error of a central difference,
-    /// `O(dt²)`.
+    /// Largest value of `base_rows_residual_rel` that passes: 1e-6 plus the truncation error of a central
+    /// difference, `O(dt²)`, and at most 0.1. Zero if the check does not apply.
     pub base_rows_gate: f64,
     /// Difference between the recorded rotations and those computed from the recorded angular velocities,
-    /// relative to the accumulated commutator. The value is 1 for attitudes composed without the commutator,
-    /// and far smaller for integration on the rotation group.
+    /// relative to the sum of the accumulated commutator and the interpolation error of the rates. The value
+    /// is 1 for attitudes composed without the commutator, and far smaller for integration on the rotation
+    /// group.
     pub attitude_consistency: Option<f64>,
     /// Difference between the attitudes after a step and after two half steps, summed over the run, rad.
     pub attitude_step_doubling_rad: Option<f64>,

@@ -47,7 +47,7 @@ impl Stream {
         self.center.add(before.1, now.1);
     }
 
-    /// Adds a step whose start and end are the two rows of `trace`.
+    /// Adds the step between the two rows of `trace` to the check of the base rows.
     pub(in crate::simulation) fn add_rows(&mut self, model: &Model, trace: &Trace) {
         let mut reader = RowReader::new(model, trace);
         if reader.rows() < 2 || trace.time[1] <= trace.time[0] {

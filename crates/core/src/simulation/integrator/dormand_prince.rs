@@ -176,7 +176,7 @@ impl<S: Real> DormandPrince<S> {
 }
 
 /// Returns the largest rate of base and joints in the first lane, rad/s; `size` is the length, m, by which
-/// linear rates are divided.
+/// the linear velocity of the base is divided.
 fn fastest<S: Real>(v: &[S], size: f64) -> f64 {
     let linear = Vec3::from_slice(v).norm().lane(0) / size;
     let angular = Vec3::from_slice(&v[3..]).norm().lane(0);

@@ -83,7 +83,7 @@ impl<S: Real> Integration<S> {
         self.dormand_prince.as_ref().map(|method| &method.control)
     }
 
-    /// Takes over the step size of a step control that was used with different trees.
+    /// Continues with the step size of a step control that was used with different trees.
     pub(crate) fn continue_from(&mut self, before: StepControl) {
         if let Some(method) = &mut self.dormand_prince {
             (method.control.step, method.control.error) = (before.step, before.error);

@@ -19,12 +19,12 @@ pub enum Integrator {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepSettings {
     pub(crate) integrator: Integrator,
-    /// Error tolerance of the adaptive integrator.
+    /// Largest error of a step of the adaptive integrator, relative to the scales of the motion.
     pub(crate) tolerance: f64,
     /// Length of a regular step, s.
     pub(crate) time_step: f64,
     /// Time between two updates of the controllers, s; zero without controllers.
     pub(crate) control_period: f64,
-    /// Planned duration of the run, s.
+    /// Planned duration of the run, or the longest interval between two cuts of an open-ended run, s.
     pub(crate) duration: f64,
 }

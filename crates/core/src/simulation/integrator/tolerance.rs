@@ -48,7 +48,7 @@ impl StepControl {
         Self { step: 0.0, error: 0.0, short_steps: 0, trees: vec![TreeControl::default(); trees] }
     }
 
-    /// Computes the sizes of the trees in the first call. Requires kinematics in `equations`.
+    /// Computes the sizes of those trees whose size is still zero. Requires kinematics in `equations`.
     pub(super) fn measure_sizes<S: Real>(
         &mut self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -90,9 +90,9 @@ impl Tolerance {
     /// Returns the largest error of any tree in the last step, relative to the tolerance; NaN if the step
     /// must be rejected.
     ///
-    /// The tolerance is `ε` times a scale. The scale is 1 rad for attitude and revolute joints, the radius of
-    /// gyration of the tree or, if larger, its distance from the origin of W for lengths, and the magnitude
-    /// of the rates for rates.
+    /// The tolerance is `ε` times a scale. For the attitude and revolute joints, the scale is 1 rad; for
+    /// prismatic joints, the radius of gyration of the tree; for the position of the base, that radius or, if
+    /// larger, the distance from the origin of W; for rates, the magnitude of the rates.
     pub(super) fn error<S: Real>(
         &self,
         stages: &mut Stages<S>,

@@ -244,7 +244,7 @@ impl JointModes {
     }
 
     /// Returns the largest torque with which friction can hold a joint at rest, N m (N); zero if the motor
-    /// compensates the friction.
+    /// compensates the friction, that is, if a law requests a nonzero acceleration.
     pub(super) fn holding_friction(&self, j: usize) -> f64 {
         if self.requested[j].is_some_and(|a| a != 0.0) { 0.0 } else { self.static_friction[j] }
     }
@@ -265,7 +265,8 @@ impl JointModes {
     }
 
     /// Returns the bounds of the torque with which friction and a stop hold a joint at rest: `−fs..fs`,
-    /// unbounded on the side on which a stop pushes.
+    /// unbounded on the side on which a stop pushes. For a joint whose position is a given function of time,
+    /// both bounds are infinite.
     pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
         if self.is_given(j) {
             return (f64::NEG_INFINITY, f64::INFINITY);
@@ -276,8 +277,8 @@ impl JointModes {
         (lowest, highest)
     }
 
-    /// Sets the initial guess of the modes: joints at rest that friction or a stop can hold are locked, all
-    /// other joints slip.
+    /// Sets the initial guess of the modes: joints at rest that friction or a stop can hold are locked, and
+    /// all other joints slip.
     pub(super) fn lock_joints_at_rest<S: Real>(&mut self, q: &[S], v: &[S]) {
         for j in 0..self.locked.len() {
             let (q, rate) = (q[BASE_NQ + j].lane(0), v[BASE_NV + j].lane(0));
