@@ -184,14 +184,14 @@ TWICE = [state(1.7e9 + time, [NAMES[0], NAMES[0]], [0, 1]) for time in TIMES]
 INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError], str]] = {
     "no joints": ({"/chatter": [STRING]}, {}, ReadError, "no topic with JointState .* its topics: /chatter"),
     "several": ({"/a": ONE, "/b": ONE}, {}, ReadError, "give one as 'topic': /a, /b"),
-    "other topic": ({"/a": ONE, "/c": [STRING]}, {"topic": "/c"}, ReadError, "those with such messages: /a"),
+    "other topic": ({"/a": ONE, "/c": [STRING]}, {"topic": "/c"}, ReadError, "give one of the topics /a"),
     "misspelt topic": (
         {"/joint_states": states()}, {"topic": "/joint_state"}, ReadError, "did you mean '/joint_states'",
     ),
     "one message": ({"/a": ONE}, {}, ReadError, "it has 1 message; a motion requires two or more"),
     "back in time": ({"/a": BACK}, {}, ReadError, r"message 6 is at 0.04 s, after 0.08 s"),
     "doubled": ({"/a": TWICE}, {}, ReadError, f"message 1 names {NAMES[0]} more than once"),
-    "too short": ({"/a": SHORT}, {}, ReadError, "message 6 has 7 names, 2 positions and 0 velocities"),
+    "too short": ({"/a": SHORT}, {}, ReadError, "in message 6 are 7, 2 and 0; give one position"),
     "only some": ({"/a": PART}, {}, ReadError, "message 6 lacks arm_joint_4, "),
     "unknown in the bag": (
         {"/a": states()}, {"joints": {"arm_joint9": NAMES[0]}}, ReadError, "named 'arm_joint9'; did you mean",
@@ -220,7 +220,7 @@ def test_files_that_are_not_bags_are_refused(tmp_path: Path, monkeypatch: pytest
         with pytest.raises(ReadError, match=rf"mine\.yaml:6: reference: .*{name} .*damaged or truncated"):
             reference(tmp_path / name)
     (tmp_path / "table.csv").write_text("time\n0")
-    with pytest.raises(ReadError, match=r"ends in \.mcap, \.db3, \.bag, or the folder"):
+    with pytest.raises(ReadError, match=r"end in one of .mcap, .db3, .bag, or it must be the folder"):
         reference(tmp_path / "table.csv")
     with pytest.raises(NotFoundError, match="no such file"):
         reference(tmp_path / "none.mcap")

@@ -174,7 +174,7 @@ def test_ctrl_c_while_the_trace_is_written_reports_that_it_is_incomplete(
     (tmp_path / "mine.yaml").write_text(SPIN)
     done = onorbit("run", "mine.yaml", "--out", "out", cwd=tmp_path)
     assert done.returncode == 130
-    assert "results in out are incomplete; repeat the run with --force" in done.stderr
+    assert "the results in out are incomplete; repeat the run with --force" in done.stderr
 
 
 def test_a_second_ctrl_c_stops_drawing_the_figures_of_an_interrupted_run(

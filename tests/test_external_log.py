@@ -156,7 +156,8 @@ def test_the_command_line(scenario: Path, tmp_path: Path, capsys: pytest.Capture
 @pytest.mark.filterwarnings("ignore:event 'grasp' did not happen", "ignore:systems.chaser.controllers.1")
 def test_without_commands_there_is_a_warning(scenario: Path) -> None:
     with pytest.warns(
-        UserWarning, match=r"controllers\[0\]: external receives no commands.*initial positions.*--commands"
+        UserWarning,
+        match=r"controllers.0.: the controller external receives no commands.*initial positions.*--commands",
     ):
         run = oo.run(scenario, quiet=True)
     chaser = run.trace["chaser"]
@@ -166,7 +167,7 @@ def test_without_commands_there_is_a_warning(scenario: Path) -> None:
 BAD = [
     ("{", "c.jsonl:2: the line is not valid JSON"),
     ('{"time": 0.1}', "c.jsonl:2: a command has one of 'control', 'body' and 'trigger'"),
-    ('{"system": "chaser"}', "with a 'time'"),
+    ('{"system": "chaser"}', "with the key 'time'"),
     ('{"time": 0.1, "control": "arm", "system": "chaser", "positon": [1]}', "did you mean 'position'"),
     ('{"time": NaN, "trigger": "grasp"}', "NaN is not a finite number"),
     ('{"time": 0.1, "system": "chaser", "control": "arm", "position": [NaN]}', "NaN is not a finite number"),
@@ -179,7 +180,7 @@ BAD = [
     ('{"time": 0.1, "system": "chaser", "control": "arm", "position": [0]}', "has 1 number; expected 5"),
     ('{"time": 0.1, "system": "chaser", "control": "arm", "position": "up"}', "list of finite numbers"),
     ('{"time": 0.1, "system": "chaser", "control": "wrist", "position": [0, 0]}', "require kp > 0"),
-    ('{"time": 0.1, "system": "chaser", "control": "arm"}', "give one of position"),
+    ('{"time": 0.1, "system": "chaser", "control": "arm"}', "give position, velocity"),
     ('{"time": 0.1, "system": "chaser", "control": "arm", "trajectory": {"times": [1]}}', "'times' and"),
     ('{"time": 0.1, "system": "target", "body": "bsu", "force": [1, 0, 0]}', "did you mean 'bus'"),
     ('{"time": 0.1, "system": "target", "body": "bus", "force": [1, 0]}', "force has shape"),
@@ -211,7 +212,7 @@ def test_a_log_that_is_longer_than_the_run_is_pointed_out() -> None:
         "simulation": {"duration": "0.1 s", "time_step": "10 ms"},
     }
     effort = {"control": "control", "effort": [1e-3] * len(model.joint_names)}
-    with pytest.warns(UserWarning, match="1 of 2 commands are after the end of the run, 0.1 s.* least 9 s"):
+    with pytest.warns(UserWarning, match="commands after the end of the run, 0.1 s, .*1 of 2.* least 9 s"):
         run = oo.run(data, commands=[effort | {"time": 0.05}, effort | {"time": 9.0}], quiet=True)
     assert run.trace.time[-1] == 0.1 and run.trace.tau[-1, 0] == 1e-3
 

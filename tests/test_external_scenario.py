@@ -25,7 +25,7 @@ def test_a_single_controller_takes_commands_and_reports_its_errors() -> None:
     )
     command = {"time": 0.1, "control": "control", "position": [0.01] * 7}
     with pytest.warns(
-        UserWarning, match="controller: external receives no commands.*hold their initial positions"
+        UserWarning, match="the controller external receives no commands.*hold their initial positions"
     ):
         still = oo.run(given, quiet=True)
     assert np.abs(np.asarray(still.trace.q)[:, 7:]).max() < 1e-9

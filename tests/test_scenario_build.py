@@ -180,7 +180,7 @@ def test_metres_on_a_revolute_joint_are_rejected() -> None:
         {"joint_rates": {joint: "1 m/s"}},
         {"joints": ["30 m", *[0] * 6]},
     ):
-        with pytest.raises(OnOrbitError, match=f"{joint} is revolute, so"):
+        with pytest.raises(OnOrbitError, match=f"{joint} is revolute; give an ang"):
             build(load(data | {"initial": wrong}))
     built = build(load(data | {"initial": {"joints": {joint: "30 deg"}}}))
     assert built.q[7] == pytest.approx(np.pi / 6)

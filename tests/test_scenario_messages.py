@@ -148,7 +148,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "index, too few": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: [1, 2]}}]\n",
         "6: environment[0].atmosphere.ap",
-        ("ap is a list of 2 numbers; give one number without a list, or a list of seven",),
+        ("ap is a list of length 2; give one number without a list, or a list of seven",),
     ),
     "index, a word": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: high}}]\n",
@@ -386,5 +386,5 @@ def test_a_part_of_a_name_suggests_it() -> None:
     "every", ["5", None, True, -1.0, float("nan"), float("inf"), pytest.param(10**400, id="vast")]
 )
 def test_an_invalid_checkpoint_interval_is_reported(every: object) -> None:
-    with pytest.raises(InputError, match=r"checkpoint_every is .* it must be finite and at least zero"):
+    with pytest.raises(InputError, match=r"checkpoint_every is .* a finite number of seconds, at least 0"):
         run("free_tumble", quiet=True, checkpoint_every=every)  # type: ignore[arg-type]  # that is what is tested

@@ -118,14 +118,14 @@ def test_points_have_units_or_come_from_a_file_beside_the_scenario(tmp_path: Pat
     [
         (CSV.replace("vx", "ux"), ReadError, "path.csv:1: unknown column 'ux'"),
         (CSV.replace("vx", "x"), ReadError, "path.csv:1: column 'x' occurs more than once"),
-        (CSV.replace(",vz", ""), ReadError, "path.csv:1: velocities: missing vz"),
-        (CSV.replace("75000,0,0", "75000,zero,0"), ReadError, "path.csv:4: could not convert"),
+        (CSV.replace(",vz", ""), ReadError, "path.csv:1: the header lacks vz; give the columns vx, vy, vz"),
+        (CSV.replace("75000,0,0", "75000,zero,0"), ReadError, "path.csv:4: .zero. is not a number"),
         (
             CSV.replace("10,7e6,75000,0,0,7500,0", "10,7e6"),
             ReadError,
-            "path.csv:4: the row has 2 cells, expected 7",
+            "path.csv:4: the number of cells is 2; it must be 7",
         ),
-        ("", ReadError, "path.csv:1: times: missing t"),
+        ("", ReadError, "path.csv:1: the header lacks t; give the columns t"),
         ("t,x,y,z\n", PathError, "at least 2"),
         (CSV.replace("20,7e6", "5,7e6"), PathError, "times must increase"),
     ],

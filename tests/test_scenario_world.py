@@ -144,7 +144,7 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "key of a robot": (
         "time_step: 10 ms",
         "time_step: 10 ms, restitution: 1",
-        r":24: simulation.restitution: .* each of 'systems'",
+        r":24: simulation.restitution: .*each entry of 'systems'",
     ),
     "control period": (
         "control_period: 20 ms",

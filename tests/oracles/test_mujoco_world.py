@@ -283,7 +283,7 @@ KNOWING = {"chaser": SCENARIO["systems"]["chaser"] | {"knows": ["target"]}}
         (
             SCENARIO
             | {"engine": "native", "simulation": SCENARIO["simulation"] | {"weld_time_constant": "1 s"}},
-            r"simulation.weld_time_constant: .*belongs to engine: mujoco",
+            r"simulation.weld_time_constant: .*applies only to engine: mujoco",
         ),
         (
             SCENARIO | {"simulation": SCENARIO["simulation"] | {"weld_time_constant": "1 ms"}},

@@ -52,8 +52,8 @@ class Mujoco:
         systems with such stops.
     weld_time_constant : float, optional
         Time constant of the connections of a world (``solref`` of their welds), s, at least two time steps. A
-        longer one is resolved by more steps, which closes the balance of the energy, and opens a larger gap.
-        Default: two time steps.
+        longer one is resolved by more steps, which reduces the error of the energy balance but permits a
+        larger gap between the connected frames. Default: two time steps.
 
     Raises
     ------

@@ -83,8 +83,8 @@ def advice(summary: dict[str, Any]) -> str:
     ):
         return (
             "the connections of the engine mujoco are soft, so a shorter time_step will not make them exact; "
-            "a longer weld_time_constant closes the balance of the energy, and the engine native has exact "
-            "connections"
+            "a longer weld_time_constant reduces the error of the energy balance, and the native engine has "
+            "exact connections"
         )
     if summary.get("integrator") == "dormand_prince":
         return "try a smaller tolerance"

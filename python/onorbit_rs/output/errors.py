@@ -40,5 +40,6 @@ def edited(file: Path) -> OutputNotEmptyError:
 def not_writable(folder: Path, error: OSError) -> OutputNotWritableError:
     """Return the error for an output folder that cannot be created or written."""
     return OutputNotWritableError(
-        f"output folder cannot be written: {folder}: {error.strerror or error}", path=str(folder)
+        f"output folder cannot be written: {folder}: {error.strerror or error}; choose another folder",
+        path=str(folder),
     )

@@ -140,7 +140,7 @@ class OutputFolder:
             yield path
 
     def _check_lock(self) -> None:
-        """Lock the folder again if its lock file was removed; called before each writing.
+        """Lock the folder again if its lock file was removed; called before each file is written.
 
         Raises
         ------
@@ -206,7 +206,7 @@ class OutputFolder:
         if not exists(folder):
             folder.mkdir()
         elif not is_real_folder(folder):
-            raise OSError(f"{folder} is {file_kind(folder)}, but must be a folder")
+            raise OSError(f"{folder} is {file_kind(folder)}, but must be a folder; remove it")
         if not set(names) <= set(manifest.checkpoint):
             self.write_manifest(Manifest(manifest.files, names))
             sync_folder(self.path)
@@ -295,7 +295,8 @@ def _make(folder: Path) -> None:
     try:
         if folder.exists() and not folder.is_dir():
             raise OutputNotWritableError(
-                f"output path is {file_kind(folder)}, but must be a folder: {folder}", path=str(folder)
+                f"output path is {file_kind(folder)}, but must be a folder: {folder}; choose another path",
+                path=str(folder),
             )
         folder.mkdir(parents=True, exist_ok=True)
         next(folder.iterdir(), None)

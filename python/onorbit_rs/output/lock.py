@@ -61,7 +61,7 @@ class FolderLock:
 
     @property
     def is_held(self) -> bool:
-        """True if the lock file still exists under its name and was not removed."""
+        """True if the lock file that this process locked is still in the folder."""
         return _is_at(self.path, self._descriptor)
 
     def retake(self) -> None:

@@ -1,4 +1,4 @@
-"""Pickling of a trace: the pickled object has the same columns and computed results as attributes."""
+"""Pickling of a trace: the unpickled object has the same columns and computed results as attributes."""
 
 from __future__ import annotations
 

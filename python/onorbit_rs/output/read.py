@@ -99,7 +99,8 @@ class SavedRun:
         except OnOrbitError:
             raise
         except FileNotFoundError as error:
-            what = f"no run in this folder ({SUMMARY} is missing): {self.folder}{_hint(self.folder)}"
+            what = f"no run in this folder ({SUMMARY} is missing): {self.folder}"
+            what += _hint(self.folder) or "; give the output folder of a run"
             raise NotFoundError(what, path=str(self.folder), kind="run") from error
         except OSError as error:
             raise _unreadable(file, "summary", error) from error
@@ -138,7 +139,7 @@ class SavedRun:
             with self.opened(TRACE) as stream:
                 arrays = read_arrays(stream)
             if not required <= set(arrays):
-                raise ValueError("columns are missing")
+                raise ValueError(f"columns are missing ({', '.join(sorted(required - set(arrays)))})")
             for own in [system_in(arrays, name).arrays for name in systems_in(arrays)] or [arrays]:
                 check_shapes(own)
         except OnOrbitError:

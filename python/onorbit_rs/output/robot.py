@@ -13,7 +13,10 @@ from onorbit_rs.scenario import WorldScenario
 if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
-CHANGED = "the robot's file was changed since the run; the robot differs from that of the run"
+CHANGED = (
+    "the robot differs from that of the run, because its file was changed since; undo the change, or repeat "
+    "the run"
+)
 
 
 def was_changed(model: Model, summary: dict[str, Any]) -> bool:

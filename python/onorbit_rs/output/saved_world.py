@@ -78,7 +78,7 @@ class PickledWorldTrace(SavedWorldTrace):
             column.setflags(write=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Return the class and its fields."""
+        """Return the class and the field values, from which pickle rebuilds the trace."""
         return PickledWorldTrace, tuple(getattr(self, part.name) for part in fields(self))
 
     def certificate(self) -> Any:

@@ -55,7 +55,7 @@ def _missed(trace: WorldTrace, built: BuiltWorld) -> list[str]:
     """Issue a warning for each event that did not happen, and return the warnings."""
     happened = {record.name for record in trace.events}
     found = [
-        f"event {event.name!r} did not happen"
+        f"event {event.name!r} did not happen before the end of the run; check its condition 'when'"
         for event in built.scenario.events
         if event.name not in happened
     ]

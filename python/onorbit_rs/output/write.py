@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> None:
-    """Write ``scenario.yaml`` with all defaults, SI units and absolute paths; it runs from any folder."""
+    """Write ``scenario.yaml`` with all defaults, SI units and absolute paths, to run from any folder."""
     source = scenario.file or "Python"
     header = f"# resolved by onorbit_rs from {source}; run it again with: onorbit run scenario.yaml\n"
     with folder.writing(SCENARIO) as path:

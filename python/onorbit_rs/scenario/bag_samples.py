@@ -1,4 +1,4 @@
-"""Reads joint motions from ROS bags: MCAP and SQLite files of ROS 2, bags of ROS 1."""
+"""Reads joint motions from ROS bags: MCAP and SQLite files of ROS 2, and bags of ROS 1."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Sample(NamedTuple):
 
 
 def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
-    """Return the motion of joints on a topic of a bag, and the name of the topic.
+    """Return the name of a topic of a bag, and the joint motion recorded on it.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
     Raises
     ------
     NotFoundError, ReadError
-        If the file does not exist, is not a bag, is damaged, or does not contain the topic.
+        If the file does not exist, is not a bag or is damaged, or the topic is missing or not unique.
     Ros2Error
         If rosbags is not installed.
     """
@@ -56,7 +56,8 @@ def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
     if not (path.is_dir() and (path / "metadata.yaml").is_file()):
         check_regular(path, "bag")
         if path.suffix not in SUFFIXES:
-            raise _error(path, f"give a file that ends in {', '.join(SUFFIXES)}, or the folder of a rosbag2")
+            endings = ", ".join(SUFFIXES)
+            raise _error(path, f"its name must end in one of {endings}, or it must be the folder of a bag")
     with _opened(path) as reader:
         of_joints = {each.topic: each for each in reader.connections if each.msgtype in (STATES, TRAJECTORY)}
         chosen = of_joints[_choice(path, topic, list(of_joints), sorted(reader.topics))]
@@ -96,11 +97,11 @@ def _choice(path: Path, topic: str | None, of_joints: list[str], topics: list[st
         raise _error(path, f"it has no topic with JointState or JointTrajectory messages; its topics: {held}")
     if topic is None:
         if len(of_joints) > 1:
-            raise _error(path, f"it has several topics with motions of joints; give one as 'topic': {known}")
+            raise _error(path, f"it has several topics with joint motions; give one as 'topic': {known}")
         return of_joints[0]
     if topic not in of_joints:
         if topic in topics:
-            raise _error(path, f"topic {topic} has no motions of joints; those with such messages: {known}")
+            raise _error(path, f"topic {topic} contains no joint motions; give one of the topics {known}")
         raise _error(path, f"it has no topic {topic!r}{did_you_mean(topic, of_joints)}")
     return topic
 

@@ -67,7 +67,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     Raises
     ------
     OnOrbitError
-        The appropriate subclass; file, line and key precede the message of the engine.
+        A subclass for the kind of error; its message starts with file, line and key.
     """
     check_record_every(scenario)
     model = scenario.robot.build(scenario)
@@ -133,7 +133,7 @@ def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:
 
 
 def build_environment(scenario: Scenario | WorldScenario, model: _core.Model | None) -> Environment:
-    """Return orbit, Earth and effects; raise an error if data of orbit or Earth end before the run."""
+    """Return the orbit, the Earth and the effects; raise an error if their data end before the run ends."""
     duration, folder = scenario.simulation.duration, scenario.folder
     with located(scenario, "orbit"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(folder)

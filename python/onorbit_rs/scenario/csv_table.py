@@ -75,8 +75,7 @@ def _check_header(
         missing = [column for column in columns if column not in header]
         if missing and (name in needed or len(missing) < len(columns)):
             raise ReadError(
-                f"{where}: {name}: missing {', '.join(missing)}; the required columns are "
-                f"{', '.join(columns)}",
+                f"{where}: the header lacks {', '.join(missing)}; give the columns {', '.join(columns)}",
                 path=str(path),
             )
 
@@ -84,9 +83,11 @@ def _check_header(
 def _numbers(row: list[str], width: int, where: str, path: Path) -> list[float]:
     if len(row) != width:
         raise ReadError(
-            f"{where}: the row has {len(row)} cells, expected {width} (one per column)", path=str(path)
+            f"{where}: the number of cells is {len(row)}; it must be {width}, one per column", path=str(path)
         )
     try:
         return [float(cell) for cell in row]
     except ValueError as error:
-        raise ReadError(f"{where}: {error}; give a plain number in SI units", path=str(path)) from None
+        cell = str(error).partition(": ")[2]
+        message = f"{where}: {cell} is not a number; give a plain number in SI units"
+        raise ReadError(message, path=str(path)) from None

@@ -1,4 +1,4 @@
-"""Message of a run that diverged: the time, the fastest motion, and suggested fixes."""
+"""Message about a run that diverged: the time, the fastest motion, and suggested fixes."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
     fixes += ["less joint damping"] if is_damped and not is_adaptive else []
     return (
         f"the run diverged at t = {stop.time:.6g} s{step}: the state is not finite; the largest rate "
-        f"in the last finite state: {name}, {rates[worst]:.3g} {unit}; try {', or '.join(fixes)}"
+        f"in the last finite state is that of {name}, {rates[worst]:.3g} {unit}; try {', or '.join(fixes)}"
     )
 
 
@@ -57,6 +57,6 @@ def _rates(model: Model) -> Iterator[tuple[str, str]]:
     """Yield a description and the unit of each entry of ``v``."""
     for kind, unit in _BASE:
         for axis in "xyz":
-            yield f"the base's {kind} velocity along {axis}", unit
+            yield f"the base's {kind} motion along {axis}", unit
     for joint in model.joints:
         yield f"joint {joint.name!r}", "m/s" if joint.kind == "prismatic" else "rad/s"

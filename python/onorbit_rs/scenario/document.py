@@ -88,7 +88,7 @@ class Document(Part):
         return line_of(self.location(*at), self._lines)
 
     def resolved(self, folder: Path | None = None) -> dict[str, Any]:
-        """Return the scenario as plain data in SI with all defaults, which load as an equal scenario.
+        """Return the scenario as plain data in SI with all defaults; loading them gives an equal scenario.
 
         Parameters
         ----------

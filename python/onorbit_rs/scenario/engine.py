@@ -36,7 +36,8 @@ def check_world_engine(scenario: WorldScenario) -> None:
     if scenario.engine == "native":
         if scenario.simulation.weld_time_constant is not None:
             message = (
-                "'weld_time_constant' belongs to engine: mujoco; the native engine has exact connections"
+                "'weld_time_constant' applies only to engine: mujoco, since connections of the native engine "
+                "are exact; omit it"
             )
             raise inconsistent(("simulation", "weld_time_constant"), message)
         return

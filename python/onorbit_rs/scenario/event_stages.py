@@ -40,7 +40,7 @@ SEATING_JOINTS = 2
 
 
 def stages(scenario: WorldScenario) -> list[Stage]:
-    """Return the start of the run, and the stages after its events in the order of :func:`expected_order`.
+    """Return the stages at the start of the run and after its events, in the order of :func:`expected_order`.
 
     As in the engine, a tree keeps the root of the capturing system. The root of a released part is the system
     of the released frame, unless the part contains the former root.

@@ -60,7 +60,7 @@ EnvelopeRates = Annotated[list[float], _quantities(units.SPEED, units.ANGULAR_RA
 
 
 class Latch(Part):
-    """Condition of a capture: limits on the motion of the captured relative to the capturing frame."""
+    """Condition of a capture: limits on the pose and motion of the captured frame in the capturing frame."""
 
     within: Envelope
     """Largest distance and angle between the frames."""
@@ -176,7 +176,8 @@ def check_events(events: list[Event], systems: list[str]) -> None:
         while (after := by_name[chain[-1]].when.after) is not None:
             if after in chain:
                 circle = ", ".join([*chain[chain.index(after) :], after])
-                raise _refusal(index)("when", "after", message=f"events wait for each other: {circle}")
+                message = f"events wait for each other: {circle}; give one of them 'at' instead of 'after'"
+                raise _refusal(index)("when", "after", message=message)
             chain.append(after)
 
 

@@ -40,7 +40,7 @@ def _not_negative(value: float) -> float:
 
 
 def resolved_path(path: Path | str, info: SerializationInfo) -> str:
-    """Return the path; absolute if the context of the serialization is a folder at which paths start."""
+    """Return the path as text; absolute if the serialization context is the folder at which paths start."""
     return str(path if info.context is None else (info.context / path).resolve())
 
 

@@ -22,6 +22,13 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 
+_OTHER = {
+    units.LENGTH: units.ANGLE, units.ANGLE: units.LENGTH,
+    units.SPEED: units.ANGULAR_RATE, units.ANGULAR_RATE: units.SPEED,
+}  # fmt: skip
+"""Dimension for the other kind of joint."""
+
+
 class JointValue(float):
     """Value of a joint in SI; ``dimension`` is the dimension of its unit, None if it has no unit."""
 
@@ -123,6 +130,6 @@ def _check_units(name: str, given: dict[str, JointValue], model: Model) -> None:
         if value.dimension is None:
             continue
         if (value.dimension in (units.LENGTH, units.SPEED)) != is_prismatic[joint]:
-            kind, expected = ("prismatic", "a length") if is_prismatic[joint] else ("revolute", "an angle")
-            message = f"{name}: {joint} is {kind}, so {value.dimension.name} does not fit"
+            kind, expected = "prismatic" if is_prismatic[joint] else "revolute", _OTHER[value.dimension].name
+            message = f"{name}: {joint} is {kind}; give {expected} instead of {value.dimension.name}"
             raise QuantityError(message, text=float(value), expected=expected)

@@ -22,7 +22,7 @@ _KINDS = {bool: "true or false", int: "a number", float: "a number", str: "text"
 
 
 def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> AnyScenario:
-    """Return a validated scenario.
+    """Return the validated scenario of a name, a file or a mapping.
 
     Parameters
     ----------
@@ -32,7 +32,8 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> An
 
     Returns
     -------
-    Scenario
+    Scenario or WorldScenario
+        Scenario of one robot, or of several systems.
 
     Raises
     ------

@@ -47,7 +47,7 @@ class Part(BaseModel):
         if hint and len(known) > FEW:
             return hint
         if not known:
-            return "; there are no keys"
+            return "; this entry has no keys"
         return f"{hint}{' ' if hint else '; '}known keys: {', '.join(known)}"
 
 

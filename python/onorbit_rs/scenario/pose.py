@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Pose(Part):
-    """Position and attitude of a frame relative to its parent frame; both are zero by default."""
+    """Position and attitude of a frame relative to its parent frame; by default the frames coincide."""
 
     position: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     attitude: Attitude | None = None

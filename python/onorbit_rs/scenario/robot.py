@@ -72,7 +72,7 @@ class LinkValues(Part):
 
     @property
     def given(self) -> dict[str, Any]:
-        """Return the given values as keyword arguments of ``Model.with_link``."""
+        """The given values as keyword arguments of ``Model.with_link``."""
         return self.model_dump(exclude_none=True)
 
 

@@ -83,7 +83,8 @@ class IntegrationSettings(Part):
             )
         if self.steps / self.record_every > MAX_ROWS:
             raise invalid(
-                f"the trace would have more than {MAX_ROWS} rows; record less often with 'record_every'"
+                f"the trace would have {self.steps / self.record_every:.3g} rows, more than the maximum of "
+                f"{MAX_ROWS:.0e}; increase 'record_every'"
             )
         return self
 
@@ -117,5 +118,5 @@ class WorldSettings(IntegrationSettings):
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
         if key in ControlSettings.model_fields:
-            return "; each of 'systems' has its own"
+            return "; it belongs in each entry of 'systems'"
         return super()._hint(key, free)

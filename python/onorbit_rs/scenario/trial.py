@@ -55,7 +55,7 @@ def about_controllers(scenario: Scenario) -> Iterator[None]:
 
 @contextmanager
 def about_start(scenario: Scenario) -> Iterator[None]:
-    """Locate errors of the initial state at ``initial``."""
+    """Locate errors about ``q`` and ``v`` at ``initial``, and other input errors at ``simulation``."""
     try:
         yield
     except InputError as error:

@@ -50,8 +50,8 @@ ANGULAR_IMPULSE = Dimension("an angular impulse", (1, 2, -1, 0), "N m s")
 INERTIA = Dimension("a moment of inertia", (1, 2, 0, 0), "kg m^2")
 LINEAR_STIFFNESS = Dimension("a stiffness", (1, 0, -2, 0), "N/m")
 ANGULAR_STIFFNESS = Dimension("an angular stiffness", (1, 2, -2, -1), "N m/rad")
-LINEAR_DAMPING = Dimension("a damping", (1, 0, -1, 0), "N s/m")
-ANGULAR_DAMPING = Dimension("an angular damping", (1, 2, -1, -1), "N m s/rad")
+LINEAR_DAMPING = Dimension("a damping coefficient", (1, 0, -1, 0), "N s/m")
+ANGULAR_DAMPING = Dimension("an angular damping coefficient", (1, 2, -1, -1), "N m s/rad")
 GRAVITY = Dimension("a gravitational parameter", (0, 3, -2, 0), "m^3/s^2", ("km^3/s^2",))
 
 _DAY = 86_400.0

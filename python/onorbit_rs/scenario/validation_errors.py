@@ -75,7 +75,7 @@ _MUST_BE = {
 
 
 def _message(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> str:
-    """Return the message of an error in one value."""
+    """Return the message about an invalid value; ``kind`` is pydantic's type of the error."""
     given = details["input"]
     if kind == "value_error":
         return str(context["error"])

@@ -52,7 +52,7 @@ class WorldScenario(Document):
         if key in ("contacts", "loops"):
             return "; it is not available yet"
         if key in ControlSettings.model_fields:
-            return "; each of 'systems' has its own"
+            return "; it belongs in each entry of 'systems'"
         return super()._hint(key, free)
 
     def _validate(self, data: dict[str, Any], file: Path | None, lines: Lines) -> None:
@@ -173,9 +173,9 @@ class WorldScenario(Document):
         others = [other for other in self.systems if other != name]
         for index, known in enumerate(system.knows):
             if known not in others:
-                what = "itself; omit its name" if known == name else f"{known!r}, which is not a system"
+                what = "the system itself; omit it" if known == name else f"{known!r}, which is not a system"
                 raise inconsistent(
-                    ("systems", name, "knows", index), f"{name!r} knows {what}{did_you_mean(known, others)}"
+                    ("systems", name, "knows", index), f"'knows' contains {what}{did_you_mean(known, others)}"
                 )
 
     def _check_neighbour(self, name: str, system: System) -> None:
@@ -188,6 +188,9 @@ class WorldScenario(Document):
                 raise inconsistent(at, f"no system is named {other[0]!r}{hint}")
             if other[0] in chain:
                 circle = ", ".join([*chain, other[0]])
-                raise inconsistent(at, f"initial states are relative to each other: {circle}")
+                raise inconsistent(
+                    at,
+                    f"initial states are relative to each other: {circle}; give one of them in another frame",
+                )
             chain.append(other[0])
             other = self.systems[other[0]].initial.neighbour

@@ -68,12 +68,13 @@ def parse_yaml(text: str, file: Path | None) -> tuple[Any, Lines]:
     except yaml.YAMLError as error:
         raise _syntax_error(error, file) from None
     except RecursionError:
-        raise _at(file, None, "the YAML is nested too deeply") from None
+        message = "lists and mappings are nested too deeply; a scenario requires fewer than ten levels"
+        raise _at(file, None, message) from None
     return data, reader.lines
 
 
 class _NodeReader:
-    """Converts nodes to data and stores their lines; counts aliases, to prevent exponential expansion."""
+    """Converts nodes to data and stores their lines; limits the number of nodes, which aliases multiply."""
 
     def __init__(self, file: Path | None) -> None:
         self.file = file
@@ -98,7 +99,9 @@ class _NodeReader:
         try:
             return loader.construct_object(node)
         except ValueError as error:  # an integer with thousands of digits
-            raise _at(self.file, line, str(error)) from None
+            digits = len(node.value)
+            message = f"an integer has {digits} digits, which is too many; write it with an exponent"
+            raise _at(self.file, line, message) from error
 
     def _mapping(self, loader: _Loader, node: yaml.MappingNode, at: Location) -> dict[Any, Any]:
         data: dict[Any, Any] = {}

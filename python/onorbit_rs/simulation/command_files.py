@@ -37,7 +37,7 @@ def saved_commands(folder: OutputFolder) -> list[Command]:
 
 
 def warnings_without(scenario: Scenario | WorldScenario) -> Iterator[str]:
-    """Yield a warning for each controller of a scenario that follows commands, for a run without commands."""
+    """Yield a warning for each controller that follows commands, for a run without commands."""
     if isinstance(scenario, WorldScenario):
         systems = {f"systems.{name}.": alone for name, alone in scenario.scenarios.items()}
     else:
@@ -47,7 +47,7 @@ def warnings_without(scenario: Scenario | WorldScenario) -> Iterator[str]:
             if isinstance(law, ExternalController):
                 where = "controller" if alone.controllers is None else f"controllers[{index}]"
                 yield (
-                    f"{prefix}{where}: external receives no commands in this run, so "
+                    f"{prefix}{where}: the controller external receives no commands in this run, so "
                     f"{law.without_commands()}; give commands with onorbit run --commands FILE, or from "
                     "Python with Stepper.send"
                 )

@@ -3,7 +3,7 @@
 An entry has the simulated ``time``, s, and, in a world of several systems, the ``system``. The other keys are
 
 - ``control`` with ``position``, ``velocity``, ``acceleration`` or ``effort``: :meth:`Stepper.send`; or with
-  ``values``, which are those of what the gains of the control track (:attr:`Stepper.interfaces`);
+  ``values``, the setpoints of the quantity that the control tracks (:attr:`Stepper.interfaces`);
 - ``control`` with ``trajectory``, a mapping of ``times``, ``positions``, ``velocities``, ``accelerations``
   and ``start``: :meth:`Stepper.send_trajectory`;
 - ``body`` with ``force``, ``torque`` and ``frame``: :meth:`Stepper.wrench`;
@@ -64,7 +64,7 @@ def checked(entry: Mapping[str, Any], where: str = "") -> Command:
             raise invalid(where, f"a command with '{kinds[0]}' has no key {key!r}{did_you_mean(key, known)}")
     for key in ("system", "control", "body", "trigger", "frame"):
         if not isinstance(command.get(key, ""), str):
-            raise invalid(where, f"'{key}' is {command[key]!r}; it must be a name (text)")
+            raise invalid(where, f"'{key}' is {command[key]!r:.60}; it must be a name (text)")
     time: Any = command.get("time")
     if not _is_number(time) or time < 0.0:
         raise invalid(where, f"'time' is {time!r}; it must be a finite number of seconds, at least 0")
@@ -75,7 +75,8 @@ def checked(entry: Mapping[str, Any], where: str = "") -> Command:
         _check_trajectory(command)
     content = [name for name in (*SETPOINT, "values", "trajectory") if name in command]
     if "control" in command and not content:
-        raise invalid(where, f"the command has no setpoint; give one of {', '.join(SETPOINT)} and trajectory")
+        options = ", ".join((*SETPOINT, "values"))
+        raise invalid(where, f"the command has no setpoint; give {options} or trajectory")
     if len(content) > 1 and not set(content) <= set(SETPOINT):
         raise invalid(where, f"give either {content[-1]!r} or {content[0]!r}, not both")
     return command
@@ -84,7 +85,8 @@ def checked(entry: Mapping[str, Any], where: str = "") -> Command:
 def _check_trajectory(command: Command) -> None:
     path, where = command["trajectory"], command.where
     if not isinstance(path, dict) or not {"times", "positions"} <= path.keys():
-        raise invalid(where, "'trajectory' must be a mapping with 'times' and 'positions'")
+        message = f"'trajectory' must be a mapping with 'times' and 'positions', not {path!r:.60}"
+        raise invalid(where, message)
     for key, value in path.items():
         if key not in TRAJECTORY:
             raise invalid(where, f"a trajectory has no key {key!r}{did_you_mean(key, TRAJECTORY)}")
@@ -112,7 +114,7 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     NotFoundError, ReadError
         If the file does not exist or cannot be read.
     InputError
-        If a line is not a valid command, or times decrease; the message contains the line.
+        If a line is not a valid command, or times decrease; the message contains the number of the line.
     """
     path = Path(file)
     if not path.is_file():
@@ -129,7 +131,7 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
 
 
 def parse_commands(text: str, name: str) -> list[Command]:
-    """Return the commands in ``text``, the content of a file; ``name`` is the file name in messages."""
+    """Return the commands in ``text``, the content of the file ``name``; error messages contain the name."""
     commands: list[Command] = []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip():
@@ -138,15 +140,19 @@ def parse_commands(text: str, name: str) -> list[Command]:
         try:
             entry = json.loads(line, parse_constant=_not_finite)
         except (ValueError, RecursionError) as error:
-            raise invalid(where, f"the line is not valid JSON: {error}") from None
+            reason = str(error)
+            if isinstance(error, json.JSONDecodeError):
+                reason = f"{error.msg} at column {error.colno}"
+            raise invalid(where, f"the line is not valid JSON: {reason}") from None
         if not isinstance(entry, dict) or "time" not in entry:
-            raise invalid(where, "a line must be a JSON object with a 'time', s")
+            message = "each line must be a JSON object with the key 'time', the simulated time in s"
+            raise invalid(where, message)
         commands.append(checked(entry, where))
     return in_order(commands)
 
 
 def in_order(commands: Iterable[Command]) -> list[Command]:
-    """Return the commands; raise an error if a time is earlier than that of the previous command."""
+    """Return the commands as a list; raise InputError if a time is earlier than the previous one."""
     found: list[Command] = []
     for command in commands:
         if found and command.time < found[-1].time:
@@ -160,12 +166,12 @@ def in_order(commands: Iterable[Command]) -> list[Command]:
 
 
 def as_line(command: Mapping[str, Any]) -> str:
-    """Return a command as a line of a file; floats are written so that they read back exactly."""
+    """Return a command as a line of a file, with enough digits to read every float back exactly."""
     return json.dumps(command, allow_nan=False) + "\n"
 
 
 def _plain(value: Any) -> Any:
-    """Return arrays as lists of numbers, and mappings with plain values."""
+    """Return a value with arrays and tuples converted to lists, including those inside mappings."""
     if isinstance(value, Mapping):
         return {key: _plain(entry) for key, entry in value.items()}
     if isinstance(value, np.ndarray | np.generic):
@@ -181,7 +187,7 @@ def _is_number(value: Any) -> bool:
 
 
 def _is_array(value: Any) -> bool:
-    """Return True for a list of finite numbers, or of such lists."""
+    """Return True for a list of finite numbers, which may be nested."""
     if not isinstance(value, list):
         return False
     return all(_is_array(entry) if isinstance(entry, list) else _is_number(entry) for entry in value)

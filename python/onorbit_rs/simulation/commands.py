@@ -1,4 +1,4 @@
-"""Commands from outside of a run: gives them to a stepper, and logs them."""
+"""Gives commands from outside of a run to its stepper, and logs them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def apply(stepper: Stepper, entry: Mapping[str, Any]) -> None:
-    """Give a stepper the command of an entry, at the current time of the stepper.
+    """Give a stepper one command, at the current time of the stepper.
 
     Parameters
     ----------
@@ -30,15 +30,15 @@ def apply(stepper: Stepper, entry: Mapping[str, Any]) -> None:
     InputError
         If the entry has unknown or missing keys, or wrong values; the run is unchanged.
     OnOrbitError
-        The errors of the method of the stepper, which leave the run unchanged.
+        If the stepper rejects the command; the run is unchanged.
     """
     give(stepper, checked({"time": stepper.time, **entry}))
 
 
 def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
-    """Give a stepper the command of a checked entry; errors name its place in the file.
+    """Give a stepper a checked command; error messages contain its location in the file.
 
-    With ``check_only``, a constant command to joints is checked and not given.
+    ``check_only`` checks a constant command to joints without giving it; it has no effect on other commands.
     """
     try:
         if "trigger" in entry:
@@ -61,21 +61,22 @@ def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
 
 
 def _setpoint(target: Stepper | SystemStepper, entry: Command) -> dict[str, Any]:
-    """Return the arguments of a constant command."""
+    """Return the setpoints of a constant command to joints, as keyword arguments of ``send``."""
     if "values" in entry:
         return {target.interfaces.get(entry["control"], "effort"): entry["values"]}
     return {name: entry[name] for name in SETPOINT if name in entry}
 
 
 class CommandLog:
-    """Log of the commands that a program gives to a run, from which ``onorbit run --commands`` repeats it.
+    """Log of the commands that a program gives to a run; ``onorbit run --commands`` repeats them.
 
-    It is a context manager that closes its file.
+    A log is a context manager: leaving the block closes its file.
 
     Parameters
     ----------
     file : str or path, optional
-        File to which every command is written at once, one JSON object per line; it is replaced.
+        File to which each command is written immediately, one JSON object per line; an existing file is
+        overwritten. Default: the commands are kept in memory only.
 
     Attributes
     ----------
@@ -84,7 +85,7 @@ class CommandLog:
     """
 
     def __init__(self, file: str | os.PathLike[str] | None = None) -> None:
-        """Start an empty log."""
+        """Create an empty log and open its file."""
         self.entries: list[Command] = []
         self._path = None if file is None else Path(file)
         self._stream = None
@@ -99,7 +100,7 @@ class CommandLog:
         ----------
         stepper : Stepper
         entry : mapping
-            Command; its ``time`` is that of the stepper.
+            Command; its ``time`` is replaced by that of the stepper.
 
         Raises
         ------
@@ -127,7 +128,10 @@ class CommandLog:
         commands = [checked({**entry, "time": stepper.time}) for entry in entries]
         for command in commands:
             if "control" not in command or "trajectory" in command:
-                raise invalid("", "apply_all takes constant commands to joints only; use apply")
+                given = f"{dict(command)!r:.80}"
+                raise invalid(
+                    "", f"apply_all accepts only constant commands to joints, not {given}; use apply"
+                )
         for check_only in (True, False):
             for command in commands:
                 give(stepper, command, check_only=check_only)

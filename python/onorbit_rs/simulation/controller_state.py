@@ -24,7 +24,7 @@ _KEYS = (type(None), bool, int, float, str, tuple)
 
 
 def encode(state: object) -> bytes:
-    """Return the text of a controller's state.
+    """Return a controller's state as JSON text in ASCII.
 
     Raises
     ------
@@ -45,7 +45,8 @@ def decode(text: bytes) -> Any:
     Raises
     ------
     CheckpointError
-        If the text was not written by :func:`encode`. Pickles of earlier versions are rejected unread.
+        If the text was not written by :func:`encode`, such as a pickle of an earlier version, which is not
+        loaded.
     """
     if text.startswith(b"\x80"):
         raise CheckpointError(
@@ -56,7 +57,7 @@ def decode(text: bytes) -> Any:
     try:
         data = json.loads(text)
         if data["format"] != _FORMAT:
-            raise ValueError(f"format {data['format']!r}")
+            raise ValueError(f"unknown format {data['format']!r}")
         return _Decoder().decoded(data["state"])
     except (ValueError, KeyError, TypeError, IndexError, RecursionError, OverflowError) as error:
         raise CheckpointError(
@@ -66,7 +67,7 @@ def decode(text: bytes) -> Any:
 
 
 class _Encoder:
-    """Encodes one state; a list, mapping or array that occurs again is replaced by its index."""
+    """Encodes one state; a list, mapping or array that occurs again is replaced by its number."""
 
     def __init__(self) -> None:
         self._numbers: dict[int, int] = {}
@@ -102,7 +103,7 @@ class _Encoder:
 
 
 class _Decoder:
-    """Decodes one state; lists, mappings and arrays are numbered as by the encoder."""
+    """Decodes one state; lists, mappings and arrays have the same numbers as in the encoder."""
 
     def __init__(self) -> None:
         self._made: list[Any] = []
@@ -155,11 +156,11 @@ def _array(array: Any, place: str, value: object) -> dict[str, Any]:
 
 def _from_text(held: Any) -> Any:
     if not _DTYPE.fullmatch(held["dtype"]):
-        raise ValueError(f"dtype {held['dtype']!r}")
+        raise ValueError(f"unknown dtype {held['dtype']!r}")
     values = np.frombuffer(base64.b64decode(held["data"], validate=True), dtype=held["dtype"])
     shape = tuple(held["shape"])
     if any(type(length) is not int or length < 0 for length in shape):
-        raise ValueError(f"shape {shape}")
+        raise ValueError(f"invalid shape {shape}")
     return values.reshape(shape, order=held["order"]).copy(order=held["order"])
 
 

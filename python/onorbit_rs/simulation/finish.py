@@ -64,7 +64,7 @@ def _summary(
 
 @contextmanager
 def _noting(results: Callable[[], str]) -> Iterator[None]:
-    """On Ctrl-C in the block, add a note about which results exist and how to complete them."""
+    """Add a note to a Ctrl-C in the block: which results exist, and how to complete them."""
     try:
         yield
     except KeyboardInterrupt as stop:
@@ -75,8 +75,11 @@ def _noting(results: Callable[[], str]) -> Iterator[None]:
 def _not_written(folder: OutputFolder) -> str:
     word = shell_word(folder.path)
     if has_checkpoint(folder.path):
-        return f"the run ended, but results in {folder.path} are incomplete: onorbit resume {word}"
-    return f"the run ended, but results in {folder.path} are incomplete; repeat the run with --force"
+        return (
+            f"the run ended, but the results in {folder.path} are incomplete; complete them with: "
+            f"onorbit resume {word}"
+        )
+    return f"the run ended, but the results in {folder.path} are incomplete; repeat the run with --force"
 
 
 def _not_drawn(folder: OutputFolder) -> str:

@@ -39,7 +39,7 @@ def watched(
     view: bool = True,
     commands: Sequence[Command] = (),
 ) -> Trace | WorldTrace:
-    """Simulate a scenario, give it commands at their times, and show it in a viewer if one is available."""
+    """Return the trace of a run to which commands are given, and which is shown in a viewer if available."""
     settings = built.scenario.simulation
     duration = settings.duration
     live = _opened(built, duration) if view else None
@@ -106,7 +106,7 @@ def _advance(
 
 
 def _interrupted(stepper: Stepper, signal: KeyboardInterrupt) -> RunInterrupted:
-    """Return the exception with the recorded rows; a signal within a step has already created it."""
+    """Return the exception with the recorded rows; a signal during a step already is that exception."""
     if isinstance(signal, RunInterrupted):
         return signal
     message = f"the run was interrupted at t = {stepper.time:g} s"
@@ -144,7 +144,7 @@ class _Saver:
 
 
 def _row_counts(columns: Mapping[str, Any]) -> int | dict[str, int]:
-    """Return the number of recorded rows; in a world, a mapping from the name of each system."""
+    """Return the number of recorded rows; in a world, a mapping from system names to numbers of rows."""
     if not any(path.endswith("/time") for path in columns):
         return len(columns.get("time", ()))
     return {path.removesuffix("/time"): len(rows) for path, rows in columns.items() if path.endswith("/time")}

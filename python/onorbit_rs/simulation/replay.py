@@ -1,4 +1,4 @@
-"""Repeats the commands of a log in a run, with the same bits as those of the original run."""
+"""Applies the commands of a log to a run, which then has the same bits as the original run."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Queue:
     """Commands of a log that have not been applied to the run yet."""
 
     def __init__(self, entries: Iterable[Mapping[str, Any]], start: float, *, step: float = 0.0) -> None:
-        """Keep the commands from the time ``start``, s, on; the steps of the run have the length ``step``, s.
+        """Store the commands that are not before ``start``, s; ``step`` is the time step of the run, s.
 
         A command at the time of a checkpoint may have been applied before the checkpoint was saved. Applying
         the command again changes nothing, because no step lies in between.
@@ -62,7 +62,7 @@ class Queue:
         self.commands = deque(entry for entry in commands if entry.time >= start - self._tolerance)
 
     def next_time(self, end: float) -> float:
-        """Return the time of the next command, at most ``end``, s."""
+        """Return the time of the next command or ``end``, whichever is earlier, s."""
         return min(self.commands[0].time, end) if self.commands else end
 
     def apply_due(self, stepper: Stepper) -> None:
@@ -79,15 +79,15 @@ class Queue:
 def check_commands(simulation: Simulation, commands: Sequence[Command], duration: float) -> None:
     """Raise an error for a command that a run would reject, by applying all commands at time zero.
 
-    Warns of commands after the end of the run, which are not applied.
+    Commands after the end of the run, which will not be applied, cause a warning.
     """
     if not commands:
         return
     if late := [command for command in commands if command.time > duration]:
         warnings.warn(
-            f"{late[0].where or 'commands'}: {len(late)} of {len(commands)} commands are after the end of "
-            f"the run, {duration:g} s, and are not applied; for all of them, give the scenario a duration of "
-            f"at least {late[-1].time:g} s",
+            f"{late[0].where or 'commands'}: commands after the end of the run, {duration:g} s, are not "
+            f"applied ({len(late)} of {len(commands)}); to apply all of them, set the duration of the "
+            f"scenario to at least {late[-1].time:g} s",
             UserWarning,
             stacklevel=3,
         )
@@ -98,7 +98,7 @@ def check_commands(simulation: Simulation, commands: Sequence[Command], duration
         end = None if path is None or "start" not in path else path["start"] + path["times"][-1]
         if end is not None and end < command.time:
             raise InputError(
-                f"{command.where}: the trajectory ends at t = {end:g} s, before the time of the command, "
-                f"{command.time:g} s; give a later 'start'",
+                f"{command.where or 'commands'}: the trajectory ends at t = {end:g} s, before the time of "
+                f"the command, {command.time:g} s; give a later 'start'",
                 name="commands", got=end, expected=command.time,
             )  # fmt: skip

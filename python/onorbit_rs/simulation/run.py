@@ -1,4 +1,4 @@
-"""Runs a scenario with one call, :func:`run`, or resumes an interrupted run, :func:`resume`."""
+"""Functions that run a scenario, :func:`run`, and resume an interrupted run, :func:`resume`."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Run:
     """Loaded robots; None after unpickling."""
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle data only: ``multiprocessing.Pool`` hangs if unpickling raises."""
+        """Return the data to pickle, without the robot: a ``Pool`` hangs if unpickling raises an error."""
         return Run, (self.trace, self.summary, self.scenario, self.out)
 
     @cached_property
@@ -82,6 +82,8 @@ class Run:
         ------
         OnOrbitError
             If the robot's file is missing, cannot be read, or was changed since the run (``ModelError``).
+        AttributeError
+            If the scenario has several systems.
         """
         if isinstance(self.scenario, WorldScenario):
             names = ", ".join(f"models[{name!r}]" for name in self.scenario.systems)
@@ -98,6 +100,8 @@ class Run:
         ------
         OnOrbitError
             As for :attr:`model`.
+        AttributeError
+            If the scenario has a single robot.
         """
         if not isinstance(self.scenario, WorldScenario):
             raise AttributeError("the run has a single robot; use 'model' instead of 'models'")
@@ -131,7 +135,7 @@ def run(
 
     Parameters
     ----------
-    scenario : str, path, mapping or Scenario
+    scenario : str, path, mapping, Scenario or WorldScenario
         Name of a bundled scenario, a YAML file, its content as a mapping, or a loaded scenario.
     out : str or path, optional
         Folder for trace, summary, figures and recording; None writes nothing.
@@ -215,7 +219,9 @@ def resume(
     check_folder(path)
     if not exists(path / "scenario.yaml"):
         raise NotFoundError(
-            f"no run in this folder (scenario.yaml is missing): {path}", path=str(path), kind="run"
+            f"no run in this folder (scenario.yaml is missing): {path}; give the output folder of a run",
+            path=str(path),
+            kind="run",
         )
     with OutputFolder(path) as folder:
         folder.check_figures()
@@ -237,7 +243,7 @@ def _built(scenario: Scenario | WorldScenario) -> Built | BuiltWorld:
 def _given(
     commands: str | os.PathLike[str] | Iterable[Mapping[str, Any]] | None,
 ) -> list[Command]:
-    """Return the commands of a file, or checked entries."""
+    """Return the commands of a file or of entries, checked; empty for None."""
     if commands is None:
         return []
     if isinstance(commands, str | os.PathLike):
@@ -250,7 +256,7 @@ def _given(
 
 
 def _with_warnings(built: Built | BuiltWorld, commands: list[Command]) -> Built | BuiltWorld:
-    """Warn of controllers that follow commands in a run without commands."""
+    """Warn of controllers that follow commands in a run without commands; return the run with warnings."""
     messages = tuple(warnings_without(built.scenario)) if not commands else ()
     for message in messages:
         warnings.warn(message, stacklevel=3)
@@ -262,14 +268,14 @@ def _checked_period(checkpoint_every: float) -> float:
     every = finite_float(checkpoint_every)
     if every is None or every < 0.0:
         raise InputError(
-            f"checkpoint_every is {checkpoint_every!r} s; it must be finite and at least zero",
+            f"checkpoint_every is {checkpoint_every!r}; it must be a finite number of seconds, at least 0",
             name="checkpoint_every", got=checkpoint_every, expected=">= 0",
         )  # fmt: skip
     return every
 
 
 def _digest(scenario: Scenario | WorldScenario) -> str:
-    """Return the digest of the scenario, of the files it names, and of the engine's version."""
+    """Return the digest of a scenario, of the files that it refers to, and of the engine's version."""
     return scenario_digest(with_absolute_paths(scenario) | versions(scenario.engine))
 
 

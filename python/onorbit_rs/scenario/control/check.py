@@ -66,7 +66,7 @@ def _check_names(controls: list[Any], events: list[str]) -> None:
             raise inconsistent((*at, "after"), f"no {what} is named {control.after!r}{hint}")
         if control.start != 0.0:
             raise inconsistent(
-                (*at, "start"), "give either 'start' (a time) or 'after' (another controller), not both"
+                (*at, "start"), "give either 'start' (a time) or 'after' (a controller or event), not both"
             )
 
 
@@ -79,7 +79,7 @@ def _check_frame(reference: Any, systems: list[str], at: Location) -> None:
 
 
 def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at: Location) -> Any:
-    """Return the reference of a control law or the default; raise an error if it does not suit the law."""
+    """Return the reference of a control law, or the default; raise an error if it does not suit the law."""
     kind, is_task = law.kind, isinstance(reference, TaskReference)
     if isinstance(law, ExternalController):
         return _without_reference(law, reference, at)
@@ -87,8 +87,8 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
         if is_task:
             raise inconsistent(
                 (*at, "reference"),
-                f"{reference.kind} moves a tool, but {kind} controls joints; use a joint reference "
-                "(joint_hold, joint_waypoints, joint_ramps, joint_sampled, bag), or the controller "
+                f"the reference {reference.kind} moves a tool, but {kind} controls joints; use a joint "
+                "reference (joint_hold, joint_waypoints, joint_ramps, joint_sampled, bag), or the controller "
                 "computed_torque",
             )
         if reference is None and getattr(law, "interface", None) == "effort":
@@ -101,13 +101,13 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
     if reference is not None and not is_task:
         raise inconsistent(
             (*at, "reference"),
-            f"{reference.kind} moves joints, but {kind} controls a tool; use a reference of a tool "
-            "(hold, line, waypoints, ...), or the controller joint_computed_torque",
+            f"the reference {reference.kind} moves joints, but {kind} controls a tool; use a reference of a "
+            "tool (hold, line, waypoints, ...), or the controller joint_computed_torque",
         )
     if isinstance(law, TaskLaw) and reference is None:
         reference = HoldReference()
     if reference is not None and tool is None:
-        raise inconsistent((*at, "tool"), "'tool' is missing; give the frame that the controller tracks")
+        raise inconsistent((*at, "tool"), "'tool' is missing; give the frame that the controller moves")
     if getattr(reference, "frame", None) == "lvlh" and scenario.orbit is None:
         raise inconsistent(
             (*at, "reference", "frame"), "frame lvlh requires an orbit; add 'orbit' or use another frame"
@@ -116,7 +116,7 @@ def _checked(law: Any, reference: Any, tool: str | None, scenario: Scenario, at:
 
 
 def _without_reference(law: ExternalController, reference: Any, at: Location) -> None:
-    """Raise an error if joints that follow commands have a reference, a goal or a shift of a reference."""
+    """Raise an error if a law that follows commands has a reference, a goal or ``starts_at_present``."""
     for key, given in [
         ("reference", reference is not None),
         ("goal", getattr(law, "goal", None) is not None),
@@ -125,6 +125,6 @@ def _without_reference(law: ExternalController, reference: Any, at: Location) ->
         if given:
             raise inconsistent(
                 (*at, key),
-                f"the controller external gets its motion from commands, so it has no '{key}'; remove it, or "
-                "use the controller joint_computed_torque",
+                f"the controller external gets its motion from commands, so it has no '{key}'; remove this "
+                "key, or use the controller joint_computed_torque",
             )

@@ -18,7 +18,8 @@ class ExternalController(JointLaw):
     """Joints that follow commands from outside: a file of commands, or a program that advances the run.
 
     Each command is held until the next one. Positions, velocities and trajectories are tracked by computed
-    torque in joint space; efforts alone are the torques. There is no ``reference``.
+    torque in joint space; a command that contains only efforts sets the joint efforts directly. There is no
+    ``reference``.
     """
 
     kind: Literal["external"] = "external"
@@ -52,7 +53,7 @@ class ExternalController(JointLaw):
         yield "kp", 2, square(self.kp, joints)
 
     def without_commands(self) -> str:
-        """Return what the joints do before the first command."""
+        """Return a clause for messages: what the joints do before the first command."""
         has_kp, has_kd = (bool(gain) and (gain if isinstance(gain, float) else min(gain)) > 0.0
                           for gain in (self.kp, self.kd))  # fmt: skip
         if has_kp:

@@ -12,11 +12,11 @@ from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 
 def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeValidator:
-    """Return the reader of a task-space gain; a single number for two dimensions must have no unit."""
+    """Return the reader of a task-space gain; a single number must have no unit if ``angular`` is given."""
 
     def row(value: object) -> list[float]:
         if not isinstance(value, list) or len(value) != 6:
-            raise QuantityError(_GAIN_SHAPES, text=value, expected="6 numbers")
+            raise QuantityError(f"{_GAIN_SHAPES}, not {value!r:.60}", text=value, expected="6 numbers")
         kinds = [linear] * 3 + [angular or linear] * 3
         return [parse_quantity(entry, kind) for entry, kind in zip(value, kinds, strict=True)]
 
@@ -25,7 +25,9 @@ def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeV
             return parse_quantity(value, units.NUMBER if angular else linear)
         if any(isinstance(entry, list) for entry in value):
             if len(value) != 6:
-                raise QuantityError(_GAIN_SHAPES, text=value, expected="6 x 6 numbers")
+                raise QuantityError(
+                    f"{_GAIN_SHAPES}, not {value!r:.60}", text=value, expected="6 x 6 numbers"
+                )
             return [row(entry) for entry in value]
         return row(value)
 

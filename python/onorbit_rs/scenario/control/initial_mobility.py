@@ -35,7 +35,7 @@ class InitialMobility:
     def of_joints(self, law: Any) -> Floats:
         """Return `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` of the joints of a law, with the other joints fixed.
 
-        Fixing the other joints does not reduce the inertia that any joint of the law moves.
+        The mobility is at least as large if the other joints are free.
         """
         mass = np.asarray(self.model.mass_matrix(self.q))
         rows = [BASE_NV + column for column in joint_columns(law, self.model.joint_names)]

@@ -17,7 +17,7 @@ from onorbit_rs.scenario.errors import invalid
 
 
 class JointPidController(JointLaw):
-    """One PID controller per joint, with the interfaces of ROS Control; gains are SI numbers without units.
+    """One PID controller per joint, with the interfaces of ROS Control; gains are plain numbers in SI units.
 
     Friction is not compensated.
     """
@@ -26,7 +26,7 @@ class JointPidController(JointLaw):
 
     kind: Literal["joint_pid"] = "joint_pid"
     interface: Literal["position", "velocity", "effort"] = "position"
-    """Quantity that the reference prescribes; with ``effort``, its positions are efforts, N m or N."""
+    """Quantity that the reference prescribes; with ``effort``, its values are efforts, N m or N."""
     p: JointNumber = 0.0
     """Proportional gain, N m per rad (per rad/s with ``velocity``)."""
     i: JointNumber = 0.0
@@ -43,7 +43,7 @@ class JointPidController(JointLaw):
         """Raise an error if all gains are missing, which would leave the joints passive."""
         if self.interface != "effort" and not self.model_fields_set & {"p", "i", "d"}:
             raise invalid(
-                f"a PID of interface {self.interface} has no gains; give 'p', 'i' or 'd', or"
+                f"a PID with interface {self.interface} has no gains; give 'p', 'i' or 'd', or"
                 " omit the controller to leave the joints passive"
             )
         return self

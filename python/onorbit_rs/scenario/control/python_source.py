@@ -32,7 +32,7 @@ class Placeholder:
 
 
 def source_of(part: PythonController, folder: Path) -> str:
-    """Return the path of the file that a controller executes, or the name of a module without a file.
+    """Return the path of the file that defines a controller, or the name of a module without a file.
 
     Parameters
     ----------
@@ -126,7 +126,7 @@ def _statements(body: list[ast.stmt]) -> Iterator[ast.stmt]:
 
 
 def _may_be_bound(name: str, statements: list[ast.stmt]) -> bool:
-    """Return whether an import or assignment may give the module this name."""
+    """Return True if an import or an assignment may define ``name`` in the module."""
     for statement in statements:
         if isinstance(statement, (ast.Import, ast.ImportFrom)):
             names = [alias.asname or alias.name.split(".")[0] for alias in statement.names]

@@ -59,7 +59,7 @@ def _ap(value: object) -> float | list[float]:
     if len(value) != 7:
         length = len(value)
         raise invalid(
-            f"ap is a list of {length} numbers; give one number without a list, or a list of seven numbers"
+            f"ap is a list of length {length}; give one number without a list, or a list of seven numbers"
         )
     return [parse_quantity(entry, NUMBER) for entry in value]
 

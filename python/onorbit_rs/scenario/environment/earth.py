@@ -62,7 +62,8 @@ def build_earth(
 ) -> _core.Earth | None:
     """Return the Earth of a run in the axes of its orbit; the default epoch is that of the element set.
 
-    SGP4's positions are in TEME, which in 2024 differs from GCRF by an angle of 37 km on the ground.
+    SGP4's positions are in TEME, which in 2024 differs from GCRF by a rotation of 0.33 deg (37 km on the
+    Earth's surface).
     """
     axes: Any = "GCRF" if orbit is None else orbit.axes
     if epoch is None and isinstance(orbit, _core.Sgp4) and orbit.epoch >= FIRST_UTC:

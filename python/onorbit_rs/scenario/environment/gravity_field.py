@@ -29,7 +29,7 @@ class GravityFieldEffect(Part):
 
     @property
     def is_file(self) -> bool:
-        """Return whether ``model`` is a path."""
+        """Whether ``model`` is the path of a ``.gfc`` file."""
         return self.model.endswith(".gfc")
 
     def build(self, _model: _core.Model | None, folder: Path) -> _core.GravityField:

@@ -1,4 +1,4 @@
-"""Gravity of Sun and Moon."""
+"""Gravity of the Sun and the Moon."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from onorbit_rs.scenario.part import Part
 
 
 class ThirdBodyEffect(Part):
-    """Gravity of the Sun or the Moon on robot and reference; requires an orbit and an epoch."""
+    """Gravity of the Sun or the Moon on the robot and its reference orbit; requires an orbit and an epoch."""
 
     kind: Literal["third_body"] = "third_body"
     body: Literal["sun", "moon"]

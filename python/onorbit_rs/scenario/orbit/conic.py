@@ -129,8 +129,8 @@ class KeplerOrbit(ConicOrbit):
         if given and not self.secular_j2:
             verb, what = ("has", "it") if len(given) == 1 else ("have", "them")
             raise invalid(
-                f"{' and '.join(map(repr, given))} {verb} no effect without 'secular_j2: true'; add this "
-                f"key, or omit {what}"
+                f"{' and '.join(map(repr, given))} {verb} no effect without 'secular_j2: true'; omit {what}, "
+                "or add 'secular_j2: true'"
             )
         return self
 

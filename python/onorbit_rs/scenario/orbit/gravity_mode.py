@@ -1,4 +1,4 @@
-"""Gravity mode: gravity on a robot whose reference orbit is not in free fall."""
+"""Key ``gravity_mode``: whether a robot moves along with a reference orbit that is not in free fall."""
 
 from __future__ import annotations
 

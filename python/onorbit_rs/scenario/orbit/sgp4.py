@@ -24,7 +24,7 @@ SatelliteName = Annotated[str, BeforeValidator(lambda value: str(value) if type(
 
 
 def _text_of_lines(value: Any) -> Any:
-    """Return the text of two lines; reject a list and explain how to write two lines of text in YAML."""
+    """Return the value; if it is a list, raise an error that explains how to write two lines in YAML."""
     if isinstance(value, list):
         raise invalid(
             "must be a single text; write 'tle: |' followed by the two indented lines, or give 'line1' "

@@ -93,24 +93,28 @@ def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
             _check_lengths(number, sample)
             found.append(sample)
         elif len(missing) < len(names):
-            raise _BadRecordingError(f"message {number} lacks {', '.join(missing)}")
+            raise _BadRecordingError(
+                f"message {number} lacks {', '.join(missing)}; a message must contain all followed joints, "
+                "or none of them"
+            )
     return found
 
 
 def _check_lengths(number: int, sample: Sample) -> None:
-    """Raise an error if a message has another number of values than of names."""
+    """Raise an error if the numbers of names and values in a message differ, or a name occurs twice."""
     joints = len(sample.names)
     if doubled := [name for name, count in Counter(sample.names).items() if count > 1]:
         raise _BadRecordingError(f"message {number} names {', '.join(doubled)} more than once")
     if len(sample.positions) != joints or len(sample.rates) not in (0, joints):
         raise _BadRecordingError(
-            f"message {number} has {joints} names, {len(sample.positions)} positions and {len(sample.rates)} "
-            "velocities; a position is required for each name"
+            f"the numbers of names, positions and velocities in message {number} are {joints}, "
+            f"{len(sample.positions)} and {len(sample.rates)}; give one position per name, and one velocity "
+            "per name or none"
         )
 
 
 def _distinct(samples: list[Sample]) -> list[Sample]:
-    """Return samples with increasing times; the last counts of those at the same time and positions."""
+    """Return samples with increasing times; of samples with the same time and positions, the last is kept."""
     found: list[Sample] = []
     for number, sample in enumerate(samples, 1):
         if found and sample.time <= found[-1].time:

@@ -41,7 +41,7 @@ class JointMove(Part):
 
 
 class JointRampsReference(JointTiming):
-    """Motions of one joint after another, each from rest to rest."""
+    """Motions of single joints, one after another, each from rest to rest."""
 
     kind: Literal["joint_ramps"] = "joint_ramps"
     moves: Annotated[list[JointMove], Field(min_length=1)]

@@ -10,7 +10,7 @@ from onorbit_rs.scenario.reference.times import with_start
 
 
 class JointTiming(Part):
-    """Timing of a joint reference: given times, or the shortest times within limits that all joints share."""
+    """Timing of a joint reference: given times, or the shortest times that limits on all joints allow."""
 
     speed: Annotated[JointRate, Positive] | None = None
     """Largest rate of every joint."""

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class LineParabolaReference(TaskReference):
-    """Start + s·displacement + s(1 - s)·height with constant attitude; s is the quintic from 0 to 1."""
+    """Position `start + s displacement + s (1 - s) height`, constant attitude; quintic `s(t)` from 0 to 1."""
 
     kind: Literal["line_parabola"] = "line_parabola"
     displacement: Length3
