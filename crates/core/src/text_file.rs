@@ -17,7 +17,7 @@ pub enum TextFileError {
     NotRegular,
     #[error("it is larger than {limit} bytes")]
     TooLarge { limit: usize },
-    #[error("it is not UTF-8 text")]
+    #[error("it is not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("{reason}")]
     Unreadable { reason: String },

@@ -34,15 +34,15 @@ pub enum InputError {
     QuaternionNorm { state: usize, norm: f64 },
     #[error(
         "the mass matrix of state {state} is singular: in this configuration, some motion of the joints moves no \
-         inertia; give the massless links between these joints an inertia, or the joints a rotor_inertia. If the state \
-         contains very large values, their products may have overflowed instead; check their units"
+         inertia; give the massless links an inertia, or the joints a rotor_inertia. If the state contains very large \
+         values, their products may have overflowed instead; check their units"
     )]
     Singular { state: usize },
     #[error("the values of state {state} are so large that their products overflow; check their units")]
     Overflow { state: usize },
     #[error(
-        "a rollout uses the same steps for all states; choose 'rk4' or 'semi_implicit_euler', or run a \
-         simulation per state"
+        "the integrator of the rollout is 'dormand_prince', which adapts its steps to one state; choose 'rk4' or \
+         'semi_implicit_euler', or run a simulation per state"
     )]
     Adaptive,
     #[error("the reference is in an orbital frame, but a rollout has no orbit; use a Simulation")]

@@ -12,7 +12,7 @@ const CHUNK: usize = 4096;
 ///
 /// `elements`: semi-major axis (m), eccentricity, inclination, right ascension of the node, argument of
 /// periapsis and mean anomaly at time zero (rad), and time (s). Each has one value for all states or one
-/// value per state.
+/// value per state. `mu` is in m³/s².
 ///
 /// # Errors
 /// [`InputError`] for wrong lengths, numbers that are not finite, elements that do not describe an ellipse,

@@ -5,7 +5,7 @@ use super::threads::{Threads, for_each};
 use crate::orbit::{Orbit, OrbitError, StateRows};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Times of the states, s of simulation.
+/// Simulation times of the states, s.
 #[derive(Clone, Copy, Debug)]
 pub enum Times<'a> {
     /// Times (T,) that all orbits share.

@@ -20,7 +20,7 @@ pub enum Ends {
 /// Points of a path, with one row per time, in axes of `I`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathPoints {
-    /// Times, increasing, s of simulation.
+    /// Simulation times in increasing order, s.
     pub times: Vec<f64>,
     /// Positions from the planet's centre, m.
     pub positions: Vec<Vector3<f64>>,

@@ -127,8 +127,8 @@ pub enum OrbitError {
     },
     /// The orbit of the chief is equatorial, so its node and the relative elements are undefined.
     #[error(
-        "the chief's inclination is {inclination} rad: an equatorial orbit has no node and no relative \
-         elements; use local coordinates",
+        "the chief's inclination is {inclination} rad; its sine must exceed 1e-6, because an equatorial orbit has no \
+         node and no relative elements; use local coordinates",
         inclination = short(*inclination)
     )]
     Equatorial {

@@ -21,7 +21,7 @@ impl FixedFrame {
     /// gravitational parameter `mu` (m³/s²), or without a planet if `mu` is `None`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for the position, and
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for `position`, `attitude` and `mu`, and
     /// [`OrbitError::NotPositive`] for `mu`.
     pub fn new(
         position: Vector3<f64>,

@@ -80,8 +80,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         Ok(state.velocity)
     }
 
-    /// Returns the times, s of simulation, at which the acceleration or one of its derivatives is
-    /// discontinuous. The integrator of a run ends a step at each of these times.
+    /// Returns the simulation times, s, at which the acceleration or one of its derivatives is discontinuous.
+    /// The integrator of a run ends a step at each of these times.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()
     }

@@ -80,8 +80,8 @@ impl JointSpline {
     }
 
     /// Creates the spline through samples of a motion: `positions` (K, n) at `times`, s, with their `rates`
-    /// (K, n) if known. Before the first time the first positions are held, after the last time the last
-    /// positions.
+    /// (K, n) if known. The first positions are held before the first time, and the last positions after the
+    /// last time.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, or times

@@ -62,7 +62,7 @@ impl TaskSample<f64> {
         }
     }
 
-    /// Returns the pose as a homogeneous `(4, 4)` matrix, row major.
+    /// Returns the pose as a homogeneous `(4, 4)` matrix, row-major.
     pub fn pose_rows(&self) -> [f64; 16] {
         pose_rows(&self.rot_wd, self.pos_w)
     }

@@ -8,8 +8,8 @@ use std::fmt::Debug;
 ///
 /// The time of a path starts at zero. To add a kind of path, implement this trait in a new file.
 pub trait TaskPath: Send + Sync + Debug {
-    /// Returns the desired pose and motion at `t`, s since the start of the path. Before the start the first
-    /// pose is held, after the end the last pose.
+    /// Returns the desired pose and motion `t` seconds after the start of the path. The first pose is held
+    /// before the start, and the last pose after the end.
     fn sample(&self, t: f64) -> TaskSample<f64>;
 
     /// Returns the time at which the path comes to rest, s. It is 0 for a path that never moves and infinity

@@ -38,9 +38,9 @@ impl TimeLaw {
         Ok(Self { ramp: Some(ramp), ..law })
     }
 
-    /// Returns the time law with which the path returned by `path_with` has the shortest duration, to a
-    /// relative accuracy of 1e-4, within `limits`. `ramp` is an argument of [`TimeLaw::ramped`]; `None`
-    /// selects the quintic time law.
+    /// Returns the time law of shortest duration with which the path that `path_with` returns respects
+    /// `limits`. The duration has a relative accuracy of 1e-4. `ramp` is an argument of [`TimeLaw::ramped`];
+    /// `None` selects the quintic time law.
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`] for an invalid limit, [`ReferenceError::Ramp`] for an invalid

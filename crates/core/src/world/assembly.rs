@@ -41,9 +41,9 @@ pub struct BodyPlace {
     pub pos_kb: Vec3<f64>,
 }
 
-/// Assembles the trees into which `welds` connect systems with these models, in which the names of links,
-/// joints and frames have the names of the systems as prefixes. The root of a tree is its first system in
-/// `roots`, or else its first system.
+/// Assembles the trees into which `welds` connect the systems with these `models`. The names of links, joints
+/// and frames in the models must have the names of the systems as prefixes. The root of a tree is the first
+/// of its systems in `roots`, or the system with the lowest number if `roots` contains none of them.
 ///
 /// # Errors
 /// [`ModelError`] if the model of a tree is not valid.

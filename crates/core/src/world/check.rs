@@ -99,8 +99,8 @@ fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(
         Action::Release { capture, impulse } => {
             let reason = match events.get(*capture).map(|event| &event.action) {
                 Some(Action::Capture { .. }) => "",
-                Some(Action::Release { .. }) => "is not a capture",
-                None => "does not exist",
+                Some(Action::Release { .. }) => "is not a capture; give the number of a capture",
+                None => "does not exist; give the number of a capture",
             };
             if !reason.is_empty() {
                 return Err(WorldError::UnknownEvent { event: name(), other: *capture, reason });
@@ -136,7 +136,8 @@ fn check_seat(event: &Event, seat: &Seat) -> Result<(), WorldError> {
     }
     let norm = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
     if (norm - 1.0).abs() > UNIT_NORM || norm.is_nan() {
-        return wrong("the norm of the quaternion of the pose", norm, "", "1");
+        let expected = "1 within 1e-9; normalise the quaternion";
+        return wrong("the norm of the quaternion of the pose", norm, "", expected);
     }
     Ok(())
 }
@@ -153,7 +154,8 @@ fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
         When::At(t) => check("the time", t, "s", LATER, is_time(t)),
         When::After { event: other, delay } => {
             if other >= events.len() {
-                return Err(WorldError::UnknownEvent { event: name(), other, reason: "does not exist" });
+                let reason = "does not exist; give the number of an event of the world";
+                return Err(WorldError::UnknownEvent { event: name(), other, reason });
             }
             check("the delay", delay, "s", LATER, is_time(delay))
         }

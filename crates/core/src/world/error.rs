@@ -11,7 +11,7 @@ pub enum WorldError {
     #[error("the world has no systems; give at least one system")]
     NoSystems,
     #[error(
-        "'{name}' is not a name of a system; it must start with a letter, contain only letters, digits, '_' and '-', \
+        "'{name}' is not a valid name of a system; it must start with a letter, contain only letters, digits, '_' and '-', \
          and differ from world, lvlh, base and path"
     )]
     SystemName { name: String },
@@ -22,20 +22,27 @@ pub enum WorldError {
     #[error("both frames of the event '{event}' belong to '{system}'; they must belong to different systems")]
     OwnSystem { event: String, system: String },
     #[error(
-        "a reference of the system '{system}' is given in a frame of the system itself, or in a frame that does not exist"
+        "a reference of the system '{system}' is given in a frame of the system itself, or in a frame that does not exist; \
+         give it in a frame of another system"
     )]
     ReferenceFrame { system: String },
     #[error("the event '{event}' connects two systems into a robot that is not valid: {source}")]
     Merged { event: String, source: ModelError },
-    #[error("the event '{event}' refers to system {system}; the world has {count} systems")]
+    #[error("the event '{event}' refers to system {system}; the world has systems 0 to {last}", last = count.saturating_sub(1))]
     UnknownSystem { event: String, system: usize, count: usize },
-    #[error("the event '{event}' refers to frame {frame} of '{system}', which has {count} frames")]
+    #[error(
+        "the event '{event}' refers to frame {frame} of '{system}', which has frames 0 to {last}",
+        last = count.saturating_sub(1)
+    )]
     UnknownFrame { event: String, system: String, frame: usize, count: usize },
     #[error("the event '{event}' refers to event {other}, which {reason}")]
     UnknownEvent { event: String, other: usize, reason: &'static str },
     #[error("the events {names} wait for each other; let one of them happen at a time or on command")]
     Circle { names: String },
-    #[error("{what} of the event '{event}' is {value} {unit}; it must be {expected}", value = short(*value))]
+    #[error(
+        "{what} of the event '{event}' is {value}{space}{unit}; it must be {expected}",
+        value = short(*value), space = if unit.is_empty() { "" } else { " " }
+    )]
     Number { event: String, what: &'static str, value: f64, unit: &'static str, expected: &'static str },
     #[error("the event '{event}' has a latch, but only a capture can have one; use at, after or on_command")]
     LatchWithoutCapture { event: String },

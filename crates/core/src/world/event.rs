@@ -69,7 +69,7 @@ pub struct Envelope {
 pub enum Action {
     /// Connects two frames rigidly, with the relative pose that they have at that instant.
     Capture {
-        /// Capturing frame; the tree keeps the base of the tree to which this frame belongs.
+        /// Capturing frame. The base of the tree to which it belongs becomes the base of the connected tree.
         by: FrameIndex,
         /// Captured frame.
         of: FrameIndex,
@@ -104,7 +104,7 @@ pub struct RigidPose {
     pub position: [f64; 3],
 }
 
-/// Motion of a captured frame to its nominal pose that has begun.
+/// Motion of a captured frame to its nominal pose, after the capture has happened.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seating {
     /// Start, s.

@@ -24,7 +24,8 @@ pub struct GivenJoint {
 }
 
 impl GivenJoint {
-    /// Returns the position, rate and acceleration of the joint at `t`, s.
+    /// Returns the position, rad (m), rate, rad/s (m/s), and acceleration, rad/s² (m/s²), of the joint at
+    /// `t`, s.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let (s, rate, acceleration) = self.law.at(t - self.start);
         [s, rate, acceleration].map(|x| x * self.travel)

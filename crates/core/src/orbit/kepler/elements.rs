@@ -27,7 +27,7 @@ pub enum Phase {
     MeanAnomaly(f64),
     /// True anomaly at the epoch, rad; for an open orbit, within the asymptotes.
     TrueAnomaly(f64),
-    /// Time of a periapsis passage, s of simulation; the epoch is not used.
+    /// Simulation time of a periapsis passage, s; the epoch is not used.
     PeriapsisTime(f64),
 }
 
@@ -48,7 +48,7 @@ pub struct Elements {
     pub phase: Phase,
     /// Gravitational parameter, m³/s².
     pub mu: f64,
-    /// Time at which the anomaly in `phase` holds, s of simulation.
+    /// Simulation time at which the anomaly in `phase` holds, s.
     pub epoch: f64,
 }
 
@@ -111,8 +111,8 @@ impl Kepler {
     ///
     /// Node and periapsis are in [0, 2π). The mean anomaly of an ellipse is in [-π, π], which keeps its
     /// digits near the periapsis. For a circular orbit the periapsis, and for an equatorial orbit the node,
-    /// are determined by rounding errors (the x axis without rounding errors), but their sums with the phase are
-    /// accurate. Near a parabola the size is the semi-latus rectum and the phase is the time of periapsis.
+    /// depend on rounding errors, but their sums with the phase are accurate. Near a parabola, the size is
+    /// the semi-latus rectum and the phase is the time of periapsis.
     pub fn elements(&self) -> Elements {
         let w_i = self.p_i.cross(&self.q_i);
         let tilt = w_i.x.hypot(w_i.y);

@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 /// Returns the position (m) and velocity (m/s) `t` s after the instant to which the mean anomaly refers.
 ///
 /// `elements`: semi-major axis (m), eccentricity in [0, 1), inclination, node, argument of periapsis and mean
-/// anomaly (rad); `mu`: m³/s². For large `t` the phase has the rounding error of `n t`, with the mean motion
-/// `n`, which [`Kepler`](super::Kepler) avoids.
+/// anomaly (rad); `mu`: m³/s². For large `t`, the phase has the rounding error of `n t`, where `n` is the
+/// mean motion; [`Kepler`](super::Kepler) avoids this error.
 #[inline(always)]
 pub(crate) fn ellipse_state<S: Real>(elements: [S; 6], mu: S, t: S) -> (Vec3<S>, Vec3<S>) {
     let ([a, e, inclination, raan, argument, anomaly], one) = (elements, S::of(1.0));

@@ -26,8 +26,8 @@ pub struct Numerical {
 }
 
 impl Numerical {
-    /// Creates the orbit through position `r` (m) with velocity `v` (m/s) at `t0` s of simulation, axes of
-    /// `I`.
+    /// Creates the orbit through position `r` (m) with velocity `v` (m/s) at simulation time `t0` (s), axes
+    /// of `I`.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for the state,
@@ -86,6 +86,8 @@ impl Orbit for Numerical {
         self.arcs.prepare(times, most_steps, |time, r| self.field(time, r))
     }
 
+    /// Returns the state at simulation time `t`, s, and integrates up to `t` if no stored step contains it.
+    ///
     /// # Errors
     /// [`OrbitError::BelowSurface`] after the time at which the orbit enters the planet,
     /// [`OrbitError::TooManySteps`] too far from `t₀`, [`OrbitError::StepTooShort`] and

@@ -77,7 +77,7 @@ fn spectrum(rule: &Rule, a: &Samples) -> Samples {
 }
 
 impl Step {
-    /// Returns the time `t` normalized to -1 at the start and 1 at the end of the step.
+    /// Returns the time `t` normalised to -1 at the start and 1 at the end of the step.
     fn place(&self, t: f64) -> f64 {
         2.0 * ((t - self.start.time) / self.length) - 1.0
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// A day and the seconds since its midnight, in UTC without leap seconds, as in SGP4.
+/// UTC epoch: a day and the seconds since its midnight, without leap seconds, as in SGP4.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Epoch {
     /// Days since 2000-01-01.

@@ -171,6 +171,8 @@ impl Orbit for Sgp4 {
         }
     }
 
+    /// Returns the state `t` s after the epoch.
+    ///
     /// # Errors
     /// [`OrbitError::Sgp4`] where SGP4 has no state, [`OrbitError::NotFinite`], and
     /// [`OrbitError::TimeOutOfRange`] for times more than a hundred years from the epoch.
