@@ -41,7 +41,7 @@ HULL = '<collision><geometry><mesh filename="package://gone/hull.stl"/></geometr
 
 
 def test_a_stick_figure_connects_the_joints() -> None:
-    with pytest.warns(UserWarning, match="4 mesh files not found"):
+    with pytest.warns(UserWarning, match="4 mesh files were not found"):
         model = arm(visual=MESH, collision=HULL)
     drawn = shapes(model)
     balls = {shape.link for shape in drawn if shape.kind == "sphere"}

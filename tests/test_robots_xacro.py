@@ -282,5 +282,5 @@ def test_a_package_with_macros_arguments_and_includes() -> None:
     assert model.joints[0].upper == pytest.approx(np.radians(270), rel=1e-15)
     assert any("long_arm.gazebo.xacro' does not exist" in warning for warning in model.warnings)
     assert any("<xacro:long_arm_gazebo>" in warning for warning in model.warnings)
-    assert any("8 mesh files not found" in warning for warning in model.warnings)
+    assert any("8 mesh files were not found" in warning for warning in model.warnings)
     assert len(load(simulated="false").warnings) == 1  # the meshes

@@ -246,6 +246,11 @@ fn exponential_layers_agree_with_the_published_table() {
         ExponentialAtmosphere::new(vec![layer(1.0, 1.0, 1.0), layer(1.0, 1.0, 1.0)]),
         Err(AtmosphereError::LayerOrder { index: 1, .. })
     ));
+    let message = |layers| ExponentialAtmosphere::new(layers).expect_err("refused").to_string();
+    let text = message(vec![layer(1.0, 1.0, 1.0), layer(0.5, 1.0, 1.0)]);
+    assert_eq!(text, "layer 1 begins at 0.5 m; expected a finite altitude above 1 m, where layer 0 begins");
+    let text = message(vec![layer(f64::INFINITY, 1.0, 1.0)]);
+    assert_eq!(text, "layer 0 begins at inf m; expected a finite altitude");
     assert!(matches!(ExponentialAtmosphere::new(vec![]), Err(AtmosphereError::NoLayers)));
     assert!(matches!(
         ExponentialAtmosphere::new(vec![layer(1.0, -1.0, 1.0)]),

@@ -73,7 +73,7 @@ impl ConstructorCall {
     }
 }
 
-/// Records the call of a constructor. The macro takes its name and variables that have the names of its
+/// Records the call of a constructor, given its name and variables with the names and values of its
 /// arguments.
 macro_rules! call_of {
     ($py:expr, $constructor:literal, $($name:ident),+ $(,)?) => {{

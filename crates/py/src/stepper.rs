@@ -247,7 +247,7 @@ impl PyStepper {
         self.external_of(py, system)
     }
 
-    /// Quantity that the gains of each :class:`External` controller track; ``effort`` without gains.
+    /// Quantity that each :class:`External` controller tracks, by its name; ``effort`` if it has no gains.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         let system = self.only("interfaces")?;

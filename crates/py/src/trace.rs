@@ -88,8 +88,9 @@ macro_rules! getters {
             /// Returns
             /// -------
             /// list of tuple
-            ///     ``(name, value, gate, passed)`` for each check that applies to the run. Values are
-            ///     relative to nonzero scales, except angles in rad, whose names end in ``_rad``.
+            ///     ``(name, value, gate, passed)`` for each check that applies to the run; ``gate`` is the
+            ///     largest accepted value. Values are relative to nonzero scales, except angles in rad, whose
+            ///     names end in ``_rad``.
             fn certificate(this: &Bound<'_, Self>) -> PyResult<Vec<(&'static str, f64, f64, bool)>> {
                 let of = |this: &PyTrace| certify(&this.model, &this.trace).checks();
                 let (own, shared) = (this.get(), this.clone().unbind());
@@ -106,7 +107,7 @@ macro_rules! getters {
             /// Returns
             /// -------
             /// list of str
-            ///     Names; empty if the joints have no position limits.
+            ///     Names; empty if no joint exceeds a limit.
             fn joint_limits_exceeded(&self) -> Vec<&str> {
                 self.trace.limits_exceeded(&self.model)
             }

@@ -10,13 +10,13 @@ use crate::spatial::Motion;
 /// Cartesian impedance control without inertia shaping: `τ = Jgᵀ (K e + D ė) − k N q̇`, with the pose error
 /// `e` of the frame and the null-space projector `N` of `Jg`.
 ///
-/// In free fall there is no gravity load to compensate. Friction is not compensated: the tool remains at a
-/// distance from its goal at which the spring torque is below the static friction of the joints. The law is
+/// In free fall there is no gravity load to compensate. Friction is not compensated: the tool comes to rest
+/// where the spring torque is below the static friction of the joints, which may be off its goal. The law is
 /// passive: the power of the joint torques is `τᵀ q̇`, so that with the kinetic energy `T`, the spring energy
 /// `U = ½ eᵀ K e`, zero momentum (`ẋ = Jg q̇`), no friction and a reference at rest `d/dt (T + U) = −ẋᵀ D ẋ −
 /// k |N q̇|² ≤ 0`. For a reference relative to the base, `ẋ = J q̇` for any momentum, and the law is passive
 /// as well. If the robot drifts past a reference fixed in W, the spring pulls the robot, which may gain
-/// energy. The rotational spring has an energy if its stiffness is the same about all axes, or if the error
+/// energy. The rotational spring has a potential energy if its stiffness is the same about all axes, or if the error
 /// is small.
 ///
 /// Source: Hogan, J. Dyn. Sys. Meas. Control 107(1), 1985.

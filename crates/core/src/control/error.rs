@@ -80,14 +80,21 @@ pub enum ControlError {
         joints = count(*joints, "joint")
     )]
     TooFewInGroup { control: String, frame: String, joints: usize },
-    #[error("the reference of control '{control}' has {got}, but its group has {expected}", got = count(*got, "joint"))]
+    #[error(
+        "the reference of control '{control}' has {got}, but its group has {expected}; give a reference with one \
+         entry per joint of the group",
+        got = count(*got, "joint")
+    )]
     ReferenceLength { control: String, expected: usize, got: usize },
     #[error(
         "control '{control}' has a goal, or starts at the current configuration, but has no reference; give \
          it a reference of positions or rates"
     )]
     NothingTracked { control: String },
-    #[error("{name} is not zero, but with the effort interface the reference is the effort; omit the gains")]
+    #[error(
+        "{name} is not zero, but a control with the effort interface uses no gains, because its reference is the \
+         effort; omit the gains"
+    )]
     GainOfEffort { name: &'static str },
     #[error(
         "one of controls '{first}' and '{second}' compensates the environment and the other does not; set compensate_environment to the same \
@@ -95,8 +102,9 @@ pub enum ControlError {
     )]
     MixedCompensation { first: String, second: String },
     #[error(
-        "the checkpoint has {got} controls, but the simulation has {expected}: it belongs to a different \
-         scenario; resume with the original scenario"
+        "the checkpoint has {got}, but the simulation has {expected}: it belongs to a different scenario; resume \
+         with the original scenario",
+        got = count(*got, "control")
     )]
     OtherControls { got: usize, expected: usize },
     #[error(
@@ -118,7 +126,7 @@ pub enum ControlError {
     GoalOfExternal { control: String },
     #[error("there is no control '{name}'{hint}", hint = named(known, name))]
     UnknownControl { name: String, known: Vec<String> },
-    #[error("control '{control}' follows no commands{hint}", hint = externals(known))]
+    #[error("control '{control}' does not follow commands{hint}", hint = externals(known))]
     NotExternal { control: String, known: Vec<String> },
     #[error(
         "control '{control}' has ended, so it accepts no commands; send the command to an active control"
@@ -128,7 +136,7 @@ pub enum ControlError {
         "{name} of the command to '{control}' has {got}; expected {expected}",
         got = count(*got, "number"),
         expected = if *points == 1 { format!("{joints}, one per joint of its group") }
-            else { format!("{points} rows of {joints}, one per time and joint") }
+            else { format!("{points} rows of {joints} numbers, with one row per time") }
     )]
     CommandLength { control: String, name: &'static str, points: usize, joints: usize, got: usize },
     #[error(
@@ -147,8 +155,10 @@ pub enum ControlError {
     )]
     AccelerationAlone { control: String },
     #[error(
-        "times[{index}] of the trajectory of '{control}' is {after} s after {before} s; times must increase from 0",
-        before = short(*before), after = unlike(*after, &[*before])
+        "times[{index}] of the trajectory of '{control}' is {after} s; times must increase, and {least}",
+        after = unlike(*after, &[*before]),
+        least = if *index == 0 { "the first must be at least 0 s".to_owned() }
+            else { format!("the time before is {} s", short(*before)) }
     )]
     TimesNotIncreasing { control: String, index: usize, before: f64, after: f64 },
     #[error(

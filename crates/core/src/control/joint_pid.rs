@@ -18,11 +18,11 @@ use crate::reference::JointSample;
 pub struct JointPid {
     /// Quantity that the reference commands.
     pub interface: Interface,
-    /// Proportional gain `p`, N m per rad (rad/s).
+    /// Proportional gain `p`, N m/rad, or N m s/rad for errors of the rate (N/m, N s/m for a prismatic joint).
     pub p: PerJoint,
-    /// Integral gain `i`, N m per rad s (rad).
+    /// Integral gain `i`: the unit of `p` per second.
     pub i: PerJoint,
-    /// Derivative gain `d`, N m s per rad (rad/s).
+    /// Derivative gain `d`: the unit of `p` times seconds.
     pub d: PerJoint,
     /// Largest effort of the integral term, N m (N); infinity for no limit.
     pub i_limit: PerJoint,

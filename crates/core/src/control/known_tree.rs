@@ -1,8 +1,8 @@
 //! Reduced model of a robot that is connected to other robots whose models its controllers know.
 //!
-//! From the viewpoint of the controllers, the links beyond a grasp belong to a heavier robot with additional
-//! joints that have no motors. Eliminating these joints yields a reduced model of the robot's own joints,
-//! which all laws can use unchanged.
+//! The controllers treat the links beyond a grasp as links of their robot, connected by additional joints that
+//! have no motors. Eliminating these joints yields a reduced model of the robot's own joints, which all laws
+//! can use unchanged.
 
 use crate::dynamics::{Data, FreeFloating, free_floating_frame, free_floating_recursion, kinematics};
 use crate::model::Model;

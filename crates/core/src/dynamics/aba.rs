@@ -52,9 +52,9 @@ pub fn forward_dynamics_recursion<S: Real>(
     );
 }
 
-/// Computes [`forward_dynamics_recursion`] with the joints locked for which `locked`, `(n,)`, is true. A
-/// locked joint has exactly the acceleration in `given`, `(n,)`, or zero if `given` is empty.
-/// `holding_torque` of its body receives the constraint torque, N m, or force, N.
+/// Computes [`forward_dynamics_recursion`] with every joint locked whose entry in `locked`, `(n,)`, is true.
+/// A locked joint has exactly the acceleration in `given`, `(n,)`, or zero if `given` is empty. Its
+/// constraint torque, N m, or force, N, is stored in `holding_torque` of its body.
 pub(crate) fn locked_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,

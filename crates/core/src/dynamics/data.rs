@@ -57,7 +57,7 @@ pub struct BodyData<S> {
 }
 
 impl<S: Real> BodyData<S> {
-    /// Returns the joint axis, which is the z axis of the body.
+    /// Returns the joint axis, which is the z axis of the body, in base axes.
     #[inline(always)]
     pub fn axis(&self) -> Vec3<S> {
         self.rot_bk.z

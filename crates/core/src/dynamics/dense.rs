@@ -10,9 +10,9 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Real;
 
-/// Solves `M a = τ − c + Σ Jᵀ F` for `a`. Locked joints have the accelerations `given`, `(n,)`, or zero if
-/// `given` is empty. Stores the accelerations of all bodies and the holding torques of locked joints in
-/// `data`, as the ABA recursion does.
+/// Solves `M a = τ − c + Σ Jᵀ F` for `a`. A joint is locked if `is_locked` returns true for the index of its
+/// body; locked joints have the accelerations `given`, `(n,)`, or zero if `given` is empty. Stores the
+/// accelerations of all bodies and the holding torques of locked joints in `data`, as the ABA recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
 pub(super) fn solve<S: Real>(

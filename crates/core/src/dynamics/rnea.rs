@@ -88,7 +88,8 @@ fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], a: Option<&[S]>, 
     bodies[0].force.write(tau);
 }
 
-/// Computes the accelerations `a_k = a_p + v_k × S q̇ + S q̈` of all bodies. `None` means `a = 0`.
+/// Computes the accelerations `a_k = a_p + v_k × S q̇ + S q̈` of all bodies; `a = None` means that the
+/// accelerations of the base and the joints are zero.
 #[inline(always)]
 pub(super) fn body_accelerations<S: Real>(
     nodes: &[Node],

@@ -75,8 +75,8 @@ pub enum EarthError {
     },
     /// A position is so near the Earth's centre that its latitude is not unique.
     #[error(
-        "position is {distance} m from the Earth's centre, but geodetic coordinates are defined from \
-         {minimum} m outwards",
+        "position is {distance} m from the Earth's centre; expected at least {minimum} m, because geodetic \
+         coordinates are not unique near the centre",
         distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     NearCentre {
@@ -113,8 +113,8 @@ pub enum EarthError {
         /// Accepted range.
         expected: &'static str,
     },
-    /// A table of Earth orientation parameters has too few rows to be interpolated.
-    #[error("the table of Earth orientation parameters has {got}; give at least 2 rows", got = count(*got, "row"))]
+    /// A table of Earth-orientation parameters has too few rows to be interpolated.
+    #[error("the table of Earth-orientation parameters has {got}; give at least 2 rows", got = count(*got, "row"))]
     ShortTable {
         /// Number of rows.
         got: usize,

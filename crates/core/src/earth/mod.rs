@@ -75,8 +75,8 @@ impl Earth {
     }
 
     /// Returns the same Earth with time zero at `epoch`, without a kernel: the positions of Sun and Moon come
-    /// from series. An Earth with uniform rotation then has GCRF axes. An Earth of IAU 2006 accepts only the
-    /// epoch it was created with, because its rotation is not recomputed.
+    /// from series. An Earth with uniform rotation then has GCRF axes. For an Earth of IAU 2006, `epoch` must be
+    /// the epoch it was created with, because its rotation is not recomputed.
     pub fn with_epoch(mut self, epoch: Epoch) -> Self {
         if let Rotation::AboutZ { inertial, .. } = &mut self.rotation {
             *inertial = Some(Box::new(Orientation::of_axes(epoch, epoch.series_span())));

@@ -20,7 +20,10 @@ impl EarthParameters {
         let lines: Vec<(usize, &str)> = text.lines().enumerate().collect();
         let mut lines = lines.iter().filter(is_data).copied().peekable();
         let Some((index, first)) = lines.peek().copied() else {
-            return Err(EarthError::Table { line: 1, problem: "the file has no rows".to_owned() });
+            return Err(EarthError::Table {
+                line: 1,
+                problem: "the file has no rows; expected one row per instant".to_owned(),
+            });
         };
         let read = if first.contains(',') {
             let names: Vec<_> = first.split(',').map(str::trim).collect();

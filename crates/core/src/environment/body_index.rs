@@ -6,7 +6,7 @@ use std::fmt;
 /// Index of a body in one of the systems of a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BodyIndex {
-    /// Number of the system in the world, from 0. In a run of some of the systems, they keep their numbers.
+    /// Number of the system in the world, from 0. A run of only some of the systems keeps these numbers.
     pub system: usize,
     /// Index of the body in its system, base first.
     pub body: usize,

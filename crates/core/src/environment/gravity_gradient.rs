@@ -11,9 +11,10 @@ use crate::spatial::{Real, Sym3, Vec3};
 /// Effect that applies the gravity-gradient torque to each body, about its centre of mass.
 ///
 /// `T_i = -ε_ijk (I G)_jk`, with the gradient `G` of the full field at the body, 1/s², and the inertia `I`
-/// about the centre of mass, kg m². For a point mass this is `T = (3μ/r³) r̂ × I r̂`, with `r` from the
-/// planet's centre to the centre of mass of the body. All quantities are in `W` axes. The motion of an
-/// articulated robot also requires the force on each body, which [`super::DifferentialGravity`] computes.
+/// about the centre of mass, kg m². In the field of a point mass, the torque is `T = (3μ/r³) r̂ × I r̂`, with
+/// `r` from the planet's centre to the centre of mass of the body. All quantities are in `W` axes. The motion
+/// of an articulated robot also requires the force on each body, which [`super::DifferentialGravity`]
+/// computes.
 ///
 /// Source: Hughes, Spacecraft Attitude Dynamics, Wiley 1986, section 8.1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -105,14 +105,14 @@ struct Light<S> {
 }
 
 impl<S: Real> Light<S> {
-    /// Gathers the light that reaches each body.
+    /// Gathers the light that reaches the body in each lane; `light(i)` returns that of lane `i`.
     #[inline(always)]
     fn from_lanes(light: impl Fn(usize) -> Light<f64>) -> Self {
         Self { to_sun: Vec3::from_lanes(|i| light(i).to_sun), pressure: S::from_lanes(|i| light(i).pressure) }
     }
 }
 
-/// Returns `radius`, m, or an error if it is not plausible for a planet.
+/// Returns `radius`, m, or an error if it is below 100 km or not finite.
 fn planet_radius(radius: f64) -> Result<f64, SurfaceError> {
     if radius.is_finite() && radius >= 1e5 {
         return Ok(radius);

@@ -130,7 +130,8 @@ impl<'a> Scene<'a> {
         )
     }
 
-    /// Returns the state of the reference around its planet, and the Earth.
+    /// Returns the state of the reference orbit and the rotation of the Earth, or an error if the scene has
+    /// no planet or no Earth, or if the reference is below ground.
     pub(super) fn reference_and_earth(
         &self,
         effect: &'static str,
@@ -180,7 +181,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// Returns the value of the cell. An empty cell is filled with the result of `compute` first.
+/// Returns the value of the cell, which is computed and stored first if the cell is empty.
 fn get_or_try_init<T, E>(cell: &OnceCell<T>, compute: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
     match cell.get() {
         Some(value) => Ok(value),

@@ -8,9 +8,11 @@ use crate::number_text::short;
 /// Highest degree for which the recursion is stable; no published model exceeds it.
 const HIGHEST: usize = 2700;
 
-/// Largest plausible coefficients: of degree 2 and above, and (below) of degree 1. For comparison, Saturn's
-/// `C̄20` is 0.0073. The coefficients of degree 1 give the offset `√3 C̄ R` of the centre of mass.
+/// Largest plausible magnitude of coefficients of degree 2 and above. For comparison, that of Saturn's `C̄20`
+/// is 0.0073.
 const LARGEST: f64 = 1e-2;
+/// Largest plausible magnitude of coefficients of degree 1, which give the offset `√3 C̄ R` of the centre of
+/// mass.
 const LARGEST_FIRST: f64 = 1e-4;
 
 /// Fully normalised coefficients of a planet's field, of degree 1 and above.
@@ -146,7 +148,8 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
     Ok(())
 }
 
-/// Detects an unnormalised `C20` of the Earth: -1.08e-3, which is √5 times the normalised value.
+/// Describes an unnormalised `C20` of the Earth, -1.08e-3, which is √5 times the normalised value. Returns
+/// `None` for other values and other planets.
 fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     let [c20, _] = series.get(2, 0);
     (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs())).then(|| {
@@ -157,8 +160,8 @@ fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     })
 }
 
-/// Detects unnormalised coefficients by their decay: unnormalised sectoral coefficients (order equal to
-/// degree) decay with the factorial of the degree.
+/// Detects unnormalised coefficients by their decay, which it describes, or returns `None`. Unnormalised
+/// sectoral coefficients (order equal to degree) decay with the factorial of the degree.
 ///
 /// The normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and is
 /// smaller than `Nn0` by a similar factor. Normalised coefficients of planets decay approximately as `n⁻²`

@@ -105,10 +105,7 @@ impl Header {
         if let Some(norm) = value("norm").filter(|norm| *norm != "fully_normalized") {
             return Err(GravityError::NotNormalised {
                 model,
-                found: format!(
-                    "the norm in the header is \
-            {norm}"
-                ),
+                found: format!("the norm in the header is {norm}"),
             });
         }
         let real = |key: &'static str, got: Option<&str>| {

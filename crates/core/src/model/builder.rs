@@ -132,8 +132,8 @@ impl ModelBuilder {
         self
     }
 
-    /// Copies the notes of a robot. Warnings about inertias are not copied, because adding the robot's links
-    /// produces them again.
+    /// Copies the warnings of a robot, except those about inertias, because adding the robot's links produces
+    /// them again.
     pub(super) fn keep_notes(&mut self, model: &Model) -> &mut Self {
         let notes = model.warnings().iter().filter(|warning| matches!(warning, ModelWarning::Note(_)));
         self.warnings.extend(notes.cloned());

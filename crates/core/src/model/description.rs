@@ -35,8 +35,8 @@ pub struct Inertial {
     pub mass: f64,
     /// Centre of mass in link axes, m.
     pub com: Vector3<f64>,
-    /// Inertia matrix about the centre of mass in link axes, kg m², with the signs of its matrix elements
-    /// (products of inertia negative).
+    /// Inertia matrix about the centre of mass in link axes, kg m². Its off-diagonal elements are the
+    /// negative products of inertia, as in URDF: `Ixy = −∫ x y dm`.
     pub inertia: Matrix3<f64>,
 }
 

@@ -118,14 +118,14 @@ impl fmt::Display for ModelWarning {
             ),
             Self::IndefinitePart { link, moments } => write!(
                 f,
-                "the inertia of link '{link}' is not positive definite: principal moments {} kg m2 (it is \
+                "the inertia of link '{link}' is not positive definite: its principal moments are {} kg m2 (it is \
                  used unchanged, since the inertia of the whole body, with the links fixed to it, is positive definite)",
                 list(moments)
             ),
             Self::RoundedInertia { link, moments } => write!(
                 f,
-                "the inertia of link '{link}' has negative principal moments, within rounding: {} kg m2 \
-                 (the negative ones are set to zero)",
+                "the principal moments of inertia of link '{link}' are {} kg m2; the negative ones are within \
+                 the rounding error and are set to zero",
                 list(moments)
             ),
             Self::InertiaWithoutMass { link } => write!(

@@ -85,7 +85,8 @@ fn check_ranges(name: String, inertial: &Inertial) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Returns true if the inertia of a whole body, which may consist of several links, is positive definite.
+/// Returns true if no principal moment of the inertia of a whole body, which may consist of several links, is
+/// negative by more than the rounding tolerance.
 pub(super) fn is_definite(about_com: &Sym3<f64>, mass: f64) -> bool {
     !matches!(sense(&about_com.to_nalgebra(), mass), Sense::Indefinite(_))
 }

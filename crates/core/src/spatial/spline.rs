@@ -15,10 +15,10 @@ pub enum SplineError {
     NotFinite { name: &'static str, point: usize, value: f64 },
     #[error("{name} holds {got}; expected {expected}, one row per time", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{got} points are given; expected at least {least}")]
+    #[error("the curve has {got}; expected at least {least}", got = count(*got, "point"))]
     TooFew { got: usize, least: usize },
     #[error(
-        "times[{index}] is {after} s after {before} s; times must increase",
+        "times[{index}] is {after} s; times must increase, and the time before is {before} s",
         before = short(*before), after = unlike(*after, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, after: f64 },

@@ -51,9 +51,9 @@ impl PyEffect {
 /// Parameters of an effect that is not yet assigned to systems.
 pub(crate) enum Kind {
     GravityGradient,
-    /// A part of the gravity of the run; see [`crate::gravity::gravity_of`].
+    /// Field of the planet, which [`crate::gravity::gravity_of`] adds to the gravity of the run.
     GravityField(Arc<GravityField>),
-    /// A part of the gravity of the run; see [`crate::gravity::gravity_of`].
+    /// Sun or Moon, which [`crate::gravity::gravity_of`] adds to the gravity of the run.
     ThirdBody(Luminary),
     BodyWrench {
         frame: String,

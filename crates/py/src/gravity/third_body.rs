@@ -5,8 +5,9 @@ use crate::errors::{fields, raise};
 use onorbit_core::gravity::Luminary;
 use pyo3::prelude::*;
 
-/// Gravity of the Sun or the Moon on robot and reference: ``μ [(s - r)/|s - r|³ - s/|s|³]`` at the position
-/// ``r``, with the third body at ``s``.
+/// Gravity of the Sun or the Moon, which acts on the robot and the reference.
+///
+/// The acceleration at the position ``r`` is ``μ [(s - r)/|s - r|³ - s/|s|³]``, with the third body at ``s``.
 ///
 /// The effect requires an orbit around the Earth, and an ``earth`` with an epoch.
 ///

@@ -96,7 +96,7 @@ pub(crate) fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
     let rows = fixed::<16>(pose, "pose", &[4, 4])?;
     if let Some(entry) = rows.iter().find(|entry| entry.abs() > 1e12) {
         return Err(refuse(&format!(
-            "the pose holds {}, which exceeds 1e12 m; check the units",
+            "the pose holds {}; expected numbers between -1e12 and 1e12 m; check the units",
             short(*entry)
         )));
     }

@@ -1,6 +1,5 @@
 //! The class `Model`. Its methods are in one file per topic: `construction`, `properties`, `kinematics`,
-//! `dynamics`,
-//! `momentum` and `free_floating`.
+//! `dynamics`, `momentum` and `free_floating`.
 
 pub(crate) mod attach;
 mod builder;

@@ -17,7 +17,7 @@ use std::sync::Arc;
 /// Parameters
 /// ----------
 /// line1 : str or Satrec
-///     First line, or a ``Satrec`` of PyPI's ``sgp4``, from which the epoch, the elements (bit by bit) and
+///     First line, or a ``Satrec`` of PyPI's ``sgp4``, from which the epoch, the elements (bit for bit) and
 ///     the gravity constants are copied.
 /// line2 : str, optional
 ///     Second line; omitted with a ``Satrec``.

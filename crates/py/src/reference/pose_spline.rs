@@ -63,8 +63,8 @@ impl PyWaypoints {
     }
 }
 
-/// C² spline through poses at given times. Before the first time the first pose is held, after the last time
-/// the last pose.
+/// C² spline through poses at given times. Before the first time, the first pose is held; after the last
+/// time, the last pose is held.
 ///
 /// Parameters
 /// ----------

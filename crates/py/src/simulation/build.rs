@@ -1,6 +1,7 @@
 //! Construction of simulations from Python arguments.
 
 use super::Any;
+use crate::arrays::type_name;
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, SurfaceAssignment, Target, effects};
 use crate::errors::{IntoPython, fields, raise};
@@ -40,10 +41,11 @@ pub(super) fn of_robot(
 ) -> PyResult<Simulation> {
     let py = model.py();
     let Ok(model) = model.cast::<PyModel>() else {
-        return Err(PyTypeError::new_err("the first argument of Simulation must be a Model or a World"));
+        let got = type_name(model);
+        return Err(PyTypeError::new_err(format!("model is of type {got}; expected a Model or a World")));
     };
     let (Some(q), Some(v)) = (q, v) else {
-        return Err(PyTypeError::new_err("a Simulation of a robot needs its initial q and v"));
+        return Err(PyTypeError::new_err("a Simulation of a Model requires its initial state; give q and v"));
     };
     let model = model.get();
     let (q, v) = initial_state(py, &model.model, q, v)?;

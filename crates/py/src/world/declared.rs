@@ -153,8 +153,13 @@ fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResul
         let others = || names.iter().filter(|name| **name != system.name).map(String::as_str);
         names.iter().position(|name| name == known && *name != system.name).ok_or_else(|| {
             let others = others().collect::<Vec<_>>().join(", ");
+            let hint = if others.is_empty() {
+                "it has no other system".to_owned()
+            } else {
+                format!("the others are: {others}")
+            };
             let message = format!(
-                "the system '{}' knows '{known}', which is not another system ({others})",
+                "the system '{}' knows '{known}', which is not another system of the world; {hint}",
                 system.name
             );
             raise(py, "WorldError", &message, &fields!(py, "name": &system.name, "got": known))

@@ -181,7 +181,7 @@ impl PySystemStepper {
     /// accelerations : (K, k) array, optional
     ///     Accelerations, rad/s² or m/s².
     /// start : float, optional
-    ///     Simulation time of the start, s; default: now.
+    ///     Simulation time of the start, s; default: the current time.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -227,8 +227,8 @@ impl PySystemStepper {
         self.stepper.get().external_of(py, self.system)
     }
 
-    /// What the gains of each :class:`External` controller of this system track, by the name of the control:
-    /// ``position``, ``velocity`` or, without gains, ``effort``.
+    /// Quantity that the gains of each :class:`External` controller of this system track, by the name of the
+    /// control: ``position``, ``velocity`` or, without gains, ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         self.stepper.get().interfaces_of(py, self.system)

@@ -14,8 +14,8 @@ use std::sync::OnceLock;
 /// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
 ///
 /// ``trace["chaser"]`` is the :class:`Trace` of a system, with all of its rows. The columns of the world have
-/// only the rows at times that all systems recorded. Systems that events may connect have the same rows.
-/// Systems of different groups share the multiples of ``record_every`` steps and the end of the run, but the
+/// only the rows at times that all systems recorded. Systems that events may connect form a group and have the
+/// same rows. Systems of different groups share the multiples of ``record_every`` steps and the end of the run, but the
 /// rows at events, impacts and control ticks are those of one group. If only some systems have a row both
 /// before and after an event, the row of the world is the one after the event.
 #[pyclass(name = "WorldTrace", frozen, module = "onorbit_rs")]
@@ -111,8 +111,9 @@ impl PyWorldTrace {
     /// Returns
     /// -------
     /// list of tuple
-    ///     ``(name, value, gate, passed)``. The names begin with the names of the systems of the group, or
-    ///     with the name of the event. The certificate of one system is ``trace[name].certificate()``.
+    ///     ``(name, value, gate, passed)``, where ``gate`` is the largest accepted value. The names begin with
+    ///     the names of the systems of the group, or with the name of the event. The certificate of one system
+    ///     is ``trace[name].certificate()``.
     fn certificate(&self) -> Vec<(String, f64, f64, bool)> {
         let mut all = Vec::new();
         let mut add =

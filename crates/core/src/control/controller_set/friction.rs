@@ -1,4 +1,4 @@
-//! Friction, sticking or slipping, of the joints with given efforts.
+//! Static and kinetic friction of the joints with given efforts.
 
 use super::ControllerSet;
 use crate::control::control_law::JointCommand;

@@ -42,18 +42,17 @@ pub enum AtmosphereError {
         /// Accepted range.
         expected: &'static str,
     },
-    /// Layers are not in ascending order.
+    /// The base of a layer is not a finite altitude above the base of the previous layer.
     #[error(
-        "layer {index} begins at {altitude} m; the layers must ascend, but layer {before} begins at \
-         {previous} m",
-        before = index - 1, altitude = unlike(*altitude, &[*previous]), previous = short(*previous)
+        "layer {index} begins at {altitude} m; expected a finite altitude{}",
+        above_previous(*index, *previous), altitude = unlike(*altitude, &[*previous])
     )]
     LayerOrder {
         /// Index of the layer.
         index: usize,
         /// Altitude of the base of this layer, m.
         altitude: f64,
-        /// Altitude of the base of the previous layer, m.
+        /// Altitude of the base of the previous layer, m; not used for the first layer.
         previous: f64,
     },
     /// The list of layers is empty.
@@ -98,6 +97,13 @@ pub enum AtmosphereError {
     /// The time or the position of the Sun is unknown.
     #[error(transparent)]
     Earth(#[from] EarthError),
+}
+
+/// Returns the part of a message that states the lower bound of the base of layer `index`, which is empty for
+/// the first layer; `previous` is the base of the layer before, m.
+fn above_previous(index: usize, previous: f64) -> String {
+    let lower = |before| format!(" above {} m, where layer {before} begins", short(previous));
+    index.checked_sub(1).map_or_else(String::new, lower)
 }
 
 /// Returns `value` if it is finite and positive.

@@ -39,8 +39,8 @@ impl LocalAtmosphere {
     /// Computes the local atmosphere about `centre`, axes of `I`, m.
     ///
     /// # Errors
-    /// The errors of the model at the centre, and those of the model 100 m above the centre if it also fails
-    /// 100 m below.
+    /// The errors of the model at the centre, and those 100 m below the centre if the model also fails 100 m
+    /// above it.
     pub fn new(
         atmosphere: &dyn Atmosphere,
         earth: &Earth,

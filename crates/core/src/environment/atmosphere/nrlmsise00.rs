@@ -11,7 +11,7 @@ use nrlmsise00::{Input, MagneticActivity as Magnetic, Model};
 /// requires an epoch.
 ///
 /// The model is defined from the surface upwards and is fitted to data up to 1000 km; above that altitude,
-/// the profiles of helium and hydrogen continue. The crate `nrlmsise00` evaluates the model in double
+/// it extrapolates the profiles of helium and hydrogen. The crate `nrlmsise00` evaluates the model in double
 /// precision. Daily indices from a table change at midnight UTC.
 ///
 /// Source: Picone, Hedin, Drob and Aikin, J. Geophysical Research 107(A12), 2002.

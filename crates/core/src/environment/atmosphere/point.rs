@@ -25,7 +25,7 @@ impl<'a> AtmospherePoint<'a> {
     ///
     /// # Errors
     /// [`AtmosphereError::BelowSurface`] for a position inside the Earth; [`AtmosphereError::Earth`] if the
-    /// coordinates or the rotation of the Earth are undefined.
+    /// geodetic coordinates of the position are undefined.
     pub fn new(earth: &'a Earth, time: f64, position: &Vector3<f64>) -> Result<Self, AtmosphereError> {
         let rot_fi = earth.rot_fi(time);
         let geodetic = Geodetic::of(&(rot_fi * position), &WGS84)?;
@@ -60,7 +60,7 @@ impl<'a> AtmospherePoint<'a> {
     }
 }
 
-/// Returns the normal of the ellipsoid, axes of `F`.
+/// Returns the upward unit normal of the ellipsoid, axes of `F`.
 fn up(geodetic: &Geodetic) -> Vector3<f64> {
     let ((slat, clat), (slon, clon)) = (geodetic.latitude.sin_cos(), geodetic.longitude.sin_cos());
     // (cos φ cos λ, cos φ sin λ, sin φ)

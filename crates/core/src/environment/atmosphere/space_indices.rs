@@ -46,7 +46,7 @@ impl SpaceIndices {
     }
 }
 
-pub(super) const FLUX: &str = "a flux above 0 and below 999.9 (which marks a gap), 1e-22 W/(m² Hz)";
+pub(super) const FLUX: &str = "a flux above 0 and below 999.9 (999.9 marks a gap), in 1e-22 W/(m² Hz)";
 pub(super) const ACTIVITY: &str = "an index from 0 to 400 (Ap, not Kp)";
 
 /// Returns true for a plausible flux; observed daily values are below 500, and 999.9 marks a gap in tables.

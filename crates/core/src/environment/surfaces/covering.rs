@@ -18,8 +18,8 @@ pub struct Covering {
 }
 
 impl Covering {
-    /// Derives the surface of every body of a system from its shapes. `number` and `model` are those of the
-    /// system. Bodies without shapes have no surface.
+    /// Derives the surface of every body of a system from its shapes. `system` is the number of the system in
+    /// the world, and `model` is its model. Bodies without shapes have no surface.
     ///
     /// # Errors
     /// The errors of [`Surface::from_shapes`].
@@ -50,7 +50,7 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// Creates the surfaces from coverings of systems that have these numbers of bodies.
+    /// Creates the surfaces from coverings; `counts` holds the number of bodies of each system of the world.
     ///
     /// # Errors
     /// [`SurfaceError::NoSurfaces`] for an empty list, [`SurfaceError::UnknownBody`], and
@@ -84,7 +84,8 @@ impl Surfaces {
         Self::new(coverings, &[model.nodes().len()])
     }
 
-    /// Returns the names of the bodies of a system, given by number and model, that have mass but no surface.
+    /// Returns the names of the bodies of the system with this number and model that have mass but no
+    /// surface.
     pub fn uncovered<'a>(&self, system: usize, model: &'a Model) -> Vec<&'a str> {
         let is_uncovered =
             |body: &usize| model.nodes()[*body].mass > 0.0 && !self.covers(BodyIndex { system, body: *body });

@@ -41,7 +41,7 @@ impl Cylinder<Column8> {
 }
 
 impl<S: Real> Cylinder<S> {
-    /// Adds the integral of the drag on a face over the side that faces the stream.
+    /// Adds the drag on the part of the curved side that faces the stream.
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         let (axis, area) = (self.axis, S::of(2.0) * self.radius * self.length);
@@ -55,10 +55,10 @@ impl<S: Real> Cylinder<S> {
         sums.torque += axis.cross(u) * (along * S::of(PI / 4.0) * self.radius * area);
     }
 
-    /// Adds the integral of the radiation pressure on a face over the illuminated half.
+    /// Adds the radiation pressure on the illuminated half of the curved side.
     ///
     /// `n = cos φ ŝ⊥ + sin φ a × ŝ⊥`, `n·ŝ = σ cos φ`, `dA = r L dφ`, `|φ| < π/2`, where `a` is the axis,
-    /// `s⊥` the part of `ŝ` normal to the axis, and `σ = |s⊥|`.
+    /// `s⊥` the part of `ŝ` normal to the axis, `σ = |s⊥|` and `ŝ⊥ = s⊥/σ`.
     #[inline(always)]
     pub(super) fn add_pressure(&self, to_sun: Vec3<S>, optics: &Optics<S>, sums: &mut PressureSums<S>) {
         let (s, Optics { specular, diffuse }) = (S::of, *optics);

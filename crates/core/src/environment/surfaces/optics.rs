@@ -33,8 +33,8 @@ impl Optics {
         Optics { specular: Column8::of(|i| optics(i).specular), diffuse: Column8::of(|i| optics(i).diffuse) }
     }
 
-    /// Returns the coefficient `C_R` of a sphere: specular reflection does not change the force, diffuse
-    /// reflection adds 4/9.
+    /// Returns the radiation pressure coefficient of a sphere, `C_R = 1 + 4/9 ρd`. Specular reflection does
+    /// not change the force on a sphere.
     pub(super) fn of_sphere(&self) -> f64 {
         1.0 + 4.0 / 9.0 * self.diffuse
     }

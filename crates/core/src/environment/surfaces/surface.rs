@@ -29,7 +29,7 @@ impl Surface {
         let drag_coefficient = not_negative("drag_coefficient", drag_coefficient)?;
         let value = not_negative("reflectivity", reflectivity)?;
         if value > 2.0 {
-            let expected = "a number from 0 to 2, the value of a flat mirror that faces the Sun";
+            let expected = "a number from 0 to 2 (2 is a flat mirror that faces the Sun)";
             return Err(SurfaceError::Value { name: "reflectivity", value, expected });
         }
         let spheres = vec![Sphere { area, centre: Vec3::zero(), reflectivity }];
@@ -58,7 +58,7 @@ impl Surface {
     }
 
     /// Creates a surface from flat plates with areas, m², outward normals of any length, and centroids, m.
-    /// Normals and centroids are given in the axes of `frame`.
+    /// Normals are in the axes of `frame`, centroids are relative to its origin.
     ///
     /// # Errors
     /// [`SurfaceError::UnknownBody`], [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`],

@@ -110,8 +110,8 @@ impl<R> PartTable<R> {
         Self { rows: (0..most).map(|k| row(&|body| part(body, k))).collect(), counts }
     }
 
-    /// Returns the rows that contain a part of any of the bodies in the lanes of `S`, starting with body
-    /// `offset`.
+    /// Returns the rows that contain a part of at least one of the bodies in the lanes of `S`, of which the
+    /// first is body `offset` of the block.
     #[inline(always)]
     fn rows<S: Real>(&self, offset: usize) -> std::slice::Iter<'_, R> {
         if S::LANES == WIDTH {

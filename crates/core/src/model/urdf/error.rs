@@ -58,7 +58,7 @@ impl UrdfError {
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum UrdfProblem {
-    #[error("there is no such file")]
+    #[error("there is no such file; check the path")]
     NotFound,
     #[error("the path is a directory; expected a URDF file")]
     IsFolder,
@@ -66,15 +66,23 @@ pub enum UrdfProblem {
     Unreadable { reason: String },
     #[error("the URDF is empty; expected a <robot> element")]
     Empty,
-    #[error("the file is larger than {limit} bytes, the limit for robot descriptions")]
+    #[error(
+        "the file is larger than {limit} bytes, the limit for robot descriptions; remove data that does not \
+         describe the robot"
+    )]
     TooLarge { limit: usize },
-    #[error("XML elements are nested deeper than {limit}, the limit for robot descriptions")]
+    #[error(
+        "XML elements are nested deeper than {limit} levels, the limit for robot descriptions; reduce the nesting"
+    )]
     TooDeep { limit: usize },
-    #[error("an XML tag has more than {limit} attributes, the limit for robot descriptions")]
+    #[error(
+        "an XML tag has more than {limit} attributes, the limit for robot descriptions; remove attributes \
+         that URDF does not define"
+    )]
     TooManyAttributes { limit: usize },
     #[error("the file is not UTF-8 text (at byte {at}); save it as UTF-8")]
     NotUtf8 { at: usize },
-    #[error("the text is not XML ({reason})")]
+    #[error("the text is not XML ({reason}); correct the text at this line")]
     NotXml { reason: String },
     #[error(
         "entity '&{name};' is not supported; replace the entity by its definition in the document type (<!DOCTYPE>)"

@@ -17,7 +17,7 @@ pub(super) struct Meshes<'a> {
     /// True for each folder that exists; cached to avoid a system call for each file in a missing folder.
     folders: HashMap<PathBuf, bool>,
     near: Near<'a>,
-    /// For each file found, the package in whose name it was found.
+    /// For each file found, the package that the reference to it names.
     taken: HashMap<String, String>,
     missing: Vec<String>,
     guessed: Vec<(String, String)>,
@@ -83,10 +83,7 @@ impl<'a> Meshes<'a> {
             }
             _ => "; copy the missing files into a folder 'meshes' beside the robot's file".to_owned(),
         };
-        Some(format!(
-            "{files} not found, the first being '{first}'; simpler shapes are drawn \
-        instead{hint}"
-        ))
+        Some(format!("{files} not found, the first being '{first}'; simpler shapes are drawn instead{hint}"))
     }
 
     fn about_guessed(&self) -> Option<String> {
@@ -149,8 +146,8 @@ impl<'a> Meshes<'a> {
         None
     }
 
-    /// Returns true unless the file was already found in the name of another package; two packages may both
-    /// contain `meshes/base.stl`.
+    /// Returns true unless the file was already found for a reference that names another package, because two
+    /// packages may both contain `meshes/base.stl`.
     fn is_free(&mut self, path: &str, name: &MeshName) -> bool {
         let MeshName::InPackage { package, .. } = name else { return true };
         self.taken.entry(path.to_owned()).or_insert_with(|| package.clone()) == package
@@ -168,7 +165,7 @@ impl<'a> Meshes<'a> {
 }
 
 fn mesh_files(count: usize) -> String {
-    format!("{count} mesh {}", if count == 1 { "file" } else { "files" })
+    format!("{count} mesh {}", if count == 1 { "file was" } else { "files were" })
 }
 
 #[cfg(test)]

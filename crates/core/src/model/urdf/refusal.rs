@@ -11,7 +11,7 @@ use std::fmt;
 pub(super) enum Refusal {
     /// A required field is missing; the element is not yet known.
     Missing(&'static str),
-    /// Another reason, with the message of urdf-rs.
+    /// Another reason, as stated by urdf-rs.
     Other(String),
     /// An error with its location.
     Placed(UrdfError),

@@ -68,7 +68,7 @@ impl PyNrlmsise00 {
                             .to_owned()
                     }
                     None => format!(
-                        "space weather is missing {}: give f107, f107a and ap, or a table",
+                        "the space weather lacks {}; give f107, f107a and ap, or a table",
                         missing.join(", ")
                     ),
                 };
