@@ -82,7 +82,7 @@ impl Connections {
     }
 
     /// Returns the model and the members of the tree whose root is `system`. Its other members are those
-    /// systems in `knows` to which welds among known systems connect it. Returns `None` if it has no other
+    /// systems in `knows` that are connected to it through each other. Returns `None` if it has no other
     /// members.
     pub(super) fn known_tree(
         &self,

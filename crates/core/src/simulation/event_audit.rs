@@ -51,7 +51,7 @@ impl<S: Scalar> RunState<'_, S> {
         let after = self.snapshots();
         let Sums { balances, energies, energy_of_change, impulse } = self.sums(event, &after);
         let difference = energies[0] - energies[1];
-        // joints with given rates do work during the impulse that neither of the sums contains
+        // joints with prescribed rates do work during the impulse that neither of the sums contains
         let is_driven = self.equations.trees.iter().any(|tree| !tree.modes.given().is_empty());
         let (energy_lost, expected) = match event.kind {
             _ if is_driven => (difference, difference),

@@ -11,7 +11,8 @@ use crate::spatial::{Scalar, Vec3};
 use crate::world::Balance;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns the totals of the group at a state: those of the current trees plus those of previous trees.
+    /// Returns the impulse, the work and the dissipated energy of the group at a state: the values of the
+    /// current trees plus those of previous trees.
     pub(super) fn totals(&self, state: &State<S>) -> Ledger {
         let mut all = self.ledger;
         for tree in &state.trees {

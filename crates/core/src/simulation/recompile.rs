@@ -28,7 +28,7 @@ struct Loose<'a, S> {
 
 impl<'a, S: Scalar> RunState<'a, S> {
     /// Assembles the trees for the active connections at `t`, s. Trees whose members do not change are kept.
-    /// The other trees are given the states of their members and preserve their momenta. Requires the
+    /// The other trees receive the states of their members and preserve their momenta. Requires the
     /// kinematics of the state, relative to W, in the trees, and the states of the parts; afterwards the new
     /// trees hold their kinematics. With an external engine, the connections are passed to the engine, and
     /// each system remains a tree.
@@ -146,8 +146,8 @@ struct Old<'a, S> {
 }
 
 impl<'a, S: Scalar> Old<'a, S> {
-    /// Returns the number of the tree that has exactly these members and given joints; `None` if there is
-    /// none.
+    /// Returns the number of the tree that has exactly these members and these joints with prescribed motion;
+    /// `None` if no tree does.
     fn unchanged(&self, members: &[Member], given: &[GivenJoint]) -> Option<usize> {
         let tree = |system: usize| match self.places[system] {
             Place::Part(part) => self.parts[part].as_ref().map(|part| part.tree),
@@ -195,8 +195,8 @@ impl<'a, S: Scalar> Old<'a, S> {
     }
 }
 
-/// Joins systems at `t`, s, to a tree with the given model and given joints, which receives the number
-/// `number`.
+/// Joins systems at `t`, s, to a tree with this model, these members and these joints with prescribed motion.
+/// The tree receives the number `number`.
 fn join<'a, S: Scalar>(
     (model, members, given): (Model, Vec<Member>, Vec<GivenJoint>),
     (number, t): (usize, f64),

@@ -283,7 +283,8 @@ fn lift<S: Scalar>(x: &[f64]) -> Vec<S> {
     x.iter().map(|x| S::of(*x)).collect()
 }
 
-/// Returns the frames in which references of a group are given; their systems have the numbers of the group.
+/// Returns the frames in which references of a group are given, with systems specified by their number in the
+/// group.
 fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameIndex, MovingFrame)> {
     let moving = systems.iter().flat_map(|system| system.moving_frames());
     let place = |moving: &MovingFrame| {
@@ -293,7 +294,8 @@ fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameInd
     moving.filter_map(place).collect()
 }
 
-/// Returns the events of the systems with these numbers; systems and events have the numbers of the group.
+/// Returns the events of the systems with these numbers, with systems and events specified by their number in
+/// the group.
 fn events_of(numbers: &[usize], events: &[Event]) -> Events {
     let is_own =
         |event: &usize| systems_of(events, *event).iter().all(|&system| local(numbers, system).is_some());

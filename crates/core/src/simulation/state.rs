@@ -36,7 +36,7 @@ impl<S: Real> State<S> {
         self.trees.iter().all(TreeState::is_finite)
     }
 
-    /// Sets to `t`, s, the clocks of trees with joints that are given functions of time.
+    /// Sets the clocks of those trees that have joints with prescribed motion to `t`, s.
     pub(super) fn set_clocks(&mut self, t: f64) {
         self.trees.iter_mut().filter_map(|tree| tree.clock.as_mut()).for_each(|clock| *clock = S::of(t));
     }

@@ -94,7 +94,7 @@ impl<'a, S: Real> Tree<'a, S> {
         );
     }
 
-    /// Writes the positions and rates of joints that are given functions of time to `state`.
+    /// Writes the positions and rates of the joints with prescribed motion to `state`.
     fn move_given(&self, state: &mut TreeState<S>) {
         if let Some(clock) = state.clock {
             self.modes.move_given(clock.lane(0), &mut state.q, &mut state.v);

@@ -30,7 +30,7 @@ pub(crate) struct TreeState<S> {
     /// Parts of `dissipated` that belong to the joints of each member, J; empty for a tree with a single
     /// member.
     pub(crate) shares: Vec<S>,
-    /// Time, s, at which joints that are given functions of time are evaluated; `None` without such joints.
+    /// Time, s, at which the prescribed motion of joints is evaluated; `None` without such joints.
     pub(crate) clock: Option<S>,
 }
 

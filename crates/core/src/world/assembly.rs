@@ -14,7 +14,7 @@ pub struct Assembly {
     pub model: Option<Model>,
     /// Systems of the tree, the root first.
     pub members: Vec<Member>,
-    /// Joints between systems whose positions are given functions of time.
+    /// Joints between systems with prescribed motion, which represent seating motions.
     pub given: Vec<GivenJoint>,
 }
 

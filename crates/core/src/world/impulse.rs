@@ -22,8 +22,8 @@ pub struct Moving<'a> {
 }
 
 /// Returns the velocity `(nv,)` of a tree at `q` immediately after its systems have been rigidly connected;
-/// the first system is the root. `given` are the indices and the rates, rad/s (m/s), of the joints whose
-/// motion is given.
+/// the first system is the root. `given` are the indices and the rates, rad/s (m/s), of the joints with
+/// prescribed motion.
 ///
 /// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
 /// of the tree equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By
@@ -71,8 +71,8 @@ pub fn connected_velocity(
 }
 
 /// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i`, of a robot at `q` that is caused by an impulse
-/// `i` at the origin of a frame, N s and N m s in the axes of the frame. The rates of the joints `given` do
-/// not change.
+/// `i` at the origin of a frame, N s and N m s in the axes of the frame. The rates of the joints `given`,
+/// whose motion is prescribed, do not change.
 pub fn impulse_response(
     model: &Model,
     q: &[f64],

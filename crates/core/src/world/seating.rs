@@ -2,7 +2,7 @@
 //! by latches and grapple fixtures.
 //!
 //! The captured frame moves along a straight line and rotates about one axis, both with the same time law. In
-//! the tree this motion is represented by a prismatic and a revolute joint whose positions are given
+//! the tree, this motion is represented by a prismatic and a revolute joint whose positions are prescribed
 //! functions of time.
 
 use super::event::{RigidPose, Seating, Weld};
@@ -10,7 +10,7 @@ use crate::model::{Joint, JointKind};
 use crate::reference::TimeLaw;
 use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 
-/// Joint of a tree whose position is a given function of time.
+/// Joint of a tree whose position is a prescribed function of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GivenJoint {
     /// Index of the joint in the tree.

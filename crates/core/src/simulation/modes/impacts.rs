@@ -41,7 +41,7 @@ impl<S: Real> Tree<'_, S> {
                 state.shares[share] += lost;
             }
             self.project_momentum(state);
-            // the drives of joints with a given motion do work as well, because they keep their rates during
+            // the drives of joints with prescribed motion do work as well, because they keep their rates during
             // the impulse
             state.work +=
                 if self.modes.given().is_empty() { -lost } else { self.kinetic_energy(state) - before };

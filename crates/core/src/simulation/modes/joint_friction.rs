@@ -59,8 +59,8 @@ impl<S: Real> Tree<'_, S> {
         self.scratch = a;
     }
 
-    /// Returns the new mode of a joint at rest, which is its direction of slip, or 0 if it should stick;
-    /// `None` if its present mode is consistent.
+    /// Returns the new mode of a joint at rest: its direction of slip, −1 or 1, or 0 if it should stick.
+    /// Returns `None` if the present mode is consistent.
     fn mode_change(&self, j: usize, q: &[S], v: &[S], a: &[S]) -> Option<f64> {
         if v[BASE_NV + j].lane(0) != 0.0 {
             return None;

@@ -46,8 +46,8 @@ pub(crate) struct JointModes {
     any_locked: bool,
     /// Direction of slip, −1, 0 or 1, of each joint with friction.
     direction: Vec<f64>,
-    /// Joints whose positions are given functions of time. They are locked: their accelerations do not depend
-    /// on torques.
+    /// Joints whose positions are prescribed functions of time. They are locked: their accelerations do not
+    /// depend on torques.
     given: Vec<GivenJoint>,
     /// Accelerations of the locked joints, `(n,)`, rad/s² (m/s²); empty if all are zero.
     accelerations: Vec<f64>,
@@ -89,8 +89,8 @@ impl JointModes {
         }
     }
 
-    /// Creates the modes of a tree with `count` joints, of which `given` are given functions of time. Each
-    /// entry of `parts` consists of the modes of some of the joints and of their indices in the tree.
+    /// Creates the modes of a tree with `count` joints; the motion of the joints `given` is prescribed. Each
+    /// entry of `parts` consists of the modes of some of the joints and their indices in the tree.
     pub(in crate::simulation) fn joined<'m>(
         count: usize,
         given: Vec<GivenJoint>,
@@ -124,18 +124,18 @@ impl JointModes {
         all
     }
 
-    /// Locks the joints whose positions are given functions of time.
+    /// Locks the joints with prescribed motion.
     fn lock_given(&mut self) {
         self.given.iter().for_each(|given| self.locked[given.joint] = true);
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Returns true if the position of joint `j` is a given function of time.
+    /// Returns true if the motion of joint `j` is prescribed.
     pub(super) fn is_given(&self, j: usize) -> bool {
         self.given.iter().any(|given| given.joint == j)
     }
 
-    /// Returns the joints whose positions are given functions of time.
+    /// Returns the joints with prescribed motion.
     pub(in crate::simulation) fn given(&self) -> &[GivenJoint] {
         &self.given
     }
@@ -145,8 +145,7 @@ impl JointModes {
         &self.accelerations
     }
 
-    /// Writes the positions and rates at `t`, s, of the joints that are given functions of time to `q` and
-    /// `v`.
+    /// Writes the positions and rates of the joints with prescribed motion at `t`, s, to `q` and `v`.
     pub(in crate::simulation) fn move_given<S: Real>(&self, t: f64, q: &mut [S], v: &mut [S]) {
         for given in &self.given {
             let [position, rate, _] = given.at(t);
@@ -154,7 +153,7 @@ impl JointModes {
         }
     }
 
-    /// Computes the accelerations at `t`, s, of the joints that are given functions of time.
+    /// Computes the accelerations of the joints with prescribed motion at `t`, s.
     pub(in crate::simulation) fn accelerate_given(&mut self, t: f64) {
         for given in &self.given {
             self.accelerations[given.joint] = given.at(t)[2];
@@ -265,8 +264,8 @@ impl JointModes {
     }
 
     /// Returns the bounds of the torque with which friction and a stop hold a joint at rest: `−fs..fs`,
-    /// unbounded on the side on which a stop pushes. For a joint whose position is a given function of time,
-    /// both bounds are infinite.
+    /// unbounded on the side on which a stop pushes. For a joint with prescribed motion, both bounds are
+    /// infinite.
     pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
         if self.is_given(j) {
             return (f64::NEG_INFINITY, f64::INFINITY);
