@@ -291,7 +291,7 @@ def test_a_collision_mesh_replaces_a_missing_visual_mesh(tmp_path: Path) -> None
 def test_a_mesh_of_an_absurd_size_is_not_drawn(scale: str, tmp_path: Path) -> None:
     (tmp_path / "box.stl").write_bytes(stl_binary())
     model = robot(tmp_path, f'filename="box.stl" scale="{scale}"')
-    with pytest.warns(UserWarning, match=r"is not drawn: .* m large .*correct the scale or the unit"):
+    with pytest.warns(UserWarning, match=r"is not drawn: .* m with scale .*correct the scale or the unit"):
         assert next(shape.kind for shape in shapes(model)) == "box"
 
 

@@ -52,7 +52,7 @@ def compare(
 ) -> None:
     """Compare two runs and report whether and when they diverge.
 
-    Exit code 1 if the runs diverge, 2 for errors, 130 after Ctrl-C.
+    The exit code is 1 if the runs diverge, 2 for errors, and 130 after Ctrl-C.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.tools.comparison import compare as compare_runs

@@ -1,4 +1,4 @@
-"""``onorbit export``."""
+"""Implements ``onorbit export``, which writes a run as a bag of ROS messages."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def export(
 ) -> None:
     """Write a run as a bag of ROS messages.
 
-    The topics are those of onorbit ros2. Needs no ROS: pip install 'onorbit-rs[ros2]'.
+    The topics are those of onorbit ros2. ROS is not required: pip install 'onorbit-rs[ros2]'.
     """
     from onorbit_rs import ros2
     from onorbit_rs.cli.console import print_json
@@ -53,7 +53,7 @@ def export(
         if not quiet:
             print_line(f"{kind}: {entry['file']} ({entry['bytes'] / 1e6:.1f} MB)")
         if entry.get("left_out"):
-            print_error(f"not in ROS 1, left out: {', '.join(entry['left_out'])}")
+            print_error(f"omitted, because ROS 1 has no such messages: {', '.join(entry['left_out'])}")
 
 
 def _telling(tell: Callable[[str, float], None], file: Path) -> Callable[[float], None]:

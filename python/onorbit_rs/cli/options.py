@@ -27,11 +27,11 @@ FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a
 OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for results.")]
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run in DIR.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON only.")]
-QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bar, no summary.")]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress bar and no summary.")]
 ViewOption = Annotated[bool, typer.Option("--view", help="Show the run in the viewer while it is computed.")]
 CommandsOption = Annotated[
     Path | None,
-    typer.Option("--commands", metavar="FILE", help="Commands at given times, one JSON object per line."),
+    typer.Option("--commands", metavar="FILE", help="File of timed commands, one JSON object per line."),
 ]
 CheckpointOption = Annotated[
     float | None,

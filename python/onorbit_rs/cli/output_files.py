@@ -32,9 +32,10 @@ def check_output_file(file: Path | None, *, force: bool) -> None:
         if exists(file) and not force:
             raise OutputNotEmptyError(f"{file} already exists; replace it with --force", path=str(file))
         if not folder.is_dir():
-            raise OutputFolderError(f"cannot write {file}: no such folder", path=str(file))
+            raise OutputFolderError(f"cannot write {file}: no such folder; create it first", path=str(file))
         if not os.access(folder, os.W_OK):
-            raise OutputFolderError(f"cannot write {file}: its folder is not writable", path=str(file))
+            message = f"cannot write {file}: its folder is not writable; choose another folder"
+            raise OutputFolderError(message, path=str(file))
 
 
 def check_bag_file(option: str, file: Path | None, suffix: str, *, force: bool) -> None:

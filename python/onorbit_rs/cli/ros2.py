@@ -1,4 +1,4 @@
-"""``onorbit ros2``."""
+"""Implements ``onorbit ros2``, which runs a scenario as a live ROS 2 node."""
 
 from __future__ import annotations
 
@@ -48,7 +48,8 @@ def ros2(
 ) -> None:
     """Run a scenario as a live ROS 2 node.
 
-    Needs no ROS 2: pip install 'onorbit-rs[ros2]'. Ctrl-C ends the run. Exit code 1 if the certificate fails.
+    ROS 2 is not required: pip install 'onorbit-rs[ros2]'. Ctrl-C ends the run. The exit code is 1 if the
+    certificate fails.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.cli.exit_codes import fail
@@ -84,7 +85,7 @@ def ros2(
 
 
 def _greeting(node: Node, domain: int) -> str:
-    """Return the topics of a node."""
+    """Return the text that lists the topics of a node."""
     rows = [f"  {name:<32} {kind}" for name, kind in node.published]
     taken = [f"  {name:<32} {kind}" for name, kind in node.subscribed]
     return "\n".join([f"ROS 2 domain {domain}, publishing:", *rows, "listening:", *taken])

@@ -36,7 +36,7 @@ def run(
 ) -> None:
     """Run a scenario and certify its momentum and energy.
 
-    Exit code 1 if the certificate fails, 2 for errors, 130 after Ctrl-C, 143 after SIGTERM.
+    The exit code is 1 if the certificate fails, 2 for errors, 130 after Ctrl-C, and 143 after SIGTERM.
     """
     from onorbit_rs.simulation.live import CHECKPOINT_EVERY
     from onorbit_rs.simulation.run import run as run_scenario
@@ -94,7 +94,7 @@ def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
 
 
 def _failed_certificate(summary: dict[str, Any]) -> str:
-    """Return the message of a run whose certificate failed, with advice."""
+    """Return the message about a run whose certificate failed, with advice."""
     from onorbit_rs.output.checks import advice
 
     return f"the certificate failed ({summary['certificate_failures']}): {advice(summary)}"

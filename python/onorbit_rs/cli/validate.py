@@ -35,7 +35,7 @@ def validate(
 ) -> None:
     """Run the published validation cases and print the deviations.
 
-    Exit code 1 if any case fails, 2 for errors, 130 after Ctrl-C.
+    The exit code is 1 if any case fails, 2 for errors, and 130 after Ctrl-C.
     """
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.cli.validation_results import print_cases, print_count, print_verdicts

@@ -1,5 +1,1 @@
-"""Helpers shared by the other packages.
-
-Among them are helpers for files, numbers, units, text, rotations, the layout of q and v, and
-progress display.
-"""
+"""Functions shared by the other packages: files, numbers, units, text, rotations, indices, progress."""

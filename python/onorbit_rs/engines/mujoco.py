@@ -321,6 +321,6 @@ def _rotation_vector_rate(u: Floats, w: Floats) -> Floats:
 
 
 def _cross(a: Floats, b: Floats) -> Floats:
-    """Return `a × b`; for a single pair ten times as fast as numpy."""
+    """Return `a × b`, for a single pair of vectors ten times as fast as NumPy."""
     (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
     return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])

@@ -83,7 +83,7 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
 
 
 def _known(gravity: str) -> Satrec:
-    """Return an arbitrary ``Satrec`` with an Earth model, for its constants."""
+    """Return a ``Satrec`` with arbitrary elements, from which the constants of an Earth model are read."""
     satrec = Satrec()
     satrec.sgp4init(MODELS[gravity], "i", 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0)
     return satrec

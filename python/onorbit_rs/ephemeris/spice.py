@@ -59,7 +59,7 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
 
 
 def _check_records(path: str | Path) -> None:
-    """Raise ValueError for files without positions and for cyclic records, which jplephem reads forever."""
+    """Raise ValueError if a file has no positions, or its records form a cycle, which jplephem never ends."""
     from jplephem.daf import DAF
 
     with Path(path).open("rb") as stream:

@@ -75,7 +75,7 @@ def same_batch(**first: Floats) -> None:
 
 
 def check_unit(name: str, vectors: Floats, what: str = "the quaternion") -> None:
-    """Raise an InputError unless the norm of each vector is 1 to :data:`NORM_TOLERANCE`."""
+    """Raise an InputError unless the norm of each vector is 1 within :data:`NORM_TOLERANCE`."""
     off = np.abs(np.linalg.norm(vectors, axis=-1) - 1.0)
     if off.size and off.max() > NORM_TOLERANCE:
         norm = float(np.ravel(np.linalg.norm(vectors, axis=-1))[np.argmax(off)])
@@ -126,7 +126,7 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
 
 
 def names_in(joints: Any, attribute: str) -> bool:
-    """Return whether ``joints`` has this attribute, so that it is a model of the other engine, not names."""
+    """Return True if ``joints`` is a model of the other engine, which has this attribute, and not names."""
     return joints is not None and hasattr(joints, attribute)
 
 
@@ -139,13 +139,13 @@ def no_floating_base(engine: str) -> InputError:
 
 
 def to_world(quat_xyzw: Floats, vector_b: Floats) -> Floats:
-    """Return `R v`, the vector in world axes, given in base axes."""
+    """Return `R v`: the components in world axes of vectors that are given in base axes."""
     result: Floats = np.einsum("...ij,...j->...i", matrix_from_quaternion(quat_xyzw), vector_b)
     return result
 
 
 def to_body(quat_xyzw: Floats, vector_w: Floats) -> Floats:
-    """Return `Rᵀ v`, the vector in base axes, given in world axes."""
+    """Return `Rᵀ v`: the components in base axes of vectors that are given in world axes."""
     result: Floats = np.einsum("...ji,...j->...i", matrix_from_quaternion(quat_xyzw), vector_w)
     return result
 

@@ -41,7 +41,7 @@ def world_page(
     again: str,
     version: str,
 ) -> str:
-    """Return the HTML of a report; ``pictures`` are by system, with ``""`` for figures of all systems."""
+    """Return the HTML of a report; ``pictures`` maps systems to figures, ``""`` to those of all systems."""
     systems: dict[str, dict[str, Any]] = summary["systems"]
     own = {key: value for key, value in summary.items() if key not in _PARTS}
     first = next(iter(systems.values()))
@@ -68,9 +68,9 @@ def _events(events: Sequence[dict[str, Any]]) -> str:
     head = "".join(f'<th scope="col">{name}</th>' for name in _HEADS)
     lines = "\n".join(f"<tr>{''.join(_cells(event))}</tr>" for event in events)
     about = (
-        "The impulse acts on the second system; a negative energy loss was added by a spring. The errors are "
-        "the changes of the momentum of the group, relative to the sum of the magnitudes of the momenta of "
-        "its bodies."
+        "The impulse acts on the second system. If the energy lost is negative, a spring added energy. The "
+        "errors are the changes of the momentum of the group, relative to the sum of the magnitudes of the "
+        "momenta of its bodies."
     )
     table = f'<table class="events"><thead><tr>{head}</tr></thead>{lines}</table>'
     return f'<h2>Events</h2>\n<p class="faint">{about}</p>\n<div class="scroll">{table}</div>'

@@ -1,4 +1,4 @@
-"""Replaces the parts of PyPI's xacro that evaluate, open files or read the environment."""
+"""Replaces the parts of PyPI's xacro that evaluate expressions, open files or read the environment."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def replace_parts(
     environment: Environment,
     remarks: list[str],
 ) -> None:
-    """Replace the parts of xacro that evaluate, open files or read the environment, until ``undo`` closes.
+    """Replace the parts of xacro that evaluate text, open files or read the environment; ``undo`` restores.
 
     A version of xacro that lacks one of the replaced functions raises AttributeError, because that version
     would evaluate expressions in another function. ``eval`` and ``exec`` are hidden from xacro.

@@ -69,7 +69,7 @@ def command_of(port: int) -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    """Return the environment variables of a viewer: without a welcome screen, only errors on stderr."""
+    """Return the environment variables of a viewer: no welcome screen, and only errors on stderr."""
     return os.environ | {"RERUN_APP_ONLY": "true", "RUST_LOG": "error"}
 
 

@@ -100,7 +100,7 @@ def _picture(
 def _connect(
     port: int, viewer: subprocess.Popen[bytes], said: IO[str], patience_s: float = 30.0
 ) -> ViewerClient:
-    """Return a client of the viewer when it answers."""
+    """Return a client that is connected to the viewer; raise ViewerError if the viewer does not respond."""
     deadline = time.monotonic() + patience_s
     while time.monotonic() < deadline and viewer.poll() is None:
         try:

@@ -67,5 +67,5 @@ def _from_beside(world: WorldRows, rot_fb: Floats) -> Floats:
 
 
 def is_near(common: Viewpoint, alone: dict[str, Viewpoint]) -> bool:
-    """Return True if all systems are well visible in one scene."""
+    """Return True if a view of all systems is at most :data:`NEAR` times as large as the largest system."""
     return common.size <= NEAR * max(viewpoint.size for viewpoint in alone.values())

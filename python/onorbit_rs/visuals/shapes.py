@@ -128,7 +128,7 @@ def _mesh(visual: Visual) -> Mesh:
     size = float(np.ptp(mesh.bounds, axis=0).max())
     if not 0.0 < size < LARGEST:
         raise ReadError(
-            f"{file} is {size:.3g} m large with scale {visual.scale}; correct the scale or the unit of "
+            f"the size of {file} is {size:.3g} m with scale {visual.scale}; correct the scale or the unit of "
             "the file",
             path=file,
             kind="mesh",

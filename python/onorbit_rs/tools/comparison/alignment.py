@@ -87,7 +87,7 @@ def _equal_instants(time_a: Floats, time_b: Floats) -> tuple[NDArray[np.intp], N
 
 
 def _interpolated(rows: Rows, at: Floats) -> Rows:
-    """Interpolate quaternions by slerp, orbits by cubics and the rest linearly; torques are held constant."""
+    """Return rows at times ``at``: quaternions by slerp, orbits by cubics, torques held, others linear."""
     time = rows["time"]
     if len(time) == 1:
         return {name: np.repeat(values, len(at), axis=0) for name, values in rows.items()}
@@ -115,7 +115,7 @@ def _interpolated(rows: Rows, at: Floats) -> Rows:
 def _hermite(
     first: Floats, second: Floats, rate_a: Floats, rate_b: Floats, s: Floats, step: Floats
 ) -> Floats:
-    """Return the cubic Hermite interpolation; the error of a line is `v² h² / 8 r`, 16 km for 120 s."""
+    """Return cubic Hermite interpolation; the error of a linear one is `v² h² / 8 r`, 16 km for 120 s."""
     weight = s * s * (3.0 - 2.0 * s)
     rates = s * (1.0 - s) * ((1.0 - s) * rate_a - s * rate_b)
     return first + weight * (second - first) + step * rates

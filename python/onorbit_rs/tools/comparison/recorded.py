@@ -128,7 +128,9 @@ def _of_folder(folder: Path) -> Recorded | RecordedWorld:
     trace: Any = saved.world_trace() if "systems" in summary else saved.trace()
     if not exists(folder / SCENARIO):
         raise NotFoundError(
-            f"no run in this folder ({SCENARIO} is missing): {folder}", path=str(folder), kind="run"
+            f"no run in this folder ({SCENARIO} is missing): {folder}; give the output folder of a run",
+            path=str(folder),
+            kind="run",
         )
     scenario = saved.scenario()
     if isinstance(scenario, WorldScenario):

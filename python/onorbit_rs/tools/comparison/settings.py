@@ -30,7 +30,8 @@ def differing_settings(a: Scenario | WorldScenario, b: Scenario | WorldScenario)
     found = [f"{where} differs: {_short(one)} and {_short(other)}"
              for where, one, other in _differences("", first, second)]  # fmt: skip
     left = len(found) - MOST
-    return found if left <= 0 else [*found[:MOST], f"{left} more settings differ"]
+    more = count(left, "more setting differs", "more settings differ")
+    return found if left <= 0 else [*found[:MOST], more]
 
 
 def _compared_settings(scenario: Scenario | WorldScenario) -> dict[str, Any]:

@@ -37,7 +37,7 @@ def evaluate(value: object) -> float:
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return _finite(value, float(value) if abs(value) < 1e308 else math.inf)
     if not isinstance(value, str):
-        raise _refused(value, "is not a number")
+        raise _refused(value, "is not a number; give a number, or arithmetic such as (60.0*pi)/180.0")
     try:
         return _finite(value, _Arithmetic(value).visit(parsed(value.strip(), _LONGEST)))
     except (SyntaxError, ValueError, ZeroDivisionError, OverflowError, RecursionError) as error:

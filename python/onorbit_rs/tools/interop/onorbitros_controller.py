@@ -51,7 +51,7 @@ def read_task_law(source: Source, law: Location) -> None:
     _gains(source, law)
     if "joints" in data:
         if not isinstance(data["joints"], list) or not all(isinstance(name, str) for name in data["joints"]):
-            raise source.fail("joints", "must be a list of names")
+            raise source.fail("joints", f"must be a list of names, not {data['joints']!r:.60}")
         if law:
             text = "the law drives all joints that move the tool, as in the reduced model"
             source.note("joints", "no meaning", text)

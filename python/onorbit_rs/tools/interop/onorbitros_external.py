@@ -50,7 +50,7 @@ def read_driven(source: Source) -> None:
     for extra in PID_KEYS[5:]:
         if extra in source.data:
             source.note(
-                extra, "no meaning", "there are no action goals; joint states have the rate of the rows"
+                extra, "no meaning", "there are no action goals; each row of the trace has a joint state"
             )
 
 

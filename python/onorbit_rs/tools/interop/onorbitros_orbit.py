@@ -136,7 +136,7 @@ def _since_perigee(source: Source, a_m: float) -> float:
 
 
 def _date(source: Source, name: str) -> datetime | None:
-    """Return a date, read like C's ``struct tm``: months count from 0, and years may count from 1900."""
+    """Return a date, read like C's ``struct tm``: months from 0, years from 0 or 1900; None if incomplete."""
     nested = source.data.get(name)
     parts: dict[str, object] = dict(nested) if isinstance(nested, dict) else {}
     if nested is not None and not isinstance(nested, dict):

@@ -46,8 +46,8 @@ def read_pid(source: Source) -> None:
         source.note(key, "corrected", "in ROS Control, i without i_clamp has no effect: it becomes zero")
     source.note(
         key, "understood",
-        "unchanged; commands were sent over a topic: the joints are held, unless you add a reference, or "
-        "--external for commands of ROS 2",
+        "the gains are unchanged; OnOrbitROS receives commands over a topic, but here the joints are held: "
+        "add a reference, or convert with --external to send commands from ROS 2",
     )  # fmt: skip
     source.comments[("p",)] = f"{source.file.name}: {key}"
     for extra in KEYS[5:]:
@@ -60,7 +60,8 @@ def joint_names(source: Source) -> list[str]:
     data = source.data
     joints = data["joints"] if "joints" in data else [data.get("joint")]
     if not isinstance(joints, list) or not joints or not all(isinstance(name, str) for name in joints):
-        raise source.fail("joints" if "joints" in data else "joint", "must list the controlled joints")
+        key = "joints" if "joints" in data else "joint"
+        raise source.fail(key, f"must name the controlled joints, not {data.get(key)!r:.60}")
     return joints
 
 
@@ -78,7 +79,7 @@ def _gains_of(source: Source, key: str, joint: str) -> dict[str, float]:
         inside = inside.inside(joint)
     for name in table:
         if name not in (*GAINS, "antiwindup", "i_clamp_min", "i_clamp_max"):
-            raise inside.fail(name, f"not a gain of ROS Control; the gains are {', '.join(GAINS)}")
+            raise inside.fail(name, f"is not a gain of ROS Control; the gains are {', '.join(GAINS)}")
     found = {name: inside.number(name) if name in table else 0.0 for name in GAINS}
     for name in ("i_clamp_min", "i_clamp_max"):
         if name in table:

@@ -75,7 +75,7 @@ class Source:
             hint = did_you_mean(key, known) or "; see docs/coming_from/onorbitros.md"
             if not self.keep_going:
                 fix = "correct or remove it, or ignore it with --keep-going"
-                raise self.fail(key, f"not a key of OnOrbitROS{hint} ({fix})")
+                raise self.fail(key, f"is not a key of OnOrbitROS{hint} ({fix})")
             self.note(key, "no meaning", f"not a key of OnOrbitROS{hint}")
 
     def number(self, key: str, default: float | None = None) -> float:

@@ -124,7 +124,7 @@ def _attached(models: tuple[Model, Model], plan: CapturePlan, q: list[Floats]) -
 
 
 def _first_passing(models: tuple[Model, Model], plan: CapturePlan) -> CapturePlan:
-    """Return the first plan whose trial run passes: fixed steps before adaptive ones, fast before slow."""
+    """Return the first plan whose trial run passes, in the order of :func:`_plans`."""
     ends, reasons = perf_counter() + LONGEST_S, []
     for tried in _plans(models, plan):
         reason = _failure(tried, perf_counter() + 0.5 * (ends - perf_counter()))
@@ -141,7 +141,10 @@ def _first_passing(models: tuple[Model, Model], plan: CapturePlan) -> CapturePla
 
 
 def _plans(models: tuple[Model, Model], plan: CapturePlan) -> Iterator[CapturePlan]:
-    """Yield plans for every approach speed with fixed steps, short fixed steps and adaptive steps."""
+    """Yield plans from the fastest approach to the slowest, each with fixed and then with adaptive steps.
+
+    Fixed steps are omitted if a joint is strongly damped.
+    """
     is_damped = any(fastest_damper(model)[1] > FAST for model in models)
     step = 1e-3 if plan.chaser_joints + plan.target_joints else 1e-2
     for speed in SPEEDS:
@@ -165,5 +168,6 @@ def _failure(plan: CapturePlan, ends: float) -> str | None:
     beyond = []
     for system in trace.names:
         failed += [f"{system}/{name}" for name, _, _, passed in trace[system].certificate() if not passed]
-        beyond += [f"limits of {system}/{joint}" for joint in trace[system].joint_limits_exceeded()]
+        exceeded = trace[system].joint_limits_exceeded()
+        beyond += [f"{system}/{joint} exceeds its position limits" for joint in exceeded]
     return ", ".join([*failed, *beyond]) or None

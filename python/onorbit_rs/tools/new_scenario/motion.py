@@ -73,7 +73,10 @@ def within(joint: Joint, value: float) -> float:
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the position of a held joint: zero, or near it if revolute and mid-range if prismatic."""
+    """Return the position of a held joint: zero if within its limits, otherwise near zero or mid-range.
+
+    The middle of the range is used for prismatic joints.
+    """
     near = within(joint, 0.0)
     return near if near == 0.0 or joint.kind != "prismatic" else sum(_limits(joint)) / 2.0
 
@@ -91,7 +94,7 @@ def _limits(joint: Joint) -> tuple[float, float]:
 
 
 def fastest_damper(model: Model) -> tuple[str, float]:
-    """Return the joint with the fastest damping, and its decay rate `b (M⁻¹)ii`, 1/s; 0 without damping."""
+    """Return the name of the joint with the fastest damping, and its decay rate `b (M⁻¹)ii`, 1/s."""
     inverse = np.linalg.inv(np.asarray(model.mass_matrix(model.neutral())))
     rates = {
         joint.name: joint.damping * inverse[BASE_NV + row, BASE_NV + row]
@@ -103,7 +106,8 @@ def fastest_damper(model: Model) -> tuple[str, float]:
 def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[list[float], float]]:
     """Yield displacements of the tool in W, m, the longest first, with their durations, s.
 
-    Displacements that would rotate the base by more than ``GENTLE``, by the initial Jacobian, are omitted.
+    Displacements that, according to the initial Jacobian, would rotate the base by more than ``GENTLE`` are
+    omitted.
     """
     q = configuration(model, joints)
     tool = np.asarray(model.frame_pose(q, arm.tool))[:3, 3]
@@ -127,7 +131,10 @@ def lines(model: Model, arm: Arm, joints: dict[str, float]) -> Iterator[tuple[li
 def joint_goals(
     model: Model, start: dict[str, float], fractions: Iterable[float]
 ) -> Iterator[dict[str, float]]:
-    """Yield joint goals: ``start`` plus fractions of the distance to the farther limit, up to 1 rad or m."""
+    """Yield joint goals: ``start`` plus fractions of 1 rad or m, or of the distance to the farther limit.
+
+    The smaller of the two is used.
+    """
     for fraction in fractions:
         goal = {}
         for joint in model.joints:
@@ -141,7 +148,7 @@ def joint_goals(
 
 
 def configuration(model: Model, joints: dict[str, float]) -> Floats:
-    """Return the configuration (nq,) with these joint positions and the base at the identity."""
+    """Return the configuration (nq,) with these joint positions, and the base at W with equal axes."""
     q = np.array(model.neutral(), dtype=np.float64)
     for name, value in joints.items():
         q[BASE_NQ + list(model.joint_names).index(name)] = value

@@ -59,9 +59,10 @@ class Trials:
         self._is_late = False
 
     def gentlest(self, plans: Iterable[Plan], seconds: float) -> Plan | None:
-        """Return the first passing plan that rotates the base by at most ``GENTLE``, else the gentlest one.
+        """Return the first passing plan that rotates the base by at most ``GENTLE``.
 
-        Returns None if no plan passes within ``seconds`` of wall-clock time.
+        If there is none, return the passing plan with the smallest rotation, or None if no plan passes within
+        ``seconds`` of wall-clock time.
         """
         ends = perf_counter() + seconds
         found: list[tuple[float, Plan]] = []
@@ -133,7 +134,7 @@ class Trials:
     def _is_within(self, trace: Trace, plan: Plan) -> bool:
         """Return whether the joints stay within their position limits and the tool stays near its line."""
         beyond = trace.joint_limits_exceeded()
-        self._failures.update(f"limits of {name}" for name in beyond)
+        self._failures.update(f"{name} exceeds its position limits" for name in beyond)
         if plan.displacement is None or beyond:
             return not beyond
         is_near = np.linalg.norm(np.asarray(trace.position_error), axis=1).max() < NEAR_ENOUGH_M

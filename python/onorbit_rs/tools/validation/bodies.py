@@ -46,7 +46,7 @@ CHAINS: dict[str, tuple[list[Link], list[float], list[float]]] = {
 
 
 def chain(name: str) -> tuple[float]:
-    """Return the largest relative error of `q̈`.
+    """Return the largest relative error of the joint accelerations `q̈` of a chain on a fixed base.
 
     The fixed base under gravity is modelled as a base that accelerates upwards without gravity.
     """
@@ -68,7 +68,8 @@ def chain(name: str) -> tuple[float]:
 def free_link() -> tuple[float]:
     """Return the largest error of the acceleration of a link on a floating base for a joint torque of 1 N m.
 
-    RBDL's result with gravity is `(0, -8.81, 0, -1, 0, 0, 2)` in RBDL's order Tx, Ty, Tz, Rz, Ry, Rx, joint.
+    RBDL's result with gravity is `(0, -8.81, 0, -1, 0, 0, 2)`; its coordinates are the translations along x,
+    y and z, the rotations about z, y and x, and the joint.
     """
     builder = oo.ModelBuilder("rbdl", base="base", mass=1.0, com=X, inertia=np.eye(3))
     builder.add_link("link", parent="base", joint="hinge", xyz=[2, 0, 0], mass=1.0, com=X, inertia=np.eye(3))

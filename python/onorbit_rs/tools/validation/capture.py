@@ -53,7 +53,7 @@ def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecor
 
 
 def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
-    """Return the momentum (6,) about a point in W, and the sums of the magnitudes of the links' momenta."""
+    """Return the momentum (6,) about a point in W, and the sum of the magnitudes of the links' momenta."""
     total, scales = np.zeros(6), np.zeros(2)
     for body in craft.model.bodies:
         pose = craft.model.frame_pose(craft.q, body.name)
@@ -178,7 +178,7 @@ def singular() -> tuple[float, ...]:
 
 
 def massless() -> Any:
-    """Return the errors of captures by and of a massless gripper on a joint with a rotor."""
+    """Return the errors of captures in which one frame is on a massless gripper whose joint has a rotor."""
     first, second = arm_and_target(straight(5, tip=0.0, rotor=0.2), 0.3, 0.1)
     return worst([against_gauss(first, second), against_gauss(second, first)])
 

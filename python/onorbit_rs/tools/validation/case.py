@@ -120,7 +120,7 @@ class Case:
         return Verdict(self.family, self.name, self.source, passed, tuple(checks))
 
     def not_run(self) -> Verdict:
-        """Return the gates of the case without running it."""
+        """Return a verdict with the gates of the case and without errors; the case is not run."""
         return self._without_errors(None, "")
 
     def _without_errors(self, passed: bool | None, note: str) -> Verdict:

@@ -1,7 +1,7 @@
 """Velocities after a capture by Gauss's principle, solved densely from the mass matrices of single robots.
 
-The module does not combine robots to one tree: the six components of the relative twist at a common point are
-constraints on the velocities of the separate trees.
+The module does not combine robots into one tree: the six components of the relative twist at a common point
+are constraints on the velocities of the separate trees.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ CODES = [1, 1, 6, 6, 4, 3, 6]
 
 
 class ElementSet(NamedTuple):
-    """Two lines, the times of the report (start, stop and step, min), and rows of its output."""
+    """Element set of the report: two lines, times (start, stop and step, min), and rows of the output."""
 
     regime: str
     span: tuple[float, float, float]

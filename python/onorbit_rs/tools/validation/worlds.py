@@ -193,7 +193,7 @@ WEIGHTS = (1000.0, 500.0)  # kg
 
 
 def clohessy_wiltshire(orbit: oo.Kepler, r: Array, v: Array, t: Array) -> Array:
-    """Return positions (T, 3), m, relative to a circular orbit, in inertial axes."""
+    """Return positions (T, 3), m, relative to a circular orbit, in inertial axes, from the initial `r, v`."""
     place, speed = orbit.state(0.0)
     n = np.linalg.norm(np.cross(place, speed)) / RADIUS**2
     radial, normal = place / RADIUS, np.cross(place, speed)
