@@ -24,6 +24,7 @@ PACKAGE = REPOSITORY / "python" / "onorbit_rs"
 ORDER = (
     "spatial",
     "model",
+    "geometry",
     "dynamics",
     "earth",
     "gravity",

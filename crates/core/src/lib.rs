@@ -1,7 +1,7 @@
 //! Free-floating articulated dynamics for robots in orbit.
 //!
-//! Each folder uses only those before it in this order: `spatial`, `model`, `dynamics`, `earth`,
-//! `gravity`, `orbit`, `environment`, `reference`, `control`, `world`, `simulation`, `batch`.
+//! Each folder uses only those before it in this order: `spatial`, `model`, `geometry`, `dynamics`,
+//! `earth`, `gravity`, `orbit`, `environment`, `reference`, `control`, `world`, `simulation`, `batch`.
 //!
 //! # Equation index
 //!
@@ -30,6 +30,7 @@ pub mod control;
 pub mod dynamics;
 pub mod earth;
 pub mod environment;
+pub mod geometry;
 pub mod gravity;
 pub mod model;
 pub mod number_text;

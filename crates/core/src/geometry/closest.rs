@@ -1,0 +1,136 @@
+//! Distance of any two shapes: chooses the method for the pair.
+
+use super::boundary::signed_distance;
+use super::convex;
+use super::error::{GeometryError, PosedPair};
+use super::pose::Pose;
+use super::proximity::Proximity;
+use super::segment::{self, Segment};
+use super::shape::Shape;
+use super::support::support;
+use crate::spatial::Vec3;
+
+/// Returns the signed distance of two shapes, its witness points and its normal, in common axes.
+///
+/// Spheres, pairs of capsules, and half-spaces have closed forms; other convex shapes use GJK and EPA. A compound has the
+/// distance of its nearest pieces, or the depth of the deepest. The result depends on the arguments alone: nothing is
+/// kept from earlier calls.
+///
+/// # Errors
+/// If a length or a pose is invalid, if no method covers the pair, such as a torus and a box, or if the bounds of the
+/// distance did not meet.
+pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
+    for (shape, pose) in [(a, pose_a), (b, pose_b)] {
+        shape.check()?;
+        if !pose.is_finite() {
+            return Err(GeometryError::Pose { name: shape.name() });
+        }
+    }
+    nearest_pieces(a, pose_a, b, pose_b).map(|(proximity, _)| proximity)
+}
+
+/// Shape that is not a compound, with its pose in common axes.
+pub(super) type Piece<'a> = (&'a Shape, Pose);
+
+/// Returns the least distance over the pieces of both shapes, and the two pieces.
+pub(super) fn nearest_pieces<'a>(
+    a: &'a Shape,
+    pose_a: &Pose,
+    b: &'a Shape,
+    pose_b: &Pose,
+) -> Result<(Proximity, [Piece<'a>; 2]), GeometryError> {
+    let mut best: Option<(Proximity, [Piece<'a>; 2])> = None;
+    let mut keep = |found: (Proximity, [Piece<'a>; 2])| {
+        if best.as_ref().is_none_or(|(least, _)| found.0.distance < least.distance) {
+            best = Some(found);
+        }
+    };
+    match (a, b) {
+        (Shape::Compound(pieces), _) => {
+            for (piece, pose) in pieces.iter() {
+                keep(nearest_pieces(piece, &pose_a.compose(pose), b, pose_b)?);
+            }
+        }
+        (_, Shape::Compound(pieces)) => {
+            for (piece, pose) in pieces.iter() {
+                keep(nearest_pieces(a, pose_a, piece, &pose_b.compose(pose))?);
+            }
+        }
+        _ => keep((single(a, pose_a, b, pose_b)?, [(a, *pose_a), (b, *pose_b)])),
+    }
+    best.ok_or(GeometryError::EmptyCompound)
+}
+
+/// Returns the distance of two shapes that are not compounds. The kind that comes first in [`rank`] is the first shape
+/// of every method, so that exchanging the shapes exchanges the result.
+fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
+    if rank(a) > rank(b) {
+        return Ok(single(b, pose_b, a, pose_a)?.exchanged());
+    }
+    let pair = || Box::new(PosedPair { a: a.name(), pose_a: *pose_a, b: b.name(), pose_b: *pose_b });
+    // in the axes of the first shape, coordinates keep their digits far from the common origin
+    let pose = pose_a.relative(pose_b);
+    let found = match (a, b) {
+        (Shape::Sphere { radius }, _) if !matches!(b, Shape::Hull(_)) => sphere(*radius, b, &pose),
+        (Shape::Capsule { .. }, Shape::Capsule { .. }) => capsules(a, b, &pose),
+        (_, Shape::HalfSpace) => half_space(a, &pose),
+        _ if a.is_convex_body() && b.is_convex_body() => Some(
+            convex::closest(a, b, &pose).map_err(|gap| GeometryError::NotConverged { pair: pair(), gap })?,
+        ),
+        _ => None,
+    };
+    found.map(|proximity| proximity.in_common(pose_a)).ok_or_else(|| GeometryError::Unavailable(pair()))
+}
+
+/// Returns the place of a kind of shape in the order of the arguments of the methods.
+fn rank(shape: &Shape) -> usize {
+    match shape {
+        Shape::Sphere { .. } => 0,
+        Shape::Capsule { .. } => 1,
+        Shape::Box { .. } => 2,
+        Shape::Cylinder { .. } => 3,
+        Shape::Cone { .. } => 4,
+        Shape::Hull(_) => 5,
+        Shape::Torus { .. } => 6,
+        Shape::HalfSpace => 7,
+        Shape::Compound(_) => 8,
+    }
+}
+
+/// Returns the distance of a sphere about the origin: that of its centre, less its radius.
+fn sphere(radius: f64, b: &Shape, pose: &Pose) -> Option<Proximity> {
+    let nearest = signed_distance(b, pose.to_shape(Vec3::zero()))?;
+    let normal = pose.rot * -nearest.normal;
+    Some(Proximity {
+        distance: nearest.distance - radius,
+        point_a: normal * radius,
+        point_b: pose.to_common(nearest.point),
+        normal,
+    })
+}
+
+/// Returns the distance of two capsules: that of their axes, less their radii.
+fn capsules(a: &Shape, b: &Shape, pose: &Pose) -> Option<Proximity> {
+    let (Shape::Capsule { radius: radius_a, half_length }, Shape::Capsule { radius: radius_b, .. }) = (a, b)
+    else {
+        return None;
+    };
+    let axis_a = Segment { center: Vec3::zero(), axis: Vec3::new(0.0, 0.0, 1.0), half_length: *half_length };
+    let Shape::Capsule { half_length, .. } = b else { return None };
+    let axis_b = Segment { center: pose.pos, axis: pose.rot.z, half_length: *half_length };
+    let (on_a, on_b, normal) = segment::nearest(axis_a, axis_b);
+    Some(Proximity {
+        distance: (on_b - on_a).dot(normal) - radius_a - radius_b,
+        point_a: normal.scale_add(*radius_a, on_a),
+        point_b: normal.scale_add(-radius_b, on_b),
+        normal,
+    })
+}
+
+/// Returns the distance from a half-space, at the farthest point towards it.
+fn half_space(a: &Shape, pose: &Pose) -> Option<Proximity> {
+    let normal = -pose.rot.z;
+    let lowest = support(a, normal)?;
+    let distance = (pose.pos - lowest).dot(normal);
+    Some(Proximity { distance, point_a: lowest, point_b: normal.scale_add(distance, lowest), normal })
+}

@@ -1,0 +1,67 @@
+//! Errors of shapes and distances.
+
+use super::pose::Pose;
+
+/// Two shapes, by the names of their kinds, and their poses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PosedPair {
+    /// Kind of the first shape.
+    pub a: &'static str,
+    /// Pose of the first shape.
+    pub pose_a: Pose,
+    /// Kind of the second shape.
+    pub b: &'static str,
+    /// Pose of the second shape.
+    pub pose_b: Pose,
+}
+
+/// Error of a shape or of a distance.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GeometryError {
+    /// A length of a shape is not positive and finite.
+    #[error("the {name} of {shape} is {got} m; it must be positive and finite")]
+    Length {
+        /// Kind of the shape.
+        shape: &'static str,
+        /// Name of the length.
+        name: &'static str,
+        /// Value, m.
+        got: f64,
+    },
+    /// Points have no convex hull with a volume.
+    #[error(
+        "{count} points have no convex hull with a volume ({cause}); give at least four points that are not in a plane"
+    )]
+    Hull {
+        /// Number of points.
+        count: usize,
+        /// Cause.
+        cause: &'static str,
+    },
+    /// A compound has no pieces.
+    #[error("a compound has no pieces; give at least one shape")]
+    EmptyCompound,
+    /// The pose of a shape has a number that is not finite.
+    #[error("the pose of {name} is not finite; give finite positions and rotations")]
+    Pose {
+        /// Kind of the shape.
+        name: &'static str,
+    },
+    /// No distance is defined between two shapes.
+    #[error(
+        "the distance between {} and {} is not available; replace a torus by convex pieces, and a half-space by a box",
+        .0.a, .0.b
+    )]
+    Unavailable(Box<PosedPair>),
+    /// The distance between two shapes was not found.
+    #[error(
+        "the distance between {a} at {at_a:?} and {b} at {at_b:?} was not found to rounding: the bounds differ by {gap:e} m",
+        a = pair.a, b = pair.b, at_a = pair.pose_a, at_b = pair.pose_b
+    )]
+    NotConverged {
+        /// Shapes and poses.
+        pair: Box<PosedPair>,
+        /// Difference between the lower and the upper bound, m.
+        gap: f64,
+    },
+}

@@ -1,0 +1,198 @@
+//! Convex hulls of points.
+
+use super::bounding_sphere::BoundingSphere;
+use super::error::GeometryError;
+use super::polytope::Polytope;
+use crate::spatial::Vec3;
+
+/// Thickness below which points are flat, relative to their extent.
+const FLAT: f64 = 1e-9;
+
+/// Height of a point above a face below which it is part of the face, relative to the extent of the points.
+const COPLANAR: f64 = 1e-12;
+
+/// Face of a convex hull.
+#[derive(Clone, Debug)]
+pub struct Face {
+    /// Unit normal, away from the inside.
+    pub normal: Vec3<f64>,
+    /// Vertices, counterclockwise as seen from outside.
+    pub corners: Vec<usize>,
+}
+
+/// Convex hull with its vertices and faces.
+#[derive(Clone, Debug)]
+pub struct Hull {
+    vertices: Vec<Vec3<f64>>,
+    faces: Vec<Face>,
+}
+
+impl Hull {
+    /// Returns the convex hull of points, m.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite or the points lie in a plane.
+    pub fn new(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
+        let failed = |cause| GeometryError::Hull { count: points.len(), cause };
+        if points.iter().any(|p| !p.norm().is_finite()) {
+            return Err(failed("a coordinate is not finite"));
+        }
+        let (first, extent) = spread(points).ok_or_else(|| failed("they lie in a plane"))?;
+        let polytope = grown(points, first, COPLANAR * extent)
+            .ok_or_else(|| failed("they are too close to each other"))?;
+        Ok(Self::from_polytope(&polytope, COPLANAR * extent))
+    }
+
+    /// Returns the vertices, m.
+    pub fn vertices(&self) -> &[Vec3<f64>] {
+        &self.vertices
+    }
+
+    /// Returns the faces.
+    pub fn faces(&self) -> &[Face] {
+        &self.faces
+    }
+
+    /// Returns the farthest vertex in the direction `d`.
+    pub(super) fn farthest(&self, d: Vec3<f64>) -> Vec3<f64> {
+        let mut best = self.vertices[0];
+        let mut height = best.dot(d);
+        for vertex in &self.vertices[1..] {
+            let other = vertex.dot(d);
+            if other > height {
+                (best, height) = (*vertex, other);
+            }
+        }
+        best
+    }
+
+    pub(super) fn bounding_sphere(&self) -> BoundingSphere {
+        let axes = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
+        let middle = axes.map(|axis| 0.5 * (self.farthest(axis).dot(axis) + self.farthest(-axis).dot(axis)));
+        let center = Vec3::from_slice(&middle);
+        let radius = self.vertices.iter().map(|p| (*p - center).norm()).fold(0.0, f64::max);
+        BoundingSphere { center, radius }
+    }
+
+    /// Merges triangles in common planes to faces and drops points that are not vertices.
+    fn from_polytope(polytope: &Polytope, tolerance: f64) -> Self {
+        let mut is_taken: Vec<bool> =
+            polytope.triangles.iter().map(|triangle| !triangle.is_alive || triangle.is_flat).collect();
+        let mut index = vec![usize::MAX; polytope.points.len()];
+        let mut hull = Self { vertices: Vec::new(), faces: Vec::new() };
+        for seed in 0..polytope.triangles.len() {
+            if is_taken[seed] {
+                continue;
+            }
+            let mut corners = coplanar(polytope, seed, 8.0 * tolerance, &mut is_taken);
+            order(&mut corners, &polytope.points, polytope.triangles[seed].normal);
+            for corner in &mut corners {
+                if index[*corner] == usize::MAX {
+                    index[*corner] = hull.vertices.len();
+                    hull.vertices.push(polytope.points[*corner]);
+                }
+                *corner = index[*corner];
+            }
+            hull.faces.push(Face { normal: polytope.triangles[seed].normal, corners });
+        }
+        hull
+    }
+}
+
+/// Returns four points that span a tetrahedron and the extent of the points, `None` if they are flat.
+fn spread(points: &[Vec3<f64>]) -> Option<([usize; 4], f64)> {
+    let farthest = |from: &dyn Fn(Vec3<f64>) -> f64| {
+        (0..points.len()).max_by(|i, j| from(points[*i]).total_cmp(&from(points[*j])))
+    };
+    let a = farthest(&|p| (p - points[0]).norm())?;
+    let b = farthest(&|p| (p - points[a]).norm())?;
+    let axis = points[b] - points[a];
+    let extent = axis.norm();
+    let c = farthest(&|p| (p - points[a]).cross(axis).norm())?;
+    let normal = axis.cross(points[c] - points[a]);
+    let d = farthest(&|p| (p - points[a]).dot(normal).abs())?;
+    let area = normal.norm();
+    let thickness = (points[d] - points[a]).dot(normal).abs() / area;
+    (area > FLAT * extent * extent && thickness > FLAT * extent).then_some(([a, b, c, d], extent))
+}
+
+/// Adds the farthest point outside a face until all points are inside.
+fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Polytope> {
+    let mut polytope = Polytope::default();
+    if !polytope.start(first.map(|i| points[i])) {
+        return None;
+    }
+    // points outside each triangle
+    let mut outside: Vec<Vec<usize>> = Vec::new();
+    let all: Vec<usize> = (0..points.len()).collect();
+    assign(&polytope, points, all, 0, tolerance, &mut outside);
+    let mut face = 0;
+    while face < polytope.triangles.len() {
+        let height = |i: &usize| polytope.height(face, points[*i]);
+        let farthest = outside[face].iter().copied().max_by(|i, j| height(i).total_cmp(&height(j)));
+        let (Some(point), true) = (farthest, polytope.triangles[face].is_alive) else {
+            face += 1;
+            continue;
+        };
+        let new = polytope.add(points[point], face, tolerance)?;
+        let mut loose = Vec::new();
+        for (triangle, list) in polytope.triangles.iter().zip(&mut outside) {
+            if !triangle.is_alive {
+                loose.append(list);
+            }
+        }
+        loose.retain(|i| *i != point);
+        assign(&polytope, points, loose, new, tolerance, &mut outside);
+    }
+    Some(polytope)
+}
+
+/// Gives each point to the first triangle, from index `first` on, that it lies outside of.
+fn assign(
+    polytope: &Polytope,
+    points: &[Vec3<f64>],
+    loose: Vec<usize>,
+    first: usize,
+    tolerance: f64,
+    outside: &mut Vec<Vec<usize>>,
+) {
+    outside.resize(polytope.triangles.len(), Vec::new());
+    for point in loose {
+        let sees = |i: &usize| polytope.height(*i, points[point]) > tolerance;
+        if let Some(triangle) = (first..polytope.triangles.len()).find(sees) {
+            outside[triangle].push(point);
+        }
+    }
+}
+
+/// Returns the corners of all triangles that are connected to `seed` and lie in its plane.
+fn coplanar(polytope: &Polytope, seed: usize, tolerance: f64, is_taken: &mut [bool]) -> Vec<usize> {
+    let mut group = vec![seed];
+    let mut corners = polytope.triangles[seed].corners.to_vec();
+    is_taken[seed] = true;
+    let mut next = 0;
+    while let Some(&triangle) = group.get(next) {
+        next += 1;
+        for neighbor in polytope.triangles[triangle].neighbors {
+            let others = polytope.triangles[neighbor].corners;
+            let is_level =
+                others.iter().all(|i| polytope.height(seed, polytope.points[*i]).abs() <= tolerance);
+            if !is_taken[neighbor] && is_level {
+                is_taken[neighbor] = true;
+                group.push(neighbor);
+                corners.extend(others.iter().filter(|i| !corners.contains(i)).copied().collect::<Vec<_>>());
+            }
+        }
+    }
+    corners
+}
+
+/// Sorts the corners of a convex face counterclockwise about its normal.
+fn order(corners: &mut [usize], points: &[Vec3<f64>], normal: Vec3<f64>) {
+    let sum = corners.iter().fold(Vec3::zero(), |sum, i| sum + points[*i]);
+    let center = sum * (1.0 / corners.len() as f64);
+    let x = points[corners[0]] - center;
+    let y = normal.cross(x);
+    let angle = |i: usize| (points[i] - center).dot(y).atan2((points[i] - center).dot(x));
+    corners.sort_by(|i, j| angle(*i).total_cmp(&angle(*j)));
+}

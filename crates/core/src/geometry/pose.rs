@@ -1,0 +1,52 @@
+//! Position and attitude of a shape.
+
+use crate::spatial::{Mat3, Vec3};
+
+/// Pose of a shape in common axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Rotation from the axes of the shape to common axes.
+    pub rot: Mat3<f64>,
+    /// Origin of the shape, m.
+    pub pos: Vec3<f64>,
+}
+
+impl Pose {
+    /// Returns the pose of a shape whose axes are the common axes.
+    pub fn identity() -> Self {
+        Self::at(Vec3::zero())
+    }
+
+    /// Returns the pose with common axes and the origin at `pos`, m.
+    pub fn at(pos: Vec3<f64>) -> Self {
+        Self { rot: Mat3::identity(), pos }
+    }
+
+    /// Returns the common coordinates of a point of the shape.
+    pub fn to_common(&self, point: Vec3<f64>) -> Vec3<f64> {
+        self.rot * point + self.pos
+    }
+
+    /// Returns the coordinates of a point in the axes of the shape.
+    pub fn to_shape(&self, point: Vec3<f64>) -> Vec3<f64> {
+        self.rot.transpose_mul(point - self.pos)
+    }
+
+    /// Returns the pose of a shape that is fixed to this one, given its pose in the axes of this one.
+    #[must_use]
+    pub fn compose(&self, inner: &Self) -> Self {
+        Self { rot: self.rot * inner.rot, pos: self.to_common(inner.pos) }
+    }
+
+    /// Returns the pose of `other` in the axes of this one.
+    #[must_use]
+    pub fn relative(&self, other: &Self) -> Self {
+        Self { rot: self.rot.transpose() * other.rot, pos: self.to_shape(other.pos) }
+    }
+
+    /// Returns true if all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        // a column that is not finite makes the sum so
+        (self.rot * Vec3::new(1.0, 1.0, 1.0)).norm().is_finite() && self.pos.norm().is_finite()
+    }
+}

@@ -1,0 +1,36 @@
+//! Distance of two shapes and where it is attained.
+
+use super::pose::Pose;
+use crate::spatial::Vec3;
+
+/// Signed distance of two shapes, with witness points and normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Proximity {
+    /// Distance, m; where the shapes overlap, minus the length of the shortest translation that separates them.
+    pub distance: f64,
+    /// Point on the surface of the first shape, m.
+    pub point_a: Vec3<f64>,
+    /// Point on the surface of the second shape, m: `point_a + distance normal`.
+    pub point_b: Vec3<f64>,
+    /// Unit vector from the first shape to the second: the second one moves away along it.
+    pub normal: Vec3<f64>,
+}
+
+impl Proximity {
+    /// Returns the same distance with the shapes exchanged.
+    #[must_use]
+    pub fn exchanged(self) -> Self {
+        Self { point_a: self.point_b, point_b: self.point_a, normal: -self.normal, ..self }
+    }
+
+    /// Returns the same distance in common axes, given the pose of the present axes.
+    #[must_use]
+    pub(super) fn in_common(self, axes: &Pose) -> Self {
+        Self {
+            distance: self.distance,
+            point_a: axes.to_common(self.point_a),
+            point_b: axes.to_common(self.point_b),
+            normal: axes.rot * self.normal,
+        }
+    }
+}
