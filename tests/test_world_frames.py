@@ -87,7 +87,7 @@ def test_the_world_frame_is_the_control_of_this_test():
 @pytest.mark.parametrize(
     ("frame", "error", "message"),
     [
-        ("targt/handle", ControlError, "no system of the world.*servicer, target"),
+        ("targt/handle", ControlError, "not in a system of the world.*servicer, target"),
         ("target/handel", FrameError, "handle"),
         ("servicer/tool", oo.exceptions.WorldError, "frame of the system itself"),
         ("handle", ControlError, "SYSTEM/FRAME"),

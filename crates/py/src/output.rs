@@ -92,7 +92,7 @@ pub(crate) fn outputs<'py, const N: usize>(
     Ok(made)
 }
 
-/// Reads the argument `out=(a, b)`; `what` names the arrays in messages.
+/// Reads the argument `out=(a, b)`, if it is given; `what` names the arrays in messages.
 pub(crate) fn pair<'py>(out: Option<Any<'_, 'py>>, what: &str) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
     let Some(out) = out else { return Ok(None) };
     let (a, b) = out.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>)>().map_err(|_| {

@@ -89,7 +89,7 @@ pub(crate) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Returns a deep copy, which later changes of the original do not affect.
+/// Returns a deep copy of a value, if there is one, which later changes of the original do not affect.
 pub(crate) fn deep_copy<'py>(value: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, PyAny>>> {
     value.map(|value| value.py().import("copy")?.call_method1("deepcopy", (value,))).transpose()
 }

@@ -63,7 +63,7 @@ pub(super) trait ControlLaw {
     }
 
     /// Returns the effort, N m (N), that is added to the torque of the joint at `place` in the group, for
-    /// [`JointCommand::Acceleration`].
+    /// [`JointCommand::Acceleration`]; `None` if nothing is added.
     fn feedforward(&self, _place: usize) -> Option<f64> {
         None
     }

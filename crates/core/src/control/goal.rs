@@ -73,7 +73,7 @@ impl Outcome {
         *self != Self::Unfinished
     }
 
-    /// Returns the simulation time of the decision, s.
+    /// Returns the simulation time of the decision, s; `None` without a decision.
     pub fn time(&self) -> Option<f64> {
         match self {
             Self::Unfinished => None,

@@ -166,7 +166,7 @@ fn noon_of_2000() -> Instant {
     Instant::from_gregorian_tai_at_noon(2000, 1, 1)
 }
 
-/// Splits a text into date and time, and time scale.
+/// Splits a text into date and time, and time scale; `None` if it does not end with the name of a time scale.
 fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     let scales = [
         ("Z", TimeScale::UTC),
@@ -178,7 +178,8 @@ fn split_scale(text: &str) -> Option<(&str, TimeScale)> {
     scales.iter().find_map(|(name, scale)| Some((text.strip_suffix(name)?.trim_end(), *scale)))
 }
 
-/// Parses year, month, day, hour, minute, second and nanoseconds of a text such as `2024-03-01T12:00:00`.
+/// Parses year, month, day, hour, minute, second and nanoseconds of a text such as `2024-03-01T12:00:00`;
+/// returns `None` for a text of another form.
 fn numbers(text: &str) -> Option<([u16; 6], u32)> {
     let (whole, fraction) = text.split_once('.').unwrap_or((text, "0"));
     let (date, time) = whole.split_once(['T', ' '])?;

@@ -133,12 +133,13 @@ impl Header {
     }
 }
 
-/// Parses a degree or an order.
+/// Parses a degree or an order; returns `None` if it is missing or not a whole number.
 fn index_of(word: Option<&&str>) -> Option<usize> {
     word?.parse().ok()
 }
 
-/// Parses a finite number with a C or Fortran exponent.
+/// Parses a number with a C or Fortran exponent; returns `None` for any other text and for numbers that are not
+/// finite.
 fn number(word: &str) -> Option<f64> {
     word.replace(['d', 'D'], "e").parse().ok().filter(|x: &f64| x.is_finite())
 }

@@ -188,7 +188,8 @@ pub(crate) fn nearest(candidates: &[String], name: &str) -> String {
     }
 }
 
-/// Returns the candidate with the smallest edit distance to `name`, or else a candidate that contains `name`.
+/// Returns the candidate with the smallest edit distance to `name` if the distance is small, or else a
+/// candidate that contains `name`, if there is one.
 pub(super) fn closest<'a>(candidates: &'a [String], name: &str) -> Option<&'a str> {
     const LONGEST: usize = 100; // the computing time grows with the product of the lengths
     let is_name = |c: &&String| c.len() <= LONGEST && name.len() <= LONGEST;

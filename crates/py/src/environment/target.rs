@@ -30,7 +30,7 @@ pub(super) fn frame_at(py: Python<'_>, targets: &[Target<'_>], path: &str) -> Py
     }
 }
 
-/// Returns the number of the system with this name.
+/// Returns the number of the system with this name, or `None` if there is no such system.
 pub(super) fn named(targets: &[Target<'_>], name: &str) -> Option<usize> {
     targets.iter().position(|target| target.name == name)
 }

@@ -2,6 +2,7 @@
 
 use super::reference::Satrec;
 use super::{PyOrbit, base};
+use crate::arrays::type_name;
 use crate::errors::{IntoPython, fields, plain, raise};
 use onorbit_core::orbit::sgp4::Epoch;
 use onorbit_core::orbit::{EarthModel, MeanElements, Orbit, OrbitError, Sgp4};
@@ -186,7 +187,10 @@ impl PySgp4 {
         };
         let mut texts = HashMap::new();
         for item in entries.call_method0("items").and_then(|items| items.try_iter()).map_err(|_| {
-            plain(py, "ElementSetError", "message must be an OMM, as a mapping of its keywords or as text")
+            let got = type_name(message);
+            let text =
+                format!("message is of type {got}; expected an OMM, as a mapping of its keywords or as text");
+            plain(py, "ElementSetError", &text)
         })? {
             let (key, value): (String, Bound<'_, PyAny>) = item?.extract()?;
             if !value.is_none() {

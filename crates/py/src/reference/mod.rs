@@ -106,7 +106,8 @@ impl PyReference {
         t: Any<'_, 'py>,
         orbit: Option<&Bound<'py, PyOrbit>>,
     ) -> PyResult<Arrays<'py>> {
-        let message = "the reference is in a frame of another system, so its pose in W depends on the run";
+        let message = "the reference is in a frame of another system, so its pose in W depends on the run; use \
+            sample for the pose in that frame";
         if let frame::Frame::System(path) = &self.frame {
             return Err(raise(py, "ControlError", message, &fields!(py, "name": "frame", "got": path)));
         }
@@ -114,7 +115,7 @@ impl PyReference {
         let reference = self.bind(py, &Around { orbit, ..Around::default() })?;
         if reference.is_relative_to_base() {
             let message = "the reference is relative to the robot's base, so its pose in W depends on the \
-            state of the robot";
+            state of the robot; use sample for the pose relative to the base";
             return Err(raise(py, "ControlError", message, &fields!(py, "name": "frame", "got": "base")));
         }
         table(py, &reference, false, t)

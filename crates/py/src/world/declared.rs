@@ -112,7 +112,7 @@ impl PyWorld {
 }
 
 impl PyWorld {
-    /// Returns the reference orbit.
+    /// Returns the reference orbit, if the world has one.
     pub(crate) fn orbit(&self, py: Python<'_>) -> Option<Py<PyOrbit>> {
         self.orbit.as_ref().map(|orbit| orbit.clone_ref(py))
     }

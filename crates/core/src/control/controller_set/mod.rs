@@ -125,7 +125,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.known = known.map(Box::new);
     }
 
-    /// Returns the tree whose model the laws use. The caller must set its state before an update.
+    /// Returns the tree of connected robots whose model the laws use; `None` if they use the robot's model.
+    /// The caller must set the state of the tree before an update.
     pub fn known(&mut self) -> Option<&mut KnownTree> {
         self.known.as_deref_mut()
     }
@@ -158,7 +159,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         all.filter(|(_, (_, state))| state.is_running()).map(|(index, (control, _))| (index, &control.law))
     }
 
-    /// Returns the control that drives joint `j` at `t`, s: one that is active or is due to start.
+    /// Returns the control that drives joint `j` at `t`, s: one that is active or is due to start, or `None` if
+    /// there is no such control.
     pub fn driver_of(&self, j: usize, t: f64) -> Option<&Control> {
         let now = t + self.same_instant;
         let drives = |(control, state): &(&Control, &ControlState)| {

@@ -165,7 +165,7 @@ fn calendar(day: i64) -> (i64, i64, i64) {
     if month < 10 { (year, month + 3, day) } else { (year + 1, month - 9, day) }
 }
 
-/// Returns the modified Julian date of a text such as `2024-03-01`.
+/// Returns the modified Julian date of a text such as `2024-03-01`; `None` if the text is not a date.
 fn day_of(text: &str) -> Option<i64> {
     let mut parts = text.split('-').map(|part| part.parse::<i64>().ok());
     let (year, month, day) = (parts.next()??, parts.next()??, parts.next()??);

@@ -36,7 +36,7 @@ impl<'a> Element<'a> {
         self.node.children().filter(Node::is_element).filter(is_ours).map(move |node| Self { node, ..self })
     }
 
-    /// Returns the first child element with this name; urdfdom ignores further ones, too.
+    /// Returns the first child element with this name, if there is one; urdfdom ignores further ones, too.
     pub(super) fn child(self, name: &'static str) -> Option<Self> {
         self.children(name).next()
     }
@@ -114,7 +114,8 @@ pub(super) fn has_expression(text: &str) -> bool {
     text.contains("${") || text.contains("$(")
 }
 
-/// Returns the namespace prefix of an element as written in the file, whatever namespace it stands for.
+/// Returns the namespace prefix of an element as written in the file, whatever namespace it stands for;
+/// `None` for an element without a prefix.
 pub(super) fn prefix<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
     node.tag_name().namespace()?; // an element without a namespace has no prefix
     let tag = node.document().input_text().get(node.range().start + 1..)?;

@@ -145,10 +145,10 @@ pub enum UrdfProblem {
 
 fn other_format(found: &str) -> &'static str {
     match found {
-        "sdf" => "; this looks like SDFormat",
-        "mujoco" => "; this looks like MuJoCo's MJCF",
-        "COLLADA" => "; this looks like a mesh",
-        "launch" => "; this looks like a ROS launch file",
+        "sdf" => "; this looks like SDFormat, which must be converted to URDF",
+        "mujoco" => "; this looks like MuJoCo's MJCF, which must be converted to URDF",
+        "COLLADA" => "; this looks like a mesh; give the URDF that refers to it",
+        "launch" => "; this looks like a ROS launch file; give the URDF that it loads",
         _ => "",
     }
 }

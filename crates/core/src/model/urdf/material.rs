@@ -28,7 +28,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Returns the colour of a visual's material: the colour given there, or else the colour defined
-    /// elsewhere under the same name.
+    /// elsewhere under the same name, if there is one.
     pub(super) fn rgba(&self, material: urdf_rs::Material) -> Result<Option<[f64; 4]>, UrdfError> {
         let named = || self.named.get(material.name.as_str()).map(|color| color.read::<Color>());
         let color = material.color.map(Ok).or_else(named).transpose()?;

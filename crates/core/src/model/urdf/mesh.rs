@@ -105,7 +105,7 @@ impl<'a> Meshes<'a> {
         found
     }
 
-    /// Searches for a file at the exact path that its name states; for names in a package, see
+    /// Returns the file at the exact path that its name states, if it exists; for names in a package, see
     /// [`Self::in_package`].
     fn at_its_path(&mut self, name: &MeshName) -> Option<Found> {
         let candidates = match name {

@@ -76,7 +76,7 @@ pub(super) fn check(xml: &str) -> Result<(), UrdfError> {
     Ok(())
 }
 
-/// Returns the line number of a byte offset, counted from 1.
+/// Returns the line number of a byte offset, counted from 1; `None` if it exceeds `u32`.
 pub(super) fn line(xml: &str, at: usize) -> Option<u32> {
     let before = xml.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count();
     u32::try_from(before + 1).ok()

@@ -114,7 +114,7 @@ impl<'a> Writer<'a> {
 }
 
 /// Splits a text into three parts: the text before the first attribute value, the quote character, and the
-/// value.
+/// value. Returns `None` for a text without a quoted value.
 fn first_value(text: &str) -> Option<(&str, char, &str)> {
     let open = text.find(['"', '\''])?;
     let (before, rest) = text.split_at(open);

@@ -198,7 +198,7 @@ fn path_of(targets: &[Target<'_>], target: &Target<'_>, body: &str) -> String {
     if targets.len() == 1 { body.to_owned() } else { format!("{}/{body}", target.name) }
 }
 
-/// Returns a copy of the surfaces, because a dict may be modified later.
+/// Returns the given surfaces, if any; a dict is copied, because it may be modified later.
 pub(crate) fn copied<'py>(surfaces: Option<Any<'_, 'py>>) -> PyResult<Option<Bound<'py, PyAny>>> {
     let Some(surfaces) = surfaces else { return Ok(None) };
     Ok(Some(match surfaces.cast::<PyMapping>() {
