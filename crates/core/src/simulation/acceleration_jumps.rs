@@ -6,7 +6,7 @@ use crate::model::BASE_NV;
 use crate::spatial::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Fraction of the largest rate of a joint below which velocity changes `h |Δq̈|/6` are ignored. Step
+/// Velocity changes `h |Δq̈|/6` below this fraction of the largest rate of the joint are ignored here; step
 /// doubling measures such small errors.
 const SMALL: f64 = 1e-6;
 
@@ -38,7 +38,8 @@ impl AccelerationJumps {
         Self { ended: zeros.clone(), command: zeros.clone(), h: 0.0, jumps: zeros.clone(), fastest: zeros }
     }
 
-    /// Returns the lengths of the vectors. Each equals the number of joints, unless a checkpoint is damaged.
+    /// Returns the lengths of `ended`, `command`, `jumps` and `fastest`. Each equals the number of joints,
+    /// unless a checkpoint is damaged.
     pub(super) fn joints(&self) -> [usize; 4] {
         [&self.ended, &self.command, &self.jumps, &self.fastest].map(Vec::len)
     }

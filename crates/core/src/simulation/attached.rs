@@ -63,7 +63,7 @@ impl<S: Scalar> RunState<'_, S> {
         found.contains(&body(b))
     }
 
-    /// Returns the controls that have been found so far.
+    /// Returns the attached controls that have been found so far in the run.
     pub(super) fn attached_controls(&self) -> Vec<AttachedControl> {
         let named = self.events.attached.iter().map(|attached| {
             let run = &self.systems[attached.frame.system];

@@ -139,7 +139,7 @@ fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> 
     Ok(())
 }
 
-/// Checks the controls of a system and its reference.
+/// Checks the controls and the reference of a system.
 fn check_system(system: &System) -> Result<(), SimulationError> {
     check_system_controls(system)?;
     match (system.tool, &system.reference) {

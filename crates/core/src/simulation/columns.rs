@@ -280,7 +280,8 @@ pub static TRACKING: Column = column!(
      to the base), otherwise one number per joint; zero while the control is inactive."
 );
 
-/// Wrenches of the environment, one column per effect.
+/// Wrenches on the bodies: one column per effect and, if a control follows external commands, one column for
+/// the commanded wrenches.
 pub static WRENCHES: Column = column!(
     wrenches,
     "wrench_*",

@@ -11,7 +11,7 @@ const FINEST: f64 = 1e-9;
 /// System that starts far from the reference orbit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FarSystem {
-    /// Number of the system.
+    /// Number of the system in the world.
     pub system: usize,
     /// Distance of its base from the reference orbit, m.
     pub distance: f64,

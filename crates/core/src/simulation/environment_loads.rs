@@ -21,8 +21,8 @@ use nalgebra::Vector3;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Environment effects on all systems of a run, reference orbit, and workspace for the evaluation of the
-/// effects.
+/// Environment effects on all systems of a run, the reference orbit, and the workspace for the evaluation of
+/// the effects.
 #[derive(Debug)]
 pub(super) struct EnvironmentLoads {
     effects: Vec<Arc<dyn Effect>>,
@@ -161,7 +161,8 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Adds the common wrenches less the part that accelerates the robot as a whole.
+    /// Adds the common wrenches to `self.wrenches` without the part that accelerates all bodies alike: `Fₖ −
+    /// mₖ ΣF/Σm`.
     fn add_relative_to_reference(&mut self) -> Result<(), EnvironmentError> {
         let total: Vector3<f64> = self.common.iter().map(|wrench| wrench.force).sum();
         let acceleration = total / self.bodies.iter().map(|(_, body)| body.mass).sum::<f64>();

@@ -1,4 +1,4 @@
-//! Events of a run, and when they are due.
+//! Events of a run, and the times at which they are due.
 
 use super::error::SimulationError;
 use super::recording::EventRecord;

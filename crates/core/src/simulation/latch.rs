@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-9;
 /// Latch that has not closed.
 #[derive(Clone, Debug)]
 pub(crate) struct Latch {
-    /// Number of the event.
+    /// Number of the capture among the events.
     pub(super) event: usize,
     /// Tree and frame index of the capturing frame and of the captured frame.
     pub(super) frames: [(usize, usize); 2],

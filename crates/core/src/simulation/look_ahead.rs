@@ -1,5 +1,5 @@
-//! Advance of a run to any time, and its evaluation at that time. A step that ends later is tried and then
-//! undone, so that the steps do not depend on the times at which the run is evaluated.
+//! Advance of a run to any time, and evaluation of the run at that time. A step that ends later is tried and
+//! then undone, so that the steps do not depend on the times at which the run is evaluated.
 
 use super::checkpoint::Progress;
 use super::equations::EquationsOfMotion;

@@ -1,4 +1,4 @@
-//! Frames of systems in which references of other systems are given.
+//! Frames of a system in which references of other systems are given.
 
 use super::error::SimulationError;
 use super::run_state::RunState;

@@ -34,7 +34,7 @@ use std::sync::Arc;
 pub(super) struct RunState<'a, S> {
     /// Names of the systems and of their joints. All lists with one entry per system are in this order.
     pub(super) layout: Layout,
-    /// Number in the world of each system.
+    /// Number of each system in the world.
     pub(super) numbers: Vec<usize>,
     /// State at the current cut, the instant at which the current step begins.
     pub(super) state: State<S>,
@@ -42,7 +42,7 @@ pub(super) struct RunState<'a, S> {
     /// Controllers and recorder of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
-    /// Frames of systems in which references of other systems are given. Systems are specified by their
+    /// Frames of a system in which references of other systems are given, with systems specified by their
     /// number in the group.
     pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,

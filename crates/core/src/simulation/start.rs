@@ -139,8 +139,8 @@ impl Simulation {
         }
     }
 
-    /// Returns pairs of systems that interact although no event connects them, because controls of one of
-    /// them wait for an event or track a frame of the other.
+    /// Returns pairs of systems that interact although no event connects them, because a control of one of
+    /// them waits for an event that involves the other, or tracks a frame of the other.
     pub(super) fn links(&self) -> Vec<(usize, usize)> {
         let waiting = self.systems.iter().enumerate().flat_map(|(system, declared)| {
             declared.controls.iter().filter_map(move |control| match control.begin {

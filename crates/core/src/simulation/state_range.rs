@@ -1,4 +1,4 @@
-//! Checks the range of the initial state.
+//! Range check of the initial state.
 
 use super::error::SimulationError;
 use crate::model::{Axis, BASE_NV, Model, QUATERNION};

@@ -69,8 +69,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Computes the loads and updates the controllers that are due. Controllers that compensate the
-    /// environment are updated after the loads have been computed, all others before. The loads that they
-    /// compensate are those of the whole interval, even if the step ends earlier.
+    /// environment are updated after the loads have been computed, and all others before. The compensated
+    /// loads are those of the whole interval, even if the step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
         let is_due = self.find_due(t);
@@ -100,7 +100,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
     }
 
-    /// Finds the systems whose controllers are due at `t`, s, which is the case at their ticks and when an
+    /// Finds the systems whose controllers are due at `t`, s. Controllers are due at their ticks and when an
     /// event starts a control. If a trial step has already updated controllers at this cut, they are due
     /// again only after a new command. Returns true if any controllers are due.
     fn find_due(&mut self, t: f64) -> bool {

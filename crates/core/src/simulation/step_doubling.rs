@@ -92,7 +92,7 @@ impl Errors {
         CoordinateDrift { position, rate, fastest, jumps: of_joint(&self.jumps.jumps) }
     }
 
-    /// Creates the errors of a tree with `joints` joints before the first probe, which are all zero.
+    /// Creates the errors, all zero, of a tree with `joints` joints before the first probe.
     fn new(joints: usize) -> Self {
         let drifts = vec![Drift::default(); joints + 1];
         Self { drifts, jumps: AccelerationJumps::new(joints), ..Self::default() }

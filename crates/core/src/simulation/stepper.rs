@@ -26,10 +26,11 @@ pub(super) struct Group<'a> {
     pub(super) run: Box<dyn Steps + 'a>,
 }
 
-/// Number of regular steps by which each group advances before the next group does, if there are several.
+/// Number of regular steps by which one of several groups advances before the next group does.
 const STEPS_IN_TURN: f64 = 64.0;
 
-/// Fraction of such an advance within which the end of a step is treated as the end of the advance.
+/// Rounding error of the time, as a fraction of `STEPS_IN_TURN` steps, that is accepted at the end of an
+/// advance.
 const TURN_ROUNDING: f64 = 1e-6;
 
 #[derive(Clone, Copy, PartialEq, Eq)]

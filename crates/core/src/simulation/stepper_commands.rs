@@ -45,8 +45,8 @@ impl Stepper<'_> {
         self.groups[group].run.check_send(system, control, command)
     }
 
-    /// Applies a wrench at the origin of a frame (index) of a system, from the current time until the next
-    /// wrench on the same frame. The current step ends at the current time.
+    /// Applies a wrench at the origin of a frame of a system, given by its index, from the current time until
+    /// the next wrench on the same frame. The current step ends at the current time.
     ///
     /// # Errors
     /// [`SimulationError::UnknownFrame`], [`SimulationError::NotFinite`], [`SimulationError::Ended`] and,

@@ -33,8 +33,8 @@ impl Stepper<'_> {
         all
     }
 
-    /// Returns the controls, found so far, whose frames a capture has rigidly connected to the frames that
-    /// they follow. Their errors cannot be reduced.
+    /// Returns the controls found so far whose frames a capture has rigidly connected to the frames that they
+    /// follow, so that their errors cannot be reduced.
     pub fn attached_controls(&self) -> Vec<AttachedControl> {
         self.groups.iter().flat_map(|group| group.run.attached_controls()).collect()
     }

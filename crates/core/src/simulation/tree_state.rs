@@ -21,7 +21,7 @@ pub(crate) struct TreeState<S> {
     /// Work done by motors and external wrenches less the energy dissipated in the joints, J, since the start
     /// of the run or, in a tree with several members, since its assembly.
     pub(crate) work: S,
-    /// Energy dissipated by damping, friction and stops of the joints, J, in the same time.
+    /// Energy dissipated by damping, friction and stops of the joints, J, over the same time.
     pub(crate) dissipated: S,
     /// Position of the centre of mass in W, which is the integral of `P/m`, m; `None` in a run with a single
     /// tree. Once per step the base is shifted accordingly, so that the angular momentum of several trees
@@ -58,7 +58,7 @@ pub(crate) struct TreeRate<S> {
     pub(crate) center_velocity: Option<Vec3<S>>,
     /// Parts of `loss` that belong to the joints of each member, W; empty for a tree with a single member.
     pub(crate) shares: Vec<S>,
-    /// Time derivative of the clock, 1; `None` without a clock.
+    /// Time derivative of the clock, which is 1; `None` without a clock.
     pub(crate) clock: Option<S>,
 }
 

@@ -5,10 +5,10 @@ use super::trace_row::BaseMotion;
 use crate::spatial::{Quat, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
-/// Bound of the rounding error of the attitude in one step of the integrator, in units of ε. It covers a
+/// Bound on the rounding error of the attitude in one step of the integrator, in units of ε. It covers a
 /// product of two unit quaternions and its normalisation.
 const QUATERNION: f64 = 8.0;
-/// Bound of the relative rounding error of a rotation, in units of ε. It covers the exponential of the step,
+/// Bound on the relative rounding error of a rotation, in units of ε. It covers the exponential of the step,
 /// the rates at both ends of the step, and this check.
 const TURN: f64 = 16.0;
 
@@ -37,9 +37,9 @@ pub(in crate::simulation) struct Attitude {
     residual: Drift,
     commutator: Drift,
     resolution: Drift,
-    /// Bound of the rounding error contained in the residual, rad.
+    /// Bound on the rounding error contained in the residual, rad.
     rounding: f64,
-    /// Bound of the error of the parabola of [`Attitude::add`] over intervals that end with a jump of the
+    /// Bound on the error of the parabola of [`Attitude::add`] over intervals that end with a jump of the
     /// angular acceleration, rad.
     unresolved: f64,
     /// Difference between the integrals of the cubic and of the parabola of [`Attitude::add`], divided by

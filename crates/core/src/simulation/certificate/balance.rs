@@ -27,7 +27,7 @@ pub(super) struct Balance {
     duration: f64,
 }
 
-/// Quantities in the first row.
+/// Momentum, impulse and energy in the first row.
 #[derive(Clone, Copy)]
 struct First {
     time: f64,

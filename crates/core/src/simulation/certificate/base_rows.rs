@@ -8,7 +8,7 @@ use crate::model::{BASE_NV, Model, difference, integrate};
 use crate::spatial::{Force, Motion, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Bound of the relative rounding error of the momentum in a row, in units of ε. It covers the sums over the
+/// Bound on the relative rounding error of the momentum in a row, in units of ε. It covers the sums over the
 /// bodies, the rotation to W and the twist.
 const ROUNDING: f64 = 40.0;
 
@@ -91,7 +91,7 @@ impl BaseRows {
         sum
     }
 
-    /// Returns bounds of the rounding errors of the two residuals of one step. They comprise the rounding
+    /// Returns bounds on the rounding errors of the two residuals of one step. They comprise the rounding
     /// errors of momenta and impulses, relative to their magnitudes and divided by `h`, and the rounding
     /// errors of the moments `v × m v`, whose exact value is zero.
     fn rounding(&self, model: &Model, h: f64, rows: [&TraceRow<'_>; 2]) -> [f64; 2] {
@@ -123,9 +123,9 @@ impl Residuals {
         worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
-    /// Returns the largest residual that passes. It is the truncation error of the differences at the largest
-    /// rates of the run, limited so that the check fails if a wrench as large as the inertial forces is
-    /// missing.
+    /// Returns the largest residual that passes. It is 1e-6 plus the truncation error of the differences at
+    /// the largest rates of the run, and at most 0.1, so that the check fails if a wrench as large as the
+    /// inertial forces is missing.
     pub(super) fn gate(&self) -> f64 {
         (1e-6 + self.truncation).min(0.1)
     }

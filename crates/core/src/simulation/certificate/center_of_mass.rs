@@ -5,7 +5,7 @@ use super::trace_row::MassMotion;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Bound of the relative rounding error of the position in one step, in units of ε.
+/// Bound on the relative rounding error of the position in one step, in units of ε.
 const ROUNDING: f64 = 4.0;
 
 /// Gap between the recorded centre of mass and the position obtained by integrating the momentum.
@@ -15,7 +15,7 @@ pub(in crate::simulation) struct CenterOfMass {
     /// Square of the largest gap, m².
     largest: f64,
     path: f64,
-    /// Bound of the rounding error contained in the gap, m; in each step the position is rounded relative to
+    /// Bound on the rounding error contained in the gap, m; in each step the position is rounded relative to
     /// its magnitude.
     rounding: f64,
 }

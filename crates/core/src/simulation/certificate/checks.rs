@@ -7,7 +7,8 @@ pub(crate) const MOMENTUM: f64 = 1e-11;
 /// Largest relative error of the energy balance that passes. It corresponds to a fourth-order integrator that
 /// resolves the motion.
 pub(crate) const ENERGY: f64 = 1e-6;
-/// Largest relative distance between the centre of mass and the integral of its momentum that passes.
+/// Largest relative distance that passes between the centre of mass and the position obtained by integrating
+/// the momentum.
 pub(super) const CENTER: f64 = 1e-7;
 /// Largest attitude error estimated by step doubling that passes, rad.
 pub(super) const STEP_DOUBLING: f64 = 1e-6;

@@ -36,7 +36,7 @@ impl Stream {
         Self { attitude, center, base_rows: BaseRows::new(model), size: 0.0 }
     }
 
-    /// Adds a step from `before` to `now`.
+    /// Adds a step from `before` to `now` to the checks of the attitude and of the centre of mass.
     #[inline]
     pub(in crate::simulation) fn add(
         &mut self,

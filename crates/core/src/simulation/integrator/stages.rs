@@ -21,7 +21,7 @@ pub(crate) struct Stages<S> {
     pub(crate) first: Vec<FirstStage<S>>,
 }
 
-/// First stage of one tree; its velocity is relative to W.
+/// First stage of one tree, for velocities relative to W.
 pub(crate) struct FirstStage<S> {
     /// Acceleration at the start of the step, `(nv,)`, m/s² and rad/s².
     pub(crate) acceleration: Vec<S>,

@@ -232,7 +232,7 @@ impl JointModes {
         &self.requested
     }
 
-    /// Returns the accelerations of [`JointModes::requested`] as a mutable slice, which laws write.
+    /// Returns the accelerations of [`JointModes::requested`] as a mutable slice, to which laws write.
     pub(crate) fn requested_mut(&mut self) -> &mut [Option<f64>] {
         &mut self.requested
     }

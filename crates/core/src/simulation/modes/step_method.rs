@@ -20,7 +20,7 @@ const STILL: f64 = 1e-9;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
 
-/// Method that integrates the equations of motion and locates the changes of modes, of joints and of latches,
+/// Method that integrates the equations of motion and locates changes of the modes of joints and of latches
 /// within a step.
 pub(crate) struct StepMethod<S> {
     pub(crate) integration: Integration<S>,
@@ -189,7 +189,7 @@ impl<S: Real> StepMethod<S> {
         self.margin(equations, state, (whole.0, end))
     }
 
-    /// Returns the relative margin to the next change of mode, of a joint or of a latch. It is negative if
+    /// Returns the relative margin to the next change of the mode of a joint or of a latch. It is negative if
     /// the change is overdue.
     fn margin(
         &mut self,
