@@ -8,10 +8,11 @@ from __future__ import annotations
 import json
 import sys
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, fields, is_dataclass
 from typing import Any
 
-from cyclonedds.core import Policy, Qos
+from cyclonedds.core import DDSException, Policy, Qos
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
@@ -74,7 +75,7 @@ class Peer:
         named = Topic(self.participant, name, TYPES[kind])
         self.readers[topic] = DataReader(self.participant, named, qos=_qos(is_latched))
 
-    def take(self, topic: str, count: int, seconds: float = 5.0) -> list[Any]:
+    def take(self, topic: str, count: int, seconds: float = 20.0) -> list[Any]:
         """Returns at least `count` messages, or those that arrive within a time."""
         found: list[Any] = []
         end = time.monotonic() + seconds
@@ -85,15 +86,17 @@ class Peer:
                 return found
             time.sleep(0.002)
 
-    def say(self, topic: str, kind: str, values: Any, seconds: float = 5.0) -> bool:
-        """Sends a message when somebody listens."""
+    def say(
+        self, topic: str, kind: str, values: Any, seconds: float = 20.0, nodes: Sequence[list[int]] = ()
+    ) -> bool:
+        """Sends a message when somebody listens, which must be one of some nodes if they are given."""
         is_new = topic not in self.writers
         if is_new:
             named = Topic(self.participant, f"rt{topic}", TYPES[kind])
             self.writers[topic] = DataWriter(self.participant, named, qos=_qos(False))
         writer = self.writers[topic]
         end = time.monotonic() + seconds
-        while not writer.get_matched_subscriptions():
+        while not _known(writer.get_matched_subscriptions(), writer.get_matched_subscription_data, nodes):
             if time.monotonic() > end:
                 return False
             time.sleep(0.002)
@@ -102,14 +105,29 @@ class Peer:
         writer.write(_message(TYPES[kind], values))
         return True
 
-    def publisher(self, topic: str, seconds: float = 5.0) -> list[int] | None:
-        """Returns the identity of the publisher of a subscribed topic when it is found."""
-        end = time.monotonic() + seconds
-        while not (found := self.readers[topic].get_matched_publications()):
-            if time.monotonic() > end:
-                return None
+    def publisher(
+        self, topic: str, seconds: float = 20.0, nodes: Sequence[list[int]] = ()
+    ) -> list[int] | None:
+        """Returns the identity of the publisher of a subscribed topic, of some nodes, when it is found."""
+        reader, end = self.readers[topic], time.monotonic() + seconds
+        while True:
+            found = _known(reader.get_matched_publications(), reader.get_matched_publication_data, nodes)
+            if found or time.monotonic() > end:
+                return list(found[0].key.bytes) if found else None
             time.sleep(0.002)
-        return list(self.readers[topic].get_matched_publication_data(found[0]).key.bytes)
+
+
+def _known(handles: list[int], data_of: Any, nodes: Sequence[list[int]]) -> list[Any]:
+    """Returns the data of matched endpoints of some nodes; a node of an earlier test may be leaving."""
+    found = []
+    for handle in handles:
+        try:
+            data = data_of(handle)
+        except DDSException:  # it has left since it was listed
+            continue
+        if data is not None and (not nodes or list(data.participant_key.bytes) in nodes):
+            found.append(data)
+    return found
 
 
 def main() -> None:

@@ -34,6 +34,10 @@ def needs_ros2() -> None:
         pytest.skip(str(error), allow_module_level=True)
 
 
+OPEN: list[list[int]] = []
+"""Identities of the nodes of this process: a peer may still see those of earlier tests."""
+
+
 class Peer:
     """The process of `ros2_peer.py`; its methods are called by name."""
 
@@ -48,6 +52,8 @@ class Peer:
         def call(*values: Any, **options: Any) -> Any:
             names = ("topic", "count" if name == "take" else "kind", "values")
             options |= dict(zip(names, values, strict=False))
+            if name in ("say", "publisher"):
+                options.setdefault("nodes", OPEN)
             assert self.process.stdin is not None and self.process.stdout is not None
             self.process.stdin.write(json.dumps([name, options]) + "\n")
             self.process.stdin.flush()
@@ -71,9 +77,12 @@ def node_of(run: oo.Simulation, **options: Any) -> Iterator[Node]:
     from onorbit_rs.ros2 import Node
 
     node = Node(run, domain=DOMAIN, **options)
+    identity = list(node._participant._entity.get_guid().bytes)
+    OPEN.append(identity)
     try:
         yield node
     finally:
+        OPEN.remove(identity)
         node.close()
 
 
@@ -86,13 +95,13 @@ def spinning(node: Node, duration: float | None = None) -> Iterator[list[Any]]:
     try:
         yield found
     finally:
-        thread.join(10)
+        thread.join(30)
         assert not thread.is_alive()
 
 
 def wait_for_subscriber(node: Node, *topics: str) -> None:
     """Waits until a node has found subscribers of topics."""
-    end = time.monotonic() + 5.0
+    end = time.monotonic() + 20.0
     while not all(node._publisher._writers[topic].subscribers() for topic in topics):
         assert time.monotonic() < end
         time.sleep(0.005)

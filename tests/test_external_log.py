@@ -227,6 +227,11 @@ def test_a_log_of_one_robot_and_entries_of_a_program() -> None:
     log.apply(stepper, {"control": "control", "effort": np.full(7, 1e-3)})
     with pytest.raises(oo.exceptions.ControlError, match="kp > 0"):
         log.apply(stepper, {"control": "control", "position": np.zeros(7)})
+    both = [{"control": "control", "effort": np.zeros(7)}, {"control": "control", "position": np.zeros(7)}]
+    with pytest.raises(oo.exceptions.ControlError, match="kp > 0"):
+        log.apply(stepper, *both)  # none of them
+    with pytest.raises(oo.exceptions.InputError, match="several commands at once must be constant"):
+        log.apply(stepper, both[0], {"body": "bus", "torque": [0, 0, 1.0]})
     assert len(log) == 1 and log.entries[0] == {"control": "control", "effort": [1e-3] * 7, "time": 0.0}
     apply(stepper, {"body": "bus", "torque": (0, 0, 1.0)})
     stepper.advance_to(0.1)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import world_runs
-from bag_files import differences, expected, read_mcap, read_rosbags
+from bag_files import differences, expected, numbers, read_mcap, read_rosbags
 from commands import SPIN, onorbit, refusal
 from rosbags.highlevel import AnyReader
 
@@ -74,6 +74,26 @@ def test_joint_states_are_the_columns_of_the_run(arm: oo.Run, file: Path) -> Non
     assert rows[0][3:10] == list(arm.model.joint_names)
     values = np.array([row[10:] for row in rows])
     np.testing.assert_array_equal(values, np.hstack([arm.trace.q[:, 7:], arm.trace.v[:, 6:], arm.trace.tau]))
+
+
+def test_a_run_whose_orbit_data_are_gone_is_exported_with_a_warning(tmp_path: Path) -> None:
+    """Its rate is that of the recorded state, without the slow turn of the plane; all else is the same."""
+    t = np.linspace(0.0, 10.0, 11)
+    path = np.stack([t, 7e6 * np.cos(1e-3 * t), 7e6 * np.sin(1e-3 * t), 0.0 * t], axis=1)
+    np.savetxt(tmp_path / "path.csv", path, delimiter=",", header="t,x,y,z", comments="", fmt="%.17g")
+    (tmp_path / "run.yaml").write_text(
+        "robot: target_satellite\norbit: {kind: custom_path, file: path.csv}\n"
+        "simulation: {duration: 2 s, time_step: 100 ms}\n"
+    )
+    oo.run(tmp_path / "run.yaml", out=tmp_path / "run", quiet=True)
+    oo.ros2.export_mcap(tmp_path / "run", tmp_path / "before.mcap")
+    (tmp_path / "path.csv").unlink()
+    with pytest.warns(UserWarning, match=r"orbit cannot be computed again \(.*path.csv.*/orbit/twist"):
+        oo.ros2.export_mcap(tmp_path / "run", tmp_path / "after.mcap")
+    before, after = read_mcap(tmp_path / "before.mcap"), read_mcap(tmp_path / "after.mcap")
+    twists = [[numbers(message) for _, message in bag.pop("/orbit/twist")] for bag in (before, after)]
+    assert before == after and len(before["/odom"]) == 21
+    np.testing.assert_allclose(*twists, atol=1e-6)
 
 
 @pytest.mark.parametrize("read", [read_rosbags, read_mcap])

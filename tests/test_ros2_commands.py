@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from ros2_runs import Peer, needs_ros2, node_of, spinning
+from ros2_runs import DOMAIN, Peer, needs_ros2, node_of, spinning
 from stepper_runs import assert_same_bits
 
 import onorbit_rs as oo
@@ -62,7 +63,7 @@ def step(peer: Peer, length: float) -> None:
 
 def obeyed(node: Node, count: int) -> None:
     """Waits until the node has obeyed a number of commands."""
-    end = time.monotonic() + 5.0
+    end = time.monotonic() + 20.0
     while len(node.commands) < count:
         assert time.monotonic() < end, node.commands
         time.sleep(0.002)
@@ -248,13 +249,95 @@ def test_the_timeout_acts_when_a_sender_vanishes() -> None:
         peer.say("/wrist/commands", FLOATS, {"data": [0.02, 0.0, 0.0]})
         obeyed(node, 1)
         peer.say("/pause", "std_msgs/msg/Bool", {"data": False})
-        while node._is_paused:
+        while node._session.is_paused:
             time.sleep(0.002)
         peer.process.kill()
     (trace,), (sent,) = found, (entry["time"] for entry in node.commands)
     acts = trace.time[trace.tau[:, 4] == 0.02]
     assert sent <= acts[0] < sent + 2 * PERIOD
     assert abs(acts[-1] - (sent + 0.1)) < 2.1 * PERIOD and trace.time[-1] == 0.4
+
+
+def wrenches(trace: oo.Trace) -> np.ndarray:
+    """Returns the linear impulse of each time step."""
+    return np.asarray(np.diff(trace.impulse[:, :3], axis=0))
+
+
+@pytest.mark.parametrize("timeout", [None, 0.1505])
+def test_a_wrench_ends_after_its_timeout(peer: Peer, tmp_path: Path, timeout: float | None) -> None:
+    log, push = tmp_path / "commands.jsonl", {"wrench": {"force": {"x": 1.0, "y": 0.0, "z": 0.0}}}
+    with node_of(simulation(), pace="stepped", log=log, wrench_timeout=timeout) as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.5) as found:
+            peer.say("/wrench_command", WRENCH, push)
+            obeyed(node, 1)
+            step(peer, 0.1)
+            peer.say("/wrench_command", WRENCH, push)  # confirms it
+            obeyed(node, 2)
+            peer.say("/step", STEP, {"data": 0.4})
+            said = [one["status"][0] for one in peer.take("/events", 1 if timeout is None else 2)]
+    (trace,) = found
+    texts = [(one["level"], one["name"], one["message"]) for one in said]
+    if timeout is None:
+        assert texts == [(0, "/step", "advanced to t = 0.5 s")]
+        assert wrenches(trace).any(axis=1).all()
+        return
+    root = ROBOT.body_names[0]
+    ended = (1, "/wrench_command", f"no message within the time-out: the wrench on {root} ended")
+    assert texts == [ended, (0, "/step", "advanced to t = 0.5 s")]
+    assert [entry["time"] for entry in node.commands] == pytest.approx([0.0, 0.1, 0.2505])
+    acts = wrenches(trace).any(axis=1)
+    middles = 0.5 * (trace.time[1:] + trace.time[:-1])
+    np.testing.assert_array_equal(acts, middles < 0.2505)
+    assert np.abs(trace.impulse[-1, :3]).max() == pytest.approx(0.2505, rel=1e-3)
+    stepper = simulation().start()
+    replay_commands(stepper, read_commands(log), 0.5)
+    assert_same_bits(stepper.finish(), trace)
+
+
+def test_a_zero_wrench_needs_no_timeout(peer: Peer) -> None:
+    with node_of(simulation(), pace="stepped", wrench_timeout=0.1) as node:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        with spinning(node, 0.3):
+            for count, force in ((1, 1.0), (2, 0.0)):
+                peer.say("/wrench_command", WRENCH, {"wrench": {"force": {"x": force}}})
+                obeyed(node, count)
+            step(peer, 0.3)
+    assert len(node.commands) == 2
+
+
+@pytest.mark.parametrize("timeout", [0.0, -1.0, NAN, INF])
+def test_a_timeout_of_wrenches_that_is_not_positive_is_refused(timeout: float) -> None:
+    with pytest.raises(oo.exceptions.InputError, match=r"time-out of wrenches is .* positive and finite"):
+        Node(simulation(), domain=DOMAIN, wrench_timeout=timeout)
+
+
+LINK = (
+    '<link name="{}"><inertial><mass value="1"/>'
+    '<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+)
+HINGE = '<joint name="hinge" type="continuous"><parent link="{}"/><child link="{}"/></joint>'
+
+
+@pytest.mark.parametrize(("parent", "child"), [("base", "tip"), ("root", "base")])
+def test_a_wrench_in_the_frame_base_is_on_the_root_link(peer: Peer, parent: str, child: str) -> None:
+    """Also if another link is named `base`, whose frame is then `base_2`."""
+    text = "".join(map(LINK.format, (parent, child))) + HINGE.format(parent, child)
+    robot = oo.Model.from_urdf_string(f'<robot name="r">{text}</robot>')
+    run = oo.Simulation(robot, robot.neutral(), np.zeros(robot.nv))
+    other = "tip" if child == "tip" else "base_2"
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with node_of(run, pace="stepped") as node, spinning(node, 0.01):
+            peer.hear(*EVENTS)
+            assert peer.publisher("/events")
+            for count, frame in enumerate(("", "base", other), 1):
+                peer.say("/wrench_command", WRENCH, {"header": {"frame_id": frame}})
+                obeyed(node, count)
+            step(peer, 0.01)
+    assert [entry["body"] for entry in node.commands] == [parent, parent, child]
 
 
 class FakeReader:

@@ -20,7 +20,6 @@ import onorbit_rs as oo
 needs_ros2()
 
 from onorbit_rs.ros2 import Node, loopback  # noqa: E402
-from onorbit_rs.ros2.pace import Delays  # noqa: E402
 from onorbit_rs.ros2.series import Series  # noqa: E402
 
 EVENTS = ("/events", "diagnostic_msgs/msg/DiagnosticArray")
@@ -146,7 +145,8 @@ def test_real_time_takes_the_time_of_the_clock() -> None:
         begin = time.perf_counter()
         node.spin(0.3)
         took = time.perf_counter() - begin
-        assert 0.299 <= took < 1.0
+        lost = node.jitter["slipped_s"] + node.jitter["late_max_s"]  # on a machine that others use
+        assert 0.299 <= took < 0.5 + lost
         assert set(node.jitter) == {
             "late_median_s", "late_99_s", "late_max_s", "missed", "slipped_s", "ticks",
         }  # fmt: skip
@@ -222,10 +222,53 @@ def test_a_paused_run_waits_and_goes_on(peer: Peer) -> None:
             )
             peer.say("/pause", "std_msgs/msg/Bool", {"data": True})
             assert answers(peer, 1) == [(0, "/pause", "paused")]
-            before = node._stepper.time
+            before = node._session.run.time
             time.sleep(0.05)
-            assert node._stepper.time == before < 2.0
+            assert node._session.run.time == before < 2.0
             peer.say("/step", "std_msgs/msg/Float64", {"data": 2.0})
+
+
+def test_a_subscriber_that_joins_a_waiting_node_hears_the_present_state(peer: Peer) -> None:
+    with node_of(scenario(), pace="stepped") as node, spinning(node, 0.1) as found:
+        peer.hear(*EVENTS)
+        assert peer.publisher("/events")
+        peer.say("/step", "std_msgs/msg/Float64", {"data": 0.025})
+        assert answers(peer, 1) == [(0, "/step", "advanced to t = 0.025 s")]
+        for topic in (STATES, ("/tf", "tf2_msgs/msg/TFMessage"), ("/clock", "rosgraph_msgs/msg/Clock")):
+            peer.hear(*topic)
+            (first, *more) = peer.take(topic[0], 1)
+            assert len(more) <= 1, "once or twice"
+            if topic is STATES:
+                assert stamp(first) == 0.025
+        time.sleep(0.5)
+        peer.take("/joint_states", 0, seconds=0.0)
+        time.sleep(0.5)
+        assert peer.take("/joint_states", 0, seconds=0.0) == [], "not again and again"
+        peer.say("/step", "std_msgs/msg/Float64", {"data": 0.075})
+        np.testing.assert_allclose(
+            [stamp(one) for one in peer.take("/joint_states", 75)], np.arange(26, 101) * 1e-3, atol=1e-9
+        )
+    assert_same_bits(found[0], scenario().run(0.1))
+
+
+class Unsaved(Counting):
+    """A controller with an attribute that a checkpoint cannot contain."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.anything = object()
+
+
+def test_an_adaptive_run_that_cannot_be_planned_is_pointed_out() -> None:
+    settings: dict[str, Any] = {"control_period": 0.01, "integrator": "dormand_prince", "time_step": 0.01}
+    for controller, count in ((Unsaved(), 1), (Counting(), 0)):
+        said: list[str] = []
+        run = passive(controller=controller, **settings)
+        with node_of(run, pace="fast", on_message=said.append) as node:
+            trace = node.spin(0.1)
+        assert trace.time[-1] == 0.1 and len(said) == count
+        assert all("adaptive steps differ" in text and "give it get_state()" in text for text in said)
+    assert_same_bits(trace, passive(controller=Counting(), **settings).run(0.1))
 
 
 def test_events_of_two_craft_are_triggered_and_published(peer: Peer) -> None:
@@ -236,6 +279,7 @@ def test_events_of_two_craft_are_triggered_and_published(peer: Peer) -> None:
         assert {"/chaser/joint_states", "/chaser/odom", "/target/odom"} <= names.keys()
         assert "/chaser/wrench_command" in dict(node.subscribed)
         heard(peer, EVENTS, ("/chaser/joint_states", STATES[1]))
+        wait_for_subscriber(node, "/chaser/joint_states")
         with spinning(node, 0.5) as found:
             peer.say("/trigger", "std_msgs/msg/String", {"data": "grab"})
             ((level, topic, text),) = answers(peer, 1)
@@ -292,14 +336,3 @@ def test_a_second_simulator_in_the_domain_is_pointed_out() -> None:
         assert other.published
     (text,) = said
     assert text.startswith("/clock: another node publishes the time in domain") and "--domain" in text
-
-
-def test_delays_are_counted_in_bounded_memory() -> None:
-    late = Delays(1e-3)
-    values = np.abs(np.random.default_rng(1).normal(scale=4e-4, size=20_000))
-    for value in (0.0, *values, 5.0):
-        late.add(value)
-    assert (late.count, late.largest, late.missed) == (20_002, 5.0, int(np.sum(values > 1e-3)) + 1)
-    for fraction in (0.5, 0.99):
-        assert late.quantile(fraction) == pytest.approx(np.quantile(values, fraction), rel=0.02)
-    assert late._counts.nbytes < 30_000

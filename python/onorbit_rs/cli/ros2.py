@@ -27,6 +27,13 @@ RecordForceOption = Annotated[
     bool, typer.Option("--force", help="Replace existing files of --record and --log.")
 ]
 PausedOption = Annotated[bool, typer.Option("--paused", help="Wait for /pause false before the first step.")]
+WrenchTimeoutOption = Annotated[
+    float | None,
+    typer.Option(metavar="SECONDS", help="Time without a message after which a wrench ends; default: never."),
+]
+PriorityOption = Annotated[
+    bool, typer.Option("--priority", help="Real-time priority for pace real_time (Linux, needs permission).")
+]
 LogOption = Annotated[
     Path | None,
     typer.Option(metavar="FILE", help="Write the commands received; onorbit run --commands repeats them."),
@@ -42,6 +49,8 @@ def ros2(
     paused: PausedOption = False,
     log: LogOption = None,
     record: RecordOption = None,
+    wrench_timeout: WrenchTimeoutOption = None,
+    priority: PriorityOption = False,
     force: RecordForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
@@ -64,8 +73,10 @@ def ros2(
     check_duration(for_)  # before files are opened
     check_bag_file("--record", record, ".mcap", force=force)
     check_output_file(log, force=force)
-    options = {"pace": pace, "domain": domain, "network": network, "is_paused": paused, "log": log}
-    node = Node.of_scenario(scenario, **options, record=record, on_message=tell)
+    node = Node.of_scenario(
+        scenario, pace=pace, domain=domain, network=network, is_paused=paused, log=log, record=record,
+        wrench_timeout=wrench_timeout, has_priority=priority, on_message=tell,
+    )  # fmt: skip
     if not quiet:
         print_error(_greeting(node, domain))
     try:

@@ -35,27 +35,28 @@ def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
         If the axis of a joint does not pass through the origin of its child link, which URDF cannot express
         (a joint that ``Model.rerooted`` or ``attach`` reversed).
     """
-    names = names or {}
+    named = {name: name for name in _all_names(model)} | dict(names or {})
     robot = xml.Element("robot", name=model.name)
     shapes = [("visual", shape) for shape in model.visuals] + [
         ("collision", shape) for shape in model.collisions
     ]
     for body in model.bodies:
-        link = _link(robot, body.name, shapes)
+        link = _link(robot, named, body.name, shapes)
         _add_inertial(link, body)
     for joint in model.joints:
-        _add_joint(robot, joint)
+        _add_joint(robot, named, joint)
     links = {body.name for body in model.bodies}
     for frame in model.frames:
         if frame.name not in links:
-            _link(robot, frame.name, shapes)
-            _add_fixed(robot, frame)
-    for element in robot.iter("link"):
-        element.set("name", names.get(element.get("name", ""), element.get("name", "")))
-    for element in robot.iterfind("joint/*[@link]"):
-        element.set("link", names.get(element.get("link", ""), element.get("link", "")))
+            _link(robot, named, frame.name, shapes)
+            _add_fixed(robot, named, frame)
     xml.indent(robot)
     return xml.tostring(robot, encoding="unicode") + "\n"
+
+
+def _all_names(model: Model) -> list[str]:
+    """Return the names of the links and frames."""
+    return [body.name for body in model.bodies] + [frame.name for frame in model.frames]
 
 
 def _text(numbers: ArrayLike) -> str:
@@ -68,8 +69,10 @@ def _add_origin(to: xml.Element, pose: ArrayLike) -> None:
     xml.SubElement(to, "origin", xyz=_text(matrix[:3, 3]), rpy=_text(angles))
 
 
-def _link(robot: xml.Element, name: str, shapes: list[tuple[str, Visual]]) -> xml.Element:
-    link = xml.SubElement(robot, "link", name=name)
+def _link(
+    robot: xml.Element, named: Mapping[str, str], name: str, shapes: list[tuple[str, Visual]]
+) -> xml.Element:
+    link = xml.SubElement(robot, "link", name=named[name])
     for tag, shape in shapes:
         if shape.link == name:
             _add_shape(link, tag, shape)
@@ -108,7 +111,7 @@ def _material(shape: Visual) -> str:
     return "rgba_" + "_".join(f"{round(255 * part):02x}" for part in shape.rgba)
 
 
-def _add_joint(robot: xml.Element, joint: Joint) -> None:
+def _add_joint(robot: xml.Element, named: Mapping[str, str], joint: Joint) -> None:
     if any(joint.anchor):
         raise ModelError(
             f"the axis of joint {joint.name!r} does not pass through the origin of link {joint.child!r}, "
@@ -118,8 +121,8 @@ def _add_joint(robot: xml.Element, joint: Joint) -> None:
     bounded = joint.lower is not None or joint.upper is not None
     kind = "continuous" if joint.kind == "revolute" and not bounded else joint.kind
     element = xml.SubElement(robot, "joint", name=joint.name, type=kind)
-    xml.SubElement(element, "parent", link=joint.parent)
-    xml.SubElement(element, "child", link=joint.child)
+    xml.SubElement(element, "parent", link=named[joint.parent])
+    xml.SubElement(element, "child", link=named[joint.child])
     _add_origin(element, joint.pose)
     xml.SubElement(element, "axis", xyz=_text(joint.axis))
     limits = {"lower": joint.lower, "upper": joint.upper, "velocity": joint.velocity, "effort": joint.effort}
@@ -130,8 +133,8 @@ def _add_joint(robot: xml.Element, joint: Joint) -> None:
     xml.SubElement(element, "dynamics", damping=repr(joint.damping), friction=repr(joint.friction))
 
 
-def _add_fixed(robot: xml.Element, frame: Frame) -> None:
+def _add_fixed(robot: xml.Element, named: Mapping[str, str], frame: Frame) -> None:
     element = xml.SubElement(robot, "joint", name=f"{frame.name}_fixed", type="fixed")
-    xml.SubElement(element, "parent", link=frame.body)
-    xml.SubElement(element, "child", link=frame.name)
+    xml.SubElement(element, "parent", link=named[frame.body])
+    xml.SubElement(element, "child", link=named[frame.name])
     _add_origin(element, frame.pose)

@@ -13,7 +13,8 @@ from onorbit_rs.ros2.names import ros_names
 from onorbit_rs.ros2.transforms import BASE
 
 if TYPE_CHECKING:
-    from onorbit_rs.ros2.participant import Participant, Reader
+    from onorbit_rs.ros2.endpoints import Reader
+    from onorbit_rs.ros2.participant import Participant
 
 FLOATS = "std_msgs/msg/Float64MultiArray"
 TRAJECTORY = "trajectory_msgs/msg/JointTrajectory"

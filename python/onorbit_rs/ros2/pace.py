@@ -7,53 +7,36 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
+from onorbit_rs.ros2.delays import Delays
 
 PACES = ("real_time", "fast", "stepped")
 
 _BEHIND_S = 0.1
 """Delay after which a node in real time stops catching up, s."""
-
-
-_SHORTEST_S = 1e-7
-"""Delays below this, s, are counted together."""
-_PER_E = 100.0
-"""Classes of delays in a factor of e: quantiles are accurate to a hundredth."""
-_CLASSES = 2500
-
-
-class Delays:
-    """Distribution of delays, in classes of equal ratio, so that its size does not grow with the run."""
-
-    def __init__(self, limit: float) -> None:
-        """Count none yet; those above ``limit``, s, are missed ticks."""
-        self._limit = limit
-        self._counts = np.zeros(_CLASSES, np.int64)
-        self.count = self.missed = 0
-        self.largest = 0.0
-
-    def add(self, delay: float) -> None:
-        """Count a delay, s."""
-        number = int(_PER_E * math.log(delay / _SHORTEST_S)) if delay > _SHORTEST_S else 0
-        self._counts[min(number, _CLASSES - 1)] += 1
-        self.count += 1
-        self.missed += delay > self._limit
-        self.largest = max(self.largest, delay)
-
-    def quantile(self, fraction: float) -> float:
-        """Return a delay, s, that this fraction of all delays does not exceed, to a hundredth."""
-        number = int(np.searchsorted(np.cumsum(self._counts), fraction * self.count))
-        return min(_SHORTEST_S * math.exp((number + 0.5) / _PER_E), self.largest)
+_LONGEST_SPIN_S = 3e-4
+"""Longest time before a tick in which the processor is kept busy, s."""
+_SPIN_PER_TICK = 0.3
+"""Longest such time as a fraction of the tick."""
+_PROBES = 20
+"""Number of sleeps with which the delay of the operating system is measured."""
+_PROBE_S = 5e-4
+"""Length of such a sleep, s."""
 
 
 @dataclass
 class RealTime:
-    """Waits until the wall clock has reached a simulated time; measures how late it was."""
+    """Waits until the wall clock has reached a simulated time; measures how late it was.
+
+    The operating system ends a sleep too late, by some 0.1 ms. The wait is therefore a sleep that ends early,
+    by the delay that :meth:`calibrate` measured, and a loop until the exact time.
+    """
 
     tick: float
     """Simulated time between two waits, s."""
     slipped: float = 0.0
     """Wall-clock time by which the simulation has fallen behind for good, s."""
+    early: float = 0.0
+    """Time before a tick at which the sleep ends, s."""
     clock: Callable[[], float] = time.perf_counter
     sleep: Callable[[float], None] = time.sleep
     _start: float = math.nan
@@ -63,16 +46,37 @@ class RealTime:
         """Count no delay yet."""
         self._late = Delays(self.tick)
 
+    def calibrate(self) -> None:
+        """Measure how late the operating system ends a sleep, in 10 ms."""
+        found = []
+        for _ in range(_PROBES):
+            begin = self.clock()
+            self.sleep(_PROBE_S)
+            found.append(self.clock() - begin - _PROBE_S)
+        # most sleeps, but not the few that others delay
+        usual = sorted(found)[int(0.8 * _PROBES)]
+        self.early = min(max(1.5 * usual, 0.0), _LONGEST_SPIN_S, _SPIN_PER_TICK * self.tick)
+
     def restart(self, t: float) -> None:
         """Let the current wall-clock time be the simulated time ``t``, s; after a pause or a reset."""
         self._start = self.clock() - t
 
-    def wait(self, t: float) -> None:
-        """Return when simulated time ``t``, s, is due."""
+    def ahead(self, t: float) -> float:
+        """Return the wall-clock time, s, until simulated time ``t``, s; negative if it is over."""
         if math.isnan(self._start):
             self.restart(t)
-        while (ahead := self._start + t - self.clock()) > 0.0:
-            self.sleep(ahead)
+        return self._start + t - self.clock()
+
+    def approach(self, t: float) -> None:
+        """Return shortly before simulated time ``t``, s, is due."""
+        while (left := self.ahead(t) - self.early) > 0.0:
+            self.sleep(left)
+
+    def wait(self, t: float) -> None:
+        """Return when simulated time ``t``, s, is due."""
+        self.approach(t)
+        while (ahead := self.ahead(t)) > 0.0:
+            pass
         self._late.add(-ahead)
         if -ahead > _BEHIND_S:
             self.slipped -= ahead

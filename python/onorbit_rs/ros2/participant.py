@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 from weakref import WeakValueDictionary
 
-from cyclonedds._clayer import ddspy_take, ddspy_write
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
-from cyclonedds.core import DDSException, InstanceState, Policy, Qos, SampleState, ViewState
+from cyclonedds.core import DDSException, Policy, Qos
 from cyclonedds.domain import Domain, DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
@@ -20,14 +19,11 @@ from cyclonedds.util import duration
 from onorbit_rs.exceptions import InputError, Ros2Error
 from onorbit_rs.ros2 import graph, loopback
 from onorbit_rs.ros2.dds_types import declared
+from onorbit_rs.ros2.endpoints import MOST, Reader, Writer
 from onorbit_rs.ros2.messages import STORE
 
 LARGEST_DOMAIN = 232
 """Largest domain whose ports are below 65536, by the port mapping of DDSI-RTPS."""
-
-_ANY = SampleState.Any | ViewState.Any | InstanceState.Any
-_MOST = 1000
-"""Largest number of messages taken at once, and depth of topics that are not latched."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +96,7 @@ class Participant:
         """Return True if another participant has begun to publish a topic since the last call."""
         own = self._entity.get_guid()
         try:
-            found = [each for each in self._found.take(_MOST) if each.topic_name == f"rt{topic}"]
+            found = [each for each in self._found.take(MOST) if each.topic_name == f"rt{topic}"]
         except DDSException:  # what others announce must not end a run
             return False
         return any(each.participant_key != own for each in found)
@@ -122,71 +118,11 @@ class Participant:
         self._found = self._graph = self._entity = self._joined = None
 
 
-class Writer:
-    """Publisher of one topic."""
-
-    def __init__(self, entity: Any, topic: str) -> None:
-        """Wrap a writer of CycloneDDS."""
-        self._entity, self.topic = entity, topic
-
-    def write(self, data: bytes) -> None:
-        """Publish a message in CDR.
-
-        Raises
-        ------
-        Ros2Error
-            If CycloneDDS does not accept it.
-        """
-        if code := ddspy_write(self._entity._ref, data):
-            raise Ros2Error(f"CycloneDDS did not accept a message of {self.topic}: {DDSException(code).msg}")
-
-    def subscribers(self) -> int:
-        """Return the number of subscriptions found."""
-        return len(self._entity.get_matched_subscriptions())
-
-
-class Reader:
-    """Subscription to one topic."""
-
-    def __init__(self, entity: Any, topic: str, kind: str) -> None:
-        """Wrap a reader of CycloneDDS."""
-        self._entity = entity
-        self.topic, self.kind = topic, kind
-
-    def sender(self, publication: int) -> object:
-        """Return what identifies the process of a publication; None if it has left."""
-        try:
-            data = self._entity.get_matched_publication_data(publication)
-        except DDSException:
-            return None
-        return None if data is None else data.participant_key
-
-    def senders(self) -> set[object]:
-        """Return the processes that publish the topic now."""
-        return {self.sender(publication) for publication in self._entity.get_matched_publications()}
-
-    def take(self) -> list[tuple[int, int, bytes]]:
-        """Return the messages since the last call: time of sending, ns, number of the publication, CDR.
-
-        Raises
-        ------
-        Ros2Error
-            If CycloneDDS reports an error.
-        """
-        taken = ddspy_take(self._entity._ref, _ANY, _MOST)
-        if isinstance(taken, int):
-            raise Ros2Error(f"CycloneDDS could not read {self.topic}: {DDSException(taken).msg}")
-        # a sender that leaves adds a sample without data
-        return [
-            (info.source_timestamp, info.publication_handle, data) for data, info in taken if info.valid_data
-        ]
-
-
 def _qos(kind: str, is_latched: bool = False) -> Qos:
     return Qos(
         Policy.Reliability.Reliable(duration(milliseconds=100)),
         Policy.Durability.TransientLocal if is_latched else Policy.Durability.Volatile,
-        Policy.History.KeepLast(1 if is_latched else _MOST),
+        Policy.History.KeepLast(1 if is_latched else MOST),
         Policy.DataRepresentation(use_cdrv0_representation=True),
         Policy.Userdata(f"typehash={STORE.hash_rihs01(kind)};".encode()),
     )

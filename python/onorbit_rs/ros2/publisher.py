@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 from onorbit_rs.ros2.topics import EVENTS, EVENTS_TYPE, Topics, event_message, message_of_event
@@ -32,6 +32,11 @@ class Publisher:
         self._events = participant.writer(EVENTS, EVENTS_TYPE)
 
     @property
+    def prefixes(self) -> Mapping[str, str]:
+        """Prefix of the topics of each system."""
+        return self._topics.prefixes
+
+    @property
     def topics(self) -> list[tuple[str, str]]:
         """Names and types of the topics."""
         latched = [(topic.name, topic.kind) for topic in self._topics.latched]
@@ -41,7 +46,18 @@ class Publisher:
         """Publish the messages of the rows of each system, row by row, on topics that have subscribers."""
         if self._recording:
             self._recording.rows(rows)
-        wanted = {name for name, writer in self._writers.items() if writer.subscribers()}
+        self._publish(rows, {name for name, writer in self._writers.items() if writer.subscribers()})
+
+    def greet(self, present: Callable[[], Mapping[str, Rows]]) -> None:
+        """Publish the messages of the present rows on topics that subscribers have joined since their rows.
+
+        They are published a second time after a moment, because a subscriber that has not found the publisher
+        yet does not receive the first.
+        """
+        if wanted := {name for name, writer in self._writers.items() if writer.is_greeting_due()}:
+            self._publish(present(), wanted)
+
+    def _publish(self, rows: Mapping[str, Rows], wanted: Container[str]) -> None:
         found = [(self._writers[topic.name], data) for topic, data in self._topics.messages(rows, wanted)]
         for k in range(max((len(data) for _, data in found), default=0)):
             for writer, data in found:
@@ -59,7 +75,11 @@ class Publisher:
         self._event(time, event_message(time, name, level, text, {}))
         self._tell(f"{name}: {text}")
 
+    def record(self, topic: str, kind: str, time: float, data: bytes) -> None:
+        """Record a message that was obeyed, in CDR, at a simulated time, s; no effect without a recording."""
+        if self._recording:
+            self._recording.message(topic, kind, time, data)
+
     def _event(self, time: float, data: bytes) -> None:
         self._events.write(data)
-        if self._recording:
-            self._recording.message(EVENTS, EVENTS_TYPE, time, data)
+        self.record(EVENTS, EVENTS_TYPE, time, data)

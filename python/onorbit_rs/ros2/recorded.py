@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,11 +13,12 @@ import numpy as np
 
 from onorbit_rs._core import Model
 from onorbit_rs.common.coordinates import JOINTS_Q
-from onorbit_rs.exceptions import DtypeError, InputError
+from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.ros2.rows import Rows, rows_of_trace
 from onorbit_rs.scenario import WorldScenario
 from onorbit_rs.scenario.build import build_environment
+from onorbit_rs.scenario.orbit import NumericalOrbit
 from onorbit_rs.simulation.run import Run
 
 if TYPE_CHECKING:
@@ -34,7 +36,7 @@ class Recorded:
     rows: Mapping[str, Rows]
     events: Sequence[EventRecord]
     orbit: Orbit | None = None
-    """Reference orbit; None without one, and for a trace alone."""
+    """Reference orbit; None without one, for a trace alone, and if its data cannot be read any more."""
 
 
 def recorded(source: Source, models: Models | None = None) -> Recorded:
@@ -76,11 +78,23 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
 
 
 def _orbit(run: Run) -> Orbit | None:
-    """Return the reference orbit of a run."""
-    if run.scenario.orbit is None:
+    """Return the reference orbit of a run; None, with a warning, if its data cannot be read any more."""
+    scenario = run.scenario
+    if scenario.orbit is None:
         return None
-    model = None if isinstance(run.scenario, WorldScenario) else run.model
-    return build_environment(run.scenario, model).orbit
+    try:
+        if not isinstance(scenario.orbit, NumericalOrbit):
+            return scenario.orbit.build(scenario.folder)
+        # its perturbations are those of the environment
+        model = None if isinstance(scenario, WorldScenario) else run.model
+        return build_environment(scenario, model).orbit
+    except OnOrbitError as error:
+        warnings.warn(
+            f"the reference orbit cannot be computed again ({error}); the rate in /orbit/twist is therefore "
+            "r × v / r², without the turn of the plane of a perturbed orbit",
+            UserWarning, stacklevel=4,
+        )  # fmt: skip
+        return None
 
 
 def _check_joints(trace: Any, models: Mapping[str, Model]) -> None:

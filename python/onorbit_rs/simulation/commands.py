@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -60,6 +60,16 @@ def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
         raise
 
 
+def _check(stepper: Stepper, command: Command) -> None:
+    """Raise an error if a stepper would refuse a constant command to joints, or if it is another command."""
+    if "control" not in command or "trajectory" in command:
+        given = f"{dict(command)!r:.80}"
+        raise invalid(
+            "", f"several commands at once must be constant commands to joints, not {given}; give it alone"
+        )
+    give(stepper, command, check_only=True)
+
+
 def _setpoint(target: Stepper | SystemStepper, entry: Command) -> dict[str, Any]:
     """Return the setpoints of a constant command to joints, as keyword arguments of ``send``."""
     if "values" in entry:
@@ -93,32 +103,17 @@ class CommandLog:
             with output_errors(self._path):
                 self._stream = self._path.open("w", encoding="utf-8")
 
-    def apply(self, stepper: Stepper, entry: Mapping[str, Any]) -> None:
+    def apply(self, stepper: Stepper, *entries: Mapping[str, Any]) -> None:
         """Give a stepper a command, and add it to the log with the current time of the stepper.
 
-        Parameters
-        ----------
-        stepper : Stepper
-        entry : mapping
-            Command; its ``time`` is replaced by that of the stepper.
-
-        Raises
-        ------
-        OnOrbitError
-            As :func:`apply`; the command is then not logged.
-        """
-        command = checked({**entry, "time": stepper.time})
-        give(stepper, command)
-        self._add(command)
-
-    def apply_all(self, stepper: Stepper, entries: Iterable[Mapping[str, Any]]) -> None:
-        """Give a stepper several constant commands to joints: all of them, or none if one is refused.
+        Several commands are given and logged together, or none of them if one is refused.
 
         Parameters
         ----------
         stepper : Stepper
-        entries : iterable of mapping
-            Commands with ``control`` and without ``trajectory``, as for :meth:`apply`.
+        *entries : mapping
+            Command; its ``time`` is replaced by that of the stepper. If there are several, they must be
+            constant commands to joints, that is, with ``control`` and without ``trajectory``.
 
         Raises
         ------
@@ -126,15 +121,11 @@ class CommandLog:
             As :func:`apply`; no command has then been given or logged.
         """
         commands = [checked({**entry, "time": stepper.time}) for entry in entries]
-        for command in commands:
-            if "control" not in command or "trajectory" in command:
-                given = f"{dict(command)!r:.80}"
-                raise invalid(
-                    "", f"apply_all accepts only constant commands to joints, not {given}; use apply"
-                )
-        for check_only in (True, False):
+        if len(commands) > 1:
             for command in commands:
-                give(stepper, command, check_only=check_only)
+                _check(stepper, command)
+        for command in commands:
+            give(stepper, command)
         for command in commands:
             self._add(command)
 

@@ -1,0 +1,93 @@
+"""Publishers and subscriptions of topics whose payloads are CDR."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from cyclonedds._clayer import ddspy_take, ddspy_write
+from cyclonedds.core import DDSException, InstanceState, SampleState, ViewState
+
+from onorbit_rs.exceptions import Ros2Error
+
+MOST = 1000
+"""Largest number of messages taken at once, and depth of topics that are not latched."""
+
+_ANY = SampleState.Any | ViewState.Any | InstanceState.Any
+_AGAIN_S = 0.2
+"""Time after which a new subscription has found the publisher that found it, s."""
+
+
+class Writer:
+    """Publisher of one topic."""
+
+    def __init__(self, entity: Any, topic: str) -> None:
+        """Wrap a writer of CycloneDDS."""
+        self._entity, self.topic = entity, topic
+        self._found = self._served = 0
+        self._greetings: list[float] = []
+
+    def write(self, data: bytes) -> None:
+        """Publish a message in CDR.
+
+        Raises
+        ------
+        Ros2Error
+            If CycloneDDS does not accept it.
+        """
+        if code := ddspy_write(self._entity._ref, data):
+            raise Ros2Error(f"CycloneDDS did not accept a message of {self.topic}: {DDSException(code).msg}")
+        self._served = self._found
+
+    def subscribers(self) -> int:
+        """Return the number of subscriptions."""
+        status = self._entity.get_publication_matched_status()
+        self._found = status.total_count
+        return int(status.current_count)
+
+    def is_greeting_due(self) -> bool:
+        """Return True if a subscription has been found after the last message, and again after a moment."""
+        now = time.monotonic()
+        if self.subscribers() and self._found > self._served:
+            self._served = self._found
+            self._greetings = [now, now + _AGAIN_S]
+        due = [at for at in self._greetings if at <= now]
+        self._greetings = self._greetings[len(due) :]
+        return bool(due)
+
+
+class Reader:
+    """Subscription to one topic."""
+
+    def __init__(self, entity: Any, topic: str, kind: str) -> None:
+        """Wrap a reader of CycloneDDS."""
+        self._entity = entity
+        self.topic, self.kind = topic, kind
+
+    def sender(self, publication: int) -> object:
+        """Return what identifies the process of a publication; None if it has left."""
+        try:
+            data = self._entity.get_matched_publication_data(publication)
+        except DDSException:
+            return None
+        return None if data is None else data.participant_key
+
+    def senders(self) -> set[object]:
+        """Return the processes that publish the topic now."""
+        return {self.sender(publication) for publication in self._entity.get_matched_publications()}
+
+    def take(self) -> list[tuple[int, int, bytes]]:
+        """Return the messages since the last call: time of sending, ns, number of the publication, CDR.
+
+        Raises
+        ------
+        Ros2Error
+            If CycloneDDS reports an error.
+        """
+        taken = ddspy_take(self._entity._ref, _ANY, MOST)
+        if isinstance(taken, int):
+            raise Ros2Error(f"CycloneDDS could not read {self.topic}: {DDSException(taken).msg}")
+        # a sender that leaves adds a sample without data
+        return [
+            (info.source_timestamp, info.publication_handle, data) for data, info in taken if info.valid_data
+        ]

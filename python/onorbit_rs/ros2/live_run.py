@@ -1,0 +1,143 @@
+"""The run of a live node: its stepper, the rows and events since the last call, and its commands."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs.exceptions import ControlError
+from onorbit_rs.ros2.live_rows import LiveRows
+from onorbit_rs.ros2.wrench_timeouts import Entry, WrenchTimeouts
+from onorbit_rs.simulation.commands import CommandLog
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Checkpoint, EventRecord, Model, Simulation, Stepper, Trace, WorldTrace
+
+_SHORTEST_TICK = 1e-3
+"""Shortest simulated time between two looks at the topics, unless the time step is longer, s."""
+
+
+class LiveRun:
+    """A run that is advanced to given times and obeys commands at its current time.
+
+    Attributes
+    ----------
+    models : mapping of str to Model
+        Robots by the name of the system.
+    tick : float
+        Simulated time between two looks at the topics, s: a row, or a few steps of a long one.
+    end : float
+        Time beyond which the run is not advanced, s.
+    log : CommandLog
+        Commands that were given.
+    """
+
+    def __init__(self, simulation: Simulation, wrench_timeout: float | None) -> None:
+        """Start the run; ``wrench_timeout``, s, ends wrenches that no further command confirms."""
+        self._simulation = simulation
+        self.models: Mapping[str, Model] = simulation.models
+        steps = max(1, min(simulation.record_every, round(_SHORTEST_TICK / simulation.time_step)))
+        self.tick = simulation.time_step * steps
+        self.end = np.inf
+        self.log = CommandLog()
+        self._wrench_timeout = wrench_timeout
+        self._start(None)
+
+    def _start(self, planned: float | None) -> None:
+        """Start the run with its planned end, s."""
+        self._planned = planned
+        try:  # the state at the start, with that of controllers in Python
+            self._beginning: Checkpoint | None = self._simulation.start(duration=planned).checkpoint()
+        except ControlError:
+            self._beginning = None
+        self.restart()
+
+    def restart(self) -> None:
+        """Return to the start; controllers in Python are set back if their state can be saved."""
+        self._stepper: Stepper = self._simulation.start(duration=self._planned, resume=self._beginning)
+        self._rows = LiveRows(self._stepper, self.models)
+        self._event_count = 0
+        self._wrenches = WrenchTimeouts(self._wrench_timeout)
+
+    def reset(self) -> None:
+        """Return to the start, with an empty log in memory."""
+        self.restart()
+        self.log = CommandLog()
+
+    def plan(self, end: float) -> bool:
+        """Set the end of the run, s; return False if an adaptive run could not be planned to end there.
+
+        The steps of an adaptive run depend on its planned end. Such a run starts anew, which requires that
+        the state of its controllers in Python can be set back.
+        """
+        self.end = end
+        if self._simulation.integrator != "dormand_prince" or not np.isfinite(end):
+            return True
+        if not self.can_restart:
+            return False
+        self.restart()  # sets controllers in Python back
+        self._start(end)
+        return True
+
+    @property
+    def can_restart(self) -> bool:
+        """True if the state of all controllers can be set back."""
+        return self._beginning is not None
+
+    @property
+    def time(self) -> float:
+        """Current simulated time, s."""
+        return self._stepper.time
+
+    def controls_of(self, system: str) -> dict[str, list[str]]:
+        """Return the external controls of a system with their joints."""
+        own = self._stepper[system] if len(self.models) > 1 else self._stepper
+        return own.external
+
+    def next_time(self, shortest: float) -> float:
+        """Return the first time on the grid of ticks that is later by about ``shortest``, s, or by a tick."""
+        ticks = max(1, round(shortest / self.tick))
+        return min(self.tick * (round(self.time / self.tick) + ticks), self.end)
+
+    def advance_to(self, t: float) -> list[Entry]:
+        """Advance to a simulated time, s; return the commands that ended wrenches on the way."""
+        given: list[Entry] = []
+        while self._wrenches.next <= t:
+            self._stepper.advance_to(max(self._wrenches.next, self.time))
+            for entry in self._wrenches.take(self.time):
+                self.log.apply(self._stepper, entry)
+                given.append(entry)
+        self._stepper.advance_to(t)
+        return given
+
+    def command(self, entries: Sequence[Entry]) -> None:
+        """Give commands at the current time, all or none; raises an OnOrbitError for none."""
+        self.log.apply(self._stepper, *entries)
+        self._wrenches.note(entries, self.time)
+
+    def rows(self) -> Any:
+        """Return the rows of each system since the last call."""
+        return self._rows.take()
+
+    def events(self) -> Sequence[EventRecord]:
+        """Return the events since the last call."""
+        found = self._stepper.events
+        new = found[self._event_count :]
+        self._event_count = len(found)
+        return new
+
+    def present(self) -> Any:
+        """Return the row of each system at the current time, which :meth:`rows` may return too."""
+        return self._rows.present()
+
+    def take_present(self) -> Any:
+        """Return the row of each system at the current time, which :meth:`rows` then omits."""
+        return self._rows.take_present()
+
+    def finish(self) -> tuple[Trace | WorldTrace, Any]:
+        """End the run; return its trace and the rows since the last call."""
+        trace = self._stepper.finish()
+        self.log.close()
+        return trace, self._rows.take_last(trace)

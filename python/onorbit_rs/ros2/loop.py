@@ -1,0 +1,66 @@
+"""The loop of a live node: reads messages, waits for the next tick, advances the run."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from onorbit_rs.ros2.scheduling import collected_in_slack, prioritized
+
+if TYPE_CHECKING:
+    from onorbit_rs.ros2.orders import Orders
+    from onorbit_rs.ros2.pace import RealTime
+    from onorbit_rs.ros2.rivals import Rivals
+    from onorbit_rs.ros2.session import Session
+
+_IDLE_S = 1e-3
+"""Wall-clock time between two looks at the topics while the simulation waits, s."""
+
+
+@dataclass
+class Loop:
+    """Advances a session until its end, at the pace of a clock if there is one."""
+
+    session: Session
+    orders: Orders
+    rivals: Rivals
+    clock: RealTime | None
+    has_priority: bool
+
+    def spin(self) -> None:
+        """Obey messages and advance, until the end of the run or a signal."""
+        self.session.publish_present()
+        if self.clock is None:
+            self._repeat(lambda slack: None)
+            return
+        self.clock.calibrate()
+        with prioritized(self.has_priority), collected_in_slack() as tidy:
+            self._repeat(tidy)
+
+    def _repeat(self, tidy: Callable[[float], None]) -> None:
+        run = self.session.run
+        while run.time < run.end and not self.session.is_stopped():
+            self._turn(tidy)
+
+    def _turn(self, tidy: Callable[[float], None]) -> None:
+        """Read the messages shortly before the next tick, wait for it and advance, unless the run waits."""
+        session, clock = self.session, self.clock
+        if session.is_waiting:
+            tidy(math.inf)
+        elif clock is not None:
+            tidy(clock.ahead(session.run.time))
+            clock.approach(session.run.time)
+        self.orders.obey()
+        self.rivals.point_out(session)
+        if session.is_waiting:
+            session.greet()
+            time.sleep(_IDLE_S)
+            if clock is not None:
+                clock.restart(session.run.time)
+            return
+        if clock is not None:
+            clock.wait(session.run.time)
+        session.advance()

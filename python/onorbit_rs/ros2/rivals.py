@@ -1,0 +1,38 @@
+"""Points out other simulators in the domain of a node."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING
+
+from onorbit_rs.ros2.topics import WARN
+
+if TYPE_CHECKING:
+    from onorbit_rs.ros2.participant import Participant
+    from onorbit_rs.ros2.session import Session
+
+_PERIOD_S = 1.0
+"""Wall-clock time between two looks for other simulators, s."""
+
+
+class Rivals:
+    """Other nodes that publish the time, as a simulator does."""
+
+    def __init__(self, participant: Participant, domain: int) -> None:
+        """Begin without a look at the domain."""
+        self._participant, self._domain = participant, domain
+        self._looked = -math.inf
+
+    def point_out(self, session: Session) -> None:
+        """Publish a warning about a new one."""
+        now = time.monotonic()
+        if now < self._looked + _PERIOD_S:
+            return
+        self._looked = now
+        if self._participant.has_new_rival("/clock"):
+            session.say(
+                WARN, "/clock",
+                f"another node publishes the time in domain {self._domain}: both nodes obey the same "
+                "commands; give one of them another domain, by --domain, Node(domain=…) or ROS_DOMAIN_ID",
+            )  # fmt: skip

@@ -1,0 +1,66 @@
+"""What else the interpreter and the operating system do while a node runs in real time."""
+
+from __future__ import annotations
+
+import gc
+import os
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+_YOUNG = 700
+"""Number of new objects after which Python, too, looks for garbage among them."""
+_SLACK_S = 5e-4
+"""Time until the next tick, s, in which such a collection ends."""
+_TOO_MANY = 50 * _YOUNG
+"""Number of new objects after which a collection does not wait for slack."""
+
+
+@contextmanager
+def collected_in_slack() -> Iterator[Callable[[float], None]]:
+    """Disable the garbage collector in the block, since it may pause the program for 30 ms.
+
+    Yields a function that is called with the time, s, until the next tick. It collects new objects if there
+    are many and the time suffices. Garbage among old objects is collected after the block.
+    """
+
+    def tidy(slack: float) -> None:
+        count = gc.get_count()[0]
+        if count > _YOUNG and (slack > _SLACK_S or count > _TOO_MANY):
+            gc.collect(1)
+
+    was_enabled = gc.isenabled()
+    gc.collect(1)
+    gc.disable()
+    try:
+        yield tidy
+    finally:
+        if was_enabled:
+            gc.enable()
+
+
+@contextmanager
+def prioritized(is_wanted: bool) -> Iterator[None]:
+    """Give this thread real-time priority (``SCHED_FIFO``) in the block; warn where that is not possible.
+
+    Threads that begin in the block inherit it.
+    """
+    if not is_wanted:
+        yield
+        return
+    try:
+        before = os.sched_getscheduler(0), os.sched_getparam(0)
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(os.sched_get_priority_min(os.SCHED_FIFO)))
+    except (AttributeError, OSError) as error:
+        reason = getattr(error, "strerror", None) or "only Linux has it"
+        warnings.warn(
+            f"the node runs without real-time priority ({reason}); on Linux, allow it with the line "
+            "'@GROUP - rtprio 1' in /etc/security/limits.conf",
+            UserWarning, stacklevel=4,
+        )  # fmt: skip
+        yield
+        return
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, *before)

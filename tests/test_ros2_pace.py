@@ -1,0 +1,156 @@
+"""Real time: waits, delays, garbage collection and priority."""
+
+from __future__ import annotations
+
+import gc
+import os
+
+import numpy as np
+import pytest
+from ros2_runs import DOMAIN, needs_ros2, node_of
+from stepper_runs import scenario
+
+needs_ros2()
+
+from onorbit_rs.ros2.delays import Delays  # noqa: E402
+from onorbit_rs.ros2.pace import RealTime  # noqa: E402
+from onorbit_rs.ros2.participant import Participant  # noqa: E402
+from onorbit_rs.ros2.scheduling import collected_in_slack, prioritized  # noqa: E402
+
+TICK = 1e-3
+
+
+class Machine:
+    """A clock that each look advances by a microsecond, and sleeps that end too late."""
+
+    def __init__(self, late: float) -> None:
+        self.now, self.late, self.sleeps = 100.0, late, 0
+
+    def clock(self) -> float:
+        self.now += 1e-6
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.sleeps += 1
+        self.now += seconds + self.late
+
+
+def paced(machine: Machine, is_calibrated: bool) -> dict[str, float]:
+    """Returns how late 100 ticks were."""
+    pace = RealTime(TICK, clock=machine.clock, sleep=machine.sleep)
+    if is_calibrated:
+        pace.calibrate()
+    for k in range(100):
+        pace.wait(k * TICK)
+    return pace.report()
+
+
+def test_a_wait_is_exact_although_sleeps_end_late() -> None:
+    exact = paced(Machine(1.5e-4), is_calibrated=True)
+    assert exact["late_max_s"] < 5e-6 and exact["missed"] == 0.0
+    without = paced(Machine(1.5e-4), is_calibrated=False)
+    assert without["late_median_s"] == pytest.approx(1.5e-4, rel=0.05), "negative control"
+
+
+def test_the_processor_is_kept_busy_for_a_fraction_of_a_tick_at_most() -> None:
+    for late, early in ((0.0, 0.0), (1e-4, 1.5e-4), (1.0, 3e-4)):
+        pace = RealTime(TICK, clock=(machine := Machine(late)).clock, sleep=machine.sleep)
+        pace.calibrate()
+        assert pace.early == pytest.approx(early, abs=5e-6)
+    machine = Machine(1.0)
+    fast = RealTime(1e-4, clock=machine.clock, sleep=machine.sleep)
+    fast.calibrate()
+    assert fast.early == pytest.approx(3e-5)
+
+
+def test_a_tick_is_missed_if_it_is_late_by_a_tick() -> None:
+    machine = Machine(0.0)
+    pace = RealTime(TICK, clock=machine.clock, sleep=machine.sleep)
+    pace.wait(0.0)
+    machine.now += 4.5 * TICK  # a pause of the machine: the ticks at 1, 2 and 3 ms are late by one or more
+    for k in range(1, 10):
+        pace.wait(k * TICK)
+    assert pace.report()["missed"] == pytest.approx(0.3)
+    assert pace.slipped == 0.0
+    machine.now += 0.5
+    pace.wait(10 * TICK)
+    assert pace.slipped == pytest.approx(0.5, abs=0.01), "it does not catch up"
+
+
+def test_delays_are_counted_in_bounded_memory() -> None:
+    late = Delays(1e-3)
+    values = np.abs(np.random.default_rng(1).normal(scale=4e-4, size=20_000))
+    for value in (0.0, *values, 5.0):
+        late.add(value)
+    assert (late.count, late.largest, late.missed) == (20_002, 5.0, int(np.sum(values > 1e-3)) + 1)
+    for fraction in (0.5, 0.99):
+        assert late.quantile(fraction) == pytest.approx(np.quantile(values, fraction), rel=0.02)
+    assert late._counts.nbytes < 30_000
+
+
+def test_garbage_is_collected_when_there_is_time() -> None:
+    def litter(count: int) -> None:
+        for _ in range(count):
+            cycle: list[object] = []
+            cycle.append(cycle)
+
+    with collected_in_slack() as tidy:
+        assert not gc.isenabled()
+        litter(2000)
+        tidy(1e-4)
+        assert gc.get_count()[0] > 1000, "no time before the next tick"
+        tidy(1e-3)
+        assert gc.get_count()[0] < 700
+        litter(100_000)
+        tidy(-1.0)
+        assert gc.get_count()[0] < 700, "the memory is bounded without slack"
+    assert gc.isenabled()
+
+
+def test_looking_for_subscribers_leaves_no_garbage() -> None:
+    """Garbage at each tick causes collections, which pause a node for 30 ms."""
+    kind = ("/joint_states", "sensor_msgs/msg/JointState")
+    participant = Participant(DOMAIN)
+    writer, reader = participant.writer(*kind), participant.reader(*kind)
+    gc.collect()
+    gc.disable()
+    try:
+        for _ in range(100):
+            assert writer.subscribers() == 1
+        assert gc.collect() < 10
+        for _ in range(100):
+            writer._entity.get_matched_subscriptions()
+        assert gc.collect() >= 100, "negative control"
+    finally:
+        gc.enable()
+    assert reader.take() == []
+    participant.close()
+
+
+def test_a_priority_that_is_not_permitted_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse, raising=False)
+    with (
+        pytest.warns(UserWarning, match=r"without real-time priority \(Operation not permitted\).*rtprio"),
+        node_of(scenario(), has_priority=True) as node,
+    ):
+        assert node.spin(0.01).time[-1] == 0.01
+    with node_of(scenario(), pace="fast", has_priority=True) as node:
+        assert node.spin(0.01).time[-1] == 0.01, "real time only"
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_getscheduler"), reason="only Linux has SCHED_FIFO")
+def test_the_priority_ends_with_the_block() -> None:
+    before = os.sched_getscheduler(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+        os.sched_setscheduler(0, before, os.sched_param(0))
+    except PermissionError:
+        pytest.skip("this user may not use SCHED_FIFO")
+    with prioritized(True):
+        assert os.sched_getscheduler(0) == os.SCHED_FIFO
+    assert os.sched_getscheduler(0) == before
+    with prioritized(False):
+        assert os.sched_getscheduler(0) == before
