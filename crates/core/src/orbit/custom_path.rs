@@ -34,9 +34,10 @@ pub struct PathPoints {
 
 /// C² path that interpolates the given points.
 ///
-/// Positions alone are interpolated by a cubic spline of order 4. Positions with velocities are interpolated
-/// by a quintic spline of order 6 with a continuous third derivative, and positions with velocities and
-/// accelerations by quintic pieces of order 6. Attitudes are interpolated by a [`RotationSpline`] of order 4.
+/// Positions alone are interpolated by a cubic spline, whose error is of order 4 in the spacing of the
+/// points. Positions with velocities are interpolated by a quintic spline with a continuous third derivative,
+/// and positions with velocities and accelerations by quintic pieces; the error of both is of order 6.
+/// Attitudes are interpolated by a [`RotationSpline`], whose error is of order 4.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CustomPath {
     mu: Option<f64>,

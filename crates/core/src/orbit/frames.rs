@@ -2,8 +2,8 @@
 //!
 //! | name | x | y | z |
 //! |-|-|-|-|
-//! | [`Lvlh`], letter `L`: Hill, RSW, OnOrbitROS | radial, outward | completes, along track | angular momentum |
-//! | [`Nadir`], letter `N`: called LVLH by NASA and CCSDS | completes, along track | against angular momentum | down |
+//! | [`Lvlh`], letter `L`: Hill, RSW, OnOrbitROS | radial, outward | along track, completes the triad | angular momentum |
+//! | [`Nadir`], letter `N`: called LVLH by NASA and CCSDS | along track, completes the triad | against angular momentum | down |
 
 use nalgebra::{Matrix3, Vector3};
 

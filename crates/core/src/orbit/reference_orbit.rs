@@ -61,7 +61,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         Axes::default()
     }
 
-    /// Returns the epoch that is time zero of the simulation, if the orbit defines one.
+    /// Returns the epoch at simulation time zero; `None` if the orbit does not define one.
     fn epoch(&self) -> Option<Epoch> {
         None
     }

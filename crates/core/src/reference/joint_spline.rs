@@ -16,9 +16,9 @@ impl JointSpline {
     /// Creates the motion from rest to rest through `points` (K, n), rad or m, with or without stops at the
     /// inner points.
     ///
-    /// Limits, if given one per joint, determine the times. With stops, each piece takes the shortest time
-    /// that respects the limits. Without stops, the times of all pieces are scaled by a common factor such
-    /// that the whole path respects the limits.
+    /// If limits are given, one per joint, they determine the times. With stops, each piece takes the
+    /// shortest time that respects the limits. Without stops, the times of all pieces are scaled by a common
+    /// factor such that the whole path respects the limits.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two points, wrong lengths, numbers that are not finite, times that

@@ -20,7 +20,7 @@ const PEAK_RATE: f64 = 1.875;
 const PEAK_ACCELERATION: f64 = 5.773_502_691_896_258;
 
 /// Number of instants per piece at which peaks are searched. Peaks between these instants exceed the peaks
-/// found by a fraction of less than [`MARGIN`], by which the result is increased.
+/// found by a fraction of less than [`MARGIN`]; the result is therefore increased by this fraction.
 const LOOKS: usize = 400;
 const MARGIN: f64 = 1e-4;
 

@@ -14,7 +14,7 @@ pub struct Assembly {
     pub model: Option<Model>,
     /// Systems of the tree, the root first.
     pub members: Vec<Member>,
-    /// Joints between systems with prescribed motion, which represent seating motions.
+    /// Joints with prescribed motion between systems, which represent seating motions.
     pub given: Vec<GivenJoint>,
 }
 
@@ -90,7 +90,7 @@ impl<'m> GrowingTree<'m> {
     }
 
     /// Adds the captured system of a weld to the tree or, if `is_reversed`, the capturing system. The other
-    /// one is in the tree already.
+    /// system is already in the tree.
     fn add(&mut self, weld: &Weld, is_reversed: bool) -> Result<(), ModelError> {
         let (near, far) = if is_reversed { (weld.of, weld.by) } else { (weld.by, weld.of) };
         let Chain { joints, travels, pose } = weld.chain(&format!("capture {}", weld.capture), is_reversed);

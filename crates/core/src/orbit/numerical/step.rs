@@ -32,7 +32,7 @@ impl Start {
         Self { time, position: [position, Vector3::zeros()], velocity: [velocity, Vector3::zeros()] }
     }
 
-    /// Computes the step of `length` s from this state and the estimated error, m, of positions within the
+    /// Computes the step of `length` s from this state, and estimates the error, m, of positions within the
     /// step. Returns `None` if the iteration does not converge because the step is too long. `before` is the
     /// preceding step.
     pub(super) fn step(

@@ -4,7 +4,7 @@ use super::elements::{MeanElements, REV_DAY};
 use super::epoch::Epoch;
 use super::error::ElementSetError;
 
-/// Columns between the fields, which must be blank, counted from 1.
+/// Columns between the fields, counted from 1, which must be blank.
 const GAPS: [&[usize]; 2] = [&[2, 9, 18, 33, 44, 53, 62, 64], &[2, 8, 17, 26, 34, 43, 52]];
 
 /// Line of a TLE, with 69 ASCII characters.
