@@ -71,7 +71,7 @@ def ground_track(trace: Trace, earth: Earth) -> Figure:
 
 
 def _set_window(world: Axes, lon: Floats, lat: Floats) -> None:
-    """Show the whole map, or the surroundings of a small track."""
+    """Set the limits of the map: the whole Earth, or the surroundings of a small track."""
     sides = np.ptp(lon), np.ptp(lat)
     if max(sides) >= LOCAL_DEG:
         world.set(xlim=(-180.0, 180.0), ylim=(-90.0, 90.0), aspect="equal")

@@ -1,4 +1,4 @@
-"""Balance of momentum and energy, and the part of their change that is unexplained."""
+"""Balance of momentum and energy, and the part of their change that impulse and work do not explain."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def ledger(trace: Trace) -> Figure:
 
 
 def _plot_unexplained(axes: Axes, time: Floats, drift: Floats) -> None:
-    """Draw the largest value of each interval, on a logarithmic scale if any is above zero."""
+    """Draw the largest value of each time interval, on a logarithmic scale if any is above zero."""
     intervals = np.array_split(np.arange(len(time)), min(_INTERVALS, len(time)))
     rows = np.array(
         [interval[0] + np.argmax(drift[interval[0] : interval[-1] + 1]) for interval in intervals]

@@ -46,7 +46,7 @@ class CheckpointWriter:
     """Writes the checkpoints that :meth:`onorbit_rs.Simulation.run` passes to its ``checkpoint`` callback."""
 
     def __init__(self, folder: OutputFolder, digest: str, *, after: SavedCheckpoint | None = None) -> None:
-        """Prepare to write checkpoints of a scenario; ``after`` is the checkpoint of a resumed run."""
+        """Store the folder and the digest of the scenario; a resumed run continues ``after`` a checkpoint."""
         self._folder, self._path = folder, folder.path / CHECKPOINT
         self._digest, self._rows = digest, dict(after.rows) if after else {}
         self._digests = dict(after.digests) if after else {}

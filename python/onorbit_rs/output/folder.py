@@ -180,7 +180,8 @@ class OutputFolder:
         parent = file.parent
         if exists(parent) and not is_real_folder(parent) and parent != self.path:
             raise OutputFolderError(
-                f"cannot write {file}: {parent} is {file_kind(parent)}, but must be a folder", path=str(file)
+                f"cannot write {file}: {parent} is {file_kind(parent)}, but must be a folder; remove it",
+                path=str(file),
             )
         listed = {} if self.manifest is None else self.manifest.files
         if exists(file) and not (name in listed and is_regular(file)):

@@ -41,9 +41,10 @@ def joint_loads(trace: Trace, built: Built) -> Summary:
 
 
 def efforts_at_limit(trace: Trace, built: Built) -> Summary:
-    """Return the joints under PID control whose effort reached its limit.
+    """Return the names of the joints under PID control whose effort reached its limit, as a summary entry.
 
-    The limit is that of the controller or, if the controller has no limit, that of the robot.
+    The limit is that of the controller or, if the controller has no limit, that of the robot. Without a PID
+    controller, there is no entry.
     """
     names, tau = list(built.model.joint_names), np.abs(np.asarray(trace.tau)).max(axis=0)
     pids = [law for law in built.scenario.laws if isinstance(law, JointPidController)]

@@ -34,12 +34,12 @@ class SavedTrace:
 
     @property
     def tracking(self) -> dict[str, Any]:
-        """Tracking errors by the name of the control."""
+        """Tracking errors (T, k), m and rad, by the name of the control."""
         return self._by_owner("tracking")
 
     @property
     def wrenches(self) -> dict[str, Any]:
-        """Wrenches (T, bodies, 6) by the name of the effect."""
+        """Wrenches (T, bodies, 6), N and N m, by the name of the effect."""
         return self._by_owner("wrenches")
 
     def _by_owner(self, wanted: str) -> dict[str, Any]:

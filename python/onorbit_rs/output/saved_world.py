@@ -21,12 +21,12 @@ EVENTS = {"time": (), "impulse": (6,), "point": (3,), "energy_lost": (), "moment
 
 
 def systems_in(arrays: Mapping[str, Any]) -> list[str]:
-    """Return the names of the systems that have a column ``NAME/q`` among columns by path."""
+    """Return the names of the systems, given the columns of a world by path, such as ``chaser/q``."""
     return [path.removesuffix("/q") for path in arrays if path.endswith("/q")]
 
 
 def system_in(arrays: Mapping[str, Any], name: str) -> SavedTrace:
-    """Return the columns of a system among columns by path."""
+    """Return the trace of a system, given the columns of a world by path, such as ``chaser/q``."""
     prefix = f"{name}/"
     own = {path.removeprefix(prefix): rows for path, rows in arrays.items() if path.startswith(prefix)}
     return SavedTrace(own)
@@ -34,7 +34,7 @@ def system_in(arrays: Mapping[str, Any], name: str) -> SavedTrace:
 
 @dataclass(frozen=True)
 class SavedWorldTrace:
-    """Trace of a world, read from a file or a pickle; attributes as in :class:`onorbit_rs.WorldTrace`."""
+    """Trace of a world, read from a file or a pickle, with attributes of :class:`onorbit_rs.WorldTrace`."""
 
     systems: Mapping[str, Any]
     """Trace of each system."""
@@ -104,7 +104,7 @@ def saved_world(arrays: Mapping[str, Any], audits: Sequence[Mapping[str, Any]]) 
     systems = {name: system_in(arrays, name) for name in systems_in(arrays)}
     if len(audits) != len(arrays["events/time"]):
         raise ValueError(
-            f"it contains {len(arrays['events/time'])} events, but the summary contains {len(audits)}"
+            f"its number of events, {len(arrays['events/time'])}, differs from {len(audits)} in the summary"
         )
     events = [_event(arrays, row, audit) for row, audit in enumerate(audits)]
     columns = (arrays[name] for name in ("time", "momentum", "kinetic_energy"))

@@ -43,11 +43,12 @@ class Attitude(Part):
     @model_validator(mode="after")
     def _is_one_rotation(self) -> Attitude:
         if (self.quaternion_xyzw is None) == (self.roll_pitch_yaw is None):
-            raise invalid("give exactly one of 'quaternion_xyzw' and 'roll_pitch_yaw'")
+            given = "none" if self.quaternion_xyzw is None else "both"
+            raise invalid(f"give exactly one of 'quaternion_xyzw' and 'roll_pitch_yaw'; given: {given}")
         if self.quaternion_xyzw is not None:
             norm = math.hypot(*self.quaternion_xyzw)
             if abs(norm - 1.0) > 1e-6:
-                raise invalid(f"the quaternion has norm {norm:.9g}; it must be 1 within 1e-6")
+                raise invalid(f"the quaternion has norm {norm:.9g}; it must be 1 within 1e-6; normalize it")
         return self
 
 

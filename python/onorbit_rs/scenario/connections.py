@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Connection(NamedTuple):
-    """A capture: its name, the capturing and the captured (system, frame), its latch and its releases."""
+    """A capture: its name, the capturing (system, frame), the captured one, its latch and its releases."""
 
     name: str
     by: tuple[str, str]

@@ -70,7 +70,8 @@ def _check_header(
         if name not in known:
             raise ReadError(f"{where}: unknown column {name!r}{did_you_mean(name, known)}", path=str(path))
         if header.count(name) > 1:
-            raise ReadError(f"{where}: column {name!r} occurs more than once", path=str(path))
+            message = f"{where}: column {name!r} occurs more than once; give each column once"
+            raise ReadError(message, path=str(path))
     for name, columns in groups.items():
         missing = [column for column in columns if column not in header]
         if missing and (name in needed or len(missing) < len(columns)):

@@ -23,7 +23,7 @@ RESERVED = ("world", "lvlh", "base", "path")
 
 
 def checked_name(value: Any) -> Any:
-    """Return the name of a system or an event if it is valid."""
+    """Return the name of a system or an event; raise an error if it is not valid."""
     if not isinstance(value, str) or re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", value) is None:
         raise invalid(
             f"{shortened(value)} is not a valid name; a name is a letter, followed by letters, digits, '_' "
@@ -38,7 +38,7 @@ ItsName = Annotated[str, BeforeValidator(checked_name)]
 
 
 def _quantities(*dimensions: Dimension, above_zero: bool = False) -> BeforeValidator:
-    """Return the reader of a list with one quantity of each dimension."""
+    """Return the validator that reads a list with one quantity of each dimension."""
 
     def read(value: object) -> list[float]:
         if not isinstance(value, list) or len(value) != len(dimensions):
@@ -127,7 +127,8 @@ class Action(Part):
     @model_validator(mode="after")
     def _exactly_one(self) -> Self:
         if (self.capture is None) == (self.release is None):
-            raise invalid("give exactly one of 'capture' and 'release'")
+            given = "none" if self.capture is None else "both"
+            raise invalid(f"give exactly one of 'capture' and 'release'; given: {given}")
         if self.impulse is not None and self.release is None:
             raise inconsistent("impulse", "'impulse' requires 'release'; add 'release' or omit 'impulse'")
         if self.seat is not None and self.capture is None:

@@ -36,7 +36,7 @@ InitialFrame = Annotated[str, BeforeValidator(_frame)]
 
 
 class Neighbour(NamedTuple):
-    """Another system at its initial state."""
+    """Model, configuration and velocity of another system in its initial state."""
 
     model: Model
     q: Floats

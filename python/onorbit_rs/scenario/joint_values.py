@@ -57,9 +57,8 @@ def _joints_reader(*allowed: Dimension) -> PlainValidator:
         if isinstance(value, list):
             return [_joint_value(entry, allowed) for entry in value]
         raise QuantityError(
-            f"joints is {shortened(value)}; it must be a list in the model's order or a mapping from "
-            "joint name "
-            "to value",
+            f"{shortened(value)} is not a set of joint values; give a list in the order of the robot's "
+            "joints, or a mapping from joint names to values",
             text=value,
             expected="joints",
         )

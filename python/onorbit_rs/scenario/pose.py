@@ -25,7 +25,7 @@ class Pose(Part):
     attitude: Attitude | None = None
 
     def transform(self) -> Floats:
-        """Return the homogeneous transform (4, 4)."""
+        """Return the pose in the parent frame as a homogeneous matrix (4, 4), m."""
         pose = np.eye(4)
         pose[:3, :3], pose[:3, 3] = matrix_from_quaternion(quaternion_of(self.attitude)), self.position
         return pose

@@ -206,7 +206,7 @@ class Robot(PlainRobot):
         Raises
         ------
         OnOrbitError
-            The appropriate subclass; its message starts with file, line and key.
+            A subclass for the kind of error; its message starts with file, line and key.
         """
         if self.bus is None:
             return self.build_plain(scenario, ("robot",))

@@ -121,7 +121,8 @@ class _NodeReader:
                 )
             if key in key_lines:
                 first = key_lines[key]
-                raise _at(self.file, line, f"key {key!r} is given twice, first on line {first}")
+                message = f"key {key!r} is given twice, first on line {first}; remove one of them"
+                raise _at(self.file, line, message)
             key_lines[key] = line
             self.lines[(*at, key)] = line
             data[key] = self.value(loader, value_node, (*at, key))

@@ -40,7 +40,7 @@ class ComputedTorqueController(TaskLaw):
         )  # fmt: skip
 
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
-        """Yield the gains that the control period limits."""
+        """Yield the gains whose largest stable value depends on the control period."""
         yield "kd", 1, square(self.kd, 6)
         yield "kp", 2, square(self.kp, 6)
         yield "null_space_damping", 1, square(self.null_space_damping, 1)

@@ -47,7 +47,7 @@ class ExternalController(JointLaw):
         )
 
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
-        """Yield the gains that the control period limits."""
+        """Yield the gains whose largest stable value depends on the control period."""
         joints = mobility.joint_count(self)
         yield "kd", 1, square(self.kd, joints)
         yield "kp", 2, square(self.kp, joints)

@@ -12,7 +12,7 @@ from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 
 def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeValidator:
-    """Return the reader of a task-space gain; a single number must have no unit if ``angular`` is given."""
+    """Return the validator that reads a task-space gain; with ``angular``, a single number has no unit."""
 
     def row(value: object) -> list[float]:
         if not isinstance(value, list) or len(value) != 6:
@@ -46,7 +46,7 @@ DamperGain = Annotated[_Gain, _gain_reader(units.LINEAR_DAMPING, units.ANGULAR_D
 
 
 def _per_joint_reader(*allowed: Dimension) -> BeforeValidator:
-    """Return the reader of a gain that is one number for all joints of a group, or one number per joint."""
+    """Return the validator that reads one number for all joints of a group, or one number per joint."""
 
     def read(value: object) -> float | list[float]:
         if isinstance(value, list):
@@ -68,7 +68,7 @@ JointTolerance = Annotated[_PerJoint, _per_joint_reader(units.ANGLE, units.LENGT
 def _task_tolerance(value: object) -> list[float]:
     if not isinstance(value, list) or len(value) != 2:
         raise QuantityError(
-            f"the tolerance of a tool is {value!r:.60}; it must be a distance and an angle: [1 mm, 0.1 deg]",
+            f"the tolerance of a tool is {value!r:.60}; give a distance and an angle, as in [1 mm, 0.1 deg]",
             text=value,
             expected="a length and an angle",
         )

@@ -32,7 +32,10 @@ class PythonController(Law):
     @model_validator(mode="after")
     def _has_one_source(self) -> PythonController:
         if (self.file is None) == (self.module is None):
-            raise invalid("give exactly one of 'file' (relative to the scenario) and 'module'")
+            given = "none" if self.file is None else "both"
+            raise invalid(
+                f"give exactly one of 'file' (relative to the scenario) and 'module'; given: {given}"
+            )
         return self
 
     def build_law(self, model: _core.Model, tool: str | None, folder: Path, *, runs_code: bool = True) -> Any:

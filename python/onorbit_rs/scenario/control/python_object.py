@@ -70,7 +70,8 @@ def _execute_file(file: Path) -> ModuleType:
     try:
         spec.loader.exec_module(module)
     except Exception as error:
-        raise ControlError(f"{file} raised {_one_line(error)}", name="file", got=str(file)) from error
+        message = f"the controller's file {file} raised {_one_line(error)}; correct the file"
+        raise ControlError(message, name="file", got=str(file)) from error
     return module
 
 

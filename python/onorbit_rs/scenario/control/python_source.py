@@ -27,7 +27,7 @@ class Placeholder:
     """Replaces a controller whose source was inspected but not executed; its efforts are zero."""
 
     def update(self, t: float, state: Any) -> Any:
-        """Return zero efforts, (n,)."""
+        """Return zero efforts, (n,), N m or N."""
         return np.zeros(len(state.joints))
 
 

@@ -13,7 +13,7 @@ from onorbit_rs.scenario.part import Part
 
 
 class GravityFieldEffect(Part):
-    """Gravity field, which rotates with ``earth``."""
+    """Gravity field, whose axes rotate with the planet as the key ``earth`` defines."""
 
     kind: Literal["gravity_field"] = "gravity_field"
     model: str = "egm2008"

@@ -14,7 +14,7 @@ Coefficient = Annotated[Number, NotNegative]
 
 
 class FacesSurface(Part):
-    """Faces of a link's visual geometry."""
+    """Surface that consists of the faces of a link's visual geometry."""
 
     kind: Literal["faces"] = "faces"
     drag_coefficient: Coefficient = 2.2

@@ -57,7 +57,7 @@ class BagReference(Part):
         return _core.JointSampled(time, positions, rates=rates)
 
     def _followed(self, samples: Sequence[Sample], at: Start) -> Mapping[str, str]:
-        """Return the joint of the group for each joint of the bag that the reference follows."""
+        """Return the joints of the group that follow the bag, by the names of the joints in the bag."""
         recorded = list(dict.fromkeys(name for sample in samples for name in sample.names))
         robot = list(at.model.joint_names)
         for name in self.joints or ():
@@ -81,11 +81,11 @@ class BagReference(Part):
 
 
 class _BadRecordingError(ValueError):
-    """A recording that cannot be a reference."""
+    """Raised for a recording that cannot be used as a reference."""
 
 
 def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
-    """Return the samples that have the joints; raise an error for one that has only some of them."""
+    """Return the samples that contain all named joints; raise an error if a sample contains only some."""
     found = []
     for number, sample in enumerate(samples, 1):
         missing = [name for name in names if name not in sample.names]

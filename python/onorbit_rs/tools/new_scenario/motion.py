@@ -73,9 +73,9 @@ def within(joint: Joint, value: float) -> float:
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the position of a held joint: zero if within its limits, otherwise near zero or mid-range.
+    """Return the position of a held joint: zero, or the nearest allowed position if zero is not allowed.
 
-    The middle of the range is used for prismatic joints.
+    For a prismatic joint that cannot be at zero, the middle of its range is returned.
     """
     near = within(joint, 0.0)
     return near if near == 0.0 or joint.kind != "prismatic" else sum(_limits(joint)) / 2.0
@@ -148,7 +148,7 @@ def joint_goals(
 
 
 def configuration(model: Model, joints: dict[str, float]) -> Floats:
-    """Return the configuration (nq,) with these joint positions, and the base at W with equal axes."""
+    """Return the configuration (nq,) with these joint positions, and the base in its neutral pose."""
     q = np.array(model.neutral(), dtype=np.float64)
     for name, value in joints.items():
         q[BASE_NQ + list(model.joint_names).index(name)] = value
