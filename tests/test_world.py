@@ -191,11 +191,11 @@ INVALID: dict[str, tuple[Callable[[], object], str]] = {
     "two names": (lambda: oo.World([systems()[0], systems()[0]]), "two systems have the name"),
     "slash": (
         lambda: oo.World([systems()[0], oo.System("a/b", BOX, BOX.neutral(), np.zeros(6))]),
-        "is not a name",
+        "is not a valid name",
     ),
     "reserved": (
         lambda: oo.World([systems()[0], oo.System("world", BOX, BOX.neutral(), np.zeros(6))]),
-        "is not a name",
+        "is not a valid name",
     ),
     "two events": (lambda: world(GRASP, GRASP), "two events have the name"),
     "empty": (lambda: oo.World([]), "no systems"),
