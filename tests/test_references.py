@@ -261,8 +261,8 @@ def test_joint_references_of_scenarios(tmp_path: Path) -> None:
     ("text", "words"),
     [
         ("time,x,y,z,qx,qy,qz\n", "qw"),
-        ("time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,one\n", r"motion\.csv:2: could not convert"),
-        ("time,x,y,z,qx,qy,qz,qw\n0,0,0\n", "3 cells"),
+        ("time,x,y,z,qx,qy,qz,qw\n0,0,0,0,0,0,0,one\n", r"motion\.csv:2: .one. is not a number"),
+        ("time,x,y,z,qx,qy,qz,qw\n0,0,0\n", "number of cells is 3"),
         ("time,x,y,z,qx,qy,qz,qw,vx\n", "vy"),
     ],
 )
