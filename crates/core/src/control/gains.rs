@@ -51,7 +51,11 @@ impl PerJoint {
         }
         Err(ControlError::WrongLength {
             name,
-            expected: format!("1 or {count}, one per joint of the group"),
+            // the error of a tool has two components
+            expected: match count {
+                2 => "1 or 2, one per joint of the group (for a tool: position and attitude)".to_owned(),
+                _ => format!("1 or {count}, one per joint of the group"),
+            },
             got,
         })
     }

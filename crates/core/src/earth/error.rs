@@ -54,14 +54,17 @@ pub enum EarthError {
         value: f64,
     },
     /// An Earth-orientation parameter is implausible.
-    #[error("{name} is {value} in row {row}; expected {expected}", value = short(*value))]
+    #[error(
+        "{name} is {value}{place}; expected {expected}",
+        value = short(*value), place = row.map_or_else(String::new, |row| format!(" in row {row}"))
+    )]
     Parameter {
         /// Name of the parameter.
         name: &'static str,
         /// Given value.
         value: f64,
-        /// Number of the row of the table, counted from 0.
-        row: usize,
+        /// Number of the row of the table, counted from 0; `None` for constant parameters.
+        row: Option<usize>,
         /// Accepted range.
         expected: &'static str,
     },

@@ -73,7 +73,7 @@ impl Parameters {
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {
-                check(0, epoch.utc().0 as f64, *ut1_minus_utc, polar_motion)?;
+                check(None, epoch.utc().0 as f64, *ut1_minus_utc, polar_motion)?;
                 let ut1_minus_tai = ut1_minus_utc + epoch.utc_minus_tai();
                 Ok(Self::Constant { ut1_minus_tai, polar_motion: *polar_motion })
             }
@@ -88,12 +88,12 @@ impl Parameters {
                         return Err(EarthError::Parameter {
                             name: "MJD",
                             value: row.mjd,
-                            row: index,
+                            row: Some(index),
                             expected,
                         });
                     }
                     last = row.mjd;
-                    check(index, row.mjd, row.ut1_minus_utc, &row.polar_motion)?;
+                    check(Some(index), row.mjd, row.ut1_minus_utc, &row.polar_motion)?;
                     let at = Epoch::of_mjd_utc(row.mjd);
                     let ut1_minus_tai = row.ut1_minus_utc + at.utc_minus_tai();
                     Ok(Row { time: at.since(epoch), ut1_minus_tai, polar_motion: row.polar_motion })
@@ -155,18 +155,23 @@ const MJD_1972: f64 = 41_317.0;
 const MJD_2035: f64 = 64_328.0;
 const MJD_2100: f64 = 88_069.0;
 
-fn check(row: usize, mjd: f64, ut1_minus_utc: f64, polar_motion: &[f64; 2]) -> Result<(), EarthError> {
+fn check(
+    row: Option<usize>,
+    mjd: f64,
+    ut1_minus_utc: f64,
+    polar_motion: &[f64; 2],
+) -> Result<(), EarthError> {
     let largest = largest_ut1(mjd);
     if !(-largest..=largest).contains(&ut1_minus_utc) {
         let expected = if largest < 1.0 {
-            "at most 0.9 s (are these milliseconds, or UT1 - TAI?)"
+            "a magnitude of at most 0.9 s (are these milliseconds, or UT1 - TAI?)"
         } else {
-            "at most 60 s before 1972 and from 2035 (are these milliseconds?)"
+            "a magnitude of at most 60 s before 1972 and from 2035 (are these milliseconds?)"
         };
         return Err(EarthError::Parameter { name: "UT1 - UTC", value: ut1_minus_utc, row, expected });
     }
     if let Some(&value) = polar_motion.iter().find(|x| !(-FARTHEST_POLE..=FARTHEST_POLE).contains(*x)) {
-        let expected = "at most 2.4e-5 rad (are these arc seconds?)";
+        let expected = "a magnitude of at most 2.4e-5 rad (are these arc seconds?)";
         return Err(EarthError::Parameter { name: "polar motion", value, row, expected });
     }
     Ok(())

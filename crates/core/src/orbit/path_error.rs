@@ -18,8 +18,8 @@ pub enum PathError {
     )]
     NotFinite { name: &'static str, index: usize, value: f64 },
     #[error(
-        "times[{index}] is {time} s after {before} s; times must increase by at least 1e-9 s; sort the rows \
-         and remove duplicates",
+        "times[{index}] is {time} s, and the time before is {before} s; times must increase by at least 1e-9 s; \
+         sort the rows and remove duplicates",
         before = short(*before), time = unlike(*time, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, time: f64 },

@@ -4,7 +4,7 @@ use super::LAWS;
 use super::gains::per_joint;
 use super::native_law::{Group, Robot};
 use super::user::PythonController;
-use crate::arrays::{names_in, text};
+use crate::arrays::{names_in, text, type_name};
 use crate::errors::{IntoPython, plain};
 use crate::pickling::{ConstructorCall, Reduced, call_of};
 use crate::reference;
@@ -238,8 +238,10 @@ fn law_of(
 
 /// Returns the error for an object that is not a controller.
 fn no_controller(controller: Any<'_, '_>) -> PyErr {
-    let message = "controller has no method update(t, state); give a controller such as ComputedTorque, an \
-    object derived from \
-                   Controller, or a list of Control objects";
-    plain(controller.py(), "ControlError", message)
+    let got = type_name(controller);
+    let message = format!(
+        "controller is of type {got}, which has no method update(t, state); give a controller such as \
+         ComputedTorque, an object derived from Controller, or a list of Control objects"
+    );
+    plain(controller.py(), "ControlError", &message)
 }

@@ -92,7 +92,7 @@ fn wrenches<'py>(
     let Ok(external) = external.cast::<PyDict>() else {
         let (py, got) = (external.py(), type_name(external));
         let message = format!(
-            "external is {got}; expected a dict of wrenches by frame name, such as \
+            "external is of type {got}; expected a dict of wrenches by frame name, such as \
              {{'{}': [fx, fy, fz, tx, ty, tz]}}",
             model.model.frames()[0].name
         );

@@ -328,7 +328,8 @@ fn order_of(value: Any<'_, '_>) -> PyResult<Option<usize>> {
 fn degree_or_order(value: Any<'_, '_>, name: &str) -> PyResult<usize> {
     let number = whole(value, name)?;
     usize::try_from(number).map_err(|_| {
-        let message = format!("{name} is {number}; it must be zero or positive");
+        let least = if name == "degree" { 2 } else { 0 };
+        let message = format!("{name} is {number}; it must be at least {least}");
         raise(value.py(), "GravityError", &message, &fields!(value.py(), "name": name, "got": number))
     })
 }

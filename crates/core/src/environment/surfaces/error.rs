@@ -1,7 +1,7 @@
 //! Errors of surfaces.
 
 use crate::environment::body_index::BodyIndex;
-use crate::number_text::{list, short};
+use crate::number_text::{count, list, short};
 
 /// Errors of surfaces; each holds the offending value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -51,7 +51,9 @@ pub enum SurfaceError {
     },
     /// The numbers of areas, normals and centroids differ.
     #[error(
-        "there are {areas} areas, {normals} normals and {centroids} centroids; give one of each per plate"
+        "plates have {areas}, {normals} and {centroids}; give one of each per plate",
+        areas = count(*areas, "area"), normals = count(*normals, "normal"),
+        centroids = count(*centroids, "centroid")
     )]
     WrongLength {
         /// Number of areas.

@@ -25,7 +25,8 @@ impl SurfaceAssignment {
             Err(_) => {
                 let got = type_name(value);
                 let message = format!(
-                    "surfaces holds {got}; expected Faces, Plates or Cannonball, or a dict of them by body"
+                    "surfaces holds a value of type {got}; expected Faces, Plates or Cannonball, or a dict of them by \
+                     body"
                 );
                 Err(raise(
                     value.py(),
