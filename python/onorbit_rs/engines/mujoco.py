@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from onorbit_rs.common.counting import count
 from onorbit_rs.engines.mujoco_log import without_log
 from onorbit_rs.engines.mujoco_model import import_mujoco, world_model
 from onorbit_rs.engines.mujoco_share import connect, exchanged, shares
@@ -192,9 +193,9 @@ class Mujoco:
         """
         if not self._is_world or len(q) != self._model.nq or len(tau) != len(self._dofs):
             raise EngineError(
-                f"this engine has {self._model.nq} coordinates in {len(self._shares)} systems, but the world "
-                f"has {len(q)} coordinates; create Mujoco({{name: model, ...}}) with all systems in the "
-                "order of the world",
+                f"this engine was created for {count(len(self._shares), 'system', 'systems')} with "
+                f"{self._model.nq} coordinates, but the world has {len(q)} coordinates; create "
+                "Mujoco({name: model, ...}) with all systems in the order of the world",
                 name="engine", got="mujoco",
             )  # fmt: skip
         qpos, qvel, acceleration, done = self._advance((start, end), (q, v, tau), wrenches, welds)
@@ -271,7 +272,9 @@ class Mujoco:
             self._mujoco.mj_forward(self._model, data)
         except self._mujoco.FatalError as error:
             raise EngineError(
-                f"MuJoCo failed at t = {t:g} s: {error}", name="engine", got="mujoco"
+                f"MuJoCo failed at t = {t:g} s: {error}; use a shorter time_step, or engine: native",
+                name="engine",
+                got="mujoco",
             ) from error
         if self._is_world:
             parts = exchanged(self._mujoco, self._model, data, self._shares, outer)

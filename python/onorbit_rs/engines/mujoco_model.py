@@ -112,7 +112,8 @@ def world_model(
     try:
         compiled = spec.compile()
     except ValueError as error:
-        raise ModelError(f"MuJoCo rejects this robot: {' '.join(str(error).split())}") from error
+        reason = " ".join(str(error).split())
+        raise ModelError(f"MuJoCo rejects this robot: {reason}; use engine: native") from error
     # set after compilation, since the compiler rejects moments that violate the triangle inequality, which
     # occur in published robots
     for name, moment in moments.items():

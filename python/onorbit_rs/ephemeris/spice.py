@@ -83,7 +83,10 @@ def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
         body = centres[body]
     if not chain:
         known = ", ".join(str(target) for target in sorted(centres))
-        message = f"{path} does not contain the {name.title()} ({BODIES[name]}); bodies: {known or 'none'}"
+        message = (
+            f"{path} does not contain the {name.title()} (body {BODIES[name]}), but only the bodies "
+            f"{known or 'none'}; give a kernel of the Sun, the Moon and the Earth, such as de440s.bsp"
+        )
         raise EarthError(message, name="ephemeris", got=str(path), expected=name)
     return chain
 
@@ -94,7 +97,10 @@ def _between(
     """Return the segments of the body minus those of the Earth, without common segments."""
     ends = {(there or earth)[-1][0], earth[-1][0]}
     if len(ends) > 1:
-        message = f"the segments of {path} do not connect the Earth with the body {there[0][1]}"
+        message = (
+            f"the segments of {path} do not connect the Earth with the body {there[0][1]}; give a kernel of "
+            "the Sun, the Moon and the Earth, such as de440s.bsp"
+        )
         raise EarthError(message, name="ephemeris", got=str(path))
     wanted = [(pair, 1.0) for pair in there if pair not in earth]
     wanted += [(pair, -1.0) for pair in earth if pair not in there]
@@ -109,7 +115,10 @@ def _series(segment: Any, path: str | Path) -> tuple[float, float, NDArray[np.fl
         if kind in (2, 3):
             message = f"{path}: the segment of body {segment.target} is damaged: {error}"
             raise ReadError(message, path=str(path), kind="SPICE kernel") from None
-        message = f"{path}: the segment of body {segment.target} is of type {kind}, expected type 2 or 3"
+        message = (
+            f"{path}: the segment of body {segment.target} is of type {kind}; it must be of type 2 or 3 "
+            "(Chebyshev polynomials)"
+        )
         raise EarthError(message, name="ephemeris", got=kind, expected=(2, 3)) from None
     return (
         (start - 2_451_545.0) * 86_400.0,

@@ -68,9 +68,9 @@ def same_batch(**first: Floats) -> None:
     shapes = {name: value.shape for name, value in first.items()}
     if len(set(shapes.values())) > 1:
         lengths = ", ".join(
-            f"{name} {shape[0] if shape else 'a single state'}" for name, shape in shapes.items()
+            f"{name}: {shape[0] if shape else 'a single state'}" for name, shape in shapes.items()
         )
-        message = f"batch sizes differ: {lengths}; all inputs must have the same batch size"
+        message = f"batch sizes differ ({lengths}); all inputs must have the same batch size"
         raise ShapeError(message, name="batch", expected="equal lengths", got=lengths)
 
 

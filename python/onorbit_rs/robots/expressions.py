@@ -237,6 +237,6 @@ class _Evaluation(Evaluator):
     def refused(self, node: ast.AST) -> ValueError:
         what = ast.unparse(node) if isinstance(node, ast.expr) else type(node).__name__
         return ValueError(
-            f"{what!r} is not allowed in a xacro expression: only numbers, text, lists, mappings, "
-            "arithmetic, comparisons, conditions, indexing and calls of listed functions are"
+            f"{what!r} is not allowed in a xacro expression; use only numbers, text, lists, mappings, "
+            "arithmetic, comparisons, conditions, indexing and the functions of xacro"
         )

@@ -50,7 +50,8 @@ def take_screenshot(
         If the picture cannot be written.
     """
     if not recording.is_file():
-        raise NotFoundError(f"no such recording: {recording}", path=str(recording), kind="recording")
+        message = f"no such recording: {recording}; repeat the run to write a recording"
+        raise NotFoundError(message, path=str(recording), kind="recording")
     port = free_port()
     command = [
         *command_of(port),
