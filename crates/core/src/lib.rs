@@ -10,6 +10,8 @@
 //! | equation | file | function |
 //! |-|-|-|
 //! | reduced model `M*`, `c*`, `Q*`; generalized Jacobian `Jg` and drift `d` | `dynamics/free_floating.rs` | `kernel`, `reduced_inertia`, `reduce_task` |
+//! | signed distance of convex shapes `max over n of (min bᵀn − max aᵀn)` | `geometry/convex.rs` | `closest` |
+//! | weights of contact points by area `(A_{i−1} + A_i)/2A`, by tilt | `geometry/polygon.rs` | `weights` |
 //! | forward dynamics by ABA | `dynamics/aba.rs` | `kernel` |
 //! | joint traversed backwards `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹` | `model/reroot.rs` | `reversed` |
 //! | velocity after a capture `M v⁺ = Σ J_kᵀ I_k V_k⁻` | `world/impulse.rs` | `connected_velocity` |

@@ -20,13 +20,15 @@ use crate::spatial::Vec3;
 /// If a length or a pose is invalid, if no method covers the pair, such as a torus and a box, or if the bounds of the
 /// distance did not meet.
 pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
-    for (shape, pose) in [(a, pose_a), (b, pose_b)] {
-        shape.check()?;
-        if !pose.is_finite() {
-            return Err(GeometryError::Pose { name: shape.name() });
-        }
-    }
+    check(a, pose_a)?;
+    check(b, pose_b)?;
     nearest_pieces(a, pose_a, b, pose_b).map(|(proximity, _)| proximity)
+}
+
+/// Checks the dimensions of a shape and its pose.
+pub(super) fn check(shape: &Shape, pose: &Pose) -> Result<(), GeometryError> {
+    shape.check()?;
+    if pose.is_finite() { Ok(()) } else { Err(GeometryError::Pose { name: shape.name() }) }
 }
 
 /// Shape that is not a compound, with its pose in common axes.

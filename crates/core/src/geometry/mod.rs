@@ -4,7 +4,8 @@
 //! | Equation | Function |
 //! |-|-|
 //! | signed distance from a point to a shape, its closest point and normal | [`signed_distance`] |
-//! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` for convex ones | [`closest`] |
+//! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` for convex ones | [`closest()`] |
+//! | contact points, `w_i = a_i g_i / Σ a_j g_j` | [`manifold()`] |
 
 mod boundary;
 mod bounding_sphere;
@@ -12,11 +13,16 @@ mod closest;
 mod convex;
 mod epa;
 mod error;
+mod feature;
 mod gjk;
 mod hull;
+mod manifold;
+mod patch;
+mod polygon;
 mod polytope;
 mod pose;
 mod profile;
+mod projection;
 mod proximity;
 mod segment;
 mod shape;
@@ -28,6 +34,8 @@ pub use bounding_sphere::BoundingSphere;
 pub use closest::closest;
 pub use error::{GeometryError, PosedPair};
 pub use hull::{Face, Hull};
+pub use manifold::{Manifold, manifold};
+pub use patch::ContactPoint;
 pub use pose::Pose;
 pub use proximity::Proximity;
 pub use shape::Shape;

@@ -1,0 +1,68 @@
+//! Convex polygons in a plane: intersection and weights of the corners.
+
+/// Point of the plane, m.
+pub(super) type Point = [f64; 2];
+
+fn cross(o: Point, a: Point, b: Point) -> f64 {
+    (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
+}
+
+fn between(a: Point, b: Point, t: f64) -> Point {
+    [t.mul_add(b[0] - a[0], a[0]), t.mul_add(b[1] - a[1], a[1])]
+}
+
+/// Returns the intersection of a convex polygon, or of a segment of two corners, with a convex polygon. Both have their
+/// corners counterclockwise.
+///
+/// Source: Sutherland and Hodgman, Communications of the ACM 17(1), 1974.
+pub(super) fn clip(subject: &[Point], window: &[Point]) -> Vec<Point> {
+    let is_closed = subject.len() > 2;
+    let mut corners = subject.to_vec();
+    for (k, from) in window.iter().enumerate() {
+        let to = window[(k + 1) % window.len()];
+        let height: Vec<f64> = corners.iter().map(|p| cross(*from, to, *p)).collect();
+        let mut kept = Vec::with_capacity(corners.len() + 1);
+        for i in 0..corners.len() {
+            if height[i] >= 0.0 {
+                kept.push(corners[i]);
+            }
+            let next = (i + 1) % corners.len();
+            if (next > i || is_closed) && (height[i] >= 0.0) != (height[next] >= 0.0) {
+                kept.push(between(corners[i], corners[next], height[i] / (height[i] - height[next])));
+            }
+        }
+        corners = kept;
+    }
+    corners
+}
+
+/// Returns weights of the corners of a convex polygon or a segment. They sum to 1, and the weighted mean of the corners is
+/// the centroid.
+///
+/// With the polygon cut into triangles from its centroid, of areas `A_i` from corner `i` to `i + 1` and `A` in total, the
+/// weight is `w_i = (A_{i−1} + A_i)/2A`. For any function that is linear on the polygon, `Σ w_i f_i` is its mean. A corner
+/// that splits into two passes its weight on to them, so the weights of a patch that changes its shape are continuous.
+pub(super) fn weights(corners: &[Point]) -> Vec<f64> {
+    let count = corners.len();
+    let next = |i: usize| corners[(i + 1) % count];
+    let first = corners[0];
+    let (mut twice_area, mut moment) = (0.0, [0.0; 2]);
+    for i in 1..count.max(1) {
+        let area = cross(first, corners[i], next(i));
+        twice_area += area;
+        for axis in 0..2 {
+            moment[axis] += area * (corners[i][axis] + next(i)[axis] - 2.0 * first[axis]) / 3.0;
+        }
+    }
+    let length = |i: usize| (next(i)[0] - corners[i][0]).hypot(next(i)[1] - corners[i][1]);
+    let perimeter: f64 = (0..count).map(length).sum();
+    // a line has no area: each edge then gives half of its length to each of its ends
+    let is_line = twice_area <= 1e-14 * perimeter * perimeter;
+    let center = [first[0] + moment[0] / twice_area, first[1] + moment[1] / twice_area];
+    let part = |i: usize| if is_line { length(i) } else { cross(center, corners[i], next(i)) };
+    let total = if is_line { perimeter } else { twice_area };
+    if total <= 0.0 {
+        return vec![1.0 / count as f64; count];
+    }
+    (0..count).map(|i| 0.5 * (part((i + count - 1) % count) + part(i)) / total).collect()
+}

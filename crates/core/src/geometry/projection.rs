@@ -1,0 +1,79 @@
+//! Projection of features along the normal of a contact.
+
+use super::feature::Feature;
+use super::polygon::Point;
+use super::proximity::Proximity;
+use super::segment::perpendicular;
+use crate::spatial::Vec3;
+
+/// Cosine of the angle between the normals of a contact and of a face below which the face is no part of the contact;
+/// sine of that between the normal and a line.
+const STEEP: f64 = 0.1;
+
+/// Plane through the first witness point and perpendicular to the normal.
+pub(super) struct Projection {
+    /// First witness point.
+    pub(super) origin: Vec3<f64>,
+    /// Distance of the shapes.
+    pub(super) distance: f64,
+    x: Vec3<f64>,
+    y: Vec3<f64>,
+    normal: Vec3<f64>,
+}
+
+impl Projection {
+    pub(super) fn new(proximity: &Proximity) -> Self {
+        let Proximity { normal, point_a: origin, distance, .. } = *proximity;
+        let across = perpendicular(normal);
+        let x = across * (1.0 / across.norm());
+        Self { origin, distance, x, y: normal.cross(x), normal }
+    }
+
+    fn project(&self, p: Vec3<f64>) -> Point {
+        [(p - self.origin).dot(self.x), (p - self.origin).dot(self.y)]
+    }
+
+    /// Returns the point at a height along the normal above a point of the plane.
+    pub(super) fn lift(&self, p: Point, height: f64) -> Vec3<f64> {
+        self.normal.scale_add(height, self.x.scale_add(p[0], self.y.scale_add(p[1], self.origin)))
+    }
+
+    /// Returns true if a line is nearly parallel to the normal.
+    pub(super) fn is_steep(&self, [from, to]: [Vec3<f64>; 2]) -> bool {
+        let along = to - from;
+        self.normal.cross(along).norm() <= STEEP * along.norm()
+    }
+
+    /// Returns the corners of a bounded feature, those of a face counterclockwise about the normal; `None` for a feature
+    /// that is nearly parallel to the normal.
+    pub(super) fn corners(&self, feature: &Feature) -> Option<Vec<Point>> {
+        match feature {
+            Feature::Segment { ends, .. } if !self.is_steep(*ends) => {
+                Some(ends.iter().map(|p| self.project(*p)).collect())
+            }
+            Feature::Face { corners, normal } if normal.dot(self.normal).abs() > STEEP => {
+                let mut corners: Vec<_> = corners.iter().map(|p| self.project(*p)).collect();
+                if normal.dot(self.normal) < 0.0 {
+                    corners.reverse();
+                }
+                Some(corners)
+            }
+            _ => None,
+        }
+    }
+
+    /// Returns the height of a feature along the normal above a point of the plane; `other` for a half-space.
+    pub(super) fn height(&self, feature: &Feature, p: Point, other: f64) -> f64 {
+        let foot = self.lift(p, 0.0);
+        match feature {
+            Feature::Face { corners, normal } => (corners[0] - foot).dot(*normal) / self.normal.dot(*normal),
+            Feature::Segment { ends: [from, to], .. } => {
+                let along = *to - *from;
+                let level = self.normal.scale_add(-along.dot(self.normal), along);
+                let t = (foot - *from).dot(level) / level.dot(level);
+                (along.scale_add(t, *from) - self.origin).dot(self.normal)
+            }
+            Feature::Point | Feature::Plane => other,
+        }
+    }
+}
