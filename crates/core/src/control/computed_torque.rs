@@ -45,7 +45,8 @@ pub struct ComputedTorque {
 }
 
 impl ComputedTorque {
-    /// Creates a law with the scalar gains `kp` (1/s²) and `kd` (1/s), `λ₀ = 0.05` and no null-space damping.
+    /// Creates a law with the scalar gains `kp` (1/s²) and `kd` (1/s), `λ₀ = 0.05` and no null-space damping,
+    /// which compensates the environment and friction.
     pub fn new(frame: usize, kp: f64, kd: f64) -> Self {
         Self {
             frame,

@@ -184,8 +184,8 @@ fn named(known: &[String], name: &str) -> String {
     if known.is_empty() { externals(known) } else { nearest(known, name) }
 }
 
-/// Returns the hint for an unknown control: the names of the controls that follow commands or, without any,
-/// the advice to declare one.
+/// Returns the hint for a control that does not follow commands: the names of the controls that do or, without
+/// any, the advice to declare one.
 fn externals(known: &[String]) -> String {
     match known {
         [] => "; use an External controller for the joints to be commanded".to_owned(),

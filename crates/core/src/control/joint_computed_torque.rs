@@ -27,7 +27,8 @@ pub struct JointComputedTorque {
 }
 
 impl JointComputedTorque {
-    /// Creates a law with one gain `kp` (1/s²) and one gain `kd` (1/s) for all joints.
+    /// Creates a law with one gain `kp` (1/s²) and one gain `kd` (1/s) for all joints, which compensates the
+    /// environment and friction.
     pub fn new(kp: f64, kd: f64) -> Self {
         Self { kp: kp.into(), kd: kd.into(), compensate_environment: true, compensate_friction: true }
     }

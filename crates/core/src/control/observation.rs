@@ -16,7 +16,7 @@ pub struct Observation<'a> {
     pub model: &'a Model,
     /// Indices of the joints to drive, in the order of the torques.
     pub joints: &'a [usize],
-    /// Desired pose and motion of the tool, if the controller has a reference; axes are those of the
-    /// reference sample.
+    /// Desired pose and motion of the tool, if the controller has a reference: relative to the base if the
+    /// reference is, otherwise in W.
     pub desired: Option<TaskSample<f64>>,
 }

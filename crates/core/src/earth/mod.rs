@@ -62,7 +62,7 @@ impl Earth {
     /// mas (6 cm on the ground).
     ///
     /// # Errors
-    /// [`EarthError::Parameter`] and [`EarthError::WrongLength`] for invalid parameters;
+    /// [`EarthError::Parameter`] and [`EarthError::ShortTable`] for invalid parameters;
     /// [`EarthError::OutsideSpan`] if the table of parameters does not contain the epoch.
     pub fn new(epoch: Epoch, parameters: &EarthParameters) -> Result<Self, EarthError> {
         let orientation = Orientation::new(epoch, Axes::Gcrf, parameters, epoch.series_span())?;
@@ -143,7 +143,8 @@ impl Earth {
         table.map_or(Ok(()), |span| check_span("the table of Earth-orientation parameters", t, epoch, span))
     }
 
-    /// Checks that an orbit in `axes` with time zero at `epoch` is compatible with this Earth.
+    /// Checks that an orbit in `axes` with time zero at `epoch` is compatible with this Earth. An orbit or an
+    /// Earth without an epoch is compatible with any epoch.
     ///
     /// # Errors
     /// [`EarthError::OtherAxes`] for different axes, and [`EarthError::OtherEpoch`] for epochs more than a

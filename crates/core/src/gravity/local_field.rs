@@ -21,9 +21,9 @@ pub(crate) struct FieldPoint {
 /// Gravity near a robot at one instant, excluding the planet's point mass, axes of `I`.
 ///
 /// Zonal fields in closed form are expanded about the robot. Other fields are expanded about the nearest
-/// point of a grid fixed in the planet or, if the step is longer than the grid spacing, about the robot. The
-/// result depends only on the instant and the step, so a run that resumes from a checkpoint has identical
-/// bits.
+/// point of a grid fixed in the planet or, if the robot travels farther than the grid spacing during the step,
+/// about the robot. The result depends only on the instant and the step, so a run that resumes from a
+/// checkpoint has identical bits.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalField<'a> {
     gravity: &'a Gravity,

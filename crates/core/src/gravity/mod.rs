@@ -109,8 +109,8 @@ impl Gravity {
         &self.third_bodies
     }
 
-    /// Returns the epoch at time zero. It is the epoch of the Earth with which the field rotates or, if there
-    /// is no field, the epoch of the positions of Sun and Moon.
+    /// Returns the epoch at time zero, if it is known. It is the epoch of the Earth with which the field
+    /// rotates or, if there is no field, the epoch of the positions of Sun and Moon.
     pub fn epoch(&self) -> Option<Epoch> {
         self.earth.as_ref().and_then(|earth| earth.epoch())
     }

@@ -71,9 +71,9 @@ impl Gravity {
         Ok(about)
     }
 
-    /// Returns the difference of the third-body field between `from + offset` and `from`.
+    /// Returns the third-body field at `from + offset` less that at `from`, m/s², axes of `I`.
     ///
-    /// The field is relative to the planet's centre, which is in free fall, so the field is zero there.
+    /// The planet's centre is in free fall, and the field is relative to it; at `from = 0` the field is zero.
     pub(super) fn tide_of_third_bodies(
         &self,
         t: f64,

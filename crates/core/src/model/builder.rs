@@ -49,8 +49,8 @@ impl ModelBuilder {
     /// Adds the link `child`, connected to the link `parent` by `joint`.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown parent, a name used twice, an axis of length zero, negative damping,
-    /// reversed limits, or an invalid inertia of the child.
+    /// [`ModelError`] for an unknown parent, a name used twice, too many moving joints, an axis of length zero,
+    /// negative damping, reversed limits, or an invalid inertia of the child.
     pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
         let parent = self.link(parent)?;
         if self.has_joint(&joint.name) {
@@ -109,7 +109,8 @@ impl ModelBuilder {
     /// Adds a frame fixed to the link `link`; `pose` is the pose of the frame in link axes.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown link, or a name that a link or frame already has.
+    /// [`ModelError`] for an unknown link, a name that a link or frame already has, or a pose that is not
+    /// finite.
     pub fn add_frame(
         &mut self,
         name: &str,

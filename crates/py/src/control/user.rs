@@ -15,11 +15,12 @@ pub(crate) struct PyState {
     v: Py<PyAny>,
     /// Names of the joints of the control, in the order of the torques.
     joints: Vec<String>,
-    /// Desired pose of the tool in W, (4, 4), m, or None without a reference.
+    /// Desired pose of the tool, (4, 4), m, or None without a reference: relative to the base for a reference in
+    /// the frame ``"base"``, otherwise in W.
     reference_pose: Option<Py<PyAny>>,
-    /// Desired twist of the tool in W axes, (6,), m/s and rad/s, or None.
+    /// Desired twist of the tool, (6,), m/s and rad/s, in the frame of ``reference_pose``, or None.
     reference_velocity: Option<Py<PyAny>>,
-    /// Desired acceleration of the tool in W axes, (6,), m/s² and rad/s², or None.
+    /// Desired acceleration of the tool, (6,), m/s² and rad/s², in the frame of ``reference_pose``, or None.
     reference_acceleration: Option<Py<PyAny>>,
 }
 

@@ -86,7 +86,7 @@ impl<'a> Ignored<'a> {
         notes.into_iter().map(ModelWarning::Note).collect()
     }
 
-    /// Returns true if the file defines xacro macros, but its xacro tags expand none of them.
+    /// Returns true if the file defines xacro macros without expanding any of them.
     fn is_macros(&self) -> bool {
         let defines = |name| matches!(name, "macro" | "property" | "arg" | "include");
         let mut names = self.xacro.iter().map(|node| node.tag_name().name());

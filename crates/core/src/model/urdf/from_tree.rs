@@ -116,7 +116,7 @@ impl<'a> IntoDeserializer<'a, Refusal> for Value<'a> {
     }
 }
 
-/// Element of a shape, deserialized as an enum: the element name is the variant, the attributes are its
+/// Element of a shape, deserialized as an enum: the element name is the variant, and the attributes are its
 /// fields.
 struct Shape<'a>(Element<'a>);
 
