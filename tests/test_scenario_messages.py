@@ -182,7 +182,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "rows, too few": (
         ROBOT + "simulation: {duration: 1, record_every: 5000}\n",
         "2: simulation.record_every",
-        ("5000 exceeds the 1000 steps", "at most 1000"),
+        ("5000 exceeds the number of steps, 1000", "at most 1000"),
     ),
     "rows, a switch": (
         ROBOT + "simulation: {duration: 1, record_every: true}\n",

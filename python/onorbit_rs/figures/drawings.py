@@ -138,7 +138,7 @@ def _file_part(name: str) -> str:
 
 
 def _angle_flown_deg(trace: Trace) -> float:
-    """Return the largest angle, degrees, of the robot's position about the planet from its first position."""
+    """Return the largest angle, degrees, between the first and a later position from the planet's centre."""
     direction = np.asarray(trace.position_eci)
     direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
     return float(np.degrees(np.arccos(np.clip(direction @ direction[0], -1.0, 1.0)).max()))

@@ -54,7 +54,7 @@ def has_changed(model: Model, recorded: Any) -> bool:
 
 
 def _exact(number: float | None) -> str | None:
-    """Return a number from the file without rounding, because it is not the result of a computation."""
+    """Return a number from the file with 12 significant digits, since it is not computed; None for None."""
     return None if number is None else f"{number:.12g}"
 
 

@@ -42,7 +42,7 @@ class WorldSetting:
 
     @property
     def groups(self) -> list[list[str]]:
-        """Groups of systems, by name, that connections can join."""
+        """Names of the systems in each group that connections can join."""
         return connected_groups(self.names, self.connections)
 
     @property

@@ -32,7 +32,7 @@ def transition() -> tuple[float, float]:
 
 
 def intercept() -> tuple[float]:
-    """Return the error of the velocity, m/s, with which a target is reached after 300 s."""
+    """Return the error of the initial velocity, m/s, with which a body reaches its target after 300 s."""
     found = oo.relative.intercept_velocity(mean_motion(), FROM, FLIGHT_S)
     return (float(np.abs(found - np.array(INTERCEPT)).max()),)
 
