@@ -11,8 +11,8 @@ use super::wrenches::Wrenches;
 use crate::spatial::{Real, Vec3};
 use nalgebra::Vector3;
 
-/// Effect that applies the force and torque of sunlight to every body with a surface, including the shadow of
-/// the Earth.
+/// Effect that applies the force and torque of sunlight to every body with a surface, reduced in the shadow
+/// of the Earth.
 ///
 /// The force on a face with area `A` and outward normal `n` is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ +
 /// ρd/3) n]` at the centroid if `cos θ = n·ŝ > 0`. The force on a cannonball is `F = -P C_R A ŝ` at the

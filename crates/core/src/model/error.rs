@@ -81,8 +81,8 @@ pub enum ModelWarning {
         /// Principal moments of the link, kg m², ascending.
         moments: [f64; 3],
     },
-    /// The inertia of a link is not positive definite, but the inertia of the whole body to which the link
-    /// belongs is.
+    /// The inertia of a link is not positive definite, but that of the whole body to which the link belongs is
+    /// positive definite.
     IndefinitePart {
         /// Name of the link.
         link: String,

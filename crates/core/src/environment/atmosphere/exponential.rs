@@ -28,8 +28,9 @@ impl ExponentialAtmosphere {
     /// Creates the atmosphere from layers in ascending order.
     ///
     /// # Errors
-    /// [`AtmosphereError::NoLayers`], [`AtmosphereError::LayerOrder`], and [`AtmosphereError::Value`] for a
-    /// density or scale height that is not positive.
+    /// [`AtmosphereError::NoLayers`] for an empty list, [`AtmosphereError::LayerOrder`] for bases that are not
+    /// finite or do not ascend, and [`AtmosphereError::Value`] for a density or scale height that is not
+    /// positive and finite.
     pub fn new(layers: Vec<Layer>) -> Result<Self, AtmosphereError> {
         if layers.is_empty() {
             return Err(AtmosphereError::NoLayers);
