@@ -141,22 +141,22 @@ HERE = [0.0] * 4
 PAST = {"header": {"stamp": {"sec": 0, "nanosec": 1}}}
 PATH = "/arm/joint_trajectory"
 REFUSED = [
-    ("/arm/commands", FLOATS, {"data": [0.1]}, "data has 1 numbers; expected 4: "),
-    ("/arm/commands", FLOATS, {"data": [0.0, NAN, 0.0, 0.0]}, f"data of joint {ARM[1]} is not finite"),
-    ("/arm/commands", FLOATS, {"data": [0.0, 0.0, 0.0, INF]}, f"data of joint {ARM[3]} is not finite"),
-    (PATH, TRAJECTORY, {"joint_names": [*ARM[:3], "elbow"], "points": [point(1.0)]}, "elbow; expected"),
+    ("/arm/commands", FLOATS, {"data": [0.1]}, "data has length 1; the required length is 4, one number for"),
+    ("/arm/commands", FLOATS, {"data": [0.0, NAN, 0.0, 0.0]}, f"data of joint {ARM[1]} is nan; it must be"),
+    ("/arm/commands", FLOATS, {"data": [0.0, 0.0, 0.0, INF]}, f"data of joint {ARM[3]} is inf; it must be"),
+    (PATH, TRAJECTORY, {"joint_names": [*ARM[:3], "elbow"], "points": [point(1.0)]}, "elbow; each joint of the control must"),
     (PATH, TRAJECTORY, {"joint_names": ARM}, "the trajectory has no points"),
-    (PATH, TRAJECTORY, {"joint_names": ARM, "points": [point(1.0)]}, "positions has 0 numbers"),
+    (PATH, TRAJECTORY, {"joint_names": ARM, "points": [point(1.0)]}, "positions has length 0; the required length is 4"),
     (PATH, TRAJECTORY,
      {"joint_names": ARM, "points": [point(0.2, positions=HERE), point(0.1, positions=HERE)]}, "times"),
     (PATH, TRAJECTORY, PAST | {"joint_names": ARM, "points": [point(0.1, positions=HERE)]}, "ends"),
-    ("/joint_commands", STATE, {"name": ["knee"], "position": [0.0]}, "drives joint knee"),
-    ("/joint_commands", STATE, {"name": ARM}, "neither position nor velocity nor effort"),
+    ("/joint_commands", STATE, {"name": ["knee"], "position": [0.0]}, "no external control drives knee; the joints of external controls are"),
+    ("/joint_commands", STATE, {"name": ARM}, "no position, velocity or effort"),
     ("/joint_commands", STATE, {}, "the message names no joints"),
-    ("/joint_commands", STATE, {"name": ARM[:2], "effort": [0.0, 0.0]}, "expected "),
-    ("/joint_commands", STATE, {"name": [ARM[0], *ARM[:3]], "effort": HERE}, "expected "),
+    ("/joint_commands", STATE, {"name": ARM[:2], "effort": [0.0, 0.0]}, "must be in it once: "),
+    ("/joint_commands", STATE, {"name": [ARM[0], *ARM[:3]], "effort": HERE}, "must be in it once: "),
     ("/wrench_command", WRENCH, {"header": {"frame_id": "moon"}}, "frame_id 'moon' is no frame of the robot"),
-    ("/wrench_command", WRENCH, {"wrench": {"force": {"x": NAN}}}, "force [nan, 0.0, 0.0] or torque"),
+    ("/wrench_command", WRENCH, {"wrench": {"force": {"x": NAN}}}, "force is [nan, 0.0, 0.0] N, torque is"),
 ]  # fmt: skip
 
 
@@ -284,7 +284,7 @@ def test_a_wrench_ends_after_its_timeout(peer: Peer, tmp_path: Path, timeout: fl
         assert wrenches(trace).any(axis=1).all()
         return
     root = ROBOT.body_names[0]
-    ended = (1, "/wrench_command", f"no message within the time-out: the wrench on {root} ended")
+    ended = (1, "/wrench_command", f"no message came within the timeout; the wrench on {root} ended")
     assert texts == [ended, (0, "/step", "advanced to t = 0.5 s")]
     assert [entry["time"] for entry in node.commands] == pytest.approx([0.0, 0.1, 0.2505])
     acts = wrenches(trace).any(axis=1)
@@ -310,7 +310,7 @@ def test_a_zero_wrench_needs_no_timeout(peer: Peer) -> None:
 
 @pytest.mark.parametrize("timeout", [0.0, -1.0, NAN, INF])
 def test_a_timeout_of_wrenches_that_is_not_positive_is_refused(timeout: float) -> None:
-    with pytest.raises(oo.exceptions.InputError, match=r"time-out of wrenches is .* positive and finite"):
+    with pytest.raises(oo.exceptions.InputError, match=r"timeout of wrenches is .* positive and finite"):
         Node(simulation(), domain=DOMAIN, wrench_timeout=timeout)
 
 

@@ -63,6 +63,21 @@ def test_the_processor_is_kept_busy_for_a_fraction_of_a_tick_at_most() -> None:
     assert fast.early == pytest.approx(3e-5)
 
 
+def test_the_processor_is_not_kept_busy_after_a_missed_tick() -> None:
+    """The scheduler of Linux delays a program more, the more processor time it has used."""
+    machine = Machine(1.5e-4)
+    pace = RealTime(TICK, clock=machine.clock, sleep=machine.sleep)
+    pace.calibrate()
+    pace.wait(0.0)
+    machine.now += 2.5 * TICK
+    late = []
+    for k in range(1, 150):
+        pace.wait(k * TICK)
+        late.append(-pace.ahead(k * TICK))
+    assert late[50] == pytest.approx(1.5e-4, rel=0.1), "the sleep alone"
+    assert late[140] < 5e-6
+
+
 def test_a_tick_is_missed_if_it_is_late_by_a_tick() -> None:
     machine = Machine(0.0)
     pace = RealTime(TICK, clock=machine.clock, sleep=machine.sleep)

@@ -14,17 +14,17 @@ _CLASSES = 2500
 
 
 class Delays:
-    """Distribution of delays, in classes of equal ratio, so that its size does not grow with the run."""
+    """Histogram of delays with classes of equal ratio, whose size does not grow with the run."""
 
     def __init__(self, limit: float) -> None:
-        """Count none yet; those above ``limit``, s, are missed ticks."""
+        """Create an empty histogram; a delay above ``limit``, s, is a missed tick."""
         self._limit = limit
         self._counts = np.zeros(_CLASSES, np.int64)
         self.count = self.missed = 0
         self.largest = 0.0
 
     def add(self, delay: float) -> None:
-        """Count a delay, s."""
+        """Add a delay, s, to the histogram."""
         number = int(_PER_E * math.log(delay / _SHORTEST_S)) if delay > _SHORTEST_S else 0
         self._counts[min(number, _CLASSES - 1)] += 1
         self.count += 1
@@ -32,6 +32,6 @@ class Delays:
         self.largest = max(self.largest, delay)
 
     def quantile(self, fraction: float) -> float:
-        """Return a delay, s, that this fraction of all delays does not exceed, to a hundredth."""
+        """Return a delay, s, that a fraction of the delays does not exceed, to a relative error of 1 %."""
         number = int(np.searchsorted(np.cumsum(self._counts), fraction * self.count))
         return min(_SHORTEST_S * math.exp((number + 0.5) / _PER_E), self.largest)

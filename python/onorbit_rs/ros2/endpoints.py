@@ -1,4 +1,4 @@
-"""Publishers and subscriptions of topics whose payloads are CDR."""
+"""Publishers and subscriptions of single topics; their messages are bytes in CDR."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class Writer:
     """Publisher of one topic."""
 
     def __init__(self, entity: Any, topic: str) -> None:
-        """Wrap a writer of CycloneDDS."""
+        """Take a ``DataWriter`` of CycloneDDS and the name of its ROS topic."""
         self._entity, self.topic = entity, topic
         self._found = self._served = 0
         self._greetings: list[float] = []
 
     def write(self, data: bytes) -> None:
-        """Publish a message in CDR.
+        """Publish a message, given in CDR.
 
         Raises
         ------
@@ -40,13 +40,13 @@ class Writer:
         self._served = self._found
 
     def subscribers(self) -> int:
-        """Return the number of subscriptions."""
+        """Return the number of subscriptions that receive the topic at present."""
         status = self._entity.get_publication_matched_status()
         self._found = status.total_count
         return int(status.current_count)
 
     def is_greeting_due(self) -> bool:
-        """Return True if a subscription has been found after the last message, and again after a moment."""
+        """Return True when a subscription has joined since the last message, and once more 0.2 s later."""
         now = time.monotonic()
         if self.subscribers() and self._found > self._served:
             self._served = self._found
@@ -60,12 +60,12 @@ class Reader:
     """Subscription to one topic."""
 
     def __init__(self, entity: Any, topic: str, kind: str) -> None:
-        """Wrap a reader of CycloneDDS."""
+        """Take a ``DataReader`` of CycloneDDS, and the name and type of its ROS topic."""
         self._entity = entity
         self.topic, self.kind = topic, kind
 
     def sender(self, publication: int) -> object:
-        """Return what identifies the process of a publication; None if it has left."""
+        """Return the identity of the process to which a publisher belongs; None if the publisher has left."""
         try:
             data = self._entity.get_matched_publication_data(publication)
         except DDSException:
@@ -73,11 +73,11 @@ class Reader:
         return None if data is None else data.participant_key
 
     def senders(self) -> set[object]:
-        """Return the processes that publish the topic now."""
+        """Return the identities of the processes that publish the topic at present."""
         return {self.sender(publication) for publication in self._entity.get_matched_publications()}
 
     def take(self) -> list[tuple[int, int, bytes]]:
-        """Return the messages since the last call: time of sending, ns, number of the publication, CDR.
+        """Return the messages since the last call: time of sending, ns, handle of the publisher, and CDR.
 
         Raises
         ------

@@ -30,13 +30,13 @@ _ROWS = 1000
 
 
 class Bag(Protocol):
-    """A file of messages of topics."""
+    """File to which the messages of topics are written."""
 
     def add_topic(self, name: str, kind: str, *, is_latched: bool = False) -> int:
-        """Return the number of a topic."""
+        """Add a topic with a message type, and return its number for :meth:`write`."""
 
     def write(self, topic: int, times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
-        """Write messages (T, size), in CDR, of times (T,), ns."""
+        """Write messages (T, size), in CDR, with their times (T,), ns."""
 
 
 def export_mcap(
@@ -53,13 +53,13 @@ def export_mcap(
     Parameters
     ----------
     run : str, path, Run, Trace or WorldTrace
-        Folder of a run, its results, or a trace.
+        Folder of a run, or its results or trace.
     file : str or path
         File to write.
     models : Model or mapping of str to Model, optional
         Robot of a trace, or robots by the name of the system; only with a trace.
     tell : callable
-        Called with the fraction that is written, from 0 to 1.
+        Called with the fraction written so far, from 0 to 1.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The graph of ROS: which node has which publishers and subscriptions, as in ``ros2 node list``."""
+"""Announcement of a node to the ROS graph, in which ``ros2 node list`` and ``ros2 node info`` find it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ENCLAVE = b"enclave=/;"
 
 
 def entities_message(node: str, participant: Any, writers: Iterable[Any], readers: Iterable[Any]) -> bytes:
-    """Return the message that gives ROS the node of the writers and readers of a participant."""
+    """Return the message by which ROS learns that writers and readers of a participant form a node."""
     own = message(
         "rmw_dds_common/msg/NodeEntitiesInfo", node_namespace="/", node_name=node,
         reader_gid_seq=[_gid(entity) for entity in readers],

@@ -1,4 +1,4 @@
-"""Commands that arrive on topics, checked and converted to entries of a command log."""
+"""Messages on the command topics: received, checked and converted to entries of a command log."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ Entry = dict[str, Any]
 
 
 class RefusedError(ValueError):
-    """A message that cannot be obeyed; the text says why."""
+    """A message that cannot be obeyed, with the reason."""
 
 
 @dataclass
 class Route:
-    """A topic, and the conversion of its messages to entries."""
+    """A subscription, and the function that converts its messages to entries."""
 
     reader: Reader
     convert: Callable[[Any], list[Entry]]
@@ -39,7 +39,7 @@ class Route:
 
 @dataclass(frozen=True)
 class Arrived:
-    """A message that arrived, and its entries or the reason of its refusal."""
+    """A message that has arrived, with its entries or with the reason for its refusal."""
 
     topic: str
     kind: str
@@ -47,24 +47,24 @@ class Arrived:
     entries: list[Entry]
     refusal: str | None = None
     contested: tuple[str, ...] = ()
-    """Controls, links or topics to which several processes send, found with this message."""
+    """Controls, links or topics that the message commands and to which another process has sent too."""
 
 
 class Inbox:
     """Subscriptions to the commands of all systems and of the run."""
 
     def __init__(self, participant: Participant) -> None:
-        """Subscribe nothing yet."""
+        """Create an inbox without subscriptions."""
         self._participant = participant
         self._routes: list[Route] = []
         self._senders: dict[str, set[object]] = {}
 
     def subscribe(self, topic: str, kind: str, convert: Callable[[Any], list[Entry]]) -> None:
-        """Subscribe a topic."""
+        """Subscribe to a topic, whose messages ``convert`` turns into entries."""
         self._routes.append(Route(self._participant.reader(topic, kind), convert))
 
     def topics(self) -> Iterator[tuple[str, str]]:
-        """Return names and types of the topics."""
+        """Yield the name and the type of each topic."""
         for route in self._routes:
             yield route.reader.topic, route.reader.kind
 
@@ -84,9 +84,9 @@ class Inbox:
         return found
 
     def _contested(self, arrived: Arrived, sender: object) -> tuple[str, ...]:
-        """Return what a message commands for which another process is a sender too.
+        """Return the targets of a message to which another process has sent messages too.
 
-        A process counts as long as it publishes any of the topics: one that left may come back.
+        Only processes that still publish one of the topics count. Each process is reported once per target.
         """
         if sender is None:
             return ()
@@ -104,7 +104,7 @@ class Inbox:
 
 
 def _target(entry: Entry, topic: str) -> str:
-    """Return the name of what an entry commands: a control, a link, or the topic itself."""
+    """Return the name of the target of an entry: a control or a link with its system, or else the topic."""
     name = entry.get("control", entry.get("body"))
     return topic if name is None else f"{name} of {entry['system']}"
 
@@ -122,7 +122,7 @@ def _arrived(route: Route, data: bytes) -> Arrived:
 
 
 def add_run_topics(inbox: Inbox) -> None:
-    """Subscribe the topics that control the run."""
+    """Subscribe to the topics that control the run: pause, reset, step and trigger."""
     inbox.subscribe("/pause", "std_msgs/msg/Bool", lambda content: [{"pause": bool(content.data)}])
     inbox.subscribe("/reset", "std_msgs/msg/Empty", lambda content: [{"reset": True}])
     inbox.subscribe("/step", "std_msgs/msg/Float64", lambda content: [{"step": float(content.data)}])
@@ -132,9 +132,9 @@ def add_run_topics(inbox: Inbox) -> None:
 def add_system_topics(
     inbox: Inbox, system: str, prefix: str, frames: Mapping[str, str], controls: Mapping[str, list[str]]
 ) -> None:
-    """Subscribe the topics of a system: those of its external controls, and wrenches on its links.
+    """Subscribe to the topics of a system: commands of its external controls, and wrenches on its links.
 
-    ``frames`` has the name in the tree of each link and frame, beginning with the root link.
+    ``frames`` maps each link and frame to its name in ``/tf``, beginning with the root link.
     """
     for control, name in ros_names(controls, "control").items():
         to = {"system": system, "control": control}
@@ -154,22 +154,26 @@ def _values(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
 
 
 def _finite(what: str, values: Any, joints: list[str]) -> list[float]:
-    """Return the numbers of a field, one per joint."""
+    """Return the numbers of a field; raise an error unless there is one finite number per joint."""
     numbers = np.asarray(values, dtype=np.float64)
     if len(numbers) != len(joints):
-        raise RefusedError(f"{what} has {len(numbers)} numbers; expected {len(joints)}: {', '.join(joints)}")
+        raise RefusedError(
+            f"{what} has length {len(numbers)}; the required length is {len(joints)}, one number for each of "
+            f"{', '.join(joints)}"
+        )
     if not np.isfinite(numbers).all():
-        bad = joints[int(np.flatnonzero(~np.isfinite(numbers))[0])]
-        raise RefusedError(f"{what} of joint {bad} is not finite")
+        bad = int(np.flatnonzero(~np.isfinite(numbers))[0])
+        raise RefusedError(f"{what} of joint {joints[bad]} is {numbers[bad]}; it must be finite")
     found: list[float] = numbers.tolist()
     return found
 
 
 def _order(names: list[str], joints: list[str]) -> list[int]:
-    """Return the places of the joints of a control in a message, which must name all of them once."""
+    """Return the index in a message of each joint of a control; the message must name each joint once."""
     if sorted(names) != sorted(joints):
         raise RefusedError(
-            f"the message names the joints {', '.join(names) or 'none'}; expected {', '.join(joints)}"
+            f"the joints in the message are {', '.join(names) or 'none'}; each joint of the control must be "
+            f"in it once: {', '.join(joints)}"
         )
     return [names.index(joint) for joint in joints]
 
@@ -178,7 +182,7 @@ def _trajectory(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
     def convert(content: Any) -> list[Entry]:
         order = _order(list(content.joint_names), joints)
         if not content.points:
-            raise RefusedError("the trajectory has no points")
+            raise RefusedError("the trajectory has no points; at least one is required")
         found: dict[str, Any] = {"times": [_seconds(point.time_from_start) for point in content.points]}
         for name in ("positions", "velocities", "accelerations"):
             rows = [getattr(point, name) for point in content.points]
@@ -196,15 +200,15 @@ def _seconds(time: Any) -> float:
 
 
 def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[[Any], list[Entry]]:
-    """Return the conversion of joint states, which may command the joints of several controls."""
+    """Return the function that converts a ``JointState``, which may command several controls."""
 
     def convert(content: Any) -> list[Entry]:
         names, entries = list(content.name), []
         known = {joint for joints in controls.values() for joint in joints}
         if unknown := [name for name in names if name not in known]:
             raise RefusedError(
-                f"no external control drives joint {', '.join(unknown)}; "
-                f"driven are {', '.join(sorted(known))}"
+                f"no external control drives {', '.join(unknown)}; the joints of external controls are "
+                f"{', '.join(sorted(known))}"
             )
         for control, joints in controls.items():
             own = [name for name in names if name in joints]
@@ -219,17 +223,17 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
                     numbers = _finite(field_name, values, names)
                     entry[field_name] = [numbers[i] for i in places]
             if len(entry) == 2:
-                raise RefusedError("the message has neither position nor velocity nor effort")
+                raise RefusedError("the message has no position, velocity or effort; give one of them")
             entries.append(entry)
         if not entries:
-            raise RefusedError("the message names no joints")
+            raise RefusedError("the message names no joints; give their names in the field name")
         return entries
 
     return convert
 
 
 def _wrench(system: str, prefix: str, frames: Mapping[str, str]) -> Callable[[Any], list[Entry]]:
-    """Return the conversion of wrenches at the origin and in the axes of the frame of the header."""
+    """Return the function that converts a wrench at the origin and in the axes of its ``frame_id``."""
     bodies = {frame: body for body, frame in frames.items()}
     bodies |= dict.fromkeys(("", BASE), next(iter(frames)))
 
@@ -237,12 +241,12 @@ def _wrench(system: str, prefix: str, frames: Mapping[str, str]) -> Callable[[An
         body = bodies.get(content.header.frame_id.removeprefix(prefix))
         if body is None:
             raise RefusedError(
-                f"frame_id {content.header.frame_id!r} is no frame of the robot; they are "
-                f"{', '.join(frames.values())}"
+                f"frame_id {content.header.frame_id!r} is no frame of the robot; its frames are "
+                f"{', '.join(dict.fromkeys((BASE, *frames.values())))}"
             )
         force, torque = ([v.x, v.y, v.z] for v in (content.wrench.force, content.wrench.torque))
         if not np.isfinite(force + torque).all():
-            raise RefusedError(f"force {force} or torque {torque} is not finite")
+            raise RefusedError(f"force is {force} N, torque is {torque} N m; all components must be finite")
         return [{"system": system, "body": body, "force": force, "torque": torque, "frame": "body"}]
 
     return convert

@@ -1,4 +1,4 @@
-"""Rows of a run that is being advanced, each of them once."""
+"""Rows of a running simulation, each of which is returned once."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 
 class LiveRows:
-    """Rows of a stepper that have not been taken yet."""
+    """Reads the recorded rows of a stepper, each of them once."""
 
     def __init__(self, stepper: Stepper, models: Mapping[str, Model]) -> None:
-        """Take none yet."""
+        """Take the stepper, and the robots by the name of the system; no row has been read yet."""
         self._stepper, self._models = stepper, models
         self._counts = dict.fromkeys(models, 0)
         self._taken_until = -np.inf
 
     def take(self) -> dict[str, Rows]:
-        """Return the new rows of each system before the current time."""
+        """Return the rows of each system since the last call, without a row at the current time."""
         since = self._counts if len(self._models) > 1 else next(iter(self._counts.values()))
         columns = self._stepper.columns(since)
         for system in self._models:
@@ -32,21 +32,21 @@ class LiveRows:
         return self._after(rows_of_columns(columns, self._models))
 
     def take_present(self) -> dict[str, Rows]:
-        """Return the row of each system at the current time, once; a later :meth:`take` omits it."""
+        """Return the row of each system at the current time, which :meth:`take` will not return again."""
         rows = self._after(self.present())
         self._taken_until = self._stepper.time
         return rows
 
     def present(self) -> dict[str, Rows]:
-        """Return the row of each system at the current time."""
+        """Return the row of each system at the current time, which :meth:`take` may return later."""
         return rows_of_columns(self._stepper.present(), self._models)
 
     def take_last(self, trace: Trace | WorldTrace) -> dict[str, Rows]:
-        """Return the rows that a trace of the run has after those taken."""
+        """Return the rows of the final trace of the run that have not been read."""
         return self._after(rows_of_trace(trace, self._models, self._counts))
 
     def _after(self, rows: dict[str, Rows]) -> dict[str, Rows]:
-        """Return the rows after the one that :meth:`take_present` returned."""
+        """Return those rows that are later than the last one returned by :meth:`take_present`."""
         if np.isinf(self._taken_until):
             return rows
         return {system: own.after(self._taken_until) for system, own in rows.items()}

@@ -1,4 +1,4 @@
-"""The run of a live node: its stepper, the rows and events since the last call, and its commands."""
+"""The run of a live node: its stepper, its new rows and events, and the commands that it is given."""
 
 from __future__ import annotations
 
@@ -27,7 +27,8 @@ class LiveRun:
     models : mapping of str to Model
         Robots by the name of the system.
     tick : float
-        Simulated time between two looks at the topics, s: a row, or a few steps of a long one.
+        Simulated time between two looks at the topics, s: the time between two rows, or about 1 ms if this
+        is less.
     end : float
         Time beyond which the run is not advanced, s.
     log : CommandLog
@@ -35,7 +36,7 @@ class LiveRun:
     """
 
     def __init__(self, simulation: Simulation, wrench_timeout: float | None) -> None:
-        """Start the run; ``wrench_timeout``, s, ends wrenches that no further command confirms."""
+        """Start the run; a wrench ends ``wrench_timeout``, s, after its last command (None: never)."""
         self._simulation = simulation
         self.models: Mapping[str, Model] = simulation.models
         steps = max(1, min(simulation.record_every, round(_SHORTEST_TICK / simulation.time_step)))
@@ -46,7 +47,7 @@ class LiveRun:
         self._start(None)
 
     def _start(self, planned: float | None) -> None:
-        """Start the run with its planned end, s."""
+        """Start the run with a planned end, s; None for an open end."""
         self._planned = planned
         try:  # the state at the start, with that of controllers in Python
             self._beginning: Checkpoint | None = self._simulation.start(duration=planned).checkpoint()
@@ -62,12 +63,12 @@ class LiveRun:
         self._wrenches = WrenchTimeouts(self._wrench_timeout)
 
     def reset(self) -> None:
-        """Return to the start, with an empty log in memory."""
+        """Return to the start, with an empty log of commands that has no file."""
         self.restart()
         self.log = CommandLog()
 
     def plan(self, end: float) -> bool:
-        """Set the end of the run, s; return False if an adaptive run could not be planned to end there.
+        """Set the end of the run, s; return False if an adaptive run could not be started anew for it.
 
         The steps of an adaptive run depend on its planned end. Such a run starts anew, which requires that
         the state of its controllers in Python can be set back.
@@ -83,7 +84,7 @@ class LiveRun:
 
     @property
     def can_restart(self) -> bool:
-        """True if the state of all controllers can be set back."""
+        """True if the run can begin again, that is, if the states of all its controllers could be saved."""
         return self._beginning is not None
 
     @property
@@ -97,7 +98,7 @@ class LiveRun:
         return own.external
 
     def next_time(self, shortest: float) -> float:
-        """Return the first time on the grid of ticks that is later by about ``shortest``, s, or by a tick."""
+        """Return the current time plus about ``shortest``, s, at least a tick, on the grid of ticks."""
         ticks = max(1, round(shortest / self.tick))
         return min(self.tick * (round(self.time / self.tick) + ticks), self.end)
 
@@ -113,16 +114,16 @@ class LiveRun:
         return given
 
     def command(self, entries: Sequence[Entry]) -> None:
-        """Give commands at the current time, all or none; raises an OnOrbitError for none."""
+        """Give commands at the current time; if one of them is wrong, give none and raise an OnOrbitError."""
         self.log.apply(self._stepper, *entries)
         self._wrenches.note(entries, self.time)
 
     def rows(self) -> Any:
-        """Return the rows of each system since the last call."""
+        """Return the rows of each system recorded since the last call."""
         return self._rows.take()
 
     def events(self) -> Sequence[EventRecord]:
-        """Return the events since the last call."""
+        """Return the events that have happened since the last call."""
         found = self._stepper.events
         new = found[self._event_count :]
         self._event_count = len(found)
@@ -137,7 +138,7 @@ class LiveRun:
         return self._rows.take_present()
 
     def finish(self) -> tuple[Trace | WorldTrace, Any]:
-        """End the run; return its trace and the rows since the last call."""
+        """End the run; return its trace, and the rows of each system since the last call of :meth:`rows`."""
         trace = self._stepper.finish()
         self.log.close()
         return trace, self._rows.take_last(trace)

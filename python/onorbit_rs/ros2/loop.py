@@ -22,7 +22,7 @@ _IDLE_S = 1e-3
 
 @dataclass
 class Loop:
-    """Advances a session until its end, at the pace of a clock if there is one."""
+    """Advances a session until its end; with a clock, in real time."""
 
     session: Session
     orders: Orders
@@ -31,7 +31,7 @@ class Loop:
     has_priority: bool
 
     def spin(self) -> None:
-        """Obey messages and advance, until the end of the run or a signal."""
+        """Obey messages and advance the run, until its end or until a signal stops the node."""
         self.session.publish_present()
         if self.clock is None:
             self._repeat(lambda slack: None)
@@ -46,7 +46,7 @@ class Loop:
             self._turn(tidy)
 
     def _turn(self, tidy: Callable[[float], None]) -> None:
-        """Read the messages shortly before the next tick, wait for it and advance, unless the run waits."""
+        """Read the messages shortly before the next tick, wait for it, and advance unless the run waits."""
         session, clock = self.session, self.clock
         if session.is_waiting:
             tidy(math.inf)

@@ -32,12 +32,12 @@ LOOPBACK = f"""<CycloneDDS><Domain id="any">
 def check(domain: int) -> None:
     """Raise an error if the loopback interface is down or all participants of the domain are taken.
 
-    CycloneDDS prints such causes and raises an error without them.
+    For these causes, CycloneDDS prints a text and raises an error that does not name the cause.
 
     Raises
     ------
     Ros2Error
-        With the cause.
+        If no participant can join; the message names the cause and what to do.
     """
     with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as probe:
         try:
@@ -70,7 +70,7 @@ def _is_free(port: int) -> bool:
 
 
 def udp_sockets() -> Iterator[int]:
-    """Return the file descriptors of this process that are UDP sockets; none outside Linux."""
+    """Yield the file descriptors of the UDP sockets of this process; none on systems other than Linux."""
     folder = Path("/proc/self/fd")
     for entry in folder.iterdir() if folder.is_dir() else ():
         with suppress(OSError):
@@ -84,9 +84,10 @@ def _is_udp(descriptor: int) -> bool:
 
 
 def restrict(before: Iterable[int]) -> None:
-    """Bind the sockets opened since to the loopback device: CycloneDDS opens them on all addresses.
+    """Bind the UDP sockets that are not in ``before`` to the loopback device.
 
-    Warns where the system does not allow this.
+    CycloneDDS opens its sockets on all addresses. Where the system does not allow the binding, a warning is
+    issued.
     """
     reason = None if sys.platform == "linux" else f"{sys.platform} has no such option"
     for descriptor in set(udp_sockets()) - set(before):

@@ -45,7 +45,7 @@ class McapFile:
     """
 
     def __init__(self, stream: BinaryIO, *, chunk_bytes: int = 1 << 22) -> None:
-        """Write the start of the file; a chunk is written when it has ``chunk_bytes``."""
+        """Write the start of the file to a stream; a chunk ends when it has ``chunk_bytes`` or more."""
         self._stream, self._chunk_bytes = stream, chunk_bytes
         self._schemas: dict[str, Schema] = {}
         self._channels: list[Channel] = []
@@ -58,7 +58,7 @@ class McapFile:
         self._write(Header(profile="ros2", library=f"onorbit_rs {build_info()['version']}"))
 
     def add_topic(self, name: str, kind: str, *, is_latched: bool = False) -> int:
-        """Return the number of a topic, for :meth:`write`; raises a KeyError for an unknown type."""
+        """Add a topic, and return its number for :meth:`write`; raises a KeyError for an unknown type."""
         if kind not in self._schemas:
             text = STORE.generate_msgdef(kind, ros_version=2)[0]
             self._schemas[kind] = Schema(
@@ -77,7 +77,10 @@ class McapFile:
         return number
 
     def write(self, topic: int, times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
-        """Write messages (T, size), in CDR, of times (T,), ns; the arrays must not change until then."""
+        """Add messages (T, size), in CDR, of times (T,), ns.
+
+        They are written in a later :meth:`flush`; the arrays must not change until then.
+        """
         if not len(times):
             return
         self._pending[topic].append((times, messages))
@@ -86,7 +89,7 @@ class McapFile:
             self.flush()
 
     def flush(self) -> None:
-        """Write the messages so far as a chunk."""
+        """Write the messages added since the last chunk as a chunk."""
         if not self._pending:
             return
         parts, indices, at = [], {}, 0
@@ -162,7 +165,7 @@ def _encoded(records: Iterable[McapRecord]) -> bytes:
 
 
 def _joined(blocks: list[Block]) -> list[Block]:
-    """Return blocks of which neighbours with messages of the same length are joined."""
+    """Return the blocks, with neighbours joined if their messages have the same length."""
     runs: list[list[Block]] = []
     for block in blocks:
         if runs and runs[-1][-1][1].shape[1] == block[1].shape[1]:
@@ -173,7 +176,7 @@ def _joined(blocks: list[Block]) -> list[Block]:
 
 
 def _message_records(topic: int, times: NDArray[np.int64], messages: NDArray[np.uint8]) -> NDArray[np.void]:
-    """Return the records of messages (T, size)."""
+    """Return the MCAP records of messages (T, size), in CDR, of a topic at times (T,), ns."""
     size = messages.shape[1]
     kind = np.dtype(
         [*_HEADER, ("channel", "<u2"), ("sequence", "<u4"), ("log_time", "<u8"), ("publish_time", "<u8"),

@@ -1,4 +1,4 @@
-"""ROS 2 message types, from the type store of rosbags, and messages of which only numbers change."""
+"""ROS 2 messages: their types, their encoding as CDR, and templates in which only numbers change."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _HEADER = 4
 
 
 def message(kind: str, **fields: Any) -> Any:
-    """Return a message of a type such as ``std_msgs/msg/Header``."""
+    """Return a message of a type such as ``std_msgs/msg/Header``, with the given fields."""
     return STORE.types[kind](**fields)
 
 
@@ -34,12 +34,12 @@ def encode(content: Any) -> bytes:
 
 
 def decode(data: bytes, kind: str) -> Any:
-    """Return the message of a payload in CDR; raises an exception of the decoder if it is malformed."""
+    """Return the message in a payload of CDR; a malformed payload raises some exception of the decoder."""
     return STORE.deserialize_cdr(data, kind)
 
 
 def nanoseconds(time: ArrayLike) -> NDArray[np.int64]:
-    """Return times, s, in ns, rounded."""
+    """Return times, given in s, as integers in ns."""
     return np.rint(np.asarray(time, dtype=np.float64) * 1e9).astype(np.int64)
 
 
@@ -53,13 +53,13 @@ class Marks:
     """Placeholders for the numbers of a message: random values, which its bytes contain exactly once."""
 
     def __init__(self) -> None:
-        """Start without placeholders, apart from the time."""
+        """Create the placeholder of the time; the others are created on request."""
         self.numbers: dict[str, Floats] = {}
         self._random = np.random.default_rng(20250101)
         self.time = message("builtin_interfaces/msg/Time", sec=0x5A17_C0DE, nanosec=0x3B9A_0B1D)
 
     def array(self, name: str, count: int) -> Floats:
-        """Return ``count`` placeholders for the field ``name``."""
+        """Create and return ``count`` placeholders for the field ``name``."""
         self.numbers[name] = self._random.uniform(1.0, 2.0, count)
         return self.numbers[name]
 
@@ -94,7 +94,7 @@ class Template:
     """
 
     def __init__(self, build: Callable[[Marks], Any]) -> None:
-        """Take the message that ``build`` returns for its placeholders."""
+        """Create the template of the message that ``build`` returns when it is given placeholders."""
         marks = Marks()
         content = build(marks)
         self.kind: str = content.__msgtype__

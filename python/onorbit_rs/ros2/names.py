@@ -23,7 +23,7 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     names : iterable of str
         Names of things of one kind.
     kind : str
-        What they are, for the warning, such as ``system``.
+        Word for such a thing in the warning, for example ``system``.
     """
     wanted = {name: ros_name(name) for name in names}
     kept = {name for name, ros in wanted.items() if ros == name}
@@ -49,9 +49,9 @@ def frame_names(names: Iterable[str], reserved: Collection[str]) -> dict[str, st
 def _numbered(
     wanted: Mapping[str, str], kept: Collection[str], taken: Collection[str], reason: str
 ) -> dict[str, str]:
-    """Return the wanted names, with numbers where they are taken; warn of names that differ, with a reason.
+    """Return the wanted names, with a number added to each that is taken; warn of the names that differ.
 
-    The names in ``kept`` remain as they are.
+    The names in ``kept`` do not change. The warning begins with ``reason``.
     """
     used = set(taken)
     found: dict[str, str] = {}

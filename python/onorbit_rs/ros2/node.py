@@ -63,7 +63,7 @@ class Node:
         has_priority: bool = False,
         on_message: Callable[[str], None] = lambda text: None,
     ) -> None:
-        """Join a domain; nothing moves before :meth:`spin`.
+        """Join a domain; the run starts with :meth:`spin`.
 
         Parameters
         ----------
@@ -72,23 +72,24 @@ class Node:
         pace : {"real_time", "fast", "stepped"}
             Simulated time follows the wall clock, runs as fast as possible, or advances on ``/step`` only.
         domain : int
-            DDS domain, as ``ROS_DOMAIN_ID``.
+            DDS domain, from 0 to 232, as in ``ROS_DOMAIN_ID``.
         network : {"loopback", "all"}
-            Reachable from this machine only, or from all its networks.
+            Whether the node is reachable from this machine only, or from all its networks.
         is_paused : bool
-            Wait for ``/pause`` false before the first step.
+            Whether the node waits for a message on ``/pause`` with false before the first step.
         log : str or path, optional
-            File to which each command is written, from which ``onorbit run --commands`` repeats the run.
+            File to which each command is written; ``onorbit run --commands`` repeats the run from it.
         record : str or path, optional
             MCAP file of the messages that the node publishes and of the commands that it obeys; :meth:`close`
             completes it and replaces an existing file. A run that is recorded cannot be reset.
         wrench_timeout : float, optional
-            Simulated time, s, after which a wrench ends unless another message confirms it; default: none.
+            Simulated time, s, after which a wrench on a link ends unless another message for the link comes.
+            Default: it holds.
         has_priority : bool
-            In pace ``real_time``, let Linux interrupt other programs for this one (``SCHED_FIFO``); a warning
-            where this is not permitted.
+            Whether the node has real-time priority over other programs (``SCHED_FIFO`` of Linux) in pace
+            ``real_time``. A warning is issued where this is not permitted.
         on_message : callable
-            Called with each text that also goes to ``/events``.
+            Called with the text of each event, answer and warning that is published on ``/events``.
 
         Raises
         ------
@@ -156,7 +157,10 @@ class Node:
 
     @property
     def jitter(self) -> dict[str, float]:
-        """How late the node was in pace ``real_time``, s; empty otherwise."""
+        """Delays of the ticks in pace ``real_time``, s, their number, and the fraction that was missed.
+
+        Empty in another pace.
+        """
         return self._clock.report()
 
     @property
@@ -166,13 +170,13 @@ class Node:
 
     @property
     def subscribed(self) -> list[tuple[str, str]]:
-        """Names and types of the topics that the node listens to."""
+        """Names and types of the topics to which the node subscribes."""
         return list(self._inbox.topics())
 
     def spin(self, duration: float | None = None) -> Trace | WorldTrace:
-        """Run until a simulated time, s, or without an end, and return the trace; Ctrl-C ends the run too.
+        """Run until a simulated time, s, or until Ctrl-C, and return the trace; None is an open end.
 
-        In a pause and in pace ``stepped``, the row at the start is published before the first step.
+        If the run begins in a pause or in pace ``stepped``, the row at the start is published at once.
 
         Raises
         ------
@@ -212,7 +216,7 @@ class Node:
     def close(self) -> None:
         """Complete the files and leave the domain, after subscribers have received all messages.
 
-        No effect the second time.
+        A second call has no effect.
         """
         self._run.log.close()
         if self._recording is not None:
@@ -222,7 +226,7 @@ class Node:
 
 
 def check_duration(duration: float | None) -> None:
-    """Raise an InputError for a duration, s, that is not positive; None is an open end."""
+    """Raise an InputError if a duration, s, is not positive; None, for an open end, is valid."""
     if duration is not None and not duration > 0.0:
         raise InputError(
             f"the duration is {duration!r} s; it must be positive",

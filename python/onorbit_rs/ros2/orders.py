@@ -1,4 +1,4 @@
-"""Obeys the messages that arrive, and answers them."""
+"""Obeys or refuses the messages that arrive, and answers them."""
 
 from __future__ import annotations
 
@@ -20,17 +20,20 @@ _FAR_S = 3600.0
 
 
 class Orders:
-    """Obeys the messages of an inbox."""
+    """Obeys or refuses the messages of an inbox."""
 
     def __init__(
         self, session: Session, inbox: Inbox, on_reset: Callable[[], None], fixed: str | None
     ) -> None:
-        """Take a session; ``fixed`` is the reason for which a reset is refused, None if it is allowed."""
+        """Take a session and its inbox.
+
+        ``on_reset`` is called after each reset. ``fixed`` is the reason to refuse resets; None allows them.
+        """
         self._session, self._inbox = session, inbox
         self._on_reset, self._fixed = on_reset, fixed
 
     def obey(self) -> None:
-        """Obey the messages that have arrived, or answer why not; record those that were obeyed."""
+        """Obey and record the messages that have arrived; refuse those that are wrong, with an answer."""
         for arrived in self._inbox.take():
             if arrived.contested:
                 text = f"several processes send to {', '.join(arrived.contested)}; the last message holds"
@@ -76,7 +79,7 @@ class Orders:
         return True
 
     def _step(self, topic: str, length: float) -> bool:
-        """Advance by a length of simulated time, s; return False if it is refused."""
+        """Advance by a length of simulated time, s; return False if this is refused."""
         session = self._session
         now = session.run.time
         if not session.is_waiting:
@@ -104,6 +107,6 @@ class Orders:
         return True
 
     def _refuse(self, topic: str, reason: str) -> bool:
-        """Answer that a message is refused; return False."""
+        """Publish the answer that a message is refused, with the reason; return False."""
         self._session.say(ERROR, topic, f"refused: {reason}")
         return False

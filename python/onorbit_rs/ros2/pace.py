@@ -17,6 +17,8 @@ _LONGEST_SPIN_S = 3e-4
 """Longest time before a tick in which the processor is kept busy, s."""
 _SPIN_PER_TICK = 0.3
 """Longest such time as a fraction of the tick."""
+_BUSY_S = 0.1
+"""Time after a missed tick without such loops, s, since they make Linux prefer other programs."""
 _PROBES = 20
 """Number of sleeps with which the delay of the operating system is measured."""
 _PROBE_S = 5e-4
@@ -25,7 +27,7 @@ _PROBE_S = 5e-4
 
 @dataclass
 class RealTime:
-    """Waits until the wall clock has reached a simulated time; measures how late it was.
+    """Waits until the wall clock has reached a simulated time, and counts the delays.
 
     The operating system ends a sleep too late, by some 0.1 ms. The wait is therefore a sleep that ends early,
     by the delay that :meth:`calibrate` measured, and a loop until the exact time.
@@ -40,14 +42,16 @@ class RealTime:
     clock: Callable[[], float] = time.perf_counter
     sleep: Callable[[float], None] = time.sleep
     _start: float = math.nan
+    _calm_at: float = -math.inf
+    """Simulated time from which sleeps end early, s."""
     _late: Delays = field(init=False)
 
     def __post_init__(self) -> None:
-        """Count no delay yet."""
+        """Create the empty histogram of delays."""
         self._late = Delays(self.tick)
 
     def calibrate(self) -> None:
-        """Measure how late the operating system ends a sleep, in 10 ms."""
+        """Measure how late the operating system ends sleeps, which takes about 10 ms."""
         found = []
         for _ in range(_PROBES):
             begin = self.clock()
@@ -60,30 +64,34 @@ class RealTime:
     def restart(self, t: float) -> None:
         """Let the current wall-clock time be the simulated time ``t``, s; after a pause or a reset."""
         self._start = self.clock() - t
+        self._calm_at = -math.inf
 
     def ahead(self, t: float) -> float:
-        """Return the wall-clock time, s, until simulated time ``t``, s; negative if it is over."""
+        """Return the wall-clock time, s, until simulated time ``t``, s, is due; negative if it is overdue."""
         if math.isnan(self._start):
             self.restart(t)
         return self._start + t - self.clock()
 
     def approach(self, t: float) -> None:
-        """Return shortly before simulated time ``t``, s, is due."""
-        while (left := self.ahead(t) - self.early) > 0.0:
+        """Sleep until shortly before simulated time ``t``, s, is due."""
+        early = self.early if t >= self._calm_at else 0.0
+        while (left := self.ahead(t) - early) > 0.0:
             self.sleep(left)
 
     def wait(self, t: float) -> None:
-        """Return when simulated time ``t``, s, is due."""
+        """Wait until simulated time ``t``, s, is due, and count the delay."""
         self.approach(t)
         while (ahead := self.ahead(t)) > 0.0:
             pass
         self._late.add(-ahead)
+        if -ahead > self.tick:
+            self._calm_at = t + _BUSY_S
         if -ahead > _BEHIND_S:
             self.slipped -= ahead
             self.restart(t)
 
     def report(self) -> dict[str, float]:
-        """Return how late the node was, s, and the fraction of ticks missed by a tick or more."""
+        """Return the delays, s, and the fraction of ticks late by more than a tick; empty without ticks."""
         late = self._late
         if not late.count:
             return {}

@@ -28,7 +28,7 @@ LARGEST_DOMAIN = 232
 
 @dataclass(frozen=True)
 class _Joined:
-    """A domain that this process has joined, which its participants share."""
+    """A domain that this process has joined; all its participants in the domain share it."""
 
     domain: Domain
     network: str
@@ -38,7 +38,7 @@ _JOINED: WeakValueDictionary[int, _Joined] = WeakValueDictionary()
 
 
 class Participant:
-    """Publishes and subscribes ROS topics whose payloads are CDR."""
+    """DDS participant with publishers of ROS topics and subscriptions to them; messages are bytes in CDR."""
 
     def __init__(self, domain: int, *, network: str = "loopback") -> None:
         """Join a domain.
@@ -46,10 +46,10 @@ class Participant:
         Parameters
         ----------
         domain : int
-            From 0 to 232, as ``ROS_DOMAIN_ID``.
+            DDS domain, from 0 to 232, as in ``ROS_DOMAIN_ID``.
         network : {"loopback", "all"}
-            Other participants on this machine only, or on all its networks, with CycloneDDS' own settings
-            (``CYCLONEDDS_URI``).
+            Whether the participant finds others on this machine only, or on all its networks with the
+            settings of CycloneDDS (``CYCLONEDDS_URI``).
 
         Raises
         ------
@@ -66,7 +66,7 @@ class Participant:
         except DDSException as error:
             raise Ros2Error(
                 f"cannot join DDS domain {domain} on the {network} network ({error}): check that an "
-                f"interface is up and the settings in CYCLONEDDS_URI, or use another domain"
+                f"interface is up, check the settings in CYCLONEDDS_URI, or use another domain"
             ) from error
         self._writers: list[Any] = []
         self._readers: list[Any] = []
@@ -85,7 +85,7 @@ class Participant:
         return Reader(self._readers[-1], topic, kind)
 
     def announce(self, node: str) -> None:
-        """Announce to ROS that the publishers and subscriptions made so far are those of a node."""
+        """Announce to ROS that the publishers and subscriptions created so far belong to a node."""
         data = graph.entities_message(node, self._entity, self._writers, self._readers)
         Writer(self._graph, graph.TOPIC).write(data)
 
@@ -112,7 +112,7 @@ class Participant:
         return True
 
     def close(self) -> None:
-        """Leave the domain; no effect if this has been done."""
+        """Leave the domain; a second call has no effect."""
         self._writers.clear()
         self._readers.clear()
         self._found = self._graph = self._entity = self._joined = None
@@ -142,7 +142,7 @@ def _check(domain: int, network: str) -> None:
 
 
 def _join(domain: int, network: str) -> _Joined:
-    """Return the domain, whose sockets CycloneDDS opens once in a process."""
+    """Join a domain, or return it if this process has joined it: CycloneDDS opens its sockets only once."""
     if joined := _JOINED.get(domain):
         if joined.network != network:
             raise Ros2Error(

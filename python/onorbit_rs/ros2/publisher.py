@@ -1,4 +1,4 @@
-"""The publishers of a node: rows, events and answers, with their recording."""
+"""Publishes the rows, events and answers of a node, and records them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Publisher:
-    """Publishes the messages of a run on its topics."""
+    """Publishes the messages of a run, and passes them to its recording if there is one."""
 
     def __init__(
         self,
@@ -24,7 +24,10 @@ class Publisher:
         tell: Callable[[str], None],
         recording: Recording | None = None,
     ) -> None:
-        """Create the publishers of all topics and publish what is latched; texts also go to ``tell``."""
+        """Create the publishers of all topics and publish the latched messages.
+
+        ``tell`` is called with the text of each event and answer.
+        """
         self._topics, self._tell, self._recording = topics, tell, recording
         self._writers = {name: participant.writer(name, kind) for name, kind in topics.names}
         for latched in topics.latched:
@@ -38,21 +41,21 @@ class Publisher:
 
     @property
     def topics(self) -> list[tuple[str, str]]:
-        """Names and types of the topics."""
+        """Names and types of the topics that are published."""
         latched = [(topic.name, topic.kind) for topic in self._topics.latched]
         return [*self._topics.names, *latched, (EVENTS, EVENTS_TYPE)]
 
     def rows(self, rows: Mapping[str, Rows]) -> None:
-        """Publish the messages of the rows of each system, row by row, on topics that have subscribers."""
+        """Record the rows of each system, and publish them, row by row, on topics that have subscribers."""
         if self._recording:
             self._recording.rows(rows)
         self._publish(rows, {name for name, writer in self._writers.items() if writer.subscribers()})
 
     def greet(self, present: Callable[[], Mapping[str, Rows]]) -> None:
-        """Publish the messages of the present rows on topics that subscribers have joined since their rows.
+        """Publish the present row on those topics that a subscriber has joined since their last message.
 
-        They are published a second time after a moment, because a subscriber that has not found the publisher
-        yet does not receive the first.
+        The row is published again 0.2 s later, because a subscriber that has not found the publisher yet does
+        not receive the first message. ``present`` is called only if there is such a subscriber.
         """
         if wanted := {name for name, writer in self._writers.items() if writer.is_greeting_due()}:
             self._publish(present(), wanted)
@@ -65,18 +68,18 @@ class Publisher:
                     writer.write(data[k].tobytes())
 
     def events(self, records: Iterable[EventRecord]) -> None:
-        """Publish events such as captures."""
+        """Publish captures and releases."""
         for record in records:
             self._event(record.time, message_of_event(record))
             self._tell(f"{record.name}: {record.kind} at t = {record.time:.9g} s")
 
     def answer(self, time: float, level: int, name: str, text: str) -> None:
-        """Publish an answer to a message at a simulated time, s."""
+        """Publish an answer to a message, or a warning, about ``name`` at a simulated time, s."""
         self._event(time, event_message(time, name, level, text, {}))
         self._tell(f"{name}: {text}")
 
     def record(self, topic: str, kind: str, time: float, data: bytes) -> None:
-        """Record a message that was obeyed, in CDR, at a simulated time, s; no effect without a recording."""
+        """Record a message, in CDR, of a simulated time, s; without a recording this has no effect."""
         if self._recording:
             self._recording.message(topic, kind, time, data)
 

@@ -1,4 +1,4 @@
-"""The robots, rows and events of a run that has ended, from its folder, its results or its trace."""
+"""Robots, rows and events of a run that has ended, read from its folder, its results or its trace."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Recorded:
-    """What the topics of a run are made of."""
+    """Data of a run from which its topics are computed."""
 
     models: Mapping[str, Model]
     rows: Mapping[str, Rows]
@@ -40,12 +40,12 @@ class Recorded:
 
 
 def recorded(source: Source, models: Models | None = None) -> Recorded:
-    """Return robots, rows and events of a run.
+    """Return the robots, rows and events of a run, and its orbit.
 
     Parameters
     ----------
     source : str, path, Run, Trace or WorldTrace
-        Folder of a run, its results, or a trace.
+        Folder of a run, or its results or trace.
     models : Model or mapping of str to Model, optional
         Robot of a trace, or robots by the name of the system; only with a trace.
 
@@ -63,7 +63,7 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
     orbit = None
     if isinstance(source, Run):
         if models is not None:
-            raise InputError("a run knows its robots; omit models", name="models", got=models)
+            raise InputError("a run contains its robots; omit models", name="models", got=models)
         models = source.models if isinstance(source.scenario, WorldScenario) else source.model
         orbit = _orbit(source)
         source = source.trace
@@ -98,7 +98,7 @@ def _orbit(run: Run) -> Orbit | None:
 
 
 def _check_joints(trace: Any, models: Mapping[str, Model]) -> None:
-    """Raise an error if a model does not have the joints of its system in the trace."""
+    """Raise an InputError if the number of joints of a model differs from that in the trace."""
     for name, model in models.items():
         own = trace[name] if hasattr(trace, "names") else trace
         joints = np.asarray(own.q)[:, JOINTS_Q].shape[1]

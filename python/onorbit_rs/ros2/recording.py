@@ -27,10 +27,10 @@ _ROWS = 64
 
 
 class Recording:
-    """An MCAP file that has its name after :meth:`close`, and is absent before."""
+    """An MCAP file that is written while the node runs; it has a temporary name until :meth:`close`."""
 
     def __init__(self, file: str | os.PathLike[str], topics: Topics) -> None:
-        """Begin a file with the messages that are latched, at time zero.
+        """Create the file and write the latched messages, at time zero.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class Recording:
         self._bag.write(self._numbers[topic], nanoseconds([time]), np.frombuffer(data, np.uint8)[None])
 
     def close(self) -> None:
-        """Complete the file; no effect the second time."""
+        """Complete the file and give it its name; a second call has no effect."""
         if not self._is_closed:
             self._is_closed = True
             with self._open:

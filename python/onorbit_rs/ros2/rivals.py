@@ -1,4 +1,4 @@
-"""Points out other simulators in the domain of a node."""
+"""Warns of other simulators in the domain of a node."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ _PERIOD_S = 1.0
 
 
 class Rivals:
-    """Other nodes that publish the time, as a simulator does."""
+    """Other nodes in the domain that publish ``/clock``, as simulators do."""
 
     def __init__(self, participant: Participant, domain: int) -> None:
-        """Begin without a look at the domain."""
+        """Take the participant of the node and the number of its domain."""
         self._participant, self._domain = participant, domain
         self._looked = -math.inf
 
     def point_out(self, session: Session) -> None:
-        """Publish a warning about a new one."""
+        """Publish a warning if another node has begun to publish ``/clock``; looks once per second."""
         now = time.monotonic()
         if now < self._looked + _PERIOD_S:
             return

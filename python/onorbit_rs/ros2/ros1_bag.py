@@ -22,10 +22,10 @@ _TF = "tf2_msgs/msg/TFMessage"
 
 
 class Ros1Bag:
-    """A bag of ROS 1, whose messages are given as those of ROS 2; it is complete after the block."""
+    """A bag of ROS 1, to which messages of ROS 2 are written; a context manager that completes the file."""
 
     def __init__(self, file: Path) -> None:
-        """Replace a file."""
+        """Take the name of the file, and remove an existing file."""
         file.unlink(missing_ok=True)  # rosbags writes new files only
         self._store = get_typestore(Stores.ROS1_NOETIC)
         self._store.register({_TF: get_types_from_msg(STORE.generate_msgdef(_TF)[0], _TF)[_TF]})
@@ -43,11 +43,11 @@ class Ros1Bag:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Write the index."""
+        """Write the index and close the file."""
         self._writer.__exit__(kind, error, trace)
 
     def add_topic(self, name: str, kind: str, *, is_latched: bool = False) -> int:
-        """Return the number of a topic, for :meth:`write`."""
+        """Add a topic, and return its number for :meth:`write`."""
         if kind in self._store.fielddefs:
             latching = int(is_latched)
             self._topics.append(
@@ -59,7 +59,7 @@ class Ros1Bag:
         return len(self._topics) - 1
 
     def write(self, topic: int, times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
-        """Write messages (T, size), in CDR, of times (T,), ns."""
+        """Write messages (T, size), in CDR, of times (T,), ns; ignored for a topic in ``left_out``."""
         connection = self._topics[topic]
         if connection is None:
             return

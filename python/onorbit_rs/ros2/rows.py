@@ -36,14 +36,14 @@ class Rows:
 
     @classmethod
     def at_distinct_times(cls, columns: Mapping[str, Floats], wrenches: Mapping[str, Floats]) -> Rows:
-        """Return rows of which the last counts where several have the same time, as at a capture."""
+        """Return the rows without those that a later row at the same time replaces, as at a capture."""
         time = columns["time"].reshape(-1)
         chosen = np.append(time[1:] != time[:-1], np.ones(min(1, len(time)), dtype=bool))
         rows = cls(columns, wrenches)
         return rows if chosen.all() else rows.at(chosen)
 
     def at(self, chosen: NDArray[np.bool_] | slice) -> Rows:
-        """Return chosen rows."""
+        """Return the rows that a mask or a slice selects."""
         parts = (self.columns, self.wrenches)
         return Rows(*({name: held[chosen] for name, held in part.items()} for part in parts))
 
@@ -58,13 +58,13 @@ class Rows:
 
     @cached_property
     def orbit_attitude(self) -> Floats:
-        """Attitude of the local orbital frame in inertial axes, (T, 4)."""
+        """Quaternions xyzw (T, 4) of the attitude of the local orbital frame in inertial axes."""
         r, v = self["reference_position_eci"], self["reference_velocity_eci"]
         return quaternion_from_matrix(local_orbital_axes(r, v))
 
     @classmethod
     def joined(cls, parts: Sequence[Rows]) -> Rows:
-        """Return consecutive rows in one; none without parts."""
+        """Return consecutive parts as one object; without parts, an object without rows."""
         parts = [part for part in parts if len(part)]
         if not parts:
             return cls({"time": np.empty(0)})
@@ -78,11 +78,11 @@ class Rows:
         )
 
     def between(self, start: float, end: float) -> Rows:
-        """Return the rows from ``start`` to before ``end``, s."""
+        """Return the rows with times in ``[start, end)``, s."""
         return self.at(slice(*np.searchsorted(self.time, [start, end])))
 
     def __getitem__(self, name: str) -> Floats:
-        """Return a column."""
+        """Return the column of a name, (T, width)."""
         return self.columns[name]
 
     def __contains__(self, name: str) -> bool:
@@ -99,7 +99,7 @@ def rows_of_trace(
     models: Mapping[str, Model],
     since: Mapping[str, int] | None = None,
 ) -> dict[str, Rows]:
-    """Return the rows of each system of a trace, which may be that of one robot, from row ``since`` on."""
+    """Return the rows of each system of a trace, beginning for each system at its row in ``since``."""
     found = {}
     for system in models:
         own: Any = trace[system] if isinstance(trace, WorldTrace | SavedWorldTrace) else trace
@@ -114,7 +114,10 @@ def rows_of_trace(
 
 
 def rows_of_columns(columns: Mapping[str, Floats], models: Mapping[str, Model]) -> dict[str, Rows]:
-    """Return the rows of each system from the columns of a stepper, whose paths name it in a world."""
+    """Return the rows of each system from the columns of a stepper.
+
+    In a world, the names of the columns begin with the name of the system.
+    """
     found = {}
     for system in models:
         prefix = f"{system}/" if f"{system}/time" in columns else ""

@@ -1,4 +1,4 @@
-"""What else the interpreter and the operating system do while a node runs in real time."""
+"""Garbage collection and priority of a node in real time."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ _TOO_MANY = 50 * _YOUNG
 
 @contextmanager
 def collected_in_slack() -> Iterator[Callable[[float], None]]:
-    """Disable the garbage collector in the block, since it may pause the program for 30 ms.
+    """Disable automatic garbage collection in the block, since it may pause the program for 30 ms.
 
-    Yields a function that is called with the time, s, until the next tick. It collects new objects if there
-    are many and the time suffices. Garbage among old objects is collected after the block.
+    Yields a function to be called with the time, s, until the next tick: if there are many new objects and
+    the time suffices, it collects those that are garbage. Garbage that has survived such a collection is
+    collected after the block.
     """
 
     def tidy(slack: float) -> None:
@@ -41,9 +42,9 @@ def collected_in_slack() -> Iterator[Callable[[float], None]]:
 
 @contextmanager
 def prioritized(is_wanted: bool) -> Iterator[None]:
-    """Give this thread real-time priority (``SCHED_FIFO``) in the block; warn where that is not possible.
+    """Give this thread real-time priority (``SCHED_FIFO``) in the block; warn where this is not possible.
 
-    Threads that begin in the block inherit it.
+    Threads that are started in the block inherit the priority.
     """
     if not is_wanted:
         yield

@@ -1,4 +1,4 @@
-"""A topic whose messages follow from the rows of a run."""
+"""A topic whose messages are computed from the rows of a run."""
 
 from __future__ import annotations
 

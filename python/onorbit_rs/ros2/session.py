@@ -20,7 +20,7 @@ _BLOCK_S = 0.02
 
 @dataclass
 class Session:
-    """A run, and the publisher of what it does."""
+    """A run, its publisher, and whether it waits for messages."""
 
     run: LiveRun
     publisher: Publisher
@@ -31,15 +31,15 @@ class Session:
 
     @property
     def is_waiting(self) -> bool:
-        """True if the run advances on ``/step`` only."""
+        """True if the run advances on ``/step`` only: in a pause, and in pace ``stepped``."""
         return self.is_paused or self.pace == "stepped"
 
     def advance(self) -> None:
-        """Advance to the next time at which the node looks at its topics."""
+        """Advance to the next time at which the node reads its topics."""
         self._advance_to(self.run.next_time(0.0 if self.pace == "real_time" else _BLOCK_S))
 
     def advance_by(self, length: float) -> None:
-        """Advance by a length of simulated time, s, in blocks, between which a signal stops the node."""
+        """Advance by a length of simulated time, s, in blocks; a signal stops the node after a block."""
         end = min(self.run.time + length, self.run.end)
         before = -np.inf
         while before < self.run.time < end and not self.is_stopped():
@@ -51,15 +51,15 @@ class Session:
         self.publish()
         for entry in ended:
             topic = f"/{self.publisher.prefixes[entry['system']]}wrench_command"
-            self.say(WARN, topic, f"no message within the time-out: the wrench on {entry['body']} ended")
+            self.say(WARN, topic, f"no message came within the timeout; the wrench on {entry['body']} ended")
 
     def publish(self) -> None:
-        """Publish the rows and events since the last call."""
+        """Publish the rows and events that are new since the last call."""
         self.publisher.rows(self.run.rows())
         self.publisher.events(self.run.events())
 
     def publish_present(self) -> None:
-        """Publish the row at the current time while the run waits, for a sender that waits for it."""
+        """Publish the row at the current time if the run waits, since its commands are computed from it."""
         if self.is_waiting:
             self.publisher.rows(self.run.take_present())
 
@@ -68,5 +68,5 @@ class Session:
         self.publisher.greet(self.run.present)
 
     def say(self, level: int, name: str, text: str) -> None:
-        """Publish an answer to a message, or a remark."""
+        """Publish an answer to a message, or a warning, about ``name``."""
         self.publisher.answer(self.run.time, level, name, text)

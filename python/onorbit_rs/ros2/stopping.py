@@ -1,4 +1,4 @@
-"""Signals that stop a node between two messages."""
+"""Signals that stop a node after the message that it is publishing."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 def noted_stop() -> Iterator[Callable[[], bool]]:
     """Yield a function that returns True after a signal whose handler raises ``KeyboardInterrupt``.
 
-    In the main thread the first such signal of a block is noted, so that a message is not lost half-way;
-    another one is handled as before.
+    In the main thread, the first such signal is only noted, so that it does not interrupt a message that is
+    being published; a second signal is handled as before the block. In another thread, signals are handled as
+    before.
     """
     replaced: dict[int, Callable[[int, FrameType | None], Any]] = {}
     is_noted = False

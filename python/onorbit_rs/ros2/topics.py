@@ -1,4 +1,4 @@
-"""Topics of a run and their messages, computed from rows: the same for the live node and for bags."""
+"""Topics of a run, for the live node and for bags, and their messages, which are computed from rows."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ OK, WARN, ERROR = 0, 1, 2
 
 @dataclass(frozen=True)
 class Latched:
-    """A topic with one message, which late subscribers receive too."""
+    """A topic with a single message, which subscribers receive also if they join later."""
 
     name: str
     kind: str
@@ -51,24 +51,24 @@ class Latched:
 
 @dataclass(frozen=True)
 class Topics:
-    """All topics of a run."""
+    """Topics of a run: those with a message per row, and the latched ones."""
 
     series: tuple[Series, ...]
     latched: tuple[Latched, ...]
     prefixes: Mapping[str, str]
     """Prefix of the topics and frames of each system, such as ``chaser/``; empty for one robot."""
     frames: Mapping[str, Mapping[str, str]]
-    """Name in the tree of frames, without the prefix, of each link and frame of each system."""
+    """Name in ``/tf``, without the prefix, of each link and frame of each system."""
 
     @property
     def names(self) -> list[tuple[str, str]]:
-        """Names and types of the topics with a message per row; several series may share a topic."""
+        """Names and types of the topics with a message per row, each once: ``/tf`` has several series."""
         return list(dict.fromkeys((topic.name, topic.kind) for topic in self.series))
 
     def messages(
         self, rows: Mapping[str, Rows], names: Container[str] | None = None
     ) -> Iterator[tuple[Series, NDArray[np.uint8]]]:
-        """Return the messages of each topic, or of those named, for the rows of each system."""
+        """Yield each series, or those of the topics ``names``, with its messages (T, size) for the rows."""
         for topic in self.series:
             if len(rows[topic.system]) and (names is None or topic.name in names):
                 yield topic, topic.messages(rows[topic.system])
@@ -82,9 +82,10 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows], orbit: Orbit 
     models : mapping of str to Model
         Robots by the name of the system; the topics of a single robot have no prefix.
     first : mapping of str to Rows
-        Some rows of each system; their columns are those that the run records.
+        One or more rows of each system; topics are created for the columns that they have.
     orbit : Orbit, optional
-        Reference orbit, for the exact rate of ``lvlh``; without it, the turn of its plane is left out.
+        Reference orbit, from which the exact rate of ``lvlh`` is computed. Without it, the rate does not
+        contain the turn of the orbital plane.
     """
     names = ros_names(models, "system")
     prefixes = {name: f"{ros}/" if len(models) > 1 else "" for name, ros in names.items()}
@@ -102,7 +103,7 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows], orbit: Orbit 
 
 
 def _has_local_frame(rows: Rows) -> bool:
-    """Return True if the rows have a reference orbit that defines ``lvlh``."""
+    """Return True if the rows have a reference orbit, and position and velocity define ``lvlh``."""
     if "reference_position_eci" not in rows:
         return False
     return is_local_frame_defined(rows["reference_position_eci"], rows["reference_velocity_eci"])
@@ -139,7 +140,7 @@ def _orbit_pose(rows: Rows) -> dict[str, Floats]:
 
 
 def _orbit_twist(rows: Rows, orbit: Orbit | None) -> dict[str, Floats]:
-    """Return the velocity of the origin, and the rate of L; without the orbit, its part `r × v / r²`."""
+    """Return the velocity of the origin of L and the rate of L; without the orbit, `r × v / r²`."""
     r, v = rows["reference_position_eci"], rows["reference_velocity_eci"]
     if orbit is not None:
         rot_il, rate_l = orbit.lvlh(np.ascontiguousarray(rows.time))
@@ -181,13 +182,13 @@ def _joint_states(rows: Rows) -> dict[str, Floats]:
 
 
 def _odometry(rows: Rows) -> dict[str, Floats]:
-    """Return pose in W and twist in base axes, as the messages define them."""
+    """Return the pose of the base in W, and its twist in base axes, as ``nav_msgs/Odometry`` defines them."""
     q, v = rows["q"], rows["v"]
     return {"p": q[:, POSITION], "q": q[:, QUATERNION], "v": v[:, LINEAR], "w": v[:, ANGULAR]}
 
 
 def _transforms(system: str, frames: OrbitFrames | SystemFrames) -> Series:
-    """Return the topic of moving frames."""
+    """Return the series of transforms of moving frames."""
 
     def values(rows: Rows) -> dict[str, Floats]:
         return {"poses": frames.poses(rows).reshape(len(rows), -1)}
@@ -199,7 +200,7 @@ def _transforms(system: str, frames: OrbitFrames | SystemFrames) -> Series:
 
 
 def tf_message(links: Sequence[Link], poses: Floats, marks: Marks) -> Any:
-    """Return a message of frames with poses (7 k,) in their parents."""
+    """Return the transforms of k frames with poses (7 k,): position, m, and quaternion xyzw in the parent."""
     transforms = [
         message(
             "geometry_msgs/msg/TransformStamped", header=marks.header(parent), child_frame_id=child,
@@ -215,7 +216,7 @@ def tf_message(links: Sequence[Link], poses: Floats, marks: Marks) -> Any:
 def static_topic(
     prefixes: Mapping[str, str], models: Mapping[str, Model], frames: Mapping[str, Mapping[str, str]]
 ) -> Latched:
-    """Return the frames that are fixed to links."""
+    """Return the topic of the transforms of frames that are fixed to links."""
     found = [fixed_frames(prefixes[name], model, frames[name]) for name, model in models.items()]
     links = [link for part, _ in found for link in part]
     poses = np.concatenate([part for _, part in found])
@@ -224,13 +225,13 @@ def static_topic(
 
 
 def description(prefix: str, model: Model, frames: Mapping[str, str]) -> Latched:
-    """Return the robot as URDF, whose links have the names of the tree of frames."""
+    """Return the topic of the robot as URDF, whose links and frames have their names in ``/tf``."""
     kind = "std_msgs/msg/String"
     return Latched(f"/{prefix}robot_description", kind, encode(message(kind, data=urdf_text(model, frames))))
 
 
 def message_of_event(record: EventRecord) -> bytes:
-    """Return the message of a capture or a release, for ``/events``; numbers have all digits."""
+    """Return the message of a capture or a release, for ``/events``, with numbers in full precision."""
     by, of = record.systems
     numbers = {
         "impulse": record.impulse, "point": record.point,
@@ -242,7 +243,7 @@ def message_of_event(record: EventRecord) -> bytes:
 
 
 def event_message(time: float, name: str, level: int, text: str, values: Mapping[str, str]) -> bytes:
-    """Return the message of an event or of the answer to a command, for ``/events``."""
+    """Return a message for ``/events``: an event, an answer or a warning, at a simulated time, s."""
     pairs = [message("diagnostic_msgs/msg/KeyValue", key=key, value=value) for key, value in values.items()]
     status = message(
         "diagnostic_msgs/msg/DiagnosticStatus",

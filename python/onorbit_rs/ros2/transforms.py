@@ -34,9 +34,10 @@ class Link(NamedTuple):
 
 
 def frames_of(prefix: str, model: Model) -> dict[str, str]:
-    """Return the name in the tree, without the prefix, of each link and frame of a robot.
+    """Return the name in ``/tf``, without the prefix, of each link and frame of a robot.
 
-    ``base`` is the frame of the root link. Without a prefix, no link has the name of a frame of the orbit.
+    ``base`` is reserved for the root link; without a prefix, so are ``eci``, ``world`` and ``lvlh`` for the
+    orbit.
     """
     reserved = {BASE} - {model.body_names[0]} | (set() if prefix else {ECI, WORLD, LVLH})
     return frame_names([*model.body_names, *(frame.name for frame in model.frames)], reserved)
@@ -52,7 +53,7 @@ class OrbitFrames:
     links = (Link(ECI, WORLD), Link(WORLD, LVLH))
 
     def poses(self, rows: Rows) -> Floats:
-        """Return the poses (T, 2, 7)."""
+        """Return the poses (T, 2, 7) of ``world`` and ``lvlh``."""
         found = np.zeros((len(rows), 2, 7))
         found[:, 0, :3], found[:, 0, 6] = rows["reference_position_eci"], 1.0
         found[:, 1, 3:] = rows.orbit_attitude
@@ -60,10 +61,10 @@ class OrbitFrames:
 
 
 class SystemFrames:
-    """The base of a system in ``world`` and its moving links in their parent links."""
+    """Frames of a system: its base, whose parent is ``world``, and its moving links."""
 
     def __init__(self, prefix: str, model: Model, names: Mapping[str, str]) -> None:
-        """Take the prefix of the frames of the system, such as ``chaser/``, and their names in the tree."""
+        """Take the prefix of the frames, such as ``chaser/``, and their names in ``/tf`` without it."""
         joints = model.joints
         moving = (Link(prefix + names[joint.parent], prefix + names[joint.child]) for joint in joints)
         self.links = (Link(WORLD, prefix + BASE), *moving)
@@ -81,7 +82,7 @@ class SystemFrames:
         self._axis = axis
 
     def poses(self, rows: Rows) -> Floats:
-        """Return the poses (T, 1 + n, 7).
+        """Return the poses (T, 1 + n, 7) of the base and of the child links of the n joints.
 
         The pose of a child link at position q is `T₀ trans(c) exp(q) trans(−c)`, with the axis through the
         anchor `c`.
@@ -107,7 +108,10 @@ class SystemFrames:
 
 
 def fixed_frames(prefix: str, model: Model, names: Mapping[str, str]) -> tuple[list[Link], Floats]:
-    """Return the first link in the base frame, and every frame that is fixed to a link, with poses (k, 7)."""
+    """Return the frames that are fixed to links, with their poses (k, 7).
+
+    The first is the root link in ``base``, unless it has this name itself.
+    """
     bodies = set(model.body_names)
     root = model.body_names[0]
     links = [] if root == BASE else [Link(prefix + BASE, prefix + names[root])]

@@ -1,4 +1,4 @@
-"""Time-outs of the wrenches that a node applies on command."""
+"""Timeouts of the wrenches that a node applies on command."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ Entry = dict[str, Any]
 
 
 class WrenchTimeouts:
-    """Ends of the wrenches on links: the time of the last command plus the time-out."""
+    """Times at which wrenches on links end: the time of the last command plus the timeout."""
 
     def __init__(self, timeout: float | None) -> None:
-        """Begin without wrenches; without a time-out, s, they do not end."""
+        """Begin without wrenches; if ``timeout``, s, is None, they do not end."""
         if timeout is not None and not 0.0 < timeout < math.inf:
             raise InputError(
-                f"the time-out of wrenches is {timeout!r} s; it must be positive and finite",
+                f"the timeout of wrenches is {timeout!r} s; it must be positive and finite",
                 name="wrench_timeout", got=timeout, expected="a positive number of seconds",
             )  # fmt: skip
         self._timeout = timeout
         self._ends: dict[tuple[str, str], float] = {}
 
     def note(self, entries: Iterable[Mapping[str, Any]], t: float) -> None:
-        """Start the time-out, at a simulated time, s, of each wrench among commands that were given."""
+        """Start the timeout of each wrench among the commands given at a simulated time, s."""
         for entry in entries:
             if self._timeout is None or "body" not in entry:
                 continue
@@ -41,7 +41,7 @@ class WrenchTimeouts:
         return min(self._ends.values(), default=math.inf)
 
     def take(self, t: float) -> list[Entry]:
-        """Return the commands that end the wrenches whose time-outs are over at a simulated time, s."""
+        """Return the commands that end the wrenches whose timeouts are over at a simulated time, s."""
         over = [link for link, end in self._ends.items() if end <= t]
         for link in over:
             del self._ends[link]

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def wrench_topics(
     system: str, prefix: str, model: Model, frames: Mapping[str, str], first: Rows
 ) -> list[Series]:
-    """Return a topic for each effect and link: the wrench at the link's origin, in the axes of the link."""
+    """Return a topic for each effect and link, with the wrench at the link's origin, in the link's axes."""
     effects = ros_names(first.wrenches, "effect")
     if not effects:
         return []  # without a warning about links
