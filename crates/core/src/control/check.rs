@@ -110,7 +110,7 @@ fn check_pair(i: usize, k: usize, controls: &[Control], model: &Model) -> Result
     Ok(())
 }
 
-/// Checks that two controls have no joint in common if both are active at `time`, s.
+/// Checks that two controls that are both active at `time`, s, have no joint in common.
 pub(super) fn check_disjoint(a: &Control, b: &Control, model: &Model, time: f64) -> Result<(), ControlError> {
     match a.joints.iter().find(|joint| b.joints.contains(joint)) {
         Some(&joint) => Err(ControlError::Overlap {
