@@ -148,10 +148,11 @@ def test_a_priority_that_is_not_permitted_is_a_warning(monkeypatch: pytest.Monke
 
     monkeypatch.setattr(os, "sched_setscheduler", refuse, raising=False)
     with (
-        pytest.warns(UserWarning, match=r"without real-time priority \(Operation not permitted\).*rtprio"),
+        pytest.warns(UserWarning, match=r"without real-time priority \(Operation not permitted\)") as found,
         node_of(scenario(), has_priority=True) as node,
     ):
         assert node.spin(0.01).time[-1] == 0.01
+    assert len(found) == 1 and "'@users - rtprio 1'" in str(found[0].message)
     with node_of(scenario(), pace="fast", has_priority=True) as node:
         assert node.spin(0.01).time[-1] == 0.01, "real time only"
 
@@ -164,8 +165,8 @@ def test_the_priority_ends_with_the_block() -> None:
         os.sched_setscheduler(0, before, os.sched_param(0))
     except PermissionError:
         pytest.skip("this user may not use SCHED_FIFO")
-    with prioritized(True):
-        assert os.sched_getscheduler(0) == os.SCHED_FIFO
+    with prioritized(True) as has_priority:
+        assert has_priority and os.sched_getscheduler(0) == os.SCHED_FIFO
     assert os.sched_getscheduler(0) == before
-    with prioritized(False):
-        assert os.sched_getscheduler(0) == before
+    with prioritized(False) as has_priority:
+        assert not has_priority and os.sched_getscheduler(0) == before

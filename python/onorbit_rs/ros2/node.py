@@ -104,13 +104,12 @@ class Node:
             raise InputError(
                 f"pace is {pace!r}; give one of {', '.join(PACES)}", name="pace", got=pace, expected=PACES
             )
-        has_priority = has_priority and pace == "real_time"
         self._run = LiveRun(simulation, wrench_timeout)
         self._clock = RealTime(self._run.tick)
         self._has_ended = False
         self.duration: float | None = None
         self.topics: Topics = topics(self._run.models, self._run.present(), simulation.orbit)
-        with prioritized(has_priority):  # the threads of DDS inherit the priority
+        with prioritized(has_priority and pace == "real_time") as is_prioritized:  # threads of DDS inherit it
             self._participant = Participant(domain, network=network)
         self._recording = None if record is None else Recording(record, self.topics)
         self._run.log = CommandLog(log)  # after everything that may fail, since it replaces the file
@@ -122,7 +121,7 @@ class Node:
             fixed = "the run is recorded, and times in a bag do not go back"
         orders = Orders(self._session, self._inbox, lambda: self._clock.restart(0.0), fixed)
         clock = self._clock if pace == "real_time" else None
-        self._loop = Loop(self._session, orders, Rivals(self._participant, domain), clock, has_priority)
+        self._loop = Loop(self._session, orders, Rivals(self._participant, domain), clock, is_prioritized)
         self._participant.announce(NAME)
 
     @classmethod

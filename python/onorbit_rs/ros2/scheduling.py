@@ -41,13 +41,13 @@ def collected_in_slack() -> Iterator[Callable[[float], None]]:
 
 
 @contextmanager
-def prioritized(is_wanted: bool) -> Iterator[None]:
+def prioritized(is_wanted: bool) -> Iterator[bool]:
     """Give this thread real-time priority (``SCHED_FIFO``) in the block; warn where this is not possible.
 
-    Threads that are started in the block inherit the priority.
+    Yields whether the thread has the priority. Threads that are started in the block inherit it.
     """
     if not is_wanted:
-        yield
+        yield False
         return
     try:
         before = os.sched_getscheduler(0), os.sched_getparam(0)
@@ -55,13 +55,13 @@ def prioritized(is_wanted: bool) -> Iterator[None]:
     except (AttributeError, OSError) as error:
         reason = getattr(error, "strerror", None) or "only Linux has it"
         warnings.warn(
-            f"the node runs without real-time priority ({reason}); on Linux, allow it with the line "
-            "'@GROUP - rtprio 1' in /etc/security/limits.conf",
+            f"the node runs without real-time priority ({reason}); on Linux, a line such as "
+            "'@users - rtprio 1' in /etc/security/limits.conf allows it",
             UserWarning, stacklevel=4,
         )  # fmt: skip
-        yield
+        yield False
         return
     try:
-        yield
+        yield True
     finally:
         os.sched_setscheduler(0, *before)
