@@ -20,7 +20,8 @@ from onorbit_rs.simulation.replay import replay_commands
 needs_ros2()
 
 from onorbit_rs.ros2 import Node  # noqa: E402
-from onorbit_rs.ros2.inbox import Inbox, add_run_topics, add_system_topics  # noqa: E402
+from onorbit_rs.ros2.command_topics import add_run_topics, add_system_topics  # noqa: E402
+from onorbit_rs.ros2.inbox import Inbox  # noqa: E402
 from onorbit_rs.ros2.transforms import frames_of  # noqa: E402
 
 ROBOT = oo.robots.load("humanoid_torso")

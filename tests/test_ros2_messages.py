@@ -15,9 +15,10 @@ from onorbit_rs.scenario.build import build
 
 needs_ros2()
 
+from onorbit_rs.ros2.events import event_message  # noqa: E402
 from onorbit_rs.ros2.messages import Marks, Template, decode, encode, message, stamp  # noqa: E402
 from onorbit_rs.ros2.rows import Rows, rows_of_trace  # noqa: E402
-from onorbit_rs.ros2.topics import Topics, event_message, topics  # noqa: E402
+from onorbit_rs.ros2.topics import Topics, topics  # noqa: E402
 
 
 def one_robot() -> tuple[Topics, dict[str, Rows]]:

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from onorbit_rs.common.files import replacing
+from onorbit_rs.ros2.events import EVENTS, EVENTS_TYPE, message_of_event
 from onorbit_rs.ros2.mcap_file import McapFile
 from onorbit_rs.ros2.messages import nanoseconds
 from onorbit_rs.ros2.recorded import Recorded, recorded
 from onorbit_rs.ros2.ros1_bag import Ros1Bag
-from onorbit_rs.ros2.topics import EVENTS, EVENTS_TYPE, message_of_event, topics
+from onorbit_rs.ros2.topics import topics
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.exceptions import ControlError
+from onorbit_rs.ros2.entries import Entry
 from onorbit_rs.ros2.live_rows import LiveRows
-from onorbit_rs.ros2.wrench_timeouts import Entry, WrenchTimeouts
+from onorbit_rs.ros2.wrench_timeouts import WrenchTimeouts
 from onorbit_rs.simulation.commands import CommandLog
 
 if TYPE_CHECKING:

@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.exceptions import InputError, OnOrbitError, Ros2Error
-from onorbit_rs.ros2.inbox import Entry, Inbox, add_run_topics, add_system_topics
+from onorbit_rs.ros2.command_topics import add_run_topics, add_system_topics
+from onorbit_rs.ros2.entries import Entry
+from onorbit_rs.ros2.events import ERROR, OK, WARN
+from onorbit_rs.ros2.inbox import Inbox
 from onorbit_rs.ros2.live_run import LiveRun
 from onorbit_rs.ros2.loop import Loop
 from onorbit_rs.ros2.orders import Orders
@@ -21,7 +24,7 @@ from onorbit_rs.ros2.rivals import Rivals
 from onorbit_rs.ros2.scheduling import prioritized
 from onorbit_rs.ros2.session import Session
 from onorbit_rs.ros2.stopping import noted_stop
-from onorbit_rs.ros2.topics import ERROR, OK, WARN, Topics, topics
+from onorbit_rs.ros2.topics import Topics, topics
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.build_world import build_world

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.ros2.events import ERROR, OK, WARN
 from onorbit_rs.ros2.messages import nanoseconds
-from onorbit_rs.ros2.topics import ERROR, OK, WARN
 
 if TYPE_CHECKING:
     from onorbit_rs.ros2.inbox import Arrived, Inbox

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from onorbit_rs.ros2.topics import EVENTS, EVENTS_TYPE, Topics, event_message, message_of_event
+from onorbit_rs.ros2.events import EVENTS, EVENTS_TYPE, event_message, message_of_event
+from onorbit_rs.ros2.topics import Topics
 
 if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord

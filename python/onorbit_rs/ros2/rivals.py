@@ -6,7 +6,7 @@ import math
 import time
 from typing import TYPE_CHECKING
 
-from onorbit_rs.ros2.topics import WARN
+from onorbit_rs.ros2.events import WARN
 
 if TYPE_CHECKING:
     from onorbit_rs.ros2.participant import Participant

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.ros2.topics import WARN
+from onorbit_rs.ros2.events import WARN
 
 if TYPE_CHECKING:
     from onorbit_rs.ros2.live_run import LiveRun

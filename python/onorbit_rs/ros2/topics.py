@@ -11,7 +11,7 @@ import numpy as np
 from onorbit_rs.common.coordinates import ANGULAR, JOINTS_Q, JOINTS_V, LINEAR, POSITION, QUATERNION
 from onorbit_rs.common.rotations import is_local_frame_defined
 from onorbit_rs.robots.urdf import urdf_text
-from onorbit_rs.ros2.messages import Marks, Template, encode, message, point, quaternion, stamp, vector
+from onorbit_rs.ros2.messages import Marks, Template, encode, message, point, quaternion, vector
 from onorbit_rs.ros2.names import ros_names
 from onorbit_rs.ros2.rows import Rows
 from onorbit_rs.ros2.series import Series
@@ -30,14 +30,11 @@ from onorbit_rs.ros2.wrenches import wrench_topics
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import EventRecord, Model, Orbit
+    from onorbit_rs._core import Model, Orbit
 
     Floats = NDArray[np.float64]
 
 TF = "tf2_msgs/msg/TFMessage"
-EVENTS, EVENTS_TYPE = "/events", "diagnostic_msgs/msg/DiagnosticArray"
-OK, WARN, ERROR = 0, 1, 2
-"""Levels of ``diagnostic_msgs/DiagnosticStatus``."""
 
 
 @dataclass(frozen=True)
@@ -228,26 +225,3 @@ def description(prefix: str, model: Model, frames: Mapping[str, str]) -> Latched
     """Return the topic of the robot as URDF, whose links and frames have their names in ``/tf``."""
     kind = "std_msgs/msg/String"
     return Latched(f"/{prefix}robot_description", kind, encode(message(kind, data=urdf_text(model, frames))))
-
-
-def message_of_event(record: EventRecord) -> bytes:
-    """Return the message of a capture or a release, for ``/events``, with numbers in full precision."""
-    by, of = record.systems
-    numbers = {
-        "impulse": record.impulse, "point": record.point,
-        "energy_lost": np.array(record.energy_lost), "momentum_error": record.momentum_error,
-    }  # fmt: skip
-    values = {"kind": record.kind, "systems": f"{by} {of}"}
-    values |= {name: " ".join(map(repr, array.ravel().tolist())) for name, array in numbers.items()}
-    return event_message(record.time, record.name, OK, f"{record.kind}: {by} and {of}", values)
-
-
-def event_message(time: float, name: str, level: int, text: str, values: Mapping[str, str]) -> bytes:
-    """Return a message for ``/events``: an event, an answer or a warning, at a simulated time, s."""
-    pairs = [message("diagnostic_msgs/msg/KeyValue", key=key, value=value) for key, value in values.items()]
-    status = message(
-        "diagnostic_msgs/msg/DiagnosticStatus",
-        level=level, name=name, message=text, hardware_id="onorbit", values=pairs,
-    )  # fmt: skip
-    header = message("std_msgs/msg/Header", stamp=stamp(time), frame_id=WORLD)
-    return encode(message("diagnostic_msgs/msg/DiagnosticArray", header=header, status=[status]))

@@ -7,9 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from onorbit_rs.exceptions import InputError
-
-Entry = dict[str, Any]
-"""A command as in a command file, without its time."""
+from onorbit_rs.ros2.entries import Entry
 
 
 class WrenchTimeouts:
