@@ -33,6 +33,7 @@ ORDER = (
     "reference",
     "control",
     "world",
+    "contact",
     "simulation",
     "batch",
 )

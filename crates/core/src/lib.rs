@@ -1,7 +1,8 @@
 //! Free-floating articulated dynamics for robots in orbit.
 //!
 //! Each folder uses only those before it in this order: `spatial`, `model`, `geometry`, `dynamics`,
-//! `earth`, `gravity`, `orbit`, `environment`, `reference`, `control`, `world`, `simulation`, `batch`.
+//! `earth`, `gravity`, `orbit`, `environment`, `reference`, `control`, `world`, `contact`, `simulation`,
+//! `batch`.
 //!
 //! # Equation index
 //!
@@ -16,6 +17,10 @@
 //! | joint traversed backwards `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹` | `model/reroot.rs` | `reversed` |
 //! | velocity after a capture `M v⁺ = Σ J_kᵀ I_k V_k⁻` | `world/impulse.rs` | `connected_velocity` |
 //! | momentum projection `v_b = Mbb⁻¹ (h − Mbm q̇)` | `dynamics/momentum.rs` | `projected_base_twist` |
+//! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` | `geometry/closest.rs` | `closest` |
+//! | normal force of a contact `F = k xⁿ (1 + d ẋ)` | `contact/normal.rs` | `NormalLaw::force` |
+//! | elastic-plastic friction `ż = v` inside the cone, `z = μ N/σ d` on it | `contact/friction.rs` | `Friction::after` |
+//! | step of a contact `h = π/(N ω) √(x/x_max)` | `simulation/contacts/step_length.rs` | `longest_step` |
 //! | Kepler's equation, ellipse and hyperbola | `orbit/kepler/anomaly.rs` | `solve_ellipse`, `solve_hyperbola` |
 //! | `F_k = m_k [g(r_k) − r̈_ref]`; only the tide if `gravity_mode: carried` | `environment/differential_gravity.rs` | `GravityMode`, `DifferentialGravity::add` |
 //! | common acceleration of drag and light `ΣF/Σm`, removed in `carried` mode | `simulation/environment_loads.rs` | `add_relative_to_reference` |
@@ -28,6 +33,7 @@
 //! | computed torque for some joints, given torques for the others | `control/hybrid_dynamics.rs` | `eliminate`, `solve` |
 
 pub mod batch;
+pub mod contact;
 pub mod control;
 pub mod dynamics;
 pub mod earth;

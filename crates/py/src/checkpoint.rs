@@ -4,7 +4,9 @@ use crate::arrays::{Input, array_of, first_row};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use crate::world::Systems;
 use onorbit_core::number_text::{count, short};
-use onorbit_core::simulation::{self, NamedColumn, SimulationError, Stepper, TRACKING, Trace, WRENCHES};
+use onorbit_core::simulation::{
+    self, CONTACTS, NamedColumn, SimulationError, Stepper, TRACKING, Trace, WRENCHES,
+};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
@@ -77,7 +79,12 @@ impl PyCheckpoint {
         for (name, values) in columns {
             let name: String = name.extract()?;
             let Some(name) = name.strip_prefix(prefix) else { continue };
-            for (kind, named) in [(&TRACKING, &mut rows.tracking), (&WRENCHES, &mut rows.wrenches)] {
+            let kinds = [
+                (&TRACKING, &mut rows.tracking),
+                (&WRENCHES, &mut rows.wrenches),
+                (&CONTACTS, &mut rows.contacts),
+            ];
+            for (kind, named) in kinds {
                 if let Some(name) = kind.owner_of(name) {
                     let width = Input::new(&values, name)?.shape().get(1).copied().unwrap_or(1);
                     named.push(NamedColumn { name: name.to_owned(), width, values: Vec::new() });

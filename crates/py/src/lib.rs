@@ -5,6 +5,7 @@ mod batch;
 mod checkpoint;
 mod columns;
 mod commands;
+mod contact;
 mod control;
 mod dynamics;
 mod earth;
@@ -79,6 +80,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<simulation::PySimulation>()?;
     m.add_class::<stepper::PyStepper>()?;
     m.add_class::<trace::PyTrace>()?;
+    contact::add_classes(m)?;
     world::add_classes(m)?;
     columns::add(m)?;
     m.add_class::<checkpoint::PyCheckpoint>()?;

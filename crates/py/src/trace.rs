@@ -1,11 +1,12 @@
 //! Columns of a trace as read-only views.
 
+use crate::contact::PyContactTrace;
 use crate::interrupt::abandonable;
 use numpy::ndarray::ArrayView;
 use numpy::{IxDyn, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
 use onorbit_core::number_text::{count, short};
-use onorbit_core::simulation::{COLUMNS, Condition, Trace, WRENCHES, certify};
+use onorbit_core::simulation::{COLUMNS, CONTACTS, Condition, Trace, WRENCHES, certify};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -65,7 +66,8 @@ macro_rules! getters {
                 }
             )+
 
-            /// Return the names of the columns that the run recorded, except ``tracking`` and ``wrenches``.
+            /// Return the names of the columns that the run recorded, except ``tracking``, ``wrenches`` and
+            /// ``contacts``.
             ///
             /// Returns
             /// -------
@@ -131,6 +133,18 @@ macro_rules! getters {
                 let (all, row) = (PyDict::new(this.py()), WRENCHES.row_shape(&this.get().model));
                 for column in &this.get().trace.wrenches {
                     all.set_item(&column.name, view(this, &column.values, &row)?)?;
+                }
+                Ok(all)
+            }
+
+            /// Distances and forces of the contacts of which the system is the first side, by the name of the
+            /// contact.
+            #[getter]
+            fn contacts<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+                let (all, row) = (PyDict::new(this.py()), CONTACTS.row_shape(&this.get().model));
+                for column in &this.get().trace.contacts {
+                    let values = view(this, &column.values, &row)?.into_pyobject(this.py())?.unbind();
+                    all.set_item(&column.name, PyContactTrace::new(values.into_any()))?;
                 }
                 Ok(all)
             }

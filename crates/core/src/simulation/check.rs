@@ -5,6 +5,7 @@ use super::error::SimulationError;
 use super::modes::AT_LIMIT;
 use super::settings::Simulation;
 use super::state_range::{UNIT_NORM, attitude_norm, check_range};
+use crate::contact::{Contact, ContactError};
 use crate::control::check_controls;
 use crate::environment::BodyIndex;
 use crate::model::{BASE_NQ, Model};
@@ -58,6 +59,7 @@ impl Simulation {
         check_names(&self.systems)?;
         check_events(&self.systems, &self.events)?;
         check_seats(&self.events, self.time_step)?;
+        check_contacts(&self.contacts)?;
         if self.engine.is_some() {
             self.check_engine()?;
         }
@@ -127,6 +129,17 @@ impl Simulation {
 
 /// Checks that every seating motion lasts at least a thousandth of `time_step`, so that the schedule can
 /// resolve it.
+/// Checks laws and shapes of the contacts, and that their names are unique.
+fn check_contacts(contacts: &[Contact]) -> Result<(), ContactError> {
+    for (number, contact) in contacts.iter().enumerate() {
+        if contacts[..number].iter().any(|before| before.name == contact.name) {
+            return Err(ContactError::DuplicateName { name: contact.name.clone() });
+        }
+        contact.check()?;
+    }
+    Ok(())
+}
+
 fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> {
     for Event { name, action, .. } in events {
         let Action::Capture { seat: Some(Seat { duration, .. }), .. } = action else { continue };

@@ -2,6 +2,7 @@
 
 use super::checkpoint_error::CheckpointError;
 use super::connections::SavedMembers;
+use super::contacts::Mode;
 use super::estimates::Estimates;
 use super::events::{Attached, EventState};
 use super::every_step::SavedChecks;
@@ -95,6 +96,9 @@ pub(super) struct WorldProgress {
     pub(super) attached: Vec<Attached>,
     pub(super) ledger: Ledger,
     pub(super) balance: GroupBalance,
+    /// Modes of the contacts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) contacts: Vec<Mode>,
 }
 
 /// State of the controllers and joint torques of a run.

@@ -75,6 +75,8 @@ pub enum Condition {
     Controls,
     /// The option `record_wrenches` is set.
     Wrenches,
+    /// The system is the first side of a contact.
+    Contacts,
 }
 
 impl Condition {
@@ -89,6 +91,7 @@ impl Condition {
             Self::Carried => "with gravity_mode \"carried\" around a planet",
             Self::Controls => "with a list of controls",
             Self::Wrenches => "with record_wrenches",
+            Self::Contacts => "for the system of the first link of a contact",
         }
     }
 }
@@ -109,7 +112,7 @@ pub struct Part {
 pub struct Column {
     /// Name of the attribute of a trace.
     pub name: &'static str,
-    /// Name in files; `*` stands for the name of a control or of an effect.
+    /// Name in files; `*` stands for the name of a control, of an effect or of a contact.
     pub path: &'static str,
     /// Length of each axis.
     pub shape: &'static [Length],
@@ -137,12 +140,12 @@ impl Column {
         self.shape[1..].iter().map(|length| length.of(model)).product()
     }
 
-    /// Returns the path of the column of one control or effect.
+    /// Returns the path of the column of one control, effect or contact.
     pub fn path_of(&self, owner: &str) -> String {
         self.path.replace('*', owner)
     }
 
-    /// Returns the name of the control or effect whose column has this path, if there is one.
+    /// Returns the name of the control, effect or contact whose column has this path, if there is one.
     pub fn owner_of<'a>(&self, path: &'a str) -> Option<&'a str> {
         self.path.strip_suffix('*').and_then(|prefix| path.strip_prefix(prefix))
     }
@@ -159,6 +162,17 @@ const VELOCITY: &[Part] =
     &[part("linear", 0, Some(3)), part("angular", 3, Some(BASE_NV)), part("joints", BASE_NV, None)];
 const LINEAR_ANGULAR: &[Part] = &[part("linear", 0, Some(3)), part("angular", 3, Some(6))];
 const FORCE_TORQUE: &[Part] = &[part("force", 0, Some(3)), part("torque", 3, Some(6))];
+
+const CONTACT: &[Part] = &[
+    part("gap", 0, Some(1)),
+    part("force", 1, Some(4)),
+    part("point", 4, Some(7)),
+    part("normal", 7, Some(10)),
+    part("sliding_speed", 10, Some(11)),
+    part("power", 11, Some(12)),
+    part("elastic", 12, Some(13)),
+    part("dissipated", 13, Some(14)),
+];
 
 /// Converts one axis of a shape in the table to a [`Length`].
 macro_rules! length {
@@ -293,6 +307,20 @@ pub static WRENCHES: Column = column!(
     "Force of an effect on each body, and its torque about the body's centre of mass."
 );
 
+/// Distances and forces of the contacts, one column per contact.
+pub static CONTACTS: Column = column!(
+    contacts,
+    "contact_*",
+    (T, 14),
+    "m; N; m; 1; m/s; W; J; J",
+    "W",
+    Contacts,
+    CONTACT,
+    "Smallest distance of the two sides (negative: depth), force on the second side, point and normal (from the \
+     first side to the second) at the smallest distance, sliding speed, power taken from the motion, elastic energy, \
+     and energy dissipated so far."
+);
+
 /// Times at which the run changed to a new reference orbit.
 pub static REREFERENCED: Column = column!(
     rereferenced,
@@ -308,5 +336,5 @@ pub static REREFERENCED: Column = column!(
 
 /// Returns the descriptions of all recorded quantities.
 pub fn columns() -> impl Iterator<Item = &'static Column> {
-    COLUMNS.iter().chain([&TRACKING, &WRENCHES, &REREFERENCED])
+    COLUMNS.iter().chain([&TRACKING, &WRENCHES, &CONTACTS, &REREFERENCED])
 }

@@ -1,6 +1,7 @@
 //! Equations of motion of all trees of a run, which give the time derivatives of the state from the state,
 //! the loads and the joint torques.
 
+use super::contacts::{Contacts, at_time, move_to_own_centers, refer_to_common_center};
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
 use super::latch::Latch;
@@ -21,13 +22,15 @@ pub(crate) struct EquationsOfMotion<'a, S, W> {
     pub(crate) members: Members<'a, S>,
     /// Latches that have not yet closed.
     pub(super) latches: Vec<Latch>,
+    pub(super) contacts: Contacts,
     pub(crate) loads: W,
 }
 
 impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     /// Creates the equations of motion of systems that are not connected: each of `trees` is one system.
     pub(crate) fn new(trees: Vec<Tree<'a, S>>, loads: W) -> Self {
-        Self { members: Members::alone(trees.len()), trees, latches: Vec::new(), loads }
+        let (members, latches, contacts) = (Members::alone(trees.len()), Vec::new(), Contacts::default());
+        Self { trees, members, latches, contacts, loads }
     }
 
     /// Computes the kinematics of `state` and projects every base twist onto the momentum of its tree.
@@ -51,9 +54,27 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Computes the external wrenches on all trees at time `t`, s, in a step over `interval`, s. Requires the
-    /// kinematics of `state` in the trees.
+    /// Computes the external wrenches on all trees at time `t`, s, in a step over `interval`, s: those of the
+    /// environment and those of the contacts. Requires the kinematics of `state` in the trees.
     pub(crate) fn apply_loads(
+        &mut self,
+        t: f64,
+        interval: (f64, f64),
+        state: &State<S>,
+    ) -> Result<(), SimulationError> {
+        if self.contacts.is_empty() {
+            return self.apply_environment(t, interval, state);
+        }
+        if self.loads.is_active() {
+            self.apply_environment(t, interval, state)?;
+        } else {
+            self.trees.iter_mut().for_each(|tree| tree.data.clear_external());
+        }
+        self.contacts.add_forces(&mut self.trees, state).map_err(at_time(t))
+    }
+
+    /// Computes the wrenches of the environment alone; see [`Self::apply_loads`].
+    pub(crate) fn apply_environment(
         &mut self,
         t: f64,
         interval: (f64, f64),
@@ -64,13 +85,19 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
 
     /// Computes the time derivatives of `state`. Requires its kinematics and loads in the trees.
     pub(crate) fn rates(&mut self, state: &State<S>, rate: &mut Rate<S>) {
-        let is_loaded = self.loads.is_active();
+        let has_contacts = !self.contacts.is_empty();
+        let is_loaded = has_contacts || self.loads.is_active();
         for ((tree, state), rate) in self.trees.iter_mut().zip(&state.trees).zip(&mut rate.trees) {
             tree.rates(state, is_loaded, rate);
         }
-        if is_loaded && self.trees.len() > 1 {
-            rate.orbital = self.orbital_moment(state, rate);
+        if self.trees.len() > 1 {
+            if has_contacts {
+                refer_to_common_center(&self.trees, state, rate);
+            } else if is_loaded {
+                rate.orbital = self.orbital_moment(state, rate);
+            }
         }
+        self.contacts.rates(&mut rate.contacts);
     }
 
     /// Returns the moment of the external forces about the common centre of mass `c`, with each force `F_i`
@@ -105,20 +132,51 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         Ok(())
     }
 
-    /// Returns true if a joint of any tree has friction or stops, or if a latch may close.
-    pub(crate) fn has_modes(&self) -> bool {
-        !self.latches.is_empty() || self.trees.iter().any(|tree| tree.modes.is_active())
+    /// Ends a step from `start` to `state`: with contacts, refers the angular impulses of the trees to their
+    /// own centres of mass.
+    pub(super) fn end_step(&self, start: &State<S>, state: &mut State<S>) {
+        if !self.contacts.is_empty() && self.trees.len() > 1 {
+            move_to_own_centers(&self.trees, start, state);
+        }
     }
 
-    /// Returns the smallest margin of any latch, at `state`, to its next change. If there are latches, writes
-    /// the kinematics of `state` relative to W to the trees.
-    pub(super) fn latch_margin(&mut self, state: &State<S>) -> f64 {
-        if self.latches.is_empty() {
-            return f64::INFINITY;
+    /// Checks that no bodies overlap at the start of a run. Requires the kinematics of `state` in the trees.
+    pub(super) fn check_start(&self, state: &State<S>) -> Result<(), SimulationError> {
+        Ok(self.contacts.check_start(&self.trees, state)?)
+    }
+
+    /// Determines the modes of the contacts for the step from `t` to `end`, s, and returns the end of the
+    /// step, which is earlier than `end` while bodies touch. Requires the kinematics of `state` in the trees.
+    pub(super) fn begin_contacts(
+        &mut self,
+        t: f64,
+        end: f64,
+        state: &State<S>,
+    ) -> Result<f64, SimulationError> {
+        if self.contacts.is_empty() {
+            return Ok(end);
+        }
+        self.contacts.begin((t, end), &self.trees, state).map_err(at_time(t))
+    }
+
+    /// Returns true if a joint of any tree has friction or stops, if a latch may close, or if bodies may touch.
+    pub(crate) fn has_modes(&self) -> bool {
+        !self.latches.is_empty()
+            || !self.contacts.is_empty()
+            || self.trees.iter().any(|tree| tree.modes.is_active())
+    }
+
+    /// Returns the smallest margin of any latch or contact, at `state` and at `t`, s, to its next change. If
+    /// there are latches or contacts, writes the kinematics of `state` relative to W to the trees.
+    pub(super) fn margin(&mut self, t: f64, state: &State<S>) -> Result<f64, SimulationError> {
+        if self.latches.is_empty() && self.contacts.is_empty() {
+            return Ok(f64::INFINITY);
         }
         self.update_kinematics(state);
         let margin = |latch: &Latch| latch.margin(latch.inside(&self.trees, &state.trees));
-        self.latches.iter().map(margin).fold(f64::INFINITY, f64::min)
+        let latches = self.latches.iter().map(margin).fold(f64::INFINITY, f64::min);
+        let contacts = self.contacts.margin(&self.trees, state).map_err(at_time(t))?;
+        Ok(latches.min(contacts))
     }
 
     /// Returns true if a joint of any tree is locked.

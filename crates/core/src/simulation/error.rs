@@ -2,6 +2,7 @@
 
 use super::checkpoint_error::CheckpointError;
 use super::recording::Recording;
+use crate::contact::ContactError;
 use crate::control::ControlError;
 use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
@@ -133,6 +134,10 @@ pub enum SimulationError {
     Environment { time: f64, source: EnvironmentError },
     #[error("at t = {time} s: {source}", time = short(*time))]
     Reference { time: f64, source: ReferenceError },
+    #[error("at t = {time} s: {source}", time = short(*time))]
+    Contact { time: f64, source: ContactError },
+    #[error(transparent)]
+    Contacts(#[from] ContactError),
     #[error(transparent)]
     Gravity(#[from] GravityError),
     #[error(transparent)]

@@ -12,6 +12,7 @@ mod checkpoint_error;
 mod checkpoint_world;
 mod columns;
 mod connections;
+mod contacts;
 mod controllers;
 mod distance;
 mod engine;
@@ -72,7 +73,9 @@ pub use attached::AttachedControl;
 pub use certificate::{Certificate, Check, PairChecks, certify};
 pub use checkpoint::Checkpoint;
 pub use checkpoint_error::CheckpointError;
-pub use columns::{COLUMNS, Column, Condition, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns};
+pub use columns::{
+    COLUMNS, CONTACTS, Column, Condition, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns,
+};
 pub use distance::FarSystem;
 pub use engine::{BodyWeld, Engine, Exchange, StepInput, StepOutput};
 pub use environment_query::EnvironmentQuery;

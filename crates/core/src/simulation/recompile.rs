@@ -82,8 +82,16 @@ impl<'a, S: Scalar> RunState<'a, S> {
         self.row_buffers = (self.state.clone(), Stages::new(&self.state));
         let (trees, steps) = (&self.equations.trees, self.schedule.grid_steps());
         self.accuracy = Accuracy::of(trees, &self.state, self.accuracy.measures(), steps)?;
+        self.place_contacts();
         self.find_latches();
         self.find_known()
+    }
+
+    /// Finds the frames of the contacts in the trees.
+    fn place_contacts(&mut self) {
+        let mut contacts = std::mem::take(&mut self.equations.contacts);
+        contacts.place(|place| self.frame_in_tree(place));
+        self.equations.contacts = contacts;
     }
 
     /// Finds the latches that are not closed and whose frames are in different trees.

@@ -1,5 +1,6 @@
 //! Rows of a run: at the start of steps, within steps, at impacts and at the end.
 
+use super::contacts::at_time;
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -44,6 +45,7 @@ impl<S: Scalar> RunState<'_, S> {
         let Self { equations, mover, row_buffers: (state, _), .. } = self;
         if let Some(integration) = mover.integration() {
             integration.interpolate(t, state);
+            equations.end_step(&integration.stages.start, state);
         }
         equations.project_momentum(state);
         equations.apply_loads(t, (t, t), state)?;
@@ -107,7 +109,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.update_moving_frames(is_within_step);
         let Self { systems, equations, state, row_buffers, row_states, .. } = self;
         let state = if is_within_step { &row_buffers.0 } else { &*state };
-        let EquationsOfMotion { trees, members, loads, .. } = equations;
+        let EquationsOfMotion { trees, members, loads, contacts, .. } = equations;
         let orbit = loads.reference_state(t)?;
         if !members.parts.is_empty() {
             members.follow(trees, &state.trees);
@@ -117,6 +119,10 @@ impl<S: Scalar> RunState<'_, S> {
         for (number, run) in systems.iter_mut().enumerate() {
             let (state, system) = members.system(number, trees, &state.trees);
             run.add_row(t, state, system, loads, orbit)?;
+        }
+        for contact in 0..contacts.count() {
+            let row = contacts.row(contact, trees, state).map_err(at_time(t))?;
+            systems[contacts.owner(contact)].recorder.record_contact(&contacts.names[contact], &row);
         }
         self.add_group_row(is_within_step);
         Ok(())

@@ -1,7 +1,7 @@
 //! Recorder, which adds rows to the trace of one system.
 
 use super::checkpoint_error::CheckpointError;
-use super::columns::{COLUMNS, Column, Condition, WRENCHES};
+use super::columns::{COLUMNS, CONTACTS, Column, Condition, WRENCHES};
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
 use super::local_reference::Shift;
@@ -26,6 +26,8 @@ pub(super) struct RecordOptions {
     pub(super) has_reference: bool,
     /// Names of the effects whose wrenches are recorded.
     pub(super) effects: Vec<String>,
+    /// Names of the contacts that the trace of the system records.
+    pub(super) contacts: Vec<String>,
     /// True if the run has an orbit.
     pub(super) has_orbit: bool,
     /// True if a controller compensates Coulomb friction.
@@ -46,7 +48,7 @@ impl RecordOptions {
             Condition::Reference => self.has_reference,
             Condition::Orbit => self.has_orbit,
             Condition::Carried => self.records_residual,
-            Condition::Controls | Condition::Wrenches => false,
+            Condition::Controls | Condition::Wrenches | Condition::Contacts => false,
         };
         if is_recorded { column.row_width(model) } else { 0 }
     }
@@ -78,10 +80,12 @@ impl Recorder {
         let tracking: Vec<_> = tracked.map(|control| column(&control.name, control.width())).collect();
         let wrenches: Vec<_> =
             options.effects.iter().map(|name| column(name, WRENCHES.row_width(model))).collect();
+        let contacts: Vec<_> =
+            options.contacts.iter().map(|name| column(name, CONTACTS.row_width(model))).collect();
         let widths = COLUMNS.iter().map(|column| options.width(column, model));
-        let widths: Vec<usize> =
-            widths.chain(tracking.iter().chain(&wrenches).map(|column| column.width)).collect();
-        let mut trace = Trace { rows_suffice, tracking, wrenches, ..Trace::default() };
+        let named = tracking.iter().chain(&wrenches).chain(&contacts);
+        let widths: Vec<usize> = widths.chain(named.map(|column| column.width)).collect();
+        let mut trace = Trace { rows_suffice, tracking, wrenches, contacts, ..Trace::default() };
         for ((_, column), width) in trace.columns_mut().zip(&widths) {
             let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
             column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
@@ -172,6 +176,13 @@ impl Recorder {
         Ok(())
     }
 
+    /// Adds the row of the contact with this name to the last row.
+    pub(super) fn record_contact(&mut self, name: &str, row: &[f64]) {
+        if let Some(column) = self.trace.contacts.iter_mut().find(|column| column.name == name) {
+            column.values.extend_from_slice(row);
+        }
+    }
+
     #[inline(always)]
     fn record_state_kernel<S: Scalar>(
         &mut self,
@@ -233,8 +244,9 @@ impl Recorder {
             };
             columns.iter().map(empty).collect()
         };
-        let (tracking, wrenches) = (named(&trace.tracking), named(&trace.wrenches));
-        let mut row = Trace { tracking, wrenches, ..Trace::default() };
+        let [tracking, wrenches, contacts] =
+            [&trace.tracking, &trace.wrenches, &trace.contacts].map(|of| named(of));
+        let mut row = Trace { tracking, wrenches, contacts, ..Trace::default() };
         for (((_, to), (_, from)), width) in row.columns_mut().zip(trace.columns()).zip(&self.widths) {
             to.extend_from_slice(&from[from.len() - width..]);
         }

@@ -105,6 +105,7 @@ impl<S: Scalar> RunState<'_, S> {
                 attached: self.events.attached.clone(),
                 ledger: self.ledger,
                 balance: self.balance.clone(),
+                contacts: self.equations.contacts.save(),
             },
         }
     }
@@ -132,6 +133,7 @@ impl<S: Scalar> RunState<'_, S> {
     fn restore_world(&mut self, world: WorldProgress) -> Result<(), SimulationError> {
         self.restore_members(world.members)?;
         self.balance = world.balance;
+        self.equations.contacts.restore(world.contacts);
         if !self.events.list.is_empty() {
             (self.events.states, self.events.records) = (world.events, world.records);
             self.events.attached = world.attached;

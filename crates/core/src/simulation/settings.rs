@@ -2,6 +2,7 @@
 
 use super::engine::Engine;
 use super::integrator::Integrator;
+use crate::contact::{Contact, ContactSteps};
 use crate::earth::Earth;
 use crate::environment::{Effect, GravityMode};
 use crate::gravity::Gravity;
@@ -19,6 +20,10 @@ pub struct Simulation {
     pub systems: Vec<System>,
     /// Events that connect and separate systems.
     pub events: Vec<Event>,
+    /// Contacts between links.
+    pub contacts: Vec<Contact>,
+    /// Length of steps while bodies touch.
+    pub contact_steps: ContactSteps,
     /// Reference orbit, on which the origin of W moves.
     pub orbit: Option<Arc<dyn Orbit>>,
     /// Gravity field of the run. By default it is the field of the orbit or, if the orbit has none, that of a
@@ -66,6 +71,8 @@ impl Simulation {
         Self {
             systems,
             events: Vec::new(),
+            contacts: Vec::new(),
+            contact_steps: ContactSteps::default(),
             orbit: None,
             gravity: None,
             earth: None,

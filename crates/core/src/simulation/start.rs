@@ -107,7 +107,10 @@ impl Simulation {
             let settings = settings.of_group(&numbers);
             let mut run = settings.run_state::<S>(duration, &numbers, own, events, engine.take())?;
             match checkpoints.get_mut(number).and_then(Option::take) {
-                None => run.mover.kinematics(&mut run.equations, &mut run.state),
+                None => {
+                    run.mover.kinematics(&mut run.equations, &mut run.state);
+                    run.equations.check_start(&run.state)?;
+                }
                 Some(checkpoint) => {
                     let own = numbers.iter().map(|&system| rows[system].take().unwrap_or_default());
                     run.resume(checkpoint, own.collect())?;
@@ -136,11 +139,14 @@ impl Simulation {
             record_wrenches: self.record_wrenches,
             takes_commands: self.record_wrenches && self.has_external(),
             record_every: self.record_every,
+            contacts: self.contacts.clone(),
+            contact_steps: self.contact_steps,
         }
     }
 
-    /// Returns pairs of systems that interact although no event connects them, because a control of one of
-    /// them waits for an event that involves the other, or tracks a frame of the other.
+    /// Returns pairs of systems that interact although no event connects them: because they may touch, or
+    /// because a control of one of them waits for an event that involves the other, or tracks a frame of the
+    /// other.
     pub(super) fn links(&self) -> Vec<(usize, usize)> {
         let waiting = self.systems.iter().enumerate().flat_map(|(system, declared)| {
             declared.controls.iter().filter_map(move |control| match control.begin {
@@ -155,7 +161,11 @@ impl Simulation {
         let tracks = self.systems.iter().enumerate().flat_map(|(system, declared)| {
             declared.moving_frames().map(move |moving| (system, moving.system))
         });
-        links.chain(tracks).collect()
+        let touching = self.contacts.iter().flat_map(|contact| {
+            let systems = contact.systems();
+            systems.windows(2).map(|pair| (pair[0], pair[1])).collect::<Vec<_>>()
+        });
+        links.chain(tracks).chain(touching).collect()
     }
 
     /// Returns the gravity field of the simulation: the given field, or by default that of the orbit or, if

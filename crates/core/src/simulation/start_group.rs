@@ -2,6 +2,7 @@
 
 use super::accuracy::Accuracy;
 use super::connections::Connections;
+use super::contacts::Contacts;
 use super::controllers::Controllers;
 use super::engine::Engine;
 use super::environment_loads::EnvironmentLoads;
@@ -22,6 +23,7 @@ use super::schedule::{Clock, LONGEST_INTERVAL, Schedule};
 use super::state::State;
 use super::tree::Tree;
 use super::wrench_commands::WRENCH_COMMAND;
+use crate::contact::{Contact, ContactSteps};
 use crate::control::Control;
 use crate::earth::Earth;
 use crate::environment::{Effect, GravityMode};
@@ -58,6 +60,9 @@ pub(super) struct Shared {
     /// True if wrenches are recorded and a control follows external commands.
     pub(super) takes_commands: bool,
     pub(super) record_every: usize,
+    /// Contacts; in the settings of a group, the systems have the numbers of the group.
+    pub(super) contacts: Vec<Contact>,
+    pub(super) contact_steps: ContactSteps,
 }
 
 impl Shared {
@@ -67,7 +72,8 @@ impl Shared {
         let is_own = |effect: &Arc<dyn Effect>| numbers.iter().any(|&system| effect.acts_on(system));
         let named = self.effects.iter().zip(&self.effect_names).filter(|(effect, _)| is_own(effect));
         let (effects, effect_names) = named.map(|(effect, name)| (Arc::clone(effect), name.clone())).unzip();
-        Self { effects, effect_names, ..self.clone() }
+        let contacts = self.contacts.iter().filter_map(|contact| contact.in_group(numbers)).collect();
+        Self { effects, effect_names, contacts, ..self.clone() }
     }
 
     /// Creates the run of the systems with these numbers, at its initial state.
@@ -102,6 +108,8 @@ impl Shared {
         }
         let mut equations = EquationsOfMotion::<S, _>::new(trees, self.environment_loads(numbers, &models));
         let mut state = State::at(&mut equations.trees, starts.into_iter().map(<(Vec<S>, Vec<S>)>::from));
+        equations.contacts = Contacts::new(&self.contacts, self.contact_steps);
+        state.contacts = equations.contacts.states();
         if is_native {
             follow_centers(&equations.trees, &mut state.trees);
         }
@@ -156,7 +164,9 @@ impl Shared {
         let model: &'a Model = model;
         let stops = stops.filter(|_| !self.has_engine); // an external engine has its own stops
         let knows: Vec<usize> = knows.iter().filter_map(|&system| local(numbers, system)).collect();
-        let options = self.record_options(model, controls, *tool, reference.is_some());
+        let mut options = self.record_options(model, controls, *tool, reference.is_some());
+        let own = self.contacts.iter().filter(|contact| contact.first_system() == Some(number));
+        options.contacts = own.map(|contact| contact.name.clone()).collect();
         let recorder = Recorder::new(rows, (number, model), options, controls, rows_suffice)?;
         let tracked = (*tool, reference.as_ref());
         let mut controllers = Controllers::new(controls, tracked, model, self.time_step, !knows.is_empty())?;
@@ -207,6 +217,7 @@ impl Shared {
             effects: self.recorded_effects(),
             has_orbit: self.orbit.is_some(),
             compensates_friction: compensates_friction && model.has_friction() && !self.has_engine,
+            contacts: Vec::new(),
             records_residual: self.gravity.is_some() && self.gravity_mode == GravityMode::Carried,
         }
     }
@@ -250,9 +261,13 @@ impl Shared {
         let clocks = systems.iter().map(clock).collect();
         let schedule =
             Schedule::new(self.time_step, duration, clocks, effects.chain(jumps).chain(times).collect());
-        // the conditions of a latch are evaluated at the ends of steps, which must therefore not be too long
+        // the conditions of latches and contacts are evaluated at the ends of steps, which must therefore not be too long
         let has_latches = events.iter().any(|event| matches!(event.when, When::Latch(_)));
-        if self.is_adaptive() && !has_latches { schedule.without_grid_steps() } else { schedule }
+        if self.is_adaptive() && !has_latches && self.contacts.is_empty() {
+            schedule.without_grid_steps()
+        } else {
+            schedule
+        }
     }
 
     /// Returns the number of rows for which the recorder reserves memory.

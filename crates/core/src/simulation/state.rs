@@ -1,5 +1,6 @@
 //! State of all trees of a run and its time derivatives.
 
+use super::contacts::{ContactRate, ContactState};
 use super::tree::Tree;
 use super::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
@@ -12,6 +13,9 @@ pub(crate) struct State<S> {
     /// Time integral of the moments of the external forces about the common centre of mass of all trees, with
     /// each force acting at the centre of mass of its tree, W axes, N m s; zero for a single tree.
     pub(crate) orbital: Vec3<S>,
+    /// Integrals of the contacts; empty without contacts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) contacts: Vec<ContactState>,
 }
 
 /// Time derivatives of all trees at one stage.
@@ -20,6 +24,8 @@ pub(crate) struct Rate<S> {
     pub(crate) trees: Vec<TreeRate<S>>,
     /// Time derivative of [`State::orbital`], N m.
     pub(crate) orbital: Vec3<S>,
+    /// Time derivatives of [`State::contacts`].
+    pub(super) contacts: Vec<ContactRate>,
 }
 
 impl<S: Real> State<S> {
@@ -28,7 +34,7 @@ impl<S: Real> State<S> {
     pub(crate) fn at(trees: &mut [Tree<'_, S>], starts: impl IntoIterator<Item = (Vec<S>, Vec<S>)>) -> Self {
         let pairs = trees.iter_mut().zip(starts);
         let at = |(tree, (q, v)): (&mut Tree<'_, S>, _)| TreeState::at(&tree.model, &mut tree.data, q, v);
-        Self { trees: pairs.map(at).collect(), orbital: Vec3::zero() }
+        Self { trees: pairs.map(at).collect(), orbital: Vec3::zero(), contacts: Vec::new() }
     }
 
     /// Returns true if configurations and velocities are finite in every lane.
@@ -43,7 +49,8 @@ impl<S: Real> State<S> {
 
     /// Returns the state with `f` applied to every number.
     pub(crate) fn map<T>(&self, f: impl Fn(&S) -> T) -> State<T> {
-        State { trees: self.trees.iter().map(|tree| tree.map(&f)).collect(), orbital: self.orbital.map(&f) }
+        let trees = self.trees.iter().map(|tree| tree.map(&f)).collect();
+        State { trees, orbital: self.orbital.map(&f), contacts: self.contacts.clone() }
     }
 
     /// Copies `from` without allocating.
@@ -54,6 +61,7 @@ impl<S: Real> State<S> {
         if self.trees.len() > 1 {
             self.orbital = from.orbital;
         }
+        self.contacts.clone_from(&from.contacts);
     }
 
     /// Stores `from ⊕ h rate`; see [`TreeState::move_from`].
@@ -65,13 +73,20 @@ impl<S: Real> State<S> {
         if self.trees.len() > 1 {
             self.orbital = rate.orbital.scale_add(h, from.orbital);
         }
+        for ((to, from), rate) in self.contacts.iter_mut().zip(&from.contacts).zip(&rate.contacts) {
+            *to = from.plus(rate, h.lane(0));
+        }
     }
 }
 
 impl<S: Real> Rate<S> {
     /// Creates zero rates with the dimensions of `state`.
     pub(crate) fn of(state: &State<S>) -> Self {
-        Self { trees: state.trees.iter().map(TreeRate::of).collect(), orbital: Vec3::zero() }
+        Self {
+            trees: state.trees.iter().map(TreeRate::of).collect(),
+            orbital: Vec3::zero(),
+            contacts: state.contacts.clone(),
+        }
     }
 
     /// Computes `self += s · other`, for weighted sums of stages.
@@ -83,6 +98,9 @@ impl<S: Real> Rate<S> {
         if self.trees.len() > 1 {
             self.orbital = other.orbital.scale_add(s, self.orbital);
         }
+        for (sum, other) in self.contacts.iter_mut().zip(&other.contacts) {
+            *sum = sum.plus(other, s.lane(0));
+        }
     }
 
     /// Copies `from` without allocating.
@@ -91,6 +109,7 @@ impl<S: Real> Rate<S> {
             to.copy_from(from);
         }
         self.orbital = from.orbital;
+        self.contacts.clone_from(&from.contacts);
     }
 
     /// Sets to zero the rates that `accumulate` sums.
@@ -98,5 +117,6 @@ impl<S: Real> Rate<S> {
     pub(crate) fn clear(&mut self) {
         self.trees.iter_mut().for_each(TreeRate::clear);
         self.orbital = Vec3::zero();
+        self.contacts.fill(ContactState::ZERO);
     }
 }

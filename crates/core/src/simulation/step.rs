@@ -56,6 +56,7 @@ impl<S: Scalar> RunState<'_, S> {
         let end = self.schedule.first_due(t, end);
         // 3 impacts of joints at their stops
         self.impacts(t, (t, end))?;
+        let end = self.equations.begin_contacts(t, end, &self.state)?;
         if self.has_controls() {
             self.equations.members.follow(&self.equations.trees, &self.state.trees);
         }
@@ -82,14 +83,14 @@ impl<S: Scalar> RunState<'_, S> {
             self.update_controllers(t, false)?;
         }
         if uses_loads {
-            self.equations.apply_loads(t, (t, interval.end), &self.state)?;
+            self.equations.apply_environment(t, (t, interval.end), &self.state)?;
             self.update_controllers(t, true)?;
         }
         if is_due {
             self.find_attached();
         }
         self.controllers_updated |= is_due;
-        if !uses_loads || end != interval.end {
+        if !uses_loads || end != interval.end || !self.equations.contacts.is_empty() {
             self.equations.apply_loads(t, (t, end), &self.state)?;
         }
         Ok(())

@@ -145,8 +145,10 @@ impl<S: Scalar> StepDoubling<S> {
         for (start, tree) in self.start.iter_mut().zip(&equations.trees) {
             start.copy_from(&tree.data);
         }
+        let loadings = equations.contacts.loadings();
         let repeated = self.repeat(interval, state, equations, integration);
         equations.restore(&self.start);
+        equations.contacts.set_loadings(loadings);
         repeated?;
         self.compare(state, interval.1 - interval.0, equations);
         Ok(())

@@ -1,7 +1,7 @@
 //! Trace of a run.
 
 use super::certificate::PairChecks;
-use super::columns::{Column, TRACKING, WRENCHES};
+use super::columns::{CONTACTS, Column, TRACKING, WRENCHES};
 use crate::control::Outcome;
 use crate::model::{BASE_NQ, Model};
 use serde::{Deserialize, Serialize};
@@ -24,6 +24,9 @@ macro_rules! define_trace {
             pub tracking: Vec<NamedColumn>,
             /// Wrenches of the effects on every body, one column per effect; see [`WRENCHES`].
             pub wrenches: Vec<NamedColumn>,
+            /// Distances and forces of the contacts of which the system is the first side, one column per
+            /// contact; see [`CONTACTS`].
+            pub contacts: Vec<NamedColumn>,
             /// Outcomes of the goals of the controls.
             pub results: Vec<GoalResult>,
             /// Times at which the run changed to a new reference orbit, s; see
@@ -49,14 +52,16 @@ macro_rules! define_trace {
 
         impl Trace {
             /// Returns all columns with their paths, including empty columns: first the fields, then the
-            /// columns of the controls and of the effects.
+            /// columns of the controls, of the effects and of the contacts.
             pub fn columns(&self) -> impl Iterator<Item = (Cow<'static, str>, &Vec<f64>)> {
                 let tracking = self.tracking.iter().map(|column| (column.path(&TRACKING), &column.values));
                 let wrenches = self.wrenches.iter().map(|column| (column.path(&WRENCHES), &column.values));
+                let contacts = self.contacts.iter().map(|column| (column.path(&CONTACTS), &column.values));
                 [$((Cow::Borrowed(stringify!($name)), &self.$name)),+]
                     .into_iter()
                     .chain(tracking)
                     .chain(wrenches)
+                    .chain(contacts)
             }
 
             /// Returns the columns of [`Trace::columns`] as mutable references.
@@ -65,10 +70,13 @@ macro_rules! define_trace {
                     self.tracking.iter_mut().map(|column| (column.path(&TRACKING), &mut column.values));
                 let wrenches =
                     self.wrenches.iter_mut().map(|column| (column.path(&WRENCHES), &mut column.values));
+                let contacts =
+                    self.contacts.iter_mut().map(|column| (column.path(&CONTACTS), &mut column.values));
                 [$((Cow::Borrowed(stringify!($name)), &mut self.$name)),+]
                     .into_iter()
                     .chain(tracking)
                     .chain(wrenches)
+                    .chain(contacts)
             }
         }
     };
@@ -76,10 +84,10 @@ macro_rules! define_trace {
 
 crate::trace_columns!(define_trace);
 
-/// Column of one control or one effect.
+/// Column of one control, effect or contact.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedColumn {
-    /// Name of the control or of the effect.
+    /// Name of the control, effect or contact.
     pub name: String,
     /// Number of values per row.
     pub width: usize,
@@ -88,7 +96,7 @@ pub struct NamedColumn {
 }
 
 impl NamedColumn {
-    /// Returns the path of the column, which contains the name of the control or effect.
+    /// Returns the path of the column, which contains the name of the control, effect or contact.
     fn path(&self, column: &Column) -> Cow<'static, str> {
         Cow::Owned(column.path_of(&self.name))
     }

@@ -9,6 +9,7 @@ pub mod spacecraft;
 pub mod stepper;
 pub mod stepping;
 pub mod stream;
+pub mod touch;
 
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use onorbit_core::model::{Inertial, Joint, JointKind, Link, Model, ModelBuilder};

@@ -1,6 +1,7 @@
 //! Conversion of all errors of the core to the classes of `onorbit_rs.exceptions`.
 
 mod batch;
+mod contact;
 mod control;
 mod earth;
 mod environment;

@@ -55,6 +55,10 @@ impl SimulationErrorExt for SimulationError {
                 &fields!(py, "time": time, "step": step, "trace": trace),
             ),
             Self::Earth(source) => source.into_python(py),
+            Self::Contacts(source) => source.into_python(py),
+            Self::Contact { time, .. } => {
+                raise(py, "SimulationError", &message, &fields!(py, "time": time, "trace": trace))
+            }
             Self::RecordEvery => plain(py, "InputError", &message),
             Self::EffectTwice { effect, body } => {
                 raise(py, "EffectError", &message, &fields!(py, "name": effect, "got": body))

@@ -3,6 +3,7 @@
 use super::event::{events_in, events_of, names_of};
 use super::system::PySystem;
 use crate::arrays::list_of;
+use crate::contact::{PyContact, contacts_in, contacts_of};
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
@@ -33,11 +34,14 @@ use std::sync::Arc;
 ///     As for ``Simulation``.
 /// environment : list of Effect, optional
 ///     Effects on the bodies of all systems; links are named ``SYSTEM/LINK``.
+/// contacts : list of Contact, optional
+///     Contacts between links.
 /// events : list of Capture and Release, optional
 ///     Events that connect and separate systems.
 /// rereference_beyond : float
 ///     Distance of a system from the reference orbit, m, beyond which integration continues about a new
-///     reference orbit. Systems that events may connect keep the reference orbit.
+///     reference orbit. Systems that events may connect or that may touch keep the
+///     reference orbit.
 ///
 /// Raises
 /// ------
@@ -50,6 +54,7 @@ pub(crate) struct PyWorld {
     earth: Option<Py<PyEarth>>,
     gravity_mode: String,
     environment: Vec<Py<PyEffect>>,
+    contacts: Vec<Py<PyContact>>,
     events: Vec<Py<PyAny>>,
     rereference_beyond: f64,
 }
@@ -58,7 +63,8 @@ pub(crate) struct PyWorld {
 impl PyWorld {
     #[new]
     #[pyo3(signature = (
-        systems, *, orbit=None, earth=None, gravity_mode="true", environment=None, events=None, rereference_beyond=1e5,
+        systems, *, orbit=None, earth=None, gravity_mode="true", environment=None, contacts=None, events=None,
+        rereference_beyond=1e5,
     ))]
     fn new(
         py: Python<'_>,
@@ -67,10 +73,12 @@ impl PyWorld {
         earth: Option<Py<PyEarth>>,
         gravity_mode: &str,
         environment: Option<&Bound<'_, PyAny>>,
+        contacts: Option<&Bound<'_, PyAny>>,
         events: Option<&Bound<'_, PyAny>>,
         rereference_beyond: f64,
     ) -> PyResult<Self> {
         let systems = list_of(systems, "systems", "systems, such as [oo.System(…)]")?;
+        let contacts = contacts.map_or(Ok(Vec::new()), contacts_in)?;
         let events = events.map_or(Ok(Vec::new()), events_in)?;
         let environment = effects(environment)?.into_iter().map(Bound::unbind).collect();
         let world = Self {
@@ -79,6 +87,7 @@ impl PyWorld {
             earth,
             gravity_mode: gravity_mode.to_owned(),
             environment,
+            contacts,
             events,
             rereference_beyond,
         };
@@ -101,6 +110,7 @@ impl PyWorld {
         keywords.set_item("earth", &self.earth)?;
         keywords.set_item("gravity_mode", &self.gravity_mode)?;
         keywords.set_item("environment", &self.environment)?;
+        keywords.set_item("contacts", &self.contacts)?;
         keywords.set_item("events", &self.events)?;
         keywords.set_item("rereference_beyond", self.rereference_beyond)?;
         ConstructorCall::new("World", (&self.systems,), &keywords)?.reduce(py)
@@ -131,11 +141,13 @@ impl PyWorld {
             systems[number].knows = known_systems(py, system.get(), &self.names())?;
         }
         let events = events_of(py, &self.events, &names, &models)?;
+        let contacts = contacts_of(py, &self.contacts, &models)?;
         if systems.is_empty() {
             return Err(WorldError::NoSystems.into_python(py));
         }
         let mut simulation = Simulation::of(systems);
         simulation.events = events;
+        simulation.contacts = contacts;
         simulation.earth = self.earth.as_ref().map(|earth| earth.get().in_axes_of(orbit.as_deref()));
         simulation.orbit = orbit;
         simulation.gravity_mode = gravity_mode_named(py, &self.gravity_mode)?;

@@ -9,6 +9,7 @@ use onorbit_core::number_text::{count, short};
 use onorbit_core::simulation::{Check, EventRecord, GroupBalance, WorldRows, world_rows};
 use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::OnceLock;
 
 /// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
@@ -84,6 +85,18 @@ impl PyWorldTrace {
     #[getter]
     fn events(&self) -> Vec<PyEventRecord> {
         self.records.iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
+    }
+
+    /// Distances and forces of the contacts, by the name of the contact; their rows are those of the trace of
+    /// the system of the first link.
+    #[getter]
+    fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for trace in &self.traces {
+            let own = trace.bind(py).getattr("contacts")?;
+            all.update(own.cast::<PyDict>()?.as_mapping())?;
+        }
+        Ok(all)
     }
 
     /// Times of the rows that all systems recorded, (T,), s.

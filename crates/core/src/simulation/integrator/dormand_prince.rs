@@ -108,7 +108,7 @@ impl<S: Real> DormandPrince<S> {
             };
             h = end - start;
             let taken = self.step(stages, equations, state, (start, end));
-            Stages::leave_step_frame(equations, state);
+            stages.finish(equations, state);
             let Self { k, tolerance, control, control_period, .. } = self;
             let error = match taken {
                 Ok(()) => tolerance.error(stages, k, control, equations, h),

@@ -61,7 +61,7 @@ impl<S: Real> Integration<S> {
             }
             (None, _) => rk4(&mut self.stages, &mut self.bases, equations, state, interval)?,
         }
-        Stages::leave_step_frame(equations, state);
+        self.stages.finish(equations, state);
         Ok(())
     }
 

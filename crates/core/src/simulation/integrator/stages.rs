@@ -78,6 +78,16 @@ impl<S: Real> Stages<S> {
         }
     }
 
+    /// Ends the step at `state`: changes from the moving frames of the step to W.
+    pub(super) fn finish(
+        &self,
+        equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+    ) {
+        equations.end_step(&self.start, state);
+        Self::leave_step_frame(equations, state);
+    }
+
     /// Transforms the velocities of `state` from the moving frames of the step to W: `v = v' + Rᵀ u` with the
     /// velocity `u` of the frame.
     pub(super) fn leave_step_frame(

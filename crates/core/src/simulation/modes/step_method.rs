@@ -82,11 +82,12 @@ impl<S: Real> StepMethod<S> {
             return Ok(end);
         }
         self.ignores_slip = self.idle_steps >= MOST_IDLE_STEPS;
+        equations.contacts.ignores_slip = self.ignores_slip;
         let fraction = self.locate(equations, state, (interval.0, end))?;
         let reached = if fraction < 1.0 { interval.0 + fraction * (end - interval.0) } else { end };
         let parts = equations.trees.iter().zip(&self.start.trees).zip(&mut state.trees);
         parts.for_each(|((tree, start), state)| tree.snap_to_event(start, state));
-        let is_idle = self.is_idle(equations, state, reached - interval.0);
+        let is_idle = fraction < 1.0 && self.is_idle(equations, state, reached - interval.0);
         self.idle_steps = if is_idle { self.idle_steps + 1 } else { 0 };
         Ok(reached)
     }
@@ -132,8 +133,8 @@ impl<S: Real> StepMethod<S> {
             return Ok(1.0);
         }
         state.copy_from(&self.start);
-        let latches = equations.latch_margin(state);
-        let (mut low, mut before) = (0.0, self.least_margin(equations, state).min(latches));
+        let others = equations.margin(whole.0, state)?;
+        let (mut low, mut before) = (0.0, self.least_margin(equations, state).min(others));
         // the margin of a joint that starts to slip is initially zero: either it soon becomes positive, or
         // the joint is locked for this step
         let mut fraction = 1.0;
@@ -197,7 +198,7 @@ impl<S: Real> StepMethod<S> {
         state: &State<S>,
         interval: (f64, f64),
     ) -> Result<f64, SimulationError> {
-        let mut least = self.least_margin(equations, state).min(equations.latch_margin(state));
+        let mut least = self.least_margin(equations, state).min(equations.margin(interval.1, state)?);
         if equations.any_locked() && self.idle_steps < MOST_IDLE_STEPS {
             self.settled.copy_from(state);
             equations.project_momentum(&mut self.settled);

@@ -1,0 +1,106 @@
+//! Declaration of a contact between links.
+
+use super::error::ContactError;
+use super::friction::Friction;
+use super::normal::NormalLaw;
+use crate::geometry::{Pose, Shape};
+use crate::world::FrameIndex;
+
+/// Law of a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactLaw {
+    /// Normal force.
+    pub normal: NormalLaw,
+    /// Friction; `None` without friction.
+    pub friction: Option<Friction>,
+}
+
+/// Rule for the length of steps while bodies touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSteps {
+    /// Number of steps in half a period of the fastest oscillation of a contact, which is the duration of an
+    /// elastic impact with a linear force.
+    pub count: usize,
+    /// True if steps are shortened near touch-down and lift-off for exponents between 1 and 4, where equal
+    /// steps reduce the order of the integrator.
+    pub is_graded: bool,
+}
+
+impl Default for ContactSteps {
+    /// Returns 128 graded steps, with which an elastic impact keeps its energy to about 1e-11.
+    fn default() -> Self {
+        Self { count: 128, is_graded: true }
+    }
+}
+
+/// Convex piece of a link.
+#[derive(Clone, Debug)]
+pub struct ContactSide {
+    /// Frame to which the shape is fixed.
+    pub frame: FrameIndex,
+    /// Shape.
+    pub shape: Shape,
+    /// Pose of the shape in the frame.
+    pub pose: Pose,
+}
+
+/// Contact between the pieces of two sets of links.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// Name, which is unique among the contacts.
+    pub name: String,
+    /// Pieces of the first and of the second side. The force of the contact acts on the second side, and the
+    /// opposite force on the first.
+    pub sides: [Vec<ContactSide>; 2],
+    /// Law; `None` if only the distance is observed.
+    pub law: Option<ContactLaw>,
+    /// True if the sides may overlap at the start.
+    pub may_start_overlapping: bool,
+}
+
+impl Contact {
+    /// Checks the law and the shapes.
+    ///
+    /// # Errors
+    /// [`ContactError`] for the first invalid parameter or shape, or for a link on both sides.
+    pub fn check(&self) -> Result<(), ContactError> {
+        if let Some(law) = &self.law {
+            law.normal.check()?;
+            law.friction.map_or(Ok(()), |friction| friction.check())?;
+        }
+        let [a, b] = &self.sides;
+        let is_same = |a: &ContactSide| b.iter().all(|b| a.frame == b.frame);
+        if a.iter().all(is_same) {
+            return Err(ContactError::SameLink { contact: self.name.clone() });
+        }
+        for side in self.sides.iter().flatten() {
+            side.shape
+                .check()
+                .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
+        }
+        Ok(())
+    }
+
+    /// Returns the contact with the numbers that its systems have in a group; `None` if it belongs to another
+    /// group.
+    pub(crate) fn in_group(&self, numbers: &[usize]) -> Option<Self> {
+        let mut own = self.clone();
+        for side in own.sides.iter_mut().flatten() {
+            side.frame.system = numbers.iter().position(|number| *number == side.frame.system)?;
+        }
+        Some(own)
+    }
+
+    /// Returns the system of the first piece of the first side.
+    pub(crate) fn first_system(&self) -> Option<usize> {
+        self.sides[0].first().map(|side| side.frame.system)
+    }
+
+    /// Returns the systems of both sides, without repetition.
+    pub fn systems(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = self.sides.iter().flatten().map(|side| side.frame.system).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}

@@ -1,0 +1,110 @@
+//! Errors of contacts.
+
+use crate::geometry::GeometryError;
+use crate::number_text::short;
+
+/// Error in the declaration of a contact, or in its evaluation during a run.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ContactError {
+    /// A parameter is outside its range.
+    #[error("the {name} of a contact is {got}{unit}; it must be {range}", unit = with_space(unit))]
+    Parameter {
+        /// Name of the parameter.
+        name: &'static str,
+        /// Value.
+        got: f64,
+        /// Permitted values.
+        range: String,
+        /// Unit; empty for a number.
+        unit: &'static str,
+    },
+    /// No link matches a pattern.
+    #[error("contact '{contact}': no link matches '{pattern}'{remedy}")]
+    NoLink {
+        /// Name of the contact.
+        contact: String,
+        /// Pattern.
+        pattern: String,
+        /// Remedy.
+        remedy: String,
+    },
+    /// A collision shape is a mesh.
+    #[error(
+        "contact '{contact}': the collision shape '{file}' is a mesh, for which contact is not available; use boxes, cylinders, capsules and spheres"
+    )]
+    Mesh {
+        /// Name of the contact.
+        contact: String,
+        /// File.
+        file: String,
+    },
+    /// A link that touches has no shape.
+    #[error(
+        "contact '{contact}': link '{link}' of system '{system}' has no collision shape; add a <collision> element to its URDF or give a shape"
+    )]
+    NoShape {
+        /// Name of the contact.
+        contact: String,
+        /// Name of the system.
+        system: String,
+        /// Name of the link.
+        link: String,
+    },
+    /// Both sides of a contact are the same link.
+    #[error("contact '{contact}': both sides are the same link, which cannot touch itself; give two links")]
+    SameLink {
+        /// Name of the contact.
+        contact: String,
+    },
+    /// Two contacts have the same name.
+    #[error("two contacts are named '{name}'; give each contact its own name")]
+    DuplicateName {
+        /// Name.
+        name: String,
+    },
+    /// The bodies overlap at the start of a run.
+    #[error(
+        "contact '{contact}': at the start, {links} overlap by {depth} m; move them apart, or allow it with start_overlapping", depth = short(*depth)
+    )]
+    Overlap {
+        /// Name of the contact.
+        contact: String,
+        /// Both links.
+        links: String,
+        /// Depth, m.
+        depth: f64,
+    },
+    /// The distance between two shapes could not be computed.
+    #[error("contact '{contact}': {source}")]
+    Geometry {
+        /// Name of the contact.
+        contact: String,
+        /// Cause.
+        source: GeometryError,
+    },
+}
+
+fn with_space(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+/// Returns an error unless a parameter is positive and finite.
+pub(super) fn positive(name: &'static str, got: f64, unit: &'static str) -> Result<(), ContactError> {
+    if got > 0.0 && got.is_finite() {
+        return Ok(());
+    }
+    Err(ContactError::Parameter { name, got, range: "finite and more than 0".to_owned(), unit })
+}
+
+/// Returns an error unless a parameter is finite and at least `least`.
+pub(super) fn at_least(
+    name: &'static str,
+    got: f64,
+    least: f64,
+    unit: &'static str,
+) -> Result<(), ContactError> {
+    if got >= least && got.is_finite() {
+        return Ok(());
+    }
+    Err(ContactError::Parameter { name, got, range: format!("finite and at least {least}"), unit })
+}

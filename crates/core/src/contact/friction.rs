@@ -1,0 +1,166 @@
+//! Elastic-plastic friction of a contact.
+
+use super::error::{ContactError, at_least, positive};
+use crate::spatial::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Damping ratio of the bristles by default.
+const DAMPING_RATIO: f64 = 0.1;
+
+/// Coulomb friction with elastic bristles.
+///
+/// In contrast to the LuGre model, a contact whose load stays inside the friction cone returns to its place
+/// and does not creep, also under oscillating loads.
+///
+/// Source: Dupont, Hayward, Armstrong and Altpeter, Single State Elastoplastic Friction Models, IEEE
+/// Transactions on Automatic Control 47(5), 2002, without a transition between elastic and plastic motion, as
+/// in Simo and Hughes, Computational Inelasticity, 1998, chapter 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// Coefficient of static friction, at least the kinetic coefficient.
+    pub static_coefficient: f64,
+    /// Coefficient of kinetic friction.
+    pub kinetic_coefficient: f64,
+    /// Tangential stiffness `σ`, N/m.
+    pub stiffness: f64,
+    /// Tangential damping `c` inside the cone, N s/m; by default that with a damping ratio of 0.1.
+    pub damping: Option<f64>,
+    /// Coefficient of kinetic torsional friction, m: the largest moment about the normal per unit of normal
+    /// force; 0 for contact at a point.
+    pub torsional: f64,
+}
+
+/// Deflection of the bristles of a contact, and whether they slip.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bristle {
+    /// Tangential deflection `z` of the second body relative to the first, m.
+    pub deflection: Vec3<f64>,
+    /// True if the contact slips.
+    pub is_slipping: bool,
+}
+
+/// Friction on the second body after a dispose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrictionForce {
+    /// Force, N.
+    pub force: Vec3<f64>,
+    /// Bristles at this instant.
+    pub bristle: Bristle,
+    /// Distance from the next change between sticking and slipping, negative beyond it: `1 − |σ z + c v|/(μ
+    /// N)` while the contact sticks, and the cosine of the angle between bristles and velocity while it
+    /// slips.
+    pub margin: f64,
+}
+
+impl Friction {
+    /// Returns the friction under the normal force `normal`, N, at the sliding velocity `rate`, m/s, after
+    /// the relative dispose `moved`, m, from the bristles `start`, with the damping `damping`, N s/m.
+    /// All vectors are tangential.
+    ///
+    /// Inside the cone, `ż = v` and `F = −(σ z + c v)`. On the cone, `|F| = μ N` and the bristles, of length
+    /// `μ N/σ`, turn towards the velocity, `ḋ = (1 − d dᵀ) v/|z|`. For a constant velocity, the angle `φ`
+    /// between both obeys `tan φ/2 = tan φ₀/2 exp(−s/|z|)` with the path `s`.
+    pub fn after(
+        &self,
+        start: &Bristle,
+        moved: Vec3<f64>,
+        rate: Vec3<f64>,
+        normal: f64,
+        damping: f64,
+    ) -> FrictionForce {
+        let trial = start.deflection + moved;
+        let elastic = trial * self.stiffness + rate * damping;
+        let limit =
+            if start.is_slipping { self.kinetic_coefficient } else { self.static_coefficient } * normal;
+        let beyond = elastic.norm() - limit;
+        if beyond <= 0.0 {
+            let margin = if limit > 0.0 { -beyond / limit } else { 0.0 };
+            let margin = if start.is_slipping { -margin } else { margin };
+            let bristle = Bristle { deflection: trial, is_slipping: false };
+            return FrictionForce { force: -elastic, bristle, margin };
+        }
+        let length = self.kinetic_coefficient * normal / self.stiffness;
+        let from = if start.is_slipping { start.deflection } else { trial };
+        let direction = turned(from, rate, moved.norm(), length);
+        let deflection = direction * length;
+        let margin =
+            if start.is_slipping { cosine(direction, rate) } else { -beyond / limit.max(f64::MIN_POSITIVE) };
+        let bristle = Bristle { deflection, is_slipping: true };
+        FrictionForce { force: -(deflection * self.stiffness), bristle, margin }
+    }
+
+    /// Returns the damping inside the cone, N s/m, of a contact with the reciprocal effective mass
+    /// `mobility`, 1/kg.
+    pub fn damping_for(&self, mobility: f64) -> f64 {
+        // c = 2 ζ √(σ m)
+        let default = || 2.0 * DAMPING_RATIO * (self.stiffness / mobility).sqrt();
+        self.damping.unwrap_or_else(|| if mobility > 0.0 { default() } else { 0.0 })
+    }
+
+    /// Returns the law of the moment about the normal, N m, as a function of the angle of twist, rad; `None`
+    /// without torsional friction. A patch with the effective radius `r = τ/μ` has the torsional stiffness
+    /// `σ r²`.
+    pub fn torsion(&self) -> Option<Self> {
+        if self.torsional == 0.0 {
+            return None;
+        }
+        let has_sliding = self.kinetic_coefficient > 0.0;
+        let radius = if has_sliding { self.torsional / self.kinetic_coefficient } else { self.torsional };
+        let ratio = if has_sliding { self.static_coefficient / self.kinetic_coefficient } else { 1.0 };
+        Some(Self {
+            static_coefficient: self.torsional * ratio,
+            kinetic_coefficient: self.torsional,
+            stiffness: self.stiffness * radius * radius,
+            damping: self.damping.map(|damping| damping * radius * radius),
+            torsional: 0.0,
+        })
+    }
+
+    /// Returns the elastic energy of bristles, `½ σ z²`, J.
+    pub fn elastic_energy(&self, deflection: Vec3<f64>) -> f64 {
+        0.5 * self.stiffness * deflection.dot(deflection)
+    }
+
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`ContactError::Parameter`] for a coefficient or a damping below 0, a static coefficient below the
+    /// kinetic one, or a stiffness that is not positive.
+    pub fn check(&self) -> Result<(), ContactError> {
+        at_least("coefficient of kinetic friction", self.kinetic_coefficient, 0.0, "")?;
+        at_least("coefficient of static friction", self.static_coefficient, self.kinetic_coefficient, "")?;
+        at_least("coefficient of torsional friction", self.torsional, 0.0, "m")?;
+        positive("tangential stiffness", self.stiffness, "N/m")?;
+        at_least("tangential damping", self.damping.unwrap_or(0.0), 0.0, "N s/m")
+    }
+}
+
+fn cosine(unit: Vec3<f64>, rate: Vec3<f64>) -> f64 {
+    let speed = rate.norm();
+    if speed > 0.0 { unit.dot(rate) / speed } else { 0.0 }
+}
+
+fn unit(v: Vec3<f64>) -> Vec3<f64> {
+    let length = v.norm();
+    if length > 0.0 { v * (1.0 / length) } else { Vec3::zero() }
+}
+
+/// Returns the direction of slipping bristles of length `length`, m, that pointed along `from`, after the
+/// path `path`, m, at the velocity `rate`.
+fn turned(from: Vec3<f64>, rate: Vec3<f64>, path: f64, length: f64) -> Vec3<f64> {
+    let (from, to) = (unit(from), unit(rate));
+    if rate.norm() == 0.0 || length <= 0.0 {
+        return from;
+    }
+    let cosine = from.dot(to).clamp(-1.0, 1.0);
+    let across = from - to * cosine;
+    let sine = across.norm();
+    if sine == 0.0 {
+        return if cosine < 0.0 { from } else { to };
+    }
+    // tan φ/2 = sin φ/(1 + cos φ)
+    let half = sine / (1.0 + cosine).max(f64::MIN_POSITIVE) * (-path / length).exp();
+    let scale = 1.0 / (1.0 + half * half);
+    // cos φ = (1 − tan² φ/2)/(1 + tan² φ/2),  sin φ = 2 tan φ/2/(1 + tan² φ/2)
+    to * ((1.0 - half * half) * scale) + across * (2.0 * half * scale / sine)
+}

@@ -1,0 +1,22 @@
+//! Laws of contact: compliant normal forces and elastic-plastic friction.
+//!
+//! | Equation | Function |
+//! |-|-|
+//! | `F = k xⁿ (1 + d ẋ)` | [`NormalLaw::force`] |
+//! | `F = k x + c ẋ` | [`NormalLaw::force`] |
+//! | `d v₀ (1 + e) = ln[(1 + d v₀)/(1 − e d v₀)]` | [`dissipation_for`] |
+//! | `ż = v` inside the cone `\|σ z + c v\| ≤ μ N`, `z = μ N/σ d` on it | [`Friction::after`] |
+
+mod declared;
+mod error;
+mod friction;
+mod links;
+mod normal;
+mod restitution;
+
+pub use declared::{Contact, ContactLaw, ContactSide, ContactSteps};
+pub use error::ContactError;
+pub use friction::{Bristle, Friction, FrictionForce};
+pub use links::links_matching;
+pub use normal::NormalLaw;
+pub use restitution::dissipation_for;

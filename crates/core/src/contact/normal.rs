@@ -1,0 +1,135 @@
+//! Compliant normal forces.
+
+use super::error::{ContactError, at_least, positive};
+
+/// Law of the normal force, N, as a function of the depth `x`, m, and its rate `ẋ`, m/s, which is positive
+/// while the bodies approach each other. The force never pulls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum NormalLaw {
+    /// `F = k xⁿ (1 + d ẋ)`.
+    ///
+    /// Source: Hunt and Crossley, Coefficient of Restitution Interpreted as Damping in Vibroimpact, Journal
+    /// of Applied Mechanics 42, 1975.
+    HuntCrossley {
+        /// Stiffness `k`, N/mⁿ.
+        stiffness: f64,
+        /// Exponent `n`: 1.5 for spheres (Hertz), 1 for a linear spring.
+        exponent: f64,
+        /// Dissipation `d`, s/m.
+        dissipation: f64,
+    },
+    /// `F = k x + c ẋ`. Unlike the law of Hunt and Crossley, the force jumps at touch-down.
+    SpringDashpot {
+        /// Stiffness `k`, N/m.
+        stiffness: f64,
+        /// Damping `c`, N s/m.
+        damping: f64,
+    },
+}
+
+impl NormalLaw {
+    /// Returns the force `F` if the bodies press on each other; the force would pull if it is negative.
+    #[inline]
+    pub fn force(&self, x: f64, rate: f64) -> f64 {
+        match *self {
+            // F = k xⁿ (1 + d ẋ)
+            Self::HuntCrossley { dissipation, .. } => self.elastic_force(x) * (1.0 + dissipation * rate),
+            // F = k x + c ẋ
+            Self::SpringDashpot { damping, .. } => self.elastic_force(x) + damping * rate,
+        }
+    }
+
+    /// Returns a number that has the sign of [`NormalLaw::force`] at every depth `x > 0` and is zero where
+    /// the bodies begin to pull.
+    #[inline]
+    pub fn pressing(&self, x: f64, rate: f64) -> f64 {
+        match *self {
+            Self::HuntCrossley { dissipation, .. } => 1.0 + dissipation * rate,
+            Self::SpringDashpot { .. } => self.force(x, rate),
+        }
+    }
+
+    /// Returns the elastic part of the force, `k xⁿ`, N. A linear law is continued to negative depths, so
+    /// that the force is smooth where the bodies separate.
+    #[inline]
+    pub fn elastic_force(&self, x: f64) -> f64 {
+        let (stiffness, exponent) = (self.stiffness(), self.exponent());
+        if exponent == 1.0 {
+            stiffness * x
+        } else if exponent == 1.5 {
+            stiffness * x.max(0.0) * x.max(0.0).sqrt()
+        } else {
+            stiffness * x.max(0.0).powf(exponent)
+        }
+    }
+
+    /// Returns the elastic energy at the depth `x`, m, in J.
+    pub fn elastic_energy(&self, x: f64) -> f64 {
+        // U = k xⁿ⁺¹/(n + 1)
+        if x > 0.0 { self.elastic_force(x) * x / (self.exponent() + 1.0) } else { 0.0 }
+    }
+
+    /// Returns the derivative of the elastic force, `n k xⁿ⁻¹`, N/m.
+    pub fn tangent_stiffness(&self, x: f64) -> f64 {
+        self.exponent() * self.stiffness() * x.max(0.0).powf(self.exponent() - 1.0)
+    }
+
+    /// Returns the derivative of the force with respect to the rate of the depth, N s/m.
+    pub fn tangent_damping(&self, x: f64) -> f64 {
+        match *self {
+            Self::HuntCrossley { dissipation, .. } => self.elastic_force(x).max(0.0) * dissipation,
+            Self::SpringDashpot { damping, .. } => damping,
+        }
+    }
+
+    /// Returns the tangential stiffness `σ`, N/m, of elastic bodies with Poisson's ratio 0.3: 0.82 times the
+    /// tangent stiffness of the normal force, which is evaluated at a depth of 0.1 mm if it varies.
+    ///
+    /// Source: Mindlin, Compliance of Elastic Bodies in Contact, Journal of Applied Mechanics 16, 1949:
+    /// `k_t/k_n = 2 (1 − ν)/(2 − ν)`.
+    pub fn tangential_stiffness(&self) -> f64 {
+        0.82 * self.tangent_stiffness(1e-4)
+    }
+
+    /// Returns the stiffness `k`, N/mⁿ.
+    pub fn stiffness(&self) -> f64 {
+        match *self {
+            Self::HuntCrossley { stiffness, .. } | Self::SpringDashpot { stiffness, .. } => stiffness,
+        }
+    }
+
+    /// Returns the exponent `n` of the elastic force.
+    pub fn exponent(&self) -> f64 {
+        match *self {
+            Self::HuntCrossley { exponent, .. } => exponent,
+            Self::SpringDashpot { .. } => 1.0,
+        }
+    }
+
+    /// Returns the depth, m, at which two bodies with the effective mass `mass`, kg, that are at the depth
+    /// `x`, m, come to rest if nothing is dissipated: `½ m ẋ² + U(x) = U(x_max)`.
+    pub fn largest_depth(&self, mass: f64, x: f64, rate: f64) -> f64 {
+        let energy = 0.5 * mass * rate * rate + self.elastic_energy(x);
+        let n = self.exponent();
+        ((n + 1.0) * energy / self.stiffness()).powf(1.0 / (n + 1.0))
+    }
+
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`ContactError::Parameter`] for a stiffness that is not positive, an exponent below 1 or negative
+    /// dissipation or damping.
+    pub fn check(&self) -> Result<(), ContactError> {
+        match *self {
+            Self::HuntCrossley { stiffness, exponent, dissipation } => {
+                positive("stiffness", stiffness, "N/m^n")?;
+                at_least("exponent", exponent, 1.0, "")?;
+                at_least("dissipation", dissipation, 0.0, "s/m")
+            }
+            Self::SpringDashpot { stiffness, damping } => {
+                positive("stiffness", stiffness, "N/m")?;
+                at_least("damping", damping, 0.0, "N s/m")
+            }
+        }
+    }
+}

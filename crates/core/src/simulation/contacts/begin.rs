@@ -1,0 +1,139 @@
+//! Modes of a contact at the start of a step.
+
+use super::contact_state::ContactState;
+use super::mode::{Mode, Phase};
+use super::side::SideMotion;
+use super::touching::{Loading, Touching};
+use crate::contact::{Bristle, ContactError, Friction, FrictionForce};
+use crate::spatial::Vec3;
+
+/// Fraction of the smaller reach by which pieces must be apart, beyond the distance that they may travel
+/// within the step, to be far apart.
+const FAR: f64 = 0.1;
+/// Factor of the distance that pieces travel within the step at their present velocities.
+const TRAVEL: f64 = 3.0;
+/// Bristles without deflection that stick.
+const AT_REST: Bristle = Bristle { deflection: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, is_slipping: false };
+/// Relative tolerance within which a change of mode has been reached.
+const REACHED: f64 = 1e-9;
+
+impl Touching {
+    /// Determines the mode for the step from `t` to `end`, s. A mode that was determined at `t` remains.
+    /// Returns the loading in the new mode; `None` if the pieces are far apart.
+    pub(super) fn begin(
+        &mut self,
+        (t, end): (f64, f64),
+        motions: &[SideMotion; 2],
+        state: &ContactState,
+    ) -> Result<Option<Loading>, ContactError> {
+        if self.mode.since == t {
+            return match self.mode.phase {
+                Phase::Far => Ok(None),
+                _ => self.evaluate(motions, state).map(Some),
+            };
+        }
+        if self.is_far(motions, end - t) {
+            (self.mode.phase, self.mode.since) = (Phase::Far, t);
+            return Ok(None);
+        }
+        let before = self.evaluate(motions, state)?;
+        let phase = self.next_phase(&before, self.rounding(motions));
+        let [bristle, twist] = self.next_bristles(phase, &before);
+        let mobility = if phase == Phase::Apart { [0.0; 3] } else { self.mode.mobility };
+        self.mode = Mode {
+            phase,
+            bristle,
+            twist,
+            turn: state.turn,
+            slip: state.slip,
+            normal: before.normal_a,
+            speeds: [before.sliding.norm(), before.spin.abs()],
+            mobility,
+            activity: self.activity(t, &before),
+            slack: [0.0; 3],
+            since: t,
+        };
+        let loading = self.evaluate(motions, state)?;
+        let slack = |margin: f64| if margin > 0.0 { 0.0 } else { f64::MIN_POSITIVE - 2.0 * margin };
+        self.mode.slack = self.margins(&loading).map(slack);
+        Ok(Some(loading))
+    }
+
+    /// Returns the rounding error of a distance, m.
+    pub(super) fn rounding(&self, [a, b]: &[SideMotion; 2]) -> f64 {
+        let reach = self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min);
+        16.0 * f64::EPSILON * (a.frame.pos.norm() + b.frame.pos.norm() + reach)
+    }
+
+    /// Returns true if bounding spheres show that the pieces cannot touch within `h` seconds.
+    pub(super) fn is_far(&self, [a, b]: &[SideMotion; 2], h: f64) -> bool {
+        let [reach_a, reach_b] = [&self.sides[0], &self.sides[1]].map(|side| side.reach);
+        let gap = (b.frame.pos - a.frame.pos).norm() - reach_a - reach_b;
+        gap > FAR * reach_a.min(reach_b) + TRAVEL * h * self.fastest([a, b])
+    }
+
+    /// Returns an upper bound of the speed at which points of the pieces approach each other, m/s.
+    pub(super) fn fastest(&self, [a, b]: [&SideMotion; 2]) -> f64 {
+        let turning = |motion: &SideMotion, reach: f64| {
+            if reach.is_finite() { motion.angular_velocity.norm() * reach } else { 0.0 }
+        };
+        (b.velocity - a.velocity).norm() + turning(a, self.sides[0].reach) + turning(b, self.sides[1].reach)
+    }
+
+    fn next_phase(&self, loading: &Loading, rounding: f64) -> Phase {
+        let Loading { depth, rate, .. } = *loading;
+        let Some(law) = &self.law else { return Phase::Apart };
+        let is_apart = depth < -rounding || (depth < rounding && rate <= 0.0);
+        let pressing = law.normal.pressing(depth, rate);
+        let least = REACHED * law.normal.pressing(depth.abs(), 0.0).abs();
+        let is_pressed = match self.mode.phase {
+            Phase::Pressing => pressing > least,
+            _ => pressing > 0.0,
+        };
+        match (is_apart, is_pressed) {
+            (true, _) => Phase::Apart,
+            (false, true) => Phase::Pressing,
+            (false, false) => Phase::Separating,
+        }
+    }
+
+    /// Returns the bristles and their twist at the start of the next step, which begins in `phase`.
+    fn next_bristles(&self, phase: Phase, loading: &Loading) -> [Bristle; 2] {
+        let friction = self.law.as_ref().and_then(|law| law.friction).filter(|_| phase == Phase::Pressing);
+        let Some(friction) = friction else { return [AT_REST; 2] };
+        let Mode { bristle, twist, speeds, mobility, .. } = &self.mode;
+        let sliding = match &loading.friction {
+            Some(found) => continued(bristle, found, loading.sliding, speeds[0]),
+            None => self.begun(&friction, loading, loading.sliding.norm(), mobility[1]),
+        };
+        let Some(torsion) = friction.torsion() else { return [sliding, AT_REST] };
+        let twisting = match &loading.torsion {
+            Some(found) => continued(twist, found, Vec3::new(loading.spin, 0.0, 0.0), speeds[1]),
+            None => self.begun(&torsion, loading, loading.spin.abs(), mobility[2]),
+        };
+        [sliding, twisting]
+    }
+
+    /// Returns the bristles of a contact that has just begun. They slip if the force in them grows faster
+    /// than the friction cone.
+    fn begun(&self, friction: &Friction, loading: &Loading, speed: f64, mobility: f64) -> Bristle {
+        let Some(law) = &self.law else { return AT_REST };
+        // σ |v_t| > μ dF/dt
+        let growth = law.normal.tangent_stiffness(loading.depth) * loading.rate;
+        let limit = friction.static_coefficient * law.normal.force(loading.depth, loading.rate).max(0.0);
+        let is_slipping = friction.damping_for(mobility) * speed > limit
+            || (limit == 0.0 && friction.stiffness * speed > friction.static_coefficient * growth);
+        Bristle { is_slipping, ..AT_REST }
+    }
+}
+
+/// Returns the bristles that were `before` at the start of the last step. `speed` is the magnitude that the
+/// velocity `rate` had at that time.
+fn continued(before: &Bristle, found: &FrictionForce, rate: Vec3<f64>, speed: f64) -> Bristle {
+    let is_slipping = if before.is_slipping {
+        found.bristle.is_slipping && found.margin > REACHED * speed
+    } else {
+        found.margin <= REACHED && found.force.dot(rate) <= 0.0
+    };
+    Bristle { is_slipping, ..found.bristle }
+}

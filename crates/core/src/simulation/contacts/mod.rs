@@ -1,0 +1,228 @@
+//! Contacts between the bodies of a run: compliant forces at the stages of a step, modes that change only at
+//! cuts, and the length of steps while bodies touch.
+
+mod begin;
+mod common_center;
+mod contact_state;
+mod mobility;
+mod mode;
+mod record;
+mod side;
+mod step_length;
+mod touching;
+
+pub(super) use common_center::{move_to_own_centers, refer_to_common_center};
+pub(super) use contact_state::{ContactRate, ContactState};
+pub(super) use mode::Mode;
+
+use super::error::SimulationError;
+use super::state::State;
+use super::tree::Tree;
+use crate::contact::{Contact, ContactError, ContactSteps};
+use crate::geometry::{BoundingSphere, Pose, Shape};
+use crate::spatial::Real;
+use crate::world::FrameIndex;
+use mode::Phase;
+use side::{Side, SideMotion};
+use touching::{Loading, Touching};
+
+/// Contacts of a run, one entry per combination of convex pieces of both sides.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Contacts {
+    list: Vec<Touching>,
+    /// Names of the declared contacts.
+    pub(super) names: Vec<String>,
+    steps: ContactSteps,
+    /// True if changes between sticking and slipping do not end a step.
+    pub(super) ignores_slip: bool,
+}
+
+impl Contacts {
+    /// Creates the contacts of a run before its first step. The places of their frames must then be set.
+    pub(super) fn new(declared: &[Contact], steps: ContactSteps) -> Self {
+        let mut list = Vec::new();
+        for (contact, Contact { name, sides, law, may_start_overlapping }) in declared.iter().enumerate() {
+            for a in &sides[0] {
+                for b in sides[1].iter().filter(|b| b.frame != a.frame) {
+                    let sides = [a, b].map(|side| Side {
+                        declared: side.frame,
+                        place: (side.frame.system, side.frame.frame),
+                        reach: reach(&side.shape, &side.pose),
+                        shape: side.shape.clone(),
+                        pose: side.pose,
+                    });
+                    let name = name.clone();
+                    let (law, may_start_overlapping) = (*law, *may_start_overlapping);
+                    let (mode, last) = (Mode::START, None);
+                    list.push(Touching { contact, name, sides, law, may_start_overlapping, mode, last });
+                }
+            }
+        }
+        let names = declared.iter().map(|contact| contact.name.clone()).collect();
+        Self { list, names, steps, ignores_slip: false }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Returns the states of the contacts before the first step.
+    pub(super) fn states(&self) -> Vec<ContactState> {
+        vec![ContactState::ZERO; self.list.len()]
+    }
+
+    /// Sets the tree and the index in its model of every frame.
+    pub(super) fn place(&mut self, place: impl Fn(FrameIndex) -> (usize, usize)) {
+        for side in self.list.iter_mut().flat_map(|touching| &mut touching.sides) {
+            side.place = place(side.declared);
+        }
+        self.list.iter_mut().for_each(|touching| touching.mode.mobility = [0.0; 3]);
+    }
+
+    pub(super) fn save(&self) -> Vec<Mode> {
+        self.list.iter().map(|touching| touching.mode).collect()
+    }
+
+    pub(super) fn restore(&mut self, modes: Vec<Mode>) {
+        self.list.iter_mut().zip(modes).for_each(|(touching, mode)| touching.mode = mode);
+    }
+
+    /// Returns the loadings computed last, which a trial step overwrites.
+    pub(super) fn loadings(&self) -> Vec<Option<Loading>> {
+        self.list.iter().map(|touching| touching.last).collect()
+    }
+
+    /// Restores the loadings that [`Self::loadings`] returned.
+    pub(super) fn set_loadings(&mut self, loadings: Vec<Option<Loading>>) {
+        self.list.iter_mut().zip(loadings).for_each(|(touching, loading)| touching.last = loading);
+    }
+
+    /// Computes the loading of every contact and adds the forces to the wrenches in `trees`. Requires the
+    /// kinematics of `state` in the trees.
+    pub(super) fn add_forces<S: Real>(
+        &mut self,
+        trees: &mut [Tree<'_, S>],
+        state: &State<S>,
+    ) -> Result<(), ContactError> {
+        for (touching, own) in self.list.iter_mut().zip(&state.contacts) {
+            touching.last = None;
+            if touching.mode.phase == Phase::Far {
+                continue;
+            }
+            let motions = touching.motions(trees, state);
+            let loading = touching.evaluate(&motions, own)?;
+            if loading.force.norm() > 0.0 {
+                let [a, b] = &touching.sides;
+                let moment = loading.normal * loading.moment();
+                a.add_wrench(trees, &state.trees, [-loading.force, -moment], loading.point);
+                b.add_wrench(trees, &state.trees, [loading.force, moment], loading.point);
+            }
+            touching.last = Some(loading);
+        }
+        Ok(())
+    }
+
+    /// Writes the time derivatives of the states of the contacts for the loadings computed last.
+    pub(super) fn rates(&self, rates: &mut [ContactRate]) {
+        for (touching, rate) in self.list.iter().zip(rates) {
+            *rate = touching.last.as_ref().map_or(ContactState::ZERO, |loading| loading.rates());
+        }
+    }
+
+    /// Determines the modes for the step from `t` to `end`, s, and returns the end of the step, which is
+    /// earlier than `end` while bodies touch. Requires the kinematics of `state` in the trees.
+    pub(super) fn begin<S: Real>(
+        &mut self,
+        (t, end): (f64, f64),
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+    ) -> Result<f64, ContactError> {
+        let mut longest = f64::INFINITY;
+        for (touching, own) in self.list.iter_mut().zip(&state.contacts) {
+            let motions = touching.motions(trees, state);
+            if touching.is_rigid(trees) {
+                touching.mode.phase = Phase::Far;
+                continue;
+            }
+            let Some(loading) = touching.begin((t, end), &motions, own)? else { continue };
+            if touching.mode.phase == Phase::Pressing && touching.mode.mobility[0] == 0.0 {
+                touching.mode.mobility = mobility::mobility(&touching.sides, trees, &state.trees, &loading);
+            }
+            longest = longest.min(touching.longest_step(self.steps, &motions, &loading));
+        }
+        if longest >= end - t {
+            return Ok(end);
+        }
+        // equal steps, so that the last is not very short
+        let count = ((end - t) / longest).ceil().max(1.0);
+        Ok(t + (end - t) / count)
+    }
+
+    /// Checks that pieces do not overlap at the start of a run, unless their contact permits it.
+    pub(super) fn check_start<S: Real>(
+        &self,
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+    ) -> Result<(), ContactError> {
+        for (touching, own) in self.list.iter().zip(&state.contacts) {
+            let motions = touching.motions(trees, state);
+            if touching.may_start_overlapping || touching.law.is_none() || touching.is_far(&motions, 0.0) {
+                continue;
+            }
+            let depth = touching.evaluate(&motions, own)?.depth;
+            if depth > touching.rounding(&motions) {
+                let frame = |side: &Side| &trees[side.place.0].model.frames()[side.place.1].name;
+                let [a, b] = [&touching.sides[0], &touching.sides[1]].map(frame);
+                let links = format!("'{a}' and '{b}'");
+                return Err(ContactError::Overlap { contact: touching.name.clone(), links, depth });
+            }
+        }
+        Ok(())
+    }
+
+    /// Returns the smallest margin to the next change of mode, negative beyond it. Requires the kinematics of
+    /// `state`, relative to W, in the trees.
+    pub(super) fn margin<S: Real>(
+        &self,
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+    ) -> Result<f64, ContactError> {
+        let mut least = f64::INFINITY;
+        for (touching, own) in self.list.iter().zip(&state.contacts) {
+            if touching.mode.phase == Phase::Far || touching.law.is_none() {
+                continue;
+            }
+            let loading = touching.evaluate(&touching.motions(trees, state), own)?;
+            let [depth, normal, friction] = touching.margins(&loading);
+            let slack = touching.mode.slack;
+            let friction = if self.ignores_slip { f64::INFINITY } else { friction + slack[2] };
+            least = least.min(depth + slack[0]).min(normal + slack[1]).min(friction);
+        }
+        Ok(least)
+    }
+}
+
+impl Touching {
+    fn motions<S: Real>(&self, trees: &[Tree<'_, S>], state: &State<S>) -> [SideMotion; 2] {
+        [0, 1].map(|i| self.sides[i].motion(trees, &state.trees))
+    }
+
+    /// Returns true if both sides are fixed to the same body, as after a capture.
+    fn is_rigid<S: Real>(&self, trees: &[Tree<'_, S>]) -> bool {
+        let [a, b] = [0, 1].map(|i| self.sides[i].place);
+        let body = |(tree, frame): (usize, usize)| trees[tree].model.frames()[frame].body;
+        a.0 == b.0 && body(a) == body(b)
+    }
+}
+
+/// Returns the distance from the origin of a frame to the farthest point of a shape at `pose` in the frame, m;
+/// infinity for a half-space.
+fn reach(shape: &Shape, pose: &Pose) -> f64 {
+    let BoundingSphere { center, radius } = shape.bounding_sphere();
+    if radius.is_finite() { pose.to_common(center).norm() + radius } else { f64::INFINITY }
+}
+
+/// Returns the error of a run for an error of a contact at `t`, s.
+pub(super) fn at_time(t: f64) -> impl Fn(ContactError) -> SimulationError {
+    move |source| SimulationError::Contact { time: t, source }
+}

@@ -1,0 +1,66 @@
+//! Mode of a contact, which is constant during a step.
+
+use crate::contact::Bristle;
+use crate::spatial::Vec3;
+use serde::{Deserialize, Serialize};
+
+/// Whether the bodies touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Phase {
+    /// The bodies are too far apart to touch within the step.
+    Far,
+    /// The bodies do not touch.
+    Apart,
+    /// The bodies press on each other.
+    Pressing,
+    /// The bodies overlap, but separate so fast that the force would pull.
+    Separating,
+}
+
+/// Mode of a contact during a step, with the friction at the start of the step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(in crate::simulation) struct Mode {
+    pub(super) phase: Phase,
+    /// Bristles at the start of the step, in axes of the first side.
+    pub(super) bristle: Bristle,
+    /// Twist of the bristles about the normal at the start of the step, rad, in the first component.
+    pub(super) twist: Bristle,
+    /// Angle about the normal at the start of the step, rad.
+    pub(super) turn: f64,
+    /// Sliding dispose at the start of the step, in axes of the first side, m.
+    pub(super) slip: Vec3<f64>,
+    /// Normal at the start of the step, in axes of the first side.
+    pub(super) normal: Vec3<f64>,
+    /// Sliding speed, m/s, and rate of turn about the normal, rad/s, at the start of the step.
+    pub(super) speeds: [f64; 2],
+    /// Reciprocals of the effective masses in the normal and in the tangential directions, 1/kg, and of the
+    /// effective inertia about the normal, 1/(kg m²); zero before the bodies touch.
+    pub(super) mobility: [f64; 3],
+    /// Amplitude of the recent oscillation of the contact, relative to its depth; at most 1.
+    pub(super) activity: f64,
+    /// Distances from the next changes of mode that count as zero: of the gap or depth, m, of the force and
+    /// of friction. They let a step begin at a change of mode.
+    pub(super) slack: [f64; 3],
+    /// Instant at which the mode was determined, s; negative before the first step.
+    pub(super) since: f64,
+}
+
+impl Mode {
+    /// Mode before the first step.
+    pub(super) const START: Self = {
+        let zero = Vec3 { x: 0.0, y: 0.0, z: 0.0 };
+        Self {
+            phase: Phase::Far,
+            bristle: Bristle { deflection: zero, is_slipping: false },
+            twist: Bristle { deflection: zero, is_slipping: false },
+            turn: 0.0,
+            slip: zero,
+            normal: zero,
+            speeds: [0.0; 2],
+            mobility: [0.0; 3],
+            activity: 1.0,
+            slack: [0.0; 3],
+            since: -1.0,
+        }
+    };
+}

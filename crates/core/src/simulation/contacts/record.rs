@@ -1,0 +1,100 @@
+//! Rows of the contacts.
+
+use super::mode::Phase;
+use super::touching::{Loading, Touching};
+use super::{ContactState, Contacts};
+use crate::contact::ContactError;
+use crate::simulation::state::State;
+use crate::simulation::tree::Tree;
+use crate::spatial::{Real, Vec3};
+
+/// Row of a contact: sums over its pieces, and the geometry of the pieces with the smallest gap.
+struct Row {
+    gap: f64,
+    force: Vec3<f64>,
+    point: Vec3<f64>,
+    normal: Vec3<f64>,
+    sliding_speed: f64,
+    power: f64,
+    elastic: f64,
+    dissipated: f64,
+}
+
+impl Contacts {
+    /// Returns the number of declared contacts.
+    pub(in crate::simulation) fn count(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Returns the system in whose trace a contact is recorded: that of its first side.
+    pub(in crate::simulation) fn owner(&self, contact: usize) -> usize {
+        let own = self.list.iter().find(|touching| touching.contact == contact);
+        own.map_or(0, |touching| touching.sides[0].declared.system)
+    }
+
+    /// Returns the row of a contact at `state`, in the order of the parts of
+    /// [`CONTACTS`](crate::simulation::CONTACTS). Requires the kinematics of `state` in the trees, and the
+    /// forces computed last.
+    pub(in crate::simulation) fn row<S: Real>(
+        &self,
+        contact: usize,
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+    ) -> Result<[f64; 14], ContactError> {
+        let mut row = Row {
+            gap: f64::INFINITY,
+            force: Vec3::zero(),
+            point: Vec3::zero(),
+            normal: Vec3::zero(),
+            sliding_speed: 0.0,
+            power: 0.0,
+            elastic: 0.0,
+            dissipated: 0.0,
+        };
+        for (touching, own) in self.list.iter().zip(&state.contacts).filter(|(one, _)| one.contact == contact)
+        {
+            let loading = match touching.last {
+                Some(loading) => loading,
+                None => touching.evaluate(&touching.motions(trees, state), own)?,
+            };
+            row.add(touching, &loading, own);
+        }
+        Ok(row.values())
+    }
+}
+
+impl Row {
+    fn add(&mut self, touching: &Touching, loading: &Loading, state: &ContactState) {
+        if -loading.depth < self.gap {
+            self.gap = -loading.depth;
+            (self.point, self.normal) = (loading.point, loading.normal);
+            self.sliding_speed = loading.sliding.norm();
+        }
+        self.force += loading.force;
+        self.power += loading.normal_force * loading.rate + loading.rates().friction_work;
+        let [normal, bristles] = touching.elastic_energies(loading);
+        self.elastic += normal + bristles;
+        self.dissipated += state.normal_loss + state.friction_work - bristles;
+    }
+
+    fn values(&self) -> [f64; 14] {
+        let Self { gap, force, point, normal, sliding_speed, power, elastic, dissipated } = *self;
+        let [f, p, n] = [force, point, normal].map(|v| [v.x, v.y, v.z]);
+        [gap, f[0], f[1], f[2], p[0], p[1], p[2], n[0], n[1], n[2], sliding_speed, power, elastic, dissipated]
+    }
+}
+
+impl Touching {
+    /// Returns the elastic energies of the normal force and of the bristles, J.
+    fn elastic_energies(&self, loading: &Loading) -> [f64; 2] {
+        let Some(law) = self.law.as_ref().filter(|_| self.mode.phase == Phase::Pressing) else {
+            return [0.0; 2];
+        };
+        let friction = law.friction.as_ref().zip(loading.friction.as_ref());
+        let bristles =
+            friction.map_or(0.0, |(friction, found)| friction.elastic_energy(found.bristle.deflection));
+        let torsion = law.friction.and_then(|friction| friction.torsion()).zip(loading.torsion);
+        let twist = torsion.map_or(0.0, |(torsion, found)| torsion.elastic_energy(found.bristle.deflection));
+        [law.normal.elastic_energy(loading.depth), bristles + twist]
+    }
+}

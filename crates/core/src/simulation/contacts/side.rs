@@ -1,0 +1,77 @@
+//! Motion of one side of a contact.
+
+use crate::dynamics::{base_rotation, frame_pose, frame_velocity};
+use crate::geometry::{Pose, Shape};
+use crate::simulation::tree::Tree;
+use crate::simulation::tree_state::TreeState;
+use crate::spatial::{Force, Real, Vec3};
+use crate::world::FrameIndex;
+
+/// Convex piece of one side, fixed to a frame of a tree.
+#[derive(Clone, Debug)]
+pub(super) struct Side {
+    /// Frame as declared.
+    pub(super) declared: FrameIndex,
+    /// Tree and index of the frame in its model.
+    pub(super) place: (usize, usize),
+    pub(super) shape: Shape,
+    pub(super) pose: Pose,
+    /// Distance from the origin of the frame to the farthest point of the shape, m; infinite for a
+    /// half-space.
+    pub(super) reach: f64,
+}
+
+/// Pose and velocity of a side.
+#[derive(Clone, Copy)]
+pub(super) struct SideMotion {
+    /// Pose of the shape in W.
+    pub(super) shape: Pose,
+    /// Pose of the frame in W.
+    pub(super) frame: Pose,
+    /// Velocity of the origin of the frame, W axes, m/s.
+    pub(super) velocity: Vec3<f64>,
+    /// Angular velocity, W axes, rad/s.
+    pub(super) angular_velocity: Vec3<f64>,
+}
+
+impl Side {
+    /// Returns the motion of the side. Requires the kinematics of `states` in `trees`.
+    pub(super) fn motion<S: Real>(&self, trees: &[Tree<'_, S>], states: &[TreeState<S>]) -> SideMotion {
+        let (tree, frame) = self.place;
+        let (tree, q) = (&trees[tree], &states[tree].q);
+        let pose = frame_pose(&tree.model, &tree.data, q, frame);
+        let velocity = frame_velocity(&tree.model, &tree.data, q, frame);
+        let frame = Pose { rot: pose.rot_wf.map(|x| x.lane(0)), pos: pose.pos_w.lane(0) };
+        SideMotion {
+            shape: Pose { rot: frame.rot * self.pose.rot, pos: frame.rot * self.pose.pos + frame.pos },
+            frame,
+            velocity: (velocity.linear + tree.frame_velocity()).lane(0),
+            angular_velocity: velocity.angular.lane(0),
+        }
+    }
+
+    /// Adds a force, N, at a point in W and a moment, N m, to the wrench on the body of the side.
+    pub(super) fn add_wrench<S: Real>(
+        &self,
+        trees: &mut [Tree<'_, S>],
+        states: &[TreeState<S>],
+        wrench: [Vec3<f64>; 2],
+        point: Vec3<f64>,
+    ) {
+        let (tree, frame) = self.place;
+        let (tree, q) = (&mut trees[tree], &states[tree].q);
+        let body = tree.model.frames()[frame].body;
+        let rot_wb = base_rotation(q);
+        let body = &mut tree.data.bodies[body];
+        let [force, moment] = wrench.map(|vector| rot_wb.transpose_mul(Vec3::of(&vector)));
+        let arm = rot_wb.transpose_mul(Vec3::of(&point) - Vec3::from_slice(q)) - body.pos_b;
+        body.external += Force::at(force, moment, arm);
+    }
+}
+
+impl SideMotion {
+    /// Returns the velocity of the material point at `point`, both in W, m/s.
+    pub(super) fn velocity_at(&self, point: Vec3<f64>) -> Vec3<f64> {
+        self.velocity + self.angular_velocity.cross(point - self.frame.pos)
+    }
+}

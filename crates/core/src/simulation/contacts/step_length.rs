@@ -1,0 +1,116 @@
+//! Length of the steps while bodies touch or approach each other.
+
+use super::mode::{Mode, Phase};
+use super::side::SideMotion;
+use super::touching::{Loading, Touching};
+use crate::contact::{ContactLaw, ContactSteps, Friction};
+use std::f64::consts::PI;
+
+/// Depth, as a fraction of the smaller reach, to which pieces that are apart may overlap at the end of a step
+/// before the instant of the touch-down is located.
+const OVERLAP: f64 = 0.25;
+/// Exponent of the elastic force from which on its derivatives at zero depth do not limit the order of the
+/// integrator.
+const SMOOTH: f64 = 4.0;
+/// Least number of steps in half a period, with which the motion of a contact at rest is stable.
+const LEAST_STEPS: f64 = 8.0;
+/// Phase, rad, during which an oscillation is remembered.
+const MEMORY: f64 = 4.0 * PI;
+
+/// Largest rates of a contact at the largest depth of its present motion.
+struct Rates {
+    /// Largest depth, m.
+    depth: f64,
+    /// Angular frequencies of the oscillations along and across the normal, rad/s.
+    frequencies: [f64; 2],
+    /// Rates of decay of the motions along and across the normal, 1/s.
+    decays: [f64; 2],
+}
+
+impl Rates {
+    /// Computes `√(k' W)` and `c' W`, with the tangent stiffness `k'` and damping `c'` and the reciprocal
+    /// effective mass `W`.
+    fn of(law: &ContactLaw, mode: &Mode, loading: &Loading) -> Self {
+        let [normal, tangential, turning] = mode.mobility;
+        let depth = law.normal.largest_depth(1.0 / normal, loading.depth.max(0.0), loading.rate);
+        // slipping bristles have a constant length and do not oscillate
+        let friction = law.friction.filter(|_| !mode.bristle.is_slipping);
+        let torsion =
+            law.friction.and_then(|friction| friction.torsion()).filter(|_| !mode.twist.is_slipping);
+        let rates = |friction: Option<Friction>, mobility: f64| {
+            let own = |friction: Friction| {
+                [(friction.stiffness * mobility).sqrt(), friction.damping_for(mobility) * mobility]
+            };
+            friction.map_or([0.0; 2], own)
+        };
+        let [sliding, twisting] = [rates(friction, tangential), rates(torsion, turning)];
+        Self {
+            depth,
+            frequencies: [(law.normal.tangent_stiffness(depth) * normal).sqrt(), sliding[0].max(twisting[0])],
+            decays: [law.normal.tangent_damping(depth) * normal, sliding[1].max(twisting[1])],
+        }
+    }
+
+    fn fastest(&self) -> f64 {
+        self.frequencies.iter().chain(&self.decays).copied().fold(0.0, f64::max)
+    }
+}
+
+impl Touching {
+    /// Returns the longest permitted step, s, from a motion with this loading.
+    ///
+    /// While the bodies press on each other, it is `h = π/(N ω)` with the largest rate `ω` of the contact and
+    /// `N` steps. The local error is proportional to the amplitude `a` of the oscillation and to `N⁻⁵`, so
+    /// `N ∝ a^(1/4)` for a contact that comes to rest. For exponents `1 < n < 4`, derivatives of `xⁿ` are
+    /// unbounded at touch-down and lift-off, where the step is therefore shortened to `h √(x/x_max)`. This
+    /// restores order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
+    pub(super) fn longest_step(
+        &self,
+        steps: ContactSteps,
+        motions: &[SideMotion; 2],
+        loading: &Loading,
+    ) -> f64 {
+        let Some(law) = &self.law else { return f64::INFINITY };
+        match self.mode.phase {
+            Phase::Far => f64::INFINITY,
+            Phase::Apart | Phase::Separating => {
+                let [a, b] = motions;
+                let reach = self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min);
+                ((-loading.depth).max(0.0) + OVERLAP * reach) / self.fastest([a, b])
+            }
+            Phase::Pressing => {
+                let rates = Rates::of(law, &self.mode, loading);
+                let lively = steps.count as f64 * self.mode.activity.powf(0.25);
+                let count = lively.max(LEAST_STEPS.min(steps.count as f64));
+                let h = PI / (count * rates.fastest());
+                let is_smooth =
+                    !steps.is_graded || law.normal.exponent() == 1.0 || law.normal.exponent() >= SMOOTH;
+                let fraction = if is_smooth {
+                    1.0
+                } else {
+                    (loading.depth.max(0.0) / rates.depth).sqrt().max(PI / count)
+                };
+                h * fraction.min(1.0)
+            }
+        }
+    }
+
+    /// Returns the amplitude of the oscillation of the contact relative to its depth and to the length of
+    /// slipping bristles: the present amplitude or, if larger, the previous one, which is forgotten within
+    /// some periods.
+    pub(super) fn activity(&self, t: f64, loading: &Loading) -> f64 {
+        let Some(law) = &self.law else { return 1.0 };
+        if self.mode.phase != Phase::Pressing || self.mode.mobility[0] == 0.0 {
+            return 1.0;
+        }
+        let rates = Rates::of(law, &self.mode, loading);
+        let [normal, tangential] = rates.frequencies;
+        let remembered = self.mode.activity * (-(t - self.mode.since) * normal / MEMORY).exp();
+        let mut activity = remembered.max(loading.rate.abs() / (normal * rates.depth));
+        if let Some(friction) = law.friction.filter(|_| tangential > 0.0) {
+            let length = friction.kinetic_coefficient * loading.normal_force / friction.stiffness;
+            activity = activity.max(loading.sliding.norm() / (tangential * length).max(f64::MIN_POSITIVE));
+        }
+        activity.min(1.0)
+    }
+}

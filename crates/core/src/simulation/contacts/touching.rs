@@ -1,0 +1,173 @@
+//! Contact between one convex piece of each side during a run.
+
+use super::contact_state::{ContactRate, ContactState};
+use super::mode::{Mode, Phase};
+use super::side::{Side, SideMotion};
+use crate::contact::{Bristle, ContactError, ContactLaw, Friction, FrictionForce};
+use crate::geometry::closest;
+use crate::spatial::Vec3;
+
+/// Contact between one convex piece of each side.
+#[derive(Clone, Debug)]
+pub(super) struct Touching {
+    /// Number of the contact among those of the run.
+    pub(super) contact: usize,
+    /// Name of the contact.
+    pub(super) name: String,
+    pub(super) sides: [Side; 2],
+    /// Law; `None` if only the distance is observed.
+    pub(super) law: Option<ContactLaw>,
+    /// True if the pieces may overlap at the start.
+    pub(super) may_start_overlapping: bool,
+    pub(super) mode: Mode,
+    /// Result of the last evaluation; `None` while the pieces are far apart.
+    pub(super) last: Option<Loading>,
+}
+
+/// Geometry, motion and force of a contact at one instant. Vectors are in W unless stated otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::simulation) struct Loading {
+    /// Depth `x`, m; negative while the pieces are apart.
+    pub(super) depth: f64,
+    /// Rate of the depth `ẋ`, m/s.
+    pub(super) rate: f64,
+    /// Normal from the first side to the second.
+    pub(super) normal: Vec3<f64>,
+    /// Point at which the forces act, m.
+    pub(super) point: Vec3<f64>,
+    /// Magnitude of the normal force, N.
+    pub(super) normal_force: f64,
+    /// Force on the second side, N.
+    pub(super) force: Vec3<f64>,
+    /// Sliding velocity of the second side relative to the first, in axes of the first side, m/s.
+    pub(super) sliding: Vec3<f64>,
+    /// Normal in axes of the first side.
+    pub(super) normal_a: Vec3<f64>,
+    /// Friction in axes of the first side, if the contact has friction and the pieces press on each other.
+    pub(super) friction: Option<FrictionForce>,
+    /// Rate at which the second side turns about the normal relative to the first, rad/s.
+    pub(super) spin: f64,
+    /// Moment about the normal on the second side, if the contact has torsional friction and the pieces press
+    /// on each other; in the first component, N m.
+    pub(super) torsion: Option<FrictionForce>,
+    /// Power that the normal force dissipates, W.
+    pub(super) dissipation: f64,
+}
+
+impl Touching {
+    /// Returns the distance of the pieces, and the force that the mode gives for their motion.
+    pub(super) fn evaluate(
+        &self,
+        [a, b]: &[SideMotion; 2],
+        state: &ContactState,
+    ) -> Result<Loading, ContactError> {
+        let found = closest(&self.sides[0].shape, &a.shape, &self.sides[1].shape, &b.shape)
+            .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
+        let (depth, normal) = (-found.distance, found.normal);
+        // both forces act at one point, so that no moment remains
+        let point = (found.point_a + found.point_b) * 0.5;
+        let relative = b.velocity_at(point) - a.velocity_at(point);
+        let rate = -normal.dot(relative);
+        let sliding = a.frame.rot.transpose_mul(normal.scale_add(rate, relative));
+        let normal_a = a.frame.rot.transpose_mul(normal);
+        let mut loading = Loading {
+            depth,
+            rate,
+            normal,
+            point,
+            normal_force: 0.0,
+            force: Vec3::zero(),
+            sliding,
+            normal_a,
+            friction: None,
+            spin: normal.dot(b.angular_velocity - a.angular_velocity),
+            torsion: None,
+            dissipation: 0.0,
+        };
+        if let (Some(law), Phase::Pressing) = (&self.law, self.mode.phase) {
+            self.add_force(law, state, a, &mut loading);
+        }
+        Ok(loading)
+    }
+
+    /// Adds the forces of pieces that press on each other.
+    fn add_force(&self, law: &ContactLaw, state: &ContactState, a: &SideMotion, loading: &mut Loading) {
+        let Loading { depth, rate, normal, .. } = *loading;
+        loading.normal_force = law.normal.force(depth, rate);
+        loading.dissipation = (loading.normal_force - law.normal.elastic_force(depth)) * rate;
+        loading.force = normal * loading.normal_force;
+        if let Some(friction) = &law.friction {
+            let Mode { bristle, slip, normal: before, .. } = &self.mode;
+            let tangential = |v: Vec3<f64>| v - loading.normal_a * loading.normal_a.dot(v);
+            let deflection = tangential(transported(bristle.deflection, *before, loading.normal_a));
+            let bristle = Bristle { deflection, is_slipping: bristle.is_slipping };
+            let moved = tangential(state.slip - *slip);
+            let damping = friction.damping_for(self.mode.mobility[1]);
+            let found =
+                friction.after(&bristle, moved, loading.sliding, loading.normal_force.max(0.0), damping);
+            loading.force += a.frame.rot * found.force;
+            loading.friction = Some(found);
+            self.add_torsion(friction, state, loading);
+        }
+    }
+
+    /// Adds the moment about the normal, which obeys the law of friction in one dimension.
+    fn add_torsion(&self, friction: &Friction, state: &ContactState, loading: &mut Loading) {
+        let Some(torsion) = friction.torsion() else { return };
+        let along = |x: f64| Vec3::new(x, 0.0, 0.0);
+        let (moved, spin) = (along(state.turn - self.mode.turn), along(loading.spin));
+        let damping = torsion.damping_for(self.mode.mobility[2]);
+        let normal = loading.normal_force.max(0.0);
+        loading.torsion = Some(torsion.after(&self.mode.twist, moved, spin, normal, damping));
+    }
+
+    /// Returns the distances from the next changes of mode, each negative beyond the change: that of the gap
+    /// or depth, m, that of the normal force and that of friction.
+    pub(super) fn margins(&self, loading: &Loading) -> [f64; 3] {
+        let Some(law) = &self.law else { return [f64::INFINITY; 3] };
+        let Loading { depth, rate, .. } = *loading;
+        let pressing = law.normal.pressing(depth, rate);
+        match self.mode.phase {
+            Phase::Far => [f64::INFINITY; 3],
+            Phase::Apart => [-depth, f64::INFINITY, f64::INFINITY],
+            Phase::Separating => [depth, -pressing, f64::INFINITY],
+            Phase::Pressing => {
+                let forces = [loading.friction, loading.torsion].into_iter().flatten();
+                let margins = forces.filter(|_| loading.normal_force > 0.0).map(|force| force.margin);
+                [depth, pressing, margins.fold(f64::INFINITY, f64::min)]
+            }
+        }
+    }
+}
+
+impl Loading {
+    /// Returns the moment about the normal on the second side, N m.
+    pub(super) fn moment(&self) -> f64 {
+        self.torsion.map_or(0.0, |torsion| torsion.force.x)
+    }
+
+    /// Returns the time derivative of the state of the contact.
+    pub(super) fn rates(&self) -> ContactRate {
+        let friction = self.friction.map_or(0.0, |friction| friction.force.dot(self.sliding));
+        let friction_work = -friction - self.moment() * self.spin;
+        let turn = self.spin;
+        ContactRate {
+            slip: self.sliding,
+            turn,
+            normal_loss: self.dissipation,
+            friction_work,
+            impulse: self.force,
+        }
+    }
+}
+
+/// Returns `v` after the smallest rotation that takes the unit vector `from` to the unit vector `to`.
+fn transported(v: Vec3<f64>, from: Vec3<f64>, to: Vec3<f64>) -> Vec3<f64> {
+    // R v = v + w × v + w × (w × v)/(1 + cos),  w = from × to
+    let (w, cosine) = (from.cross(to), from.dot(to));
+    if cosine <= -0.5 {
+        return v; // the normal has jumped to another face
+    }
+    let turned = w.cross(v);
+    v + turned + w.cross(turned) * (1.0 / (1.0 + cosine))
+}

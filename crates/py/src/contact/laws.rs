@@ -1,0 +1,258 @@
+//! Laws of normal force and friction.
+
+use crate::errors::{IntoPython, fields, raise};
+use crate::pickling::{ConstructorCall, Reduced};
+use onorbit_core::contact::{Friction, NormalLaw, dissipation_for};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Normal force of Hunt and Crossley, ``F = k x**n (1 + d v)``, with the depth ``x`` and the speed of approach
+/// ``v``. The force never pulls.
+///
+/// Give either ``dissipation``, or ``restitution`` and ``speed``; without any of them, nothing is dissipated.
+///
+/// Parameters
+/// ----------
+/// stiffness : float
+///     Stiffness ``k``, N/m**n. For two spheres of radius R, Young's modulus E and Poisson's ratio nu,
+///     Hertz's theory gives ``k = E sqrt(2 R)/(3 (1 - nu**2))`` with ``n = 1.5``.
+/// exponent : float
+///     Exponent ``n``, at least 1: 1.5 for curved surfaces, 1 for flat pads.
+/// dissipation : float, optional
+///     Dissipation ``d``, s/m.
+/// restitution : float, optional
+///     Coefficient of restitution, more than 0 and at most 1, of a central impact at ``speed``.
+/// speed : float, optional
+///     Speed of approach to which ``restitution`` refers, m/s.
+///
+/// Raises
+/// ------
+/// WorldError
+///     If a parameter is outside its range.
+///
+/// Notes
+/// -----
+/// With ``p = d speed``, the dissipation follows from ``p (1 + e) = log((1 + p)/(1 - e p))`` for every
+/// stiffness, exponent and mass.
+///
+/// Source: Hunt and Crossley, Journal of Applied Mechanics 42, 1975.
+#[pyclass(name = "HuntCrossley", frozen, module = "onorbit_rs")]
+pub(crate) struct PyHuntCrossley {
+    /// Stiffness, N/m**n.
+    #[pyo3(get)]
+    stiffness: f64,
+    /// Exponent.
+    #[pyo3(get)]
+    exponent: f64,
+    /// Dissipation, s/m.
+    #[pyo3(get)]
+    dissipation: f64,
+}
+
+#[pymethods]
+impl PyHuntCrossley {
+    #[new]
+    #[pyo3(signature = (stiffness, exponent=1.5, *, dissipation=None, restitution=None, speed=None))]
+    fn new(
+        py: Python<'_>,
+        stiffness: f64,
+        exponent: f64,
+        dissipation: Option<f64>,
+        restitution: Option<f64>,
+        speed: Option<f64>,
+    ) -> PyResult<Self> {
+        let refuse =
+            |message: &str| Err(raise(py, "WorldError", message, &fields!(py, "name": "restitution")));
+        let dissipation = match (dissipation, restitution, speed) {
+            (dissipation, None, None) => dissipation.unwrap_or(0.0),
+            (None, Some(restitution), Some(speed)) => {
+                dissipation_for(restitution, speed).map_err(|error| error.into_python(py))?
+            }
+            (None, Some(_), None) => {
+                return refuse(
+                    "a restitution refers to a speed of approach; give speed, such as speed=0.05 (m/s)",
+                );
+            }
+            (None, None, Some(_)) => {
+                return refuse("speed is given without restitution; give both or neither");
+            }
+            _ => return refuse("give either dissipation, or restitution and speed"),
+        };
+        let law = Self { stiffness, exponent, dissipation };
+        law.law().check().map_err(|error| error.into_python(py))?;
+        Ok(law)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("dissipation", self.dissipation)?;
+        ConstructorCall::new("HuntCrossley", (self.stiffness, self.exponent), &keywords)?.reduce(py)
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { stiffness, exponent, dissipation } = self;
+        format!("<HuntCrossley: stiffness {stiffness} N/m^{exponent}, dissipation {dissipation} s/m>")
+    }
+}
+
+impl PyHuntCrossley {
+    fn law(&self) -> NormalLaw {
+        let Self { stiffness, exponent, dissipation } = *self;
+        NormalLaw::HuntCrossley { stiffness, exponent, dissipation }
+    }
+}
+
+/// Normal force of a linear spring and damper, ``F = k x + c v``, with the depth ``x`` and the speed of
+/// approach ``v``. The force never pulls, but jumps to ``c v`` at touch-down; ``HuntCrossley`` does not.
+///
+/// Parameters
+/// ----------
+/// stiffness : float
+///     Stiffness ``k``, N/m.
+/// damping : float
+///     Damping ``c``, N s/m.
+///
+/// Raises
+/// ------
+/// WorldError
+///     If a parameter is outside its range.
+#[pyclass(name = "SpringDashpot", frozen, module = "onorbit_rs")]
+pub(crate) struct PySpringDashpot {
+    /// Stiffness, N/m.
+    #[pyo3(get)]
+    stiffness: f64,
+    /// Damping, N s/m.
+    #[pyo3(get)]
+    damping: f64,
+}
+
+#[pymethods]
+impl PySpringDashpot {
+    #[new]
+    fn new(py: Python<'_>, stiffness: f64, damping: f64) -> PyResult<Self> {
+        let law = Self { stiffness, damping };
+        law.law().check().map_err(|error| error.into_python(py))?;
+        Ok(law)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let arguments = (self.stiffness, self.damping);
+        ConstructorCall::new("SpringDashpot", arguments, &PyDict::new(py))?.reduce(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<SpringDashpot: stiffness {} N/m, damping {} N s/m>", self.stiffness, self.damping)
+    }
+}
+
+impl PySpringDashpot {
+    fn law(&self) -> NormalLaw {
+        NormalLaw::SpringDashpot { stiffness: self.stiffness, damping: self.damping }
+    }
+}
+
+/// Reads a law of the normal force.
+pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<NormalLaw> {
+    if let Ok(law) = value.cast::<PyHuntCrossley>() {
+        return Ok(law.get().law());
+    }
+    if let Ok(law) = value.cast::<PySpringDashpot>() {
+        return Ok(law.get().law());
+    }
+    let (py, got) = (value.py(), value.get_type().name()?.to_string());
+    let message = format!("normal is of type {got}; expected a HuntCrossley or a SpringDashpot");
+    Err(raise(py, "DtypeError", &message, &fields!(py, "name": "normal", "got": got)))
+}
+
+/// Coulomb friction with elastic bristles.
+///
+/// A contact whose load stays inside the friction cone does not creep: it deflects elastically and returns to
+/// its place. On the cone it slips.
+///
+/// Parameters
+/// ----------
+/// static : float
+///     Coefficient of static friction, at least ``kinetic``.
+/// kinetic : float, optional
+///     Coefficient of kinetic friction; default: ``static``.
+/// torsional : float, optional
+///     Coefficient of torsional friction, m: the largest moment about the normal per unit of normal force. It
+///     is two thirds of the friction coefficient times the radius for a uniformly pressed disc. By default a
+///     contact transmits no such moment.
+/// stiffness : float, optional
+///     Tangential stiffness inside the cone, N/m; default: 0.82 times the stiffness of the normal force (at a
+///     depth of 0.1 mm if it varies), as for elastic bodies with Poisson's ratio 0.3.
+/// damping : float, optional
+///     Tangential damping inside the cone, N s/m; default: a tenth of critical damping.
+///
+/// Raises
+/// ------
+/// WorldError
+///     If a parameter is outside its range.
+///
+/// Notes
+/// -----
+/// Source: Dupont, Hayward, Armstrong and Altpeter, IEEE Transactions on Automatic Control 47(5), 2002.
+#[pyclass(name = "Friction", frozen, module = "onorbit_rs")]
+#[derive(Clone)]
+pub(crate) struct PyFriction {
+    /// Coefficient of static friction.
+    #[pyo3(get, name = "static")]
+    static_coefficient: f64,
+    /// Coefficient of kinetic friction.
+    #[pyo3(get)]
+    kinetic: f64,
+    /// Coefficient of torsional friction, m; 0 without torsional friction.
+    #[pyo3(get)]
+    torsional: f64,
+    /// Tangential stiffness, N/m; None for the default.
+    #[pyo3(get)]
+    stiffness: Option<f64>,
+    /// Tangential damping, N s/m; None for the default.
+    #[pyo3(get)]
+    damping: Option<f64>,
+}
+
+#[pymethods]
+impl PyFriction {
+    #[new]
+    #[pyo3(signature = (r#static, kinetic=None, torsional=None, *, stiffness=None, damping=None))]
+    fn new(
+        py: Python<'_>,
+        r#static: f64,
+        kinetic: Option<f64>,
+        torsional: Option<f64>,
+        stiffness: Option<f64>,
+        damping: Option<f64>,
+    ) -> PyResult<Self> {
+        let (kinetic, torsional) = (kinetic.unwrap_or(r#static), torsional.unwrap_or(0.0));
+        let friction = Self { static_coefficient: r#static, kinetic, torsional, stiffness, damping };
+        friction.law(1.0).check().map_err(|error| error.into_python(py))?;
+        Ok(friction)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let keywords = PyDict::new(py);
+        keywords.set_item("stiffness", self.stiffness)?;
+        keywords.set_item("damping", self.damping)?;
+        let arguments = (self.static_coefficient, self.kinetic, self.torsional);
+        ConstructorCall::new("Friction", arguments, &keywords)?.reduce(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Friction: static {}, kinetic {}>", self.static_coefficient, self.kinetic)
+    }
+}
+
+impl PyFriction {
+    /// Returns the law; `stiffness` is the default of the tangential stiffness, N/m.
+    pub(super) fn law(&self, stiffness: f64) -> Friction {
+        Friction {
+            static_coefficient: self.static_coefficient,
+            kinetic_coefficient: self.kinetic,
+            stiffness: self.stiffness.unwrap_or(stiffness),
+            damping: self.damping,
+            torsional: self.torsional,
+        }
+    }
+}

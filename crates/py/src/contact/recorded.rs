@@ -1,0 +1,93 @@
+//! Recorded distances and forces of a contact.
+
+use onorbit_core::simulation::CONTACTS;
+use pyo3::prelude::*;
+use pyo3::types::PySlice;
+
+/// Recorded distances and forces of a contact, with one row per time of the trace.
+///
+/// Between rows, the forces may be much larger: an impact can be shorter than the interval between two rows,
+/// but while bodies touch, every step is a row if ``record_every=1``.
+#[pyclass(name = "ContactTrace", frozen, module = "onorbit_rs")]
+pub(crate) struct PyContactTrace {
+    /// Array (T, 14) with all quantities in the order of ``onorbit_rs.COLUMNS``.
+    #[pyo3(get)]
+    values: Py<PyAny>,
+}
+
+impl PyContactTrace {
+    pub(crate) fn new(values: Py<PyAny>) -> Self {
+        Self { values }
+    }
+
+    /// Returns the columns of a part: an array (T,) if the part has one column, otherwise (T, k).
+    fn part<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let part = CONTACTS.parts.iter().find(|part| part.name == name);
+        let (start, end) = part.map_or((0, 1), |part| (part.start, part.end.unwrap_or(part.start + 1)));
+        let rows = PySlice::full(py);
+        let values = self.values.bind(py);
+        if end == start + 1 {
+            return values.get_item((rows, start));
+        }
+        values.get_item((rows, PySlice::new(py, start as isize, end as isize, 1)))
+    }
+}
+
+#[pymethods]
+impl PyContactTrace {
+    /// Smallest distance of the two sides, (T,), m; where they overlap, the negative depth.
+    #[getter]
+    fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "gap")
+    }
+
+    /// Force on the second side, (T, 3), N, axes of W.
+    #[getter]
+    fn force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "force")
+    }
+
+    /// Point midway between the nearest points of both sides, at which the force acts, (T, 3), m, in W.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "point")
+    }
+
+    /// Unit normal from the first side to the second, (T, 3), axes of W.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "normal")
+    }
+
+    /// Sliding speed at that point, (T,), m/s.
+    #[getter]
+    fn slip<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "sliding_speed")
+    }
+
+    /// Power that the contact takes from the motion, to store or dissipate it, (T,), W.
+    #[getter]
+    fn power<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "power")
+    }
+
+    /// Elastic energy stored in the contact, (T,), J.
+    #[getter]
+    fn elastic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "elastic")
+    }
+
+    /// Energy that the contact has dissipated since the start, (T,), J.
+    #[getter]
+    fn dissipated<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "dissipated")
+    }
+
+    fn __len__(&self, py: Python<'_>) -> PyResult<usize> {
+        self.values.bind(py).len()
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("<ContactTrace: {} rows>", self.__len__(py)?))
+    }
+}
