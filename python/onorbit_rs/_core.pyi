@@ -76,6 +76,7 @@ __all__ = [
     "ConstantAtmosphere",
     "Control",
     "CustomPath",
+    "Distance",
     "Drag",
     "Earth",
     "Effect",
@@ -132,6 +133,7 @@ __all__ = [
     "attach",
     "build_info",
     "deputy_state",
+    "distance",
     "from_lvlh",
     "hill_transition",
     "intercept_velocity",
@@ -1427,6 +1429,18 @@ class RobotPart:
         links: dict[str, dict[str, Any]] | None = None,
     ) -> RobotPart: ...
 
+@final
+class Distance:
+    @property
+    def distance(self) -> float: ...
+    @property
+    def point_a(self) -> _Array: ...
+    @property
+    def point_b(self) -> _Array: ...
+    @property
+    def normal(self) -> _Array: ...
+
+def distance(model_or_world: Model | World, q: ArrayLike | dict[str, Any], a: str, b: str) -> Distance: ...
 def attach(
     model: Model,
     frame: str,

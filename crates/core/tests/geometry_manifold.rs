@@ -48,6 +48,17 @@ fn a_box_that_lies_flat_has_four_points_of_a_quarter() {
 }
 
 #[test]
+fn the_resultant_of_a_flat_face_acts_at_its_centroid() {
+    let base = [[0.0, 0.0], [4.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
+    let points: Vec<_> = base.iter().flat_map(|[x, y]| [0.0, 1.0].map(|z| Vec3::new(*x, *y, z))).collect();
+    let contact = on_plane(&Shape::hull(&points).unwrap(), turned(0.0, 0.0, 0.0), -0.01);
+    let [force, moment] = wrench(&contact);
+    assert!((force.z - 0.01).abs() < 1e-15);
+    assert!((moment.x / force.z - 8.0 / 9.0).abs() < 1e-13 && (moment.y / force.z + 14.0 / 9.0).abs() < 1e-13);
+    assert_eq!(contact.points.len(), 4);
+}
+
+#[test]
 fn edges_corners_lines_and_points_have_the_whole_weight() {
     let weights = |contact: &Manifold| contact.points.iter().map(|p| p.weight).collect::<Vec<_>>();
     let edge = on_plane(&BOX, turned(0.0, 0.8, 0.0), 1.0);

@@ -12,6 +12,7 @@ mod earth;
 mod engine;
 mod environment;
 mod errors;
+mod geometry;
 mod gravity;
 mod interrupt;
 mod model;
@@ -74,6 +75,8 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<earth::PyEarth>()?;
     orbit::add_classes(m)?;
     environment::add_classes(m)?;
+    m.add_class::<geometry::PyDistance>()?;
+    m.add_function(wrap_pyfunction!(geometry::distance, m)?)?;
     gravity::add_classes(m)?;
     reference::add_classes(m)?;
     control::add_classes(m)?;

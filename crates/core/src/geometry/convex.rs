@@ -18,6 +18,9 @@ const CORRECTIONS: usize = 30;
 /// Change of the normal at which it is final.
 const FINAL: f64 = 1e-12;
 
+/// Change of the normal below which it is final if it no longer decreases.
+const RESOLUTION: f64 = 1e-7;
+
 /// Largest difference between the distance of the witness points and that of the supporting planes, relative to the size.
 const RESOLVED: f64 = 1e-9;
 
@@ -60,16 +63,18 @@ pub(super) fn closest(a: &Shape, b: &Shape, pose: &Pose) -> Result<Proximity, f6
 /// difference of the shapes: at once for polytopes.
 fn corrected(cores: &Cores<'_>, mut normal: Vec3<f64>, margin: f64) -> Option<Nearest> {
     let mut separation = cores.separation(normal);
-    let mut found = None;
+    let (mut found, mut last) = (None, f64::INFINITY);
     for _ in 0..CORRECTIONS {
         let shift = normal * (margin - separation);
         let nearest = cores.moved(shift).nearest(normal)?;
         let (change, next) = ((nearest.normal - normal).norm(), cores.separation(nearest.normal));
         found = Some(Nearest { on_b: nearest.on_b - shift, ..nearest });
         (normal, separation) = (nearest.normal, next);
-        if change <= FINAL {
+        // between round shapes, the change ends at the resolution of the nearest points, about 1e-8
+        if change <= FINAL || (change <= RESOLUTION && change > 0.5 * last) {
             break;
         }
+        last = change;
     }
     found
 }

@@ -47,6 +47,24 @@ pub enum GeometryError {
         /// Kind of the shape.
         name: &'static str,
     },
+    /// A link has no collision shape.
+    #[error(
+        "the link '{link}' has no collision shape; give it a <collision> element{}", links_with(.with)
+    )]
+    NoCollision {
+        /// Name of the link.
+        link: String,
+        /// Links that have collision shapes.
+        with: Vec<String>,
+    },
+    /// A collision shape of a link cannot be used.
+    #[error("a collision shape of the link '{link}' cannot be used: {cause}")]
+    Collision {
+        /// Name of the link.
+        link: String,
+        /// Cause.
+        cause: String,
+    },
     /// No distance is defined between two shapes.
     #[error(
         "the distance between {} and {} is not available; replace a torus by convex pieces, and a half-space by a box",
@@ -64,4 +82,13 @@ pub enum GeometryError {
         /// Difference between the lower and the upper bound, m.
         gap: f64,
     },
+}
+
+/// Returns the part of a message that lists the links with collision shapes.
+fn links_with(links: &[String]) -> String {
+    match links.len() {
+        0 => "; no link of the robot has one".to_owned(),
+        1..=12 => format!(", or use one of the links that have one: {}", links.join(", ")),
+        count => format!(", or use one of the {count} links that have one"),
+    }
 }

@@ -9,8 +9,11 @@ use crate::spatial::Vec3;
 /// Steps after which the iteration ends.
 const STEPS: usize = 200;
 
-/// Steps without an improvement after which the iteration ends.
-const PATIENCE: usize = 10;
+/// Steps without an improvement after which the iteration ends, and the same for bounds that are `CLOSE`.
+const PATIENCE: [usize; 2] = [40, 3];
+
+/// Difference of the bounds from which more steps gain little, relative to the largest coordinate.
+const CLOSE: f64 = 1e-14;
 
 /// Difference of the bounds at which the iteration ends, relative to the largest coordinate.
 const CONVERGED: f64 = 4e-16;
@@ -62,7 +65,7 @@ impl Cores<'_> {
         let first = self.corner(start);
         let mut simplex = Simplex::new(first);
         let (mut scale, mut least, mut found) = (first.apart.norm(), f64::INFINITY, None);
-        let mut patience = PATIENCE;
+        let mut waited = 0;
         for _ in 0..STEPS {
             let nearest = simplex.reduce()?;
             let length = nearest.norm();
@@ -75,11 +78,12 @@ impl Cores<'_> {
             let gap = length + next.apart.dot(normal);
             if gap < least {
                 let (on_a, on_b) = (simplex.mean(|p| p.on_a), simplex.mean(|p| p.on_b));
-                (least, found, patience) = (gap, Some(Nearest { on_a, on_b, normal }), PATIENCE);
+                (least, found, waited) = (gap, Some(Nearest { on_a, on_b, normal }), 0);
             } else {
-                patience -= 1;
+                waited += 1;
             }
-            if gap <= CONVERGED * scale || patience == 0 || simplex.contains(&next) {
+            let patience = PATIENCE[usize::from(least <= CLOSE * scale)];
+            if gap <= CONVERGED * scale || waited >= patience || simplex.contains(&next) {
                 break;
             }
             simplex.push(next);

@@ -59,10 +59,11 @@ pub(super) fn weights(corners: &[Point]) -> Vec<f64> {
     // a line has no area: each edge then gives half of its length to each of its ends
     let is_line = twice_area <= 1e-14 * perimeter * perimeter;
     let center = [first[0] + moment[0] / twice_area, first[1] + moment[1] / twice_area];
-    let part = |i: usize| if is_line { length(i) } else { cross(center, corners[i], next(i)) };
-    let total = if is_line { perimeter } else { twice_area };
+    let part = |i: usize| if is_line { length(i) } else { cross(center, corners[i], next(i)).max(0.0) };
+    let parts: Vec<f64> = (0..count).map(part).collect();
+    let total: f64 = parts.iter().sum();
     if total <= 0.0 {
         return vec![1.0 / count as f64; count];
     }
-    (0..count).map(|i| 0.5 * (part((i + count - 1) % count) + part(i)) / total).collect()
+    (0..count).map(|i| 0.5 * (parts[(i + count - 1) % count] + parts[i]) / total).collect()
 }

@@ -52,12 +52,20 @@ pub struct Link {
     /// Collision shapes, with only those meshes whose file exists. They are drawn if the link has no visual
     /// shapes.
     pub collisions: Vec<Visual>,
+    /// For each collision shape that was not read, the reason, such as a mesh file that does not exist.
+    pub skipped_collisions: Vec<String>,
 }
 
 impl Link {
     /// Creates a link without shapes.
     pub fn new(name: &str, inertial: Option<Inertial>) -> Self {
-        Self { name: name.to_owned(), inertial, visuals: Vec::new(), collisions: Vec::new() }
+        Self {
+            name: name.to_owned(),
+            inertial,
+            visuals: Vec::new(),
+            collisions: Vec::new(),
+            skipped_collisions: Vec::new(),
+        }
     }
 }
 

@@ -160,6 +160,13 @@ impl Model {
         &self.collisions
     }
 
+    /// Returns, for each collision shape of the link of a frame that was not read, the reason.
+    pub fn skipped_collisions(&self, frame: usize) -> &[String] {
+        let name = &self.frames[frame].name;
+        let link = self.description.links.iter().find(|link| link.name == *name);
+        link.map_or(&[], |link| &link.skipped_collisions)
+    }
+
     /// Returns the warnings found when the model was built.
     pub fn warnings(&self) -> &[ModelWarning] {
         &self.warnings

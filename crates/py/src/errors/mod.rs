@@ -5,6 +5,7 @@ mod contact;
 mod control;
 mod earth;
 mod environment;
+mod geometry;
 mod gravity;
 mod model;
 mod orbit;

@@ -16,17 +16,19 @@ mod properties;
 mod reroot;
 mod xacro;
 
-use crate::arrays::{Threads, type_name};
+use crate::arrays::{Threads, type_name, wrong_shape};
 use crate::dynamics::evaluate;
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::ConstructorCall;
 use description::{PyBody, PyFrame, PyJoint, PyVisual};
-use numpy::PyArrayDyn;
+use numpy::{PyArrayDyn, PyUntypedArrayMethods};
 use onorbit_core::batch::{Evaluator, Kernel};
+use onorbit_core::geometry::{LinkShape, Shape, link_shape};
 use onorbit_core::model::{Model, ModelWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
-use std::sync::{Arc, Mutex};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
@@ -61,6 +63,8 @@ pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
     pub(crate) evaluator: Mutex<Evaluator>,
     constructor_call: Option<ConstructorCall>,
+    /// Collision shapes of links, by the index of the frame, as far as they were used.
+    collision_shapes: Mutex<HashMap<usize, Shape>>,
 }
 
 impl PyModel {
@@ -76,13 +80,13 @@ impl PyModel {
             warnings.call_method1("warn", (warning.to_string(),))?;
         }
         let evaluator = Mutex::new(Evaluator::new(&model));
-        Ok(Self { model: Arc::new(model), evaluator, constructor_call })
+        Ok(Self { model: Arc::new(model), evaluator, constructor_call, collision_shapes: Mutex::default() })
     }
 
     /// Creates another Python object for a model whose warnings have already been issued.
     pub(crate) fn of(model: Arc<Model>) -> Self {
         let evaluator = Mutex::new(Evaluator::new(&model));
-        Self { model, evaluator, constructor_call: None }
+        Self { model, evaluator, constructor_call: None, collision_shapes: Mutex::default() }
     }
 
     /// Returns the index of the frame `name`.
@@ -95,6 +99,34 @@ impl PyModel {
             return Err(raise(py, "DtypeError", &message, &fields));
         };
         self.model.frame(&text.to_cow()?).map_err(|error| error.into_python(py))
+    }
+
+    /// Returns the collision shape of the link with this frame. Meshes are read once, and their defects are warnings.
+    pub(crate) fn collision_shape(&self, py: Python<'_>, frame: usize) -> PyResult<Shape> {
+        let known = |shapes: &Mutex<HashMap<usize, Shape>>| {
+            shapes.lock().unwrap_or_else(PoisonError::into_inner).get(&frame).cloned()
+        };
+        if let Some(shape) = known(&self.collision_shapes) {
+            return Ok(shape);
+        }
+        let LinkShape { shape, warnings } =
+            py.detach(|| link_shape(&self.model, frame)).map_err(|error| error.into_python(py))?;
+        let module = py.import("warnings")?;
+        for warning in warnings {
+            module.call_method1("warn", (warning,))?;
+        }
+        let mut shapes = self.collision_shapes.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(shapes.entry(frame).or_insert(shape).clone())
+    }
+
+    /// Returns the pose of a frame in W, (4, 4), for one configuration.
+    pub(crate) fn pose_rows<'py>(&self, q: Any<'_, 'py>, frame: usize) -> PyResult<Array<'py>> {
+        let pose = self.one(Kernel::FramePose(frame), &[q], None, &[4, 4], None, None)?;
+        if pose.ndim() == 2 {
+            return Ok(pose);
+        }
+        let (nq, states) = (self.model.nq(), pose.shape()[0]);
+        Err(wrong_shape(q.py(), "q", &format!("({nq},)"), &[states, nq]))
     }
 
     /// Evaluates a kernel with one output.

@@ -81,7 +81,7 @@ impl PyModel {
     }
 
     /// Collision shapes, with only those meshes whose file exists. They are drawn instead of visual meshes
-    /// that cannot be drawn; contacts are not simulated.
+    /// that cannot be drawn, and are the shapes of :func:`distance`.
     #[getter]
     fn collisions(&self) -> Vec<PyVisual> {
         description::shapes(&self.model, self.model.collisions())

@@ -7,6 +7,7 @@ use crate::contact::{PyContact, contacts_in, contacts_of};
 use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
+use crate::model::PyModel;
 use crate::orbit::PyOrbit;
 use crate::pickling::{ConstructorCall, Reduced};
 use crate::reference::Around;
@@ -125,6 +126,16 @@ impl PyWorld {
     /// Returns the reference orbit, if the world has one.
     pub(crate) fn orbit(&self, py: Python<'_>) -> Option<Py<PyOrbit>> {
         self.orbit.as_ref().map(|orbit| orbit.clone_ref(py))
+    }
+
+    /// Returns the model of the system `name`.
+    pub(crate) fn model_of<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyModel>> {
+        let system = self.systems.iter().find(|system| system.get().name == name);
+        system.map(|system| system.get().model.bind(py).clone()).ok_or_else(|| {
+            let message =
+                format!("there is no system '{name}'; the systems are: {}", self.names().join(", "));
+            raise(py, "WorldError", &message, &fields!(py, "name": name, "got": name))
+        })
     }
 
     /// Creates a simulation of the world with default settings of the integration.

@@ -39,12 +39,18 @@ pub(super) fn read_link(
             }
         }
     }
-    // without warnings, because collision shapes are only drawn as substitutes for missing visual shapes
+    // without warnings: most runs only draw collision shapes, as substitutes for missing visual shapes
     for collision in link.children("collision") {
         let mesh = collision.child("geometry").and_then(|geometry| geometry.child("mesh"));
         let file = mesh.map(|mesh| mesh.text("filename").unwrap_or_default());
-        if file.is_none_or(|name| context.meshes.find(name).is_some()) {
-            result.collisions.extend(read_visual(collision, context).ok());
+        match file.filter(|name| context.meshes.find(name).is_none()) {
+            Some(name) => result.skipped_collisions.push(format!(
+                "there is no mesh file '{name}'; correct its name, or give the folder of its package"
+            )),
+            None => match read_visual(collision, context) {
+                Ok(shape) => result.collisions.push(shape),
+                Err(error) => result.skipped_collisions.push(error.to_string()),
+            },
         }
     }
     Ok(result)
