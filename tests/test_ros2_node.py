@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bag_files import read_mcap
 from ros2_runs import DOMAIN, Peer, needs_ros2, node_of, spinning, wait_for_subscriber
 from stepper_runs import assert_same_bits, passive, scenario
 from world_runs import built, data
@@ -269,6 +270,31 @@ def test_an_adaptive_run_that_cannot_be_planned_is_pointed_out() -> None:
         assert trace.time[-1] == 0.1 and len(said) == count
         assert all("adaptive steps differ" in text and "give it get_state()" in text for text in said)
     assert_same_bits(trace, passive(controller=Counting(), **settings).run(0.1))
+
+
+def test_a_run_that_keeps_few_rows_publishes_and_records_all(tmp_path: Path) -> None:
+    alone = scenario().run(0.5)
+    with node_of(scenario(), pace="fast", keep_rows=50, record=tmp_path / "run.mcap") as node:
+        trace = node.spin(0.5)
+    rows = len(trace)
+    assert 51 <= rows <= 1 + 2 * 50 + 20 < len(alone)
+    kept = np.r_[0, len(alone) - rows + 1 : len(alone)]
+    np.testing.assert_array_equal(trace.q, alone.q[kept])
+    assert all(passed for *_, passed in trace.certificate())
+    times = [stamp for stamp, _ in read_mcap(tmp_path / "run.mcap")["/joint_states"]]
+    assert times == [round(1e9 * t) for t in alone.time]
+    whole = built(data()).simulation.run(0.5)
+    with node_of(built(data()).simulation, pace="fast", keep_rows=5) as node:
+        two = node.spin(0.5)
+    for name in ("chaser", "target"):
+        assert len(two[name]) < 40 < len(whole[name])
+        np.testing.assert_array_equal(two[name].q[-5:], whole[name].q[-5:])
+        np.testing.assert_array_equal(two[name].q[0], whole[name].q[0])
+    assert [event.name for event in two.events] == ["grasp", "let_go"]
+    assert all(passed for *_, passed in two.certificate())
+    for keep in (0, -1, 2.5):
+        with pytest.raises(oo.exceptions.InputError, match=r"rows to keep is .* integer of at least 1"):
+            Node(scenario(), domain=DOMAIN, keep_rows=keep)  # type: ignore[arg-type]
 
 
 def test_events_of_two_craft_are_triggered_and_published(peer: Peer) -> None:

@@ -113,6 +113,31 @@ def test_columns_are_the_new_rows() -> None:
         stepper.columns(201)
 
 
+@pytest.mark.parametrize("every", [1, 5])
+def test_rows_that_are_dropped_do_not_change_the_motion(every: int) -> None:
+    alone = scenario(record_every=every).run(0.4)
+    stepper = scenario(record_every=every).start(duration=0.4)
+    stepper.advance_to(0.2)
+    stepper.drop_rows(10_000)
+    assert len(stepper.columns()["time"]) == 200 // every, "fewer rows than are kept"
+    stepper.drop_rows(10)
+    assert len(stepper.columns()["time"]) == 11
+    stepper.present()
+    stepper.advance_to(0.4)
+    checkpoint = stepper.checkpoint()
+    trace = stepper.finish()
+    kept = np.r_[0, 200 // every - 10 : len(alone)]
+    for name in alone.columns():
+        own, all_rows = getattr(trace, name), np.asarray(getattr(alone, name))
+        np.testing.assert_array_equal(own, all_rows[kept], err_msg=name)
+    checks, full = ([check[0] for check in each.certificate()] for each in (trace, alone))
+    pairs = {"base_rows_residual_rel", "attitude_consistency", "center_of_mass_error_rel"}
+    assert set(full) - set(checks) == (pairs if every == 1 else set())
+    assert all(passed for *_, passed in trace.certificate())
+    with pytest.raises(oo.exceptions.CheckpointError, match="rows"):
+        scenario(record_every=every).start(resume=checkpoint)
+
+
 @pytest.mark.filterwarnings("ignore:the inertia of link")
 @pytest.mark.parametrize("name", ["iss_gravity_gradient", "geo_radiation", "humanoid_reach"])
 def test_looking_just_after_a_tick_does_not_change_the_motion(name: str) -> None:

@@ -2,9 +2,10 @@
 
 use crate::arrays::constant;
 use crate::checkpoint::{PyCheckpoint, Since, add_columns, checkpoint_of, columns_since, prefix};
-use crate::errors::{SimulationErrorExt, plain};
+use crate::errors::SimulationErrorExt;
 use crate::interrupt::period;
 use crate::shared_run::SharedRun;
+use crate::stepper_advance::ended;
 use crate::world::{PyEventRecord, PySystemStepper, Systems};
 use numpy::PyArrayDyn;
 use onorbit_core::number_text::short;
@@ -351,6 +352,19 @@ impl PyStepper {
         Ok(columns.unbind())
     }
 
+    /// Drop the recorded rows except the first row and the last rows, which limits the memory of a long run.
+    ///
+    /// The motion does not change. Later checkpoints cannot be resumed, because rows are missing. If every step
+    /// is recorded, the certificate omits the checks that compare successive steps.
+    ///
+    /// Parameters
+    /// ----------
+    /// keep : int
+    ///     Number of last rows of each system to keep.
+    fn drop_rows(&self, py: Python<'_>, keep: usize) -> PyResult<()> {
+        self.with(py, |stepper| stepper.drop_rows(keep))
+    }
+
     /// Return a checkpoint, from which :meth:`Simulation.start` resumes with identical bits.
     ///
     /// Parameters
@@ -380,21 +394,4 @@ impl PyStepper {
         });
         Ok(text.unwrap_or_else(|_| "<Stepper: ended or in use>".to_owned()))
     }
-}
-
-impl PyStepper {
-    pub(crate) fn new(run: SharedRun, number: u64, systems: Arc<Systems>) -> Self {
-        Self { run, number, systems }
-    }
-
-    /// Returns the number of the only system, or an error in which `what` names the requested attribute.
-    fn only(&self, what: &str) -> PyResult<usize> {
-        self.systems.only("stepper", what).map(|()| 0)
-    }
-}
-
-/// Returns the error of a stepper whose run has ended.
-pub(crate) fn ended(py: Python<'_>) -> PyErr {
-    let message = "the run has ended; start a new one (a simulation has one run at a time)";
-    plain(py, "SimulationError", message)
 }

@@ -1,21 +1,31 @@
 //! Advance and end of the run of a stepper.
 
 use crate::checkpoint::row_counts;
-use crate::errors::SimulationErrorExt;
+use crate::errors::{SimulationErrorExt, plain};
 use crate::interrupt::PACE;
 use crate::run_failure::{interrupted, run_failure};
-use crate::shared_run::Runs;
-use crate::stepper::{PyStepper, ended};
+use crate::shared_run::{Runs, SharedRun};
+use crate::stepper::PyStepper;
+use crate::world::Systems;
 use onorbit_core::simulation::{Recording, RunFailure, SimulationError, Stepper};
 use pyo3::prelude::*;
 use std::ops::ControlFlow;
-use std::sync::MutexGuard;
+use std::sync::{Arc, MutexGuard};
 use std::time::{Duration, Instant};
 
 /// Callback at regular intervals of wall-clock time. It receives the run and its wall-clock time so far, s.
 pub(crate) type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResult<()>;
 
 impl PyStepper {
+    pub(crate) fn new(run: SharedRun, number: u64, systems: Arc<Systems>) -> Self {
+        Self { run, number, systems }
+    }
+
+    /// Returns the number of the only system, or an error in which `what` names the requested attribute.
+    pub(crate) fn only(&self, what: &str) -> PyResult<usize> {
+        self.systems.only("stepper", what).map(|()| 0)
+    }
+
     pub(crate) fn with<R>(&self, py: Python<'_>, work: impl FnOnce(&mut Stepper<'_>) -> R) -> PyResult<R> {
         self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
     }
@@ -156,4 +166,10 @@ impl PyStepper {
         self.try_with(py, |stepper| stepper.read_state(system, &mut q, &mut v))?;
         Ok((q, v))
     }
+}
+
+/// Returns the error of a stepper whose run has ended.
+pub(crate) fn ended(py: Python<'_>) -> PyErr {
+    let message = "the run has ended; start a new one (a simulation has one run at a time)";
+    plain(py, "SimulationError", message)
 }

@@ -31,6 +31,9 @@ WrenchTimeoutOption = Annotated[
     float | None,
     typer.Option(metavar="SECONDS", help="Time without a message after which a wrench ends; default: never."),
 ]
+KeepRowsOption = Annotated[
+    int | None, typer.Option(metavar="N", help="Keep the first and the last N rows only, for long runs.")
+]
 PriorityOption = Annotated[
     bool, typer.Option("--priority", help="Real-time priority for pace real_time (Linux, needs permission).")
 ]
@@ -50,6 +53,7 @@ def ros2(
     log: LogOption = None,
     record: RecordOption = None,
     wrench_timeout: WrenchTimeoutOption = None,
+    keep_rows: KeepRowsOption = None,
     priority: PriorityOption = False,
     force: RecordForceOption = False,
     quiet: QuietOption = False,
@@ -75,7 +79,7 @@ def ros2(
     check_output_file(log, force=force)
     node = Node.of_scenario(
         scenario, pace=pace, domain=domain, network=network, is_paused=paused, log=log, record=record,
-        wrench_timeout=wrench_timeout, has_priority=priority, on_message=tell,
+        wrench_timeout=wrench_timeout, keep_rows=keep_rows, has_priority=priority, on_message=tell,
     )  # fmt: skip
     if not quiet:
         print_error(_greeting(node, domain))

@@ -37,6 +37,15 @@ class LiveRows:
         self._taken_until = self._stepper.time
         return rows
 
+    def keep_last(self, count: int) -> None:
+        """Drop rows that :meth:`take` has returned from the memory of the run, if there are many.
+
+        The first row and at least the last ``count`` remain.
+        """
+        if max(self._counts.values()) > 2 * count:
+            self._stepper.drop_rows(count)
+            self._counts = {system: min(rows, count + 1) for system, rows in self._counts.items()}
+
     def present(self) -> dict[str, Rows]:
         """Return the row of each system at the current time, which :meth:`take` may return later."""
         return rows_of_columns(self._stepper.present(), self._models)

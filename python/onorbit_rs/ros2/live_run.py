@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import ControlError
+from onorbit_rs.exceptions import ControlError, InputError
 from onorbit_rs.ros2.entries import Entry
 from onorbit_rs.ros2.live_rows import LiveRows
 from onorbit_rs.ros2.wrench_timeouts import WrenchTimeouts
@@ -36,8 +36,20 @@ class LiveRun:
         Commands that were given.
     """
 
-    def __init__(self, simulation: Simulation, wrench_timeout: float | None) -> None:
-        """Start the run; a wrench ends ``wrench_timeout``, s, after its last command (None: never)."""
+    def __init__(
+        self, simulation: Simulation, wrench_timeout: float | None = None, keep_rows: int | None = None
+    ) -> None:
+        """Start the run.
+
+        A wrench ends ``wrench_timeout``, s, after its last command (None: never). The first row and the last
+        ``keep_rows``, up to twice as many, remain in memory (None: all rows).
+        """
+        if keep_rows is not None and not (isinstance(keep_rows, int) and keep_rows >= 1):
+            raise InputError(
+                f"the number of rows to keep is {keep_rows!r}; it must be an integer of at least 1",
+                name="keep_rows", got=keep_rows, expected="a positive integer",
+            )  # fmt: skip
+        self._keep_rows = keep_rows
         self._simulation = simulation
         self.models: Mapping[str, Model] = simulation.models
         steps = max(1, min(simulation.record_every, round(_SHORTEST_TICK / simulation.time_step)))
@@ -121,7 +133,10 @@ class LiveRun:
 
     def rows(self) -> Any:
         """Return the rows of each system recorded since the last call."""
-        return self._rows.take()
+        new = self._rows.take()
+        if self._keep_rows is not None:
+            self._rows.keep_last(self._keep_rows)
+        return new
 
     def events(self) -> Sequence[EventRecord]:
         """Return the events that have happened since the last call."""

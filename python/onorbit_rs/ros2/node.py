@@ -63,6 +63,7 @@ class Node:
         log: str | os.PathLike[str] | None = None,
         record: str | os.PathLike[str] | None = None,
         wrench_timeout: float | None = None,
+        keep_rows: int | None = None,
         has_priority: bool = False,
         on_message: Callable[[str], None] = lambda text: None,
     ) -> None:
@@ -88,6 +89,9 @@ class Node:
         wrench_timeout : float, optional
             Simulated time, s, after which a wrench on a link ends unless another message for the link comes.
             Default: it holds.
+        keep_rows : int, optional
+            Number of rows that the run keeps in memory besides the first, up to twice as many; the trace that
+            :meth:`spin` returns then has the first row and the last ones. Default: all rows.
         has_priority : bool
             Whether the node has real-time priority over other programs (``SCHED_FIFO`` of Linux) in pace
             ``real_time``. A warning is issued where this is not permitted.
@@ -107,7 +111,7 @@ class Node:
             raise InputError(
                 f"pace is {pace!r}; give one of {', '.join(PACES)}", name="pace", got=pace, expected=PACES
             )
-        self._run = LiveRun(simulation, wrench_timeout)
+        self._run = LiveRun(simulation, wrench_timeout, keep_rows)
         self._clock = RealTime(self._run.tick)
         self._has_ended = False
         self.duration: float | None = None

@@ -65,6 +65,8 @@ pub(super) struct Recorder {
     shift: Option<Shift>,
     /// Number of values per row of each column.
     widths: Vec<usize>,
+    /// Number of rows that were removed by [`Recorder::drop_rows`].
+    dropped: usize,
 }
 
 impl Recorder {
@@ -90,7 +92,7 @@ impl Recorder {
             let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
             column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
         }
-        Ok(Self { trace, number, options, shift: None, widths })
+        Ok(Self { trace, number, options, shift: None, widths, dropped: 0 })
     }
 
     /// Adds the rows recorded before a checkpoint to the trace, which must be empty.
@@ -256,6 +258,30 @@ impl Recorder {
     /// Removes the last row, which is incomplete.
     pub(super) fn drop_last_row(&mut self) {
         self.truncate(self.trace.rows().saturating_sub(1));
+    }
+
+    /// Removes all rows except the first one and the last `keep`. The other rows are then not sufficient for
+    /// the checks that compare successive steps.
+    pub(super) fn drop_rows(&mut self, keep: usize) {
+        let excess = self.trace.rows().saturating_sub(keep + 1);
+        if excess == 0 {
+            return;
+        }
+        for ((_, column), width) in self.trace.columns_mut().zip(&self.widths) {
+            column.drain(*width..(1 + excess) * width);
+        }
+        self.trace.rows_suffice = false;
+        self.dropped += excess;
+    }
+
+    /// Returns the number of rows recorded so far, including those that were dropped.
+    pub(super) fn rows_recorded(&self) -> usize {
+        self.trace.rows() + self.dropped
+    }
+
+    /// Removes the rows recorded after the first `recorded`, a value of [`Recorder::rows_recorded`].
+    pub(super) fn truncate_to(&mut self, recorded: usize) {
+        self.truncate(recorded.saturating_sub(self.dropped));
     }
 
     /// Removes all rows except the first `rows`.

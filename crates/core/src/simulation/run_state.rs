@@ -87,8 +87,8 @@ impl<S: Scalar> RunState<'_, S> {
             TreeProgress { modes: tree.modes.save(), errors, checks }
         };
         let system = |run: &RunSystem<'_, S>| {
-            let trace = &run.recorder.trace;
-            SystemProgress { rows: trace.rows(), work_done: trace.work_done, settled: run.settled.clone() }
+            let (rows, work_done) = (run.recorder.rows_recorded(), run.recorder.trace.work_done);
+            SystemProgress { rows, work_done, settled: run.settled.clone() }
         };
         Progress {
             steps: self.steps,
@@ -122,7 +122,7 @@ impl<S: Scalar> RunState<'_, S> {
             self.accuracy.restore(number, (saved.errors, saved.checks));
         }
         for (saved, run) in progress.systems.into_iter().zip(&mut self.systems) {
-            run.recorder.truncate(saved.rows);
+            run.recorder.truncate_to(saved.rows);
             run.recorder.trace.work_done = saved.work_done;
             run.settled = saved.settled;
         }

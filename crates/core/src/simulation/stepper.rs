@@ -174,6 +174,15 @@ impl<'a> Stepper<'a> {
         self.groups[group].run.rows(system)
     }
 
+    /// Removes the recorded rows of each system except the first one and the last `keep`, which limits the
+    /// memory of a long run. The motion does not change.
+    ///
+    /// The run cannot be resumed from a later checkpoint, since rows are missing. If every step is recorded,
+    /// the checks of the certificate that compare successive steps are then omitted.
+    pub fn drop_rows(&mut self, keep: usize) {
+        self.groups.iter_mut().for_each(|group| group.run.drop_rows(keep));
+    }
+
     /// Returns the recording of the run as if it ended now, with a last row at the current time.
     ///
     /// # Errors

@@ -55,6 +55,8 @@ pub(super) trait Steps: Send {
     fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;
     fn checkpoint(&self) -> Result<GroupCheckpoint, SimulationError>;
     fn rows(&self, system: usize) -> &Trace;
+    /// Removes all rows of each system except the first one and the last `keep`.
+    fn drop_rows(&mut self, keep: usize);
     fn recording(&mut self) -> Result<GroupRecording, SimulationError>;
     /// Returns the row of each system at the current time.
     fn present_rows(&mut self) -> Result<Vec<Trace>, SimulationError>;
@@ -170,6 +172,10 @@ impl<S: Scalar> Steps for RunState<'_, S> {
 
     fn rows(&self, system: usize) -> &Trace {
         &self.systems[system].recorder.trace
+    }
+
+    fn drop_rows(&mut self, keep: usize) {
+        self.systems.iter_mut().for_each(|run| run.recorder.drop_rows(keep));
     }
 
     fn recording(&mut self) -> Result<GroupRecording, SimulationError> {
