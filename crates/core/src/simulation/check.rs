@@ -73,6 +73,9 @@ impl Simulation {
         let cannot = |name: &str, what, remedy| {
             Err(SimulationError::EngineOfWorld { name: name.to_owned(), what, remedy })
         };
+        if let Some(contact) = self.contacts.iter().find(|contact| contact.law.is_some()) {
+            return cannot(&contact.name, "a contact with forces", "remove its law");
+        }
         for event in &self.events {
             match event.action {
                 Action::Capture { seat: Some(_), .. } => {
