@@ -119,13 +119,14 @@ fn spheres_keep_momentum_and_energy() {
     }
 }
 
-/// Where the nearest features of polyhedra change, the normal jumps within a step. The energy is then less
-/// accurate, but momentum is not.
+/// The weights of the contact points of polyhedra depend on the pose, so their forces have no exact potential;
+/// and where the nearest features change, the normal jumps within a step. The energy is then less accurate, but
+/// momentum is not.
 #[test]
 fn polyhedra_keep_momentum() {
     for seed in 0..6 {
         for friction in [None, Some(FRICTION)] {
-            check(seed, Kind::Polyhedra, friction, 1e-3);
+            check(seed, Kind::Polyhedra, friction, 2e-2);
         }
     }
 }

@@ -6,6 +6,7 @@ mod common_center;
 mod contact_state;
 mod mobility;
 mod mode;
+mod pressure;
 mod record;
 mod side;
 mod step_length;

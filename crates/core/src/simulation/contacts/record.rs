@@ -71,7 +71,7 @@ impl Row {
             self.sliding_speed = loading.sliding.norm();
         }
         self.force += loading.force;
-        self.power += loading.normal_force * loading.rate + loading.rates().friction_work;
+        self.power += loading.pressure.map_or(0.0, |pressure| pressure.power) + loading.rates().friction_work;
         let [normal, bristles] = touching.elastic_energies(loading);
         self.elastic += normal + bristles;
         self.dissipated += state.normal_loss + state.friction_work - bristles;
@@ -95,6 +95,6 @@ impl Touching {
             friction.map_or(0.0, |(friction, found)| friction.elastic_energy(found.bristle.deflection));
         let torsion = law.friction.and_then(|friction| friction.torsion()).zip(loading.torsion);
         let twist = torsion.map_or(0.0, |(torsion, found)| torsion.elastic_energy(found.bristle.deflection));
-        [law.normal.elastic_energy(loading.depth), bristles + twist]
+        [loading.pressure.map_or(0.0, |pressure| pressure.elastic), bristles + twist]
     }
 }

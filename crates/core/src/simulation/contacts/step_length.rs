@@ -108,7 +108,7 @@ impl Touching {
         let remembered = self.mode.activity * (-(t - self.mode.since) * normal / MEMORY).exp();
         let mut activity = remembered.max(loading.rate.abs() / (normal * rates.depth));
         if let Some(friction) = law.friction.filter(|_| tangential > 0.0) {
-            let length = friction.kinetic_coefficient * loading.normal_force / friction.stiffness;
+            let length = friction.kinetic_coefficient * loading.normal_force() / friction.stiffness;
             activity = activity.max(loading.sliding.norm() / (tangential * length).max(f64::MIN_POSITIVE));
         }
         activity.min(1.0)

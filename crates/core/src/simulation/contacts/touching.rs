@@ -2,9 +2,10 @@
 
 use super::contact_state::{ContactRate, ContactState};
 use super::mode::{Mode, Phase};
+use super::pressure::Pressure;
 use super::side::{Side, SideMotion};
 use crate::contact::{Bristle, ContactError, ContactLaw, Friction, FrictionForce};
-use crate::geometry::closest;
+use crate::geometry::{ContactPoint, GeometryError, Manifold, Proximity, Shape, closest, manifold};
 use crate::spatial::Vec3;
 
 /// Contact between one convex piece of each side.
@@ -35,8 +36,8 @@ pub(in crate::simulation) struct Loading {
     pub(super) normal: Vec3<f64>,
     /// Point at which the forces act, m.
     pub(super) point: Vec3<f64>,
-    /// Magnitude of the normal force, N.
-    pub(super) normal_force: f64,
+    /// Resultant of the normal forces, if the pieces press on each other.
+    pub(super) pressure: Option<Pressure>,
     /// Force on the second side, N.
     pub(super) force: Vec3<f64>,
     /// Sliding velocity of the second side relative to the first, in axes of the first side, m/s.
@@ -50,52 +51,61 @@ pub(in crate::simulation) struct Loading {
     /// Moment about the normal on the second side, if the contact has torsional friction and the pieces press
     /// on each other; in the first component, N m.
     pub(super) torsion: Option<FrictionForce>,
-    /// Power that the normal force dissipates, W.
-    pub(super) dissipation: f64,
 }
 
 impl Touching {
     /// Returns the distance of the pieces, and the force that the mode gives for their motion.
     pub(super) fn evaluate(
         &self,
-        [a, b]: &[SideMotion; 2],
+        motions: &[SideMotion; 2],
         state: &ContactState,
     ) -> Result<Loading, ContactError> {
-        let found = closest(&self.sides[0].shape, &a.shape, &self.sides[1].shape, &b.shape)
+        let [a, b] = motions;
+        let Manifold { proximity, points } = self
+            .contact_points(motions)
             .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
-        let (depth, normal) = (-found.distance, found.normal);
+        let normal = proximity.normal;
+        let law = self.law.as_ref().filter(|_| self.mode.phase == Phase::Pressing);
+        let pressure = law.map(|law| Pressure::of(&law.normal, &points, normal, motions));
+        let witness = (proximity.point_a + proximity.point_b) * 0.5;
         // both forces act at one point, so that no moment remains
-        let point = (found.point_a + found.point_b) * 0.5;
-        let relative = b.velocity_at(point) - a.velocity_at(point);
-        let rate = -normal.dot(relative);
-        let sliding = a.frame.rot.transpose_mul(normal.scale_add(rate, relative));
-        let normal_a = a.frame.rot.transpose_mul(normal);
+        let point = pressure.map_or(witness, |pressure| pressure.point);
+        let relative = |point| b.velocity_at(point) - a.velocity_at(point);
+        let across = |v: Vec3<f64>| v - normal * normal.dot(v);
         let mut loading = Loading {
-            depth,
-            rate,
+            depth: -proximity.distance,
+            rate: -normal.dot(relative(witness)),
             normal,
             point,
-            normal_force: 0.0,
+            pressure,
             force: Vec3::zero(),
-            sliding,
-            normal_a,
+            sliding: a.frame.rot.transpose_mul(across(relative(point))),
+            normal_a: a.frame.rot.transpose_mul(normal),
             friction: None,
             spin: normal.dot(b.angular_velocity - a.angular_velocity),
             torsion: None,
-            dissipation: 0.0,
         };
-        if let (Some(law), Phase::Pressing) = (&self.law, self.mode.phase) {
-            self.add_force(law, state, a, &mut loading);
+        if let (Some(law), Some(pressure)) = (law, pressure) {
+            loading.force = normal * pressure.force;
+            self.add_friction(law, state, a, &mut loading);
         }
         Ok(loading)
     }
 
-    /// Adds the forces of pieces that press on each other.
-    fn add_force(&self, law: &ContactLaw, state: &ContactState, a: &SideMotion, loading: &mut Loading) {
-        let Loading { depth, rate, normal, .. } = *loading;
-        loading.normal_force = law.normal.force(depth, rate);
-        loading.dissipation = (loading.normal_force - law.normal.elastic_force(depth)) * rate;
-        loading.force = normal * loading.normal_force;
+    /// Returns the contact points; a sphere has a single one.
+    fn contact_points(&self, [a, b]: &[SideMotion; 2]) -> Result<Manifold, GeometryError> {
+        let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
+        if !matches!((first, second), (Shape::Sphere { .. }, _) | (_, Shape::Sphere { .. })) {
+            return manifold(first, &a.shape, second, &b.shape);
+        }
+        let proximity = closest(first, &a.shape, second, &b.shape)?;
+        let Proximity { distance, point_a, point_b, .. } = proximity;
+        let points = vec![ContactPoint { point_a, point_b, depth: -distance, weight: 1.0 }];
+        Ok(Manifold { proximity, points })
+    }
+
+    /// Adds the friction of pieces that press on each other.
+    fn add_friction(&self, law: &ContactLaw, state: &ContactState, a: &SideMotion, loading: &mut Loading) {
         if let Some(friction) = &law.friction {
             let Mode { bristle, slip, normal: before, .. } = &self.mode;
             let tangential = |v: Vec3<f64>| v - loading.normal_a * loading.normal_a.dot(v);
@@ -103,8 +113,7 @@ impl Touching {
             let bristle = Bristle { deflection, is_slipping: bristle.is_slipping };
             let moved = tangential(state.slip - *slip);
             let damping = friction.damping_for(self.mode.mobility[1]);
-            let found =
-                friction.after(&bristle, moved, loading.sliding, loading.normal_force.max(0.0), damping);
+            let found = friction.after(&bristle, moved, loading.sliding, loading.normal_force(), damping);
             loading.force += a.frame.rot * found.force;
             loading.friction = Some(found);
             self.add_torsion(friction, state, loading);
@@ -117,7 +126,7 @@ impl Touching {
         let along = |x: f64| Vec3::new(x, 0.0, 0.0);
         let (moved, spin) = (along(state.turn - self.mode.turn), along(loading.spin));
         let damping = torsion.damping_for(self.mode.mobility[2]);
-        let normal = loading.normal_force.max(0.0);
+        let normal = loading.normal_force();
         loading.torsion = Some(torsion.after(&self.mode.twist, moved, spin, normal, damping));
     }
 
@@ -133,7 +142,7 @@ impl Touching {
             Phase::Separating => [depth, -pressing, f64::INFINITY],
             Phase::Pressing => {
                 let forces = [loading.friction, loading.torsion].into_iter().flatten();
-                let margins = forces.filter(|_| loading.normal_force > 0.0).map(|force| force.margin);
+                let margins = forces.filter(|_| loading.normal_force() > 0.0).map(|force| force.margin);
                 [depth, pressing, margins.fold(f64::INFINITY, f64::min)]
             }
         }
@@ -141,6 +150,11 @@ impl Touching {
 }
 
 impl Loading {
+    /// Returns the magnitude of the normal force, N; zero while it would pull.
+    pub(super) fn normal_force(&self) -> f64 {
+        self.pressure.map_or(0.0, |pressure| pressure.force.max(0.0))
+    }
+
     /// Returns the moment about the normal on the second side, N m.
     pub(super) fn moment(&self) -> f64 {
         self.torsion.map_or(0.0, |torsion| torsion.force.x)
@@ -154,7 +168,7 @@ impl Loading {
         ContactRate {
             slip: self.sliding,
             turn,
-            normal_loss: self.dissipation,
+            normal_loss: self.pressure.map_or(0.0, |pressure| pressure.dissipation),
             friction_work,
             impulse: self.force,
         }
