@@ -54,7 +54,9 @@ fn the_resultant_of_a_flat_face_acts_at_its_centroid() {
     let contact = on_plane(&Shape::hull(&points).unwrap(), turned(0.0, 0.0, 0.0), -0.01);
     let [force, moment] = wrench(&contact);
     assert!((force.z - 0.01).abs() < 1e-15);
-    assert!((moment.x / force.z - 8.0 / 9.0).abs() < 1e-13 && (moment.y / force.z + 14.0 / 9.0).abs() < 1e-13);
+    assert!(
+        (moment.x / force.z - 8.0 / 9.0).abs() < 1e-13 && (moment.y / force.z + 14.0 / 9.0).abs() < 1e-13
+    );
     assert_eq!(contact.points.len(), 4);
 }
 

@@ -8,6 +8,7 @@ use super::proximity::Proximity;
 use super::segment::{self, Segment};
 use super::shape::Shape;
 use super::support::support;
+use super::torus;
 use crate::spatial::Vec3;
 
 /// Returns the signed distance of two shapes, its witness points and its normal, in common axes.
@@ -17,8 +18,8 @@ use crate::spatial::Vec3;
 /// kept from earlier calls.
 ///
 /// # Errors
-/// If a length or a pose is invalid, if no method covers the pair, such as a torus and a box, or if the bounds of the
-/// distance did not meet.
+/// If a length or a pose is invalid, if no method covers the pair, such as two half-spaces, or a shape that overlaps a torus
+/// beyond its middle circle, or if the bounds of the distance did not meet.
 pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
     check(a, pose_a)?;
     check(b, pose_b)?;
@@ -76,6 +77,9 @@ fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximit
         (Shape::Sphere { radius }, _) if !matches!(b, Shape::Hull(_)) => sphere(*radius, b, &pose),
         (Shape::Capsule { .. }, Shape::Capsule { .. }) => capsules(a, b, &pose),
         (_, Shape::HalfSpace) => half_space(a, &pose),
+        (_, Shape::Torus { major_radius, minor_radius }) => {
+            torus::closest(a, (*major_radius, *minor_radius), &pose)
+        }
         _ if a.is_convex_body() && b.is_convex_body() => Some(
             convex::closest(a, b, &pose).map_err(|gap| GeometryError::NotConverged { pair: pair(), gap })?,
         ),

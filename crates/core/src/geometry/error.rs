@@ -67,7 +67,7 @@ pub enum GeometryError {
     },
     /// No distance is defined between two shapes.
     #[error(
-        "the distance between {} and {} is not available; replace a torus by convex pieces, and a half-space by a box",
+        "the distance between {} and {} is not available; a shape may overlap a torus by less than its minor radius, and two half-spaces have no distance",
         .0.a, .0.b
     )]
     Unavailable(Box<PosedPair>),

@@ -31,6 +31,7 @@ mod segment;
 mod shape;
 mod simplex;
 mod support;
+mod torus;
 
 pub use boundary::{BoundaryPoint, signed_distance};
 pub use bounding_sphere::BoundingSphere;

@@ -1,0 +1,93 @@
+//! Distance of a torus from another shape: that of the circle in its middle, less its minor radius.
+
+use super::boundary::{BoundaryPoint, signed_distance};
+use super::convex;
+use super::pose::Pose;
+use super::proximity::Proximity;
+use super::shape::Shape;
+use super::support::rounding;
+use crate::spatial::Vec3;
+use std::f64::consts::TAU;
+
+/// Number of points of the circle from which the search for the nearest one starts.
+const SAMPLES: u32 = 64;
+
+/// Halvings of the interval between two of these points: the angle is then exact to rounding.
+const HALVINGS: usize = 52;
+
+/// Radius of a sphere in place of a point, relative to the size of a hull.
+const POINT: f64 = 1e-3;
+
+/// Point of the circle: the nearest boundary point of the other shape, and the rate of the distance along the circle.
+#[derive(Clone, Copy)]
+struct Sample {
+    angle: f64,
+    distance: f64,
+    slope: f64,
+    nearest: BoundaryPoint,
+    on_circle: Vec3<f64>,
+}
+
+/// Returns the distance of shape `a` from a torus with this pose in the axes of `a`; `None` if the circle in the middle of
+/// the torus meets the core of `a` (the axis of a capsule, the circle of a torus, all of other shapes): the shortest
+/// translation is then not that of a single point.
+///
+/// The distance along the circle may have several minima. Each pair of neighbouring samples between which it has one is
+/// bisected to the angle where the rate `nᵀ c'` of the distance changes sign.
+pub(super) fn closest(a: &Shape, torus: (f64, f64), pose: &Pose) -> Option<Proximity> {
+    let (major_radius, minor_radius) = torus;
+    let at = |angle: f64| sample(a, major_radius, pose, angle);
+    let angle = |k: u32| TAU * f64::from(k) / f64::from(SAMPLES);
+    let samples: Vec<Sample> = (0..=SAMPLES).map(|k| at(angle(k))).collect::<Option<_>>()?;
+    let mut best = *samples.iter().min_by(|p, q| p.distance.total_cmp(&q.distance))?;
+    for pair in samples.windows(2) {
+        if pair[0].slope < 0.0 && pair[1].slope > 0.0 {
+            let found = bisect(pair[0], pair[1], at)?;
+            if found.distance < best.distance {
+                best = found;
+            }
+        }
+    }
+    let core = match a {
+        Shape::Torus { minor_radius, .. } => *minor_radius,
+        _ => rounding(a),
+    };
+    (best.distance > -core).then(|| {
+        let normal = best.nearest.normal;
+        Proximity {
+            distance: best.distance - minor_radius,
+            point_a: best.nearest.point,
+            point_b: normal.scale_add(-minor_radius, best.on_circle),
+            normal,
+        }
+    })
+}
+
+fn bisect(mut low: Sample, mut high: Sample, at: impl Fn(f64) -> Option<Sample>) -> Option<Sample> {
+    for _ in 0..HALVINGS {
+        let middle = at(0.5 * (low.angle + high.angle))?;
+        if middle.slope < 0.0 { low = middle } else { high = middle }
+    }
+    Some(if low.distance < high.distance { low } else { high })
+}
+
+/// Returns the point of the circle at an angle, in the axes of `a`.
+fn sample(a: &Shape, major_radius: f64, pose: &Pose, angle: f64) -> Option<Sample> {
+    let (sine, cosine) = angle.sin_cos();
+    let on_circle = pose.to_common(Vec3::new(major_radius * cosine, major_radius * sine, 0.0));
+    let along = pose.rot * Vec3::new(-sine, cosine, 0.0);
+    let nearest = nearest_point(a, on_circle)?;
+    let slope = nearest.normal.dot(along);
+    Some(Sample { angle, distance: nearest.distance, slope, nearest, on_circle })
+}
+
+/// Returns the nearest boundary point of a shape to a point in its axes.
+fn nearest_point(a: &Shape, p: Vec3<f64>) -> Option<BoundaryPoint> {
+    if let Shape::Hull(hull) = a {
+        let radius = POINT * hull.bounding_sphere().radius;
+        let found = convex::closest(&Shape::Sphere { radius }, a, &Pose::at(-p)).ok()?;
+        let normal = -found.normal;
+        return Some(BoundaryPoint { distance: found.distance + radius, point: found.point_b + p, normal });
+    }
+    signed_distance(a, p)
+}
