@@ -29,6 +29,7 @@ from onorbit_rs.tools.validation import (
     bodies,
     capture,
     conservation,
+    contact,
     earth,
     gauss,
     gravity,
@@ -92,6 +93,10 @@ def at_two_points(first: gauss.Craft, second: gauss.Craft) -> gauss.Impact:
     return gauss.impact(first, second, gap=np.array([1e-3, 0.0, 0.0]))
 
 
+def about_own_base(craft: gauss.Craft, v: Any, point: Any) -> Any:
+    return capture.momentum(craft, v, craft.q[:3])
+
+
 def of_bases_only(first: gauss.Craft, second: gauss.Craft) -> gauss.Impact:
     return gauss.impact(first, second, joints=False)
 
@@ -143,6 +148,11 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("capture", "release with a spring", capture, "PUSH", [3.0, 0.0, 1.0, 0.0, 0.5, 1e-6]),
     ("capture", "a captured body is pulled by 1 m", seating, "SEAT", 3.001),
     ("capture", "a captured body is turned by 1.2 rad", seating, "TURNED", 2.001),
+    ("contact", "restitution for d v0 from 0.01 to 10", contact, "CLOSING", 0.10001),
+    ("contact", "elastic impact of two balls", contact, "CLOSING", 0.1 * (1 + 1e-7)),
+    ("contact", "Hertz's impact of two balls", contact, "HERTZ", 1e7 * (1 + 1e-5)),
+    ("contact", "spring and dashpot, damping ratios to 0.3", contact, "OF_CRITICAL", 2.0001),
+    ("contact", "two arms that tumble hit each other", contact, "momentum", about_own_base),
     ("world", "two robots that no event connects, 0.2 s", worlds, "ALONE_STEP", 2e-3),
     ("world", "two robots after a capture and a release", worlds, "RELEASE", 0.501),
     ("world", "three captures connect four robots", worlds, "KEPT", 1),

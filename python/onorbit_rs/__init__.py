@@ -238,7 +238,15 @@ def _reduced_world(trace: WorldTrace) -> tuple[Any, ...]:
     return reduced_world(trace)
 
 
+def _reduced_contact(contact: ContactTrace) -> tuple[Any, ...]:
+    """Return the pickled form of the recorded values of a contact."""
+    from onorbit_rs.output.saved_contact import reduced_contact
+
+    return reduced_contact(contact)
+
+
 copyreg.pickle(Trace, _reduced)
+copyreg.pickle(ContactTrace, _reduced_contact)
 copyreg.pickle(WorldTrace, _reduced_world)
 
 

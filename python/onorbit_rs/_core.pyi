@@ -74,6 +74,8 @@ __all__ = [
     "Compliance",
     "ComputedTorque",
     "ConstantAtmosphere",
+    "Contact",
+    "ContactTrace",
     "Control",
     "CustomPath",
     "Distance",
@@ -88,11 +90,13 @@ __all__ = [
     "Frame",
     "FreeFloating",
     "FreeFloatingDerivatives",
+    "Friction",
     "Goal",
     "GravityField",
     "GravityGradient",
     "HarrisPriester",
     "Hold",
+    "HuntCrossley",
     "Joint",
     "JointComputedTorque",
     "JointHold",
@@ -117,6 +121,7 @@ __all__ = [
     "Screw",
     "Sgp4",
     "Simulation",
+    "SpringDashpot",
     "State",
     "Stepper",
     "Surface",
@@ -1115,6 +1120,105 @@ class Release:
     def capture(self) -> str: ...
 
 @final
+class HuntCrossley:
+    def __new__(
+        cls,
+        stiffness: float,
+        exponent: float = 1.5,
+        *,
+        dissipation: float | None = None,
+        restitution: float | None = None,
+        speed: float | None = None,
+    ) -> HuntCrossley: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def stiffness(self) -> float: ...
+    @property
+    def exponent(self) -> float: ...
+    @property
+    def dissipation(self) -> float: ...
+
+@final
+class SpringDashpot:
+    def __new__(cls, stiffness: float, damping: float) -> SpringDashpot: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def stiffness(self) -> float: ...
+    @property
+    def damping(self) -> float: ...
+
+@final
+class Friction:
+    def __new__(
+        cls,
+        static: float,
+        kinetic: float | None = None,
+        torsional: float | None = None,
+        *,
+        stiffness: float | None = None,
+        damping: float | None = None,
+    ) -> Friction: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def static(self) -> float: ...
+    @property
+    def kinetic(self) -> float: ...
+    @property
+    def torsional(self) -> float: ...
+    @property
+    def stiffness(self) -> float | None: ...
+    @property
+    def damping(self) -> float | None: ...
+
+@final
+class Contact:
+    def __new__(
+        cls,
+        links_a: str | Sequence[str],
+        links_b: str | Sequence[str],
+        *,
+        normal: HuntCrossley | SpringDashpot | None = None,
+        friction: Friction | None = None,
+        name: str | None = None,
+        start_overlapping: bool = False,
+    ) -> Contact: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def links_a(self) -> list[str]: ...
+    @property
+    def links_b(self) -> list[str]: ...
+    @property
+    def normal(self) -> HuntCrossley | SpringDashpot | None: ...
+    @property
+    def friction(self) -> Friction | None: ...
+    @property
+    def start_overlapping(self) -> bool: ...
+
+@final
+class ContactTrace:
+    @property
+    def values(self) -> _Array: ...
+    @property
+    def gap(self) -> _Array: ...
+    @property
+    def force(self) -> _Array: ...
+    @property
+    def point(self) -> _Array: ...
+    @property
+    def normal(self) -> _Array: ...
+    @property
+    def slip(self) -> _Array: ...
+    @property
+    def power(self) -> _Array: ...
+    @property
+    def elastic(self) -> _Array: ...
+    @property
+    def dissipated(self) -> _Array: ...
+    def __len__(self) -> int: ...
+
+@final
 class World:
     def __new__(
         cls,
@@ -1124,6 +1228,7 @@ class World:
         earth: Earth | None = None,
         gravity_mode: _GravityMode = "true",
         environment: Sequence[Effect] | None = None,
+        contacts: Sequence[Contact] | None = None,
         events: Sequence[Capture | Release] | None = None,
         rereference_beyond: float = 1e5,
     ) -> World: ...
@@ -1173,6 +1278,8 @@ class WorldTrace:
     def names(self) -> list[str]: ...
     @property
     def events(self) -> list[EventRecord]: ...
+    @property
+    def contacts(self) -> dict[str, ContactTrace]: ...
     @property
     def time(self) -> _Array: ...
     @property
@@ -1410,6 +1517,8 @@ class Trace:
     def tracking(self) -> dict[str, _Array]: ...
     @property
     def wrenches(self) -> dict[str, _Array]: ...
+    @property
+    def contacts(self) -> dict[str, ContactTrace]: ...
     @property
     def rereferenced(self) -> _Array: ...
     @property

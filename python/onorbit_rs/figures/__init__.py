@@ -7,6 +7,7 @@ Only this folder imports matplotlib.
 from __future__ import annotations
 
 from onorbit_rs.figures.captured_motion import captured_motion
+from onorbit_rs.figures.contact_history import contact_history
 from onorbit_rs.figures.differences import differences
 from onorbit_rs.figures.drawings import Drawing, drawings
 from onorbit_rs.figures.forces import environment_forces
@@ -39,6 +40,7 @@ __all__ = [
     "base_motion",
     "base_reaction",
     "captured_motion",
+    "contact_history",
     "control_errors",
     "desired_trajectory",
     "differences",

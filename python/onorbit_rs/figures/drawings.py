@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
+from onorbit_rs.common.file_parts import file_part
 from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.forces import environment_forces
 from onorbit_rs.figures.ground_track import ground_track
@@ -79,14 +80,14 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
     for tool in subject.tools:
         if tool.control in trace.tracking and len(subject.tools) > 1:
             about = f"Tracking errors of the controller {tool.control}, which moves {tool.frame}; W axes."
-            name = f"tracking_errors_{_file_part(tool.control)}"
+            name = f"tracking_errors_{file_part(tool.control)}"
             yield Drawing(name, about, partial(control_errors, trace, tool.control, []))
     for control, joints in (subject.joint_controls or {}).items():
         if control in trace.tracking and joints and np.any(trace.tracking[control]):
             is_alone = not subject.tools and len(subject.joint_controls or {}) == 1
             whose = "." if is_alone else f" of the controller {control}."
             about = f"Desired minus obtained positions of the joints{whose}"
-            name = "joint_errors" if is_alone else f"joint_errors_{_file_part(control)}"
+            name = "joint_errors" if is_alone else f"joint_errors_{file_part(control)}"
             yield Drawing(name, about, partial(control_errors, trace, control, joints, model))
     if model is None:
         return
@@ -96,7 +97,7 @@ def _of_the_controls(subject: Subject) -> Iterator[Drawing]:
                 f"Manipulability of {tool.frame} along its path, √det(J Jᵀ), with the base free (generalized "
                 "Jacobian) and with the base fixed; at zero the tool cannot move in some direction."
             )
-            name = "manipulability" + (f"_{_file_part(tool.control)}" if len(subject.tools) > 1 else "")
+            name = "manipulability" + (f"_{file_part(tool.control)}" if len(subject.tools) > 1 else "")
             yield Drawing(name, about, partial(manipulability, trace, model, tool.frame, tool.joints))
 
 
@@ -130,11 +131,6 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
     if about_earth and earth is not None:
         about = "The ground track, geodetic, and the height above the ellipsoid."
         yield Drawing("ground_track", about, partial(ground_track, trace, earth))
-
-
-def _file_part(name: str) -> str:
-    """Return a user-defined name with characters replaced that a file name may not contain."""
-    return "".join(char if char.isalnum() or char in "-_" else "_" for char in name)[:60]
 
 
 def _angle_flown_deg(trace: Trace) -> float:

@@ -72,20 +72,21 @@ def momentum_exchange(
 
 
 def energy_exchange(trace: WorldTrace, systems: Sequence[str], events: Sequence[EventMark] = ()) -> Figure:
-    """Draw the kinetic energy of each system, their sum, and the energy lost in events."""
+    """Draw the kinetic energy of each system, their sum, and the energy lost in events if there are any."""
     time, chosen = _common(trace, systems)
     scale, clock = time_unit(time)
     energy = np.stack([np.asarray(trace[name].kinetic_energy)[rows] for name, rows in chosen.items()], axis=1)
     own = of_systems(events, systems)
     figure = new_figure(PAGE, 2.5)
-    left, right = figure.subplots(1, 2)
+    left, *right = figure.subplots(1, 2 if own else 1, squeeze=False)[0]
     factor, unit = with_prefix(float(np.abs(energy.sum(axis=1)).max()), "J")
     _draw_with_sum(left, time / scale, factor * energy, systems)
     hide_rounding(left, ROUNDING * max(factor, 1.0))
     tidy(left, f"time [{clock}]", f"kinetic energy [{unit}]")
     mark_events(left, own, scale, has_names=True)
     legend_of_figure(figure, left)
-    _draw_losses(right, own[:MOST_EVENTS])
+    for axes in right:
+        _draw_losses(axes, own[:MOST_EVENTS])
     return figure
 
 
@@ -107,9 +108,6 @@ def _draw_losses(axes: Axes, events: Sequence[EventMark]) -> None:
     room = _FOR_LABELS * (high - low or 1.0)
     axes.set_xlim(low - 0.05 * room if low < 0.0 else 0.0, high + room)
     axes.grid(False, axis="y")
-    if not events:
-        axes.set_yticks([])
-        axes.text(0.5, 0.5, "no event happened", transform=axes.transAxes, ha="center", fontsize=SMALL)
 
 
 def _common(trace: WorldTrace, systems: Sequence[str]) -> tuple[Floats, dict[str, NDArray[np.int64]]]:

@@ -6,9 +6,14 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from onorbit_rs.common.file_parts import file_part
 from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.captured_motion import captured_motion
+from onorbit_rs.figures.contact_history import contact_history
 from onorbit_rs.figures.drawings import Drawing
+from onorbit_rs.figures.event_marks import of_systems
 from onorbit_rs.figures.shared_balance import energy_exchange, momentum_exchange
 from onorbit_rs.figures.world_motion import formation_motion, is_apart
 from onorbit_rs.scenario.connections import connected_groups
@@ -35,7 +40,17 @@ def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
         )
         draw = partial(captured_motion, trace, models, connection, events)
         yield Drawing(f"{PREFIX}capture_{connection.name}", about, draw)
-    groups = connected_groups(list(trace.names), subject.connections)
+    for number, (contact, rows) in enumerate(trace.contacts.items()):
+        if not np.any(np.asarray(rows.force) != 0.0):
+            continue
+        part = file_part(contact) if file_part(contact) == contact else f"{number + 1}_{file_part(contact)}"
+        about = (
+            f"Contact {contact} from the first touch to the last one: gap (negative: depth), normal force "
+            "and friction, sliding speed, and energies."
+        )
+        draw = partial(contact_history, trace, contact)
+        yield Drawing(f"{PREFIX}contact_{part}", about, draw)
+    groups = connected_groups(list(trace.names), subject.connections, subject.touching)
     for group in groups:
         which = "" if len(groups) == 1 else f"_{group[0]}"
         if set(group) <= set(models):
@@ -45,7 +60,8 @@ def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
             )
             draw = partial(momentum_exchange, trace, models, group, events)
             yield Drawing(f"{PREFIX}momentum{which}", about, draw)
-        about = f"Kinetic energy of {' and '.join(group)} in W, and the energy lost in events."
+        lost = ", and the energy lost in events" if of_systems(events, group) else ""
+        about = f"Kinetic energy of {' and '.join(group)} in W{lost}."
         yield Drawing(f"{PREFIX}energy{which}", about, partial(energy_exchange, trace, group, events))
     if all(has_local_frame(trace[name]) for name in trace.names) and is_apart(trace, models):
         about = (

@@ -35,12 +35,15 @@ class WorldSubject:
         Captures and releases that happened.
     connections : tuple of Connection
         Pairs of frames that captures connect.
+    touching : tuple of tuple of str
+        Systems of each contact.
     """
 
     trace: WorldTrace
     models: Mapping[str, Model]
     events: tuple[EventMark, ...] = ()
     connections: tuple[Connection, ...] = ()
+    touching: tuple[tuple[str, ...], ...] = ()
 
 
 def marks_of(summary: dict[str, Any]) -> tuple[EventMark, ...]:

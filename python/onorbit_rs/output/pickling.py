@@ -47,9 +47,14 @@ class PickledTrace(SavedTrace):
 
 
 def arrays_of(trace: Trace) -> dict[str, Any]:
-    """Return the columns of a trace by path, including those of every control and every effect."""
+    """Return the columns of a trace by path, including those of every control, effect and contact."""
     arrays = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
-    for name, by_owner in (("tracking", trace.tracking), ("wrenches", trace.wrenches)):
+    contacts = {name: contact.values for name, contact in trace.contacts.items()}
+    for name, by_owner in (
+        ("tracking", trace.tracking),
+        ("wrenches", trace.wrenches),
+        ("contacts", contacts),
+    ):
         arrays |= {path_of(name, owner): np.asarray(rows) for owner, rows in by_owner.items()}
     return arrays
 

@@ -11,6 +11,7 @@ import numpy as np
 from onorbit_rs._core import COLUMNS
 from onorbit_rs.common.coordinates import BASE_NQ
 from onorbit_rs.output.columns import row_shape, split_path
+from onorbit_rs.output.saved_contact import SavedContact
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class SavedTrace:
         return self.arrays.get(name)
 
     def columns(self) -> list[str]:
-        """Return the names of the columns that the run recorded, apart from ``tracking`` and ``wrenches``."""
+        """Return the names of the columns, apart from ``tracking``, ``wrenches`` and ``contacts``."""
         return [path for path in self.arrays if split_path(path)[1] is None and path != "rereferenced"]
 
     @property
@@ -41,6 +42,11 @@ class SavedTrace:
     def wrenches(self) -> dict[str, Any]:
         """Wrenches (T, bodies, 6), N and N m, by the name of the effect."""
         return self._by_owner("wrenches")
+
+    @property
+    def contacts(self) -> dict[str, SavedContact]:
+        """Contacts of which the system is the first side, by their names."""
+        return {name: SavedContact(values) for name, values in self._by_owner("contacts").items()}
 
     def _by_owner(self, wanted: str) -> dict[str, Any]:
         found = ((*split_path(path), values) for path, values in self.arrays.items())

@@ -22,7 +22,8 @@ EVENTS = {"time": (), "impulse": (6,), "point": (3,), "energy_lost": (), "moment
 
 def systems_in(arrays: Mapping[str, Any]) -> list[str]:
     """Return the names of the systems, given the columns of a world by path, such as ``chaser/q``."""
-    return [path.removesuffix("/q") for path in arrays if path.endswith("/q")]
+    split = (path.partition("/") for path in arrays)
+    return [system for system, _, column in split if column == "q"]  # a contact may be named "a/x|b/q"
 
 
 def system_in(arrays: Mapping[str, Any], name: str) -> SavedTrace:
@@ -51,6 +52,11 @@ class SavedWorldTrace:
     def names(self) -> list[str]:
         """Names of the systems."""
         return list(self.systems)
+
+    @property
+    def contacts(self) -> dict[str, Any]:
+        """Contacts by their names, as in :class:`onorbit_rs.WorldTrace`."""
+        return {name: one for system in self.systems.values() for name, one in system.contacts.items()}
 
     def __getitem__(self, name: str) -> Any:
         """Return the trace of a system."""

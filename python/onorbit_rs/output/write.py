@@ -17,7 +17,7 @@ from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.world import world_arrays
 from onorbit_rs.scenario.build import Built
 from onorbit_rs.scenario.build_world import BuiltWorld
-from onorbit_rs.scenario.connections import connections
+from onorbit_rs.scenario.connections import connections, touching
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -99,7 +99,7 @@ def _write_pictures_of_world(
     if len(trace.time) > 1:
         models = {name: alone.model for name, alone in built.systems.items()}
         events, found = figures.marks_of(summary), connections(built.scenario)
-        subject = figures.WorldSubject(trace, models, events, found)
+        subject = figures.WorldSubject(trace, models, events, found, touching(built.scenario, models))
         _draw(folder, figures.world_drawings(subject), "", tell)
     for name, alone in built.systems.items():
         _write_figures(folder, trace[name], alone, f"{name}_", tell)

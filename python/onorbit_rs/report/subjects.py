@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.output.robot import CHANGED, was_changed
-from onorbit_rs.scenario.connections import connections
+from onorbit_rs.scenario.connections import connections, touching
 from onorbit_rs.scenario.environment.earth import build_earth
 
 if TYPE_CHECKING:
@@ -64,7 +64,9 @@ def world_figures(
         if model is not None:
             models[name] = model
         own += figures_of(figures.subject_of(trace[name], alone, model, *around), name)
-    subject = figures.WorldSubject(trace, models, figures.marks_of(summary), connections(scenario))
+    subject = figures.WorldSubject(
+        trace, models, figures.marks_of(summary), connections(scenario), touching(scenario, models)
+    )
     shared = [OwnDrawing("", drawing.name, drawing) for drawing in figures.world_drawings(subject)]
     return [*shared, *own]
 

@@ -85,11 +85,12 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
         crafts = [
             _system(scenario, name, built, others, runs_code=runs_code) for name, built in systems.items()
         ]
-        with _located_event(scenario):
+        contacts = list(_contacts(scenario))
+        with _located_event(scenario), _located_contact(scenario):
             world = _core.World(
                 crafts, orbit=around.orbit, earth=around.earth, gravity_mode=scenario.gravity_mode,
-                environment=around.effects, events=[event.build() for event in scenario.events],
-                rereference_beyond=drift,
+                environment=around.effects, contacts=contacts,
+                events=[event.build() for event in scenario.events], rereference_beyond=drift,
             )  # fmt: skip
         with located(scenario, "engine"):
             engine = build_world_engine(scenario, models)
@@ -167,6 +168,13 @@ def _system(
         )  # fmt: skip
 
 
+def _contacts(scenario: WorldScenario) -> Iterator[_core.Contact]:
+    """Yield the contacts as objects of the engine."""
+    for index, contact in enumerate(scenario.contacts):
+        with located(scenario, "contacts", index, "normal"):
+            yield contact.build()
+
+
 @contextmanager
 def _located_event(scenario: WorldScenario) -> Iterator[None]:
     """Locate errors of the world at the event named in the error, otherwise at ``events`` or ``systems``."""
@@ -184,9 +192,22 @@ def _located_event(scenario: WorldScenario) -> Iterator[None]:
             raise
 
 
+@contextmanager
+def _located_contact(scenario: WorldScenario) -> Iterator[None]:
+    """Locate errors that name a contact at its links."""
+    names = [contact.label for contact in scenario.contacts]
+    try:
+        yield
+    except WorldError as error:
+        if error.name not in names:
+            raise
+        with located(scenario, "contacts", names.index(error.name), "between"):
+            raise
+
+
 def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None:
     """Run one step, so that errors which would stop the run at once are raised before anything is written."""
-    with located(scenario, "systems"):
+    with located(scenario, "systems"), _located_contact(scenario):
         try:
             simulation.run(scenario.simulation.time_step)
         except SimulationError as stop:

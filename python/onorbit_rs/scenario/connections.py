@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from onorbit_rs.scenario.contact import touching_systems
 from onorbit_rs.scenario.events import Latch, split_path
 
 if TYPE_CHECKING:
+    from onorbit_rs._core import Model
     from onorbit_rs.scenario.world import WorldScenario
 
 
@@ -42,12 +44,23 @@ def connections(scenario: WorldScenario) -> tuple[Connection, ...]:
     return tuple(found)
 
 
-def connected_groups(systems: Sequence[str], found: Sequence[Connection]) -> list[list[str]]:
-    """Return the groups of two or more systems that connections may join, in the order of ``systems``."""
+def touching(scenario: WorldScenario, models: Mapping[str, Model]) -> tuple[tuple[str, ...], ...]:
+    """Return the systems of each contact of a scenario."""
+    return tuple(tuple(touching_systems(contact, models)) for contact in scenario.contacts)
+
+
+def connected_groups(
+    systems: Sequence[str], found: Sequence[Connection], touch: Sequence[Sequence[str]] = ()
+) -> list[list[str]]:
+    """Return the groups of two or more systems that may interact, in the order of ``systems``.
+
+    Connections join systems, and so do contacts, whose systems are ``touch``.
+    """
     groups = [{name} for name in systems]
-    for connection in found:
-        joined = [group for group in groups if group & set(connection.systems)]
+    for together in [*(connection.systems for connection in found), *touch]:
+        joined = [group for group in groups if group & set(together)]
         groups = [group for group in groups if group not in joined] + [set().union(*joined)]
+    groups = [group for group in groups if group]
     order = list(systems).index
     large = [sorted(group, key=order) for group in groups if len(group) > 1]
     return sorted(large, key=lambda group: order(group[0]))

@@ -41,6 +41,9 @@ def check_world_engine(scenario: WorldScenario) -> None:
             )
             raise inconsistent(("simulation", "weld_time_constant"), message)
         return
+    if scenario.contacts:
+        message = f"engine {scenario.engine} does not support contacts; omit them, or use engine: native"
+        raise inconsistent(("contacts",), message)
     for index, event in enumerate(scenario.events):
         for key in ("seat", "impulse"):
             if getattr(event.do, key, None) is not None:

@@ -67,6 +67,9 @@ Rate = Annotated[float, _reader(units.RATE)]
 Flux = Annotated[float, _reader(units.FLUX)]
 Force = Annotated[float, _reader(units.FORCE)]
 Torque = Annotated[float, _reader(units.TORQUE)]
+Stiffness = Annotated[float, _reader(units.LINEAR_STIFFNESS)]
+Damping = Annotated[float, _reader(units.LINEAR_DAMPING)]
+Dissipation = Annotated[float, _reader(units.DISSIPATION)]
 Inertia = Annotated[float, _reader(units.INERTIA)]
 
 

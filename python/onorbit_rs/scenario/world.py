@@ -1,4 +1,4 @@
-"""Scenario of several systems, with their events."""
+"""Scenario of several systems, with their contacts and events."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.scenario.contact import Contact, check_contacts
 from onorbit_rs.scenario.document import Document
 from onorbit_rs.scenario.engine import check_world_engine
 from onorbit_rs.scenario.environment import AnyEffect, BodyWrenchEffect
@@ -41,15 +42,17 @@ class System(RobotKeys, ControlSettings):
 
 
 class WorldScenario(Document):
-    """Several systems on one reference orbit, and the events that connect and separate them."""
+    """Several systems on one reference orbit, with their contacts, captures and releases."""
 
     systems: Annotated[dict[ItsName, System], Field(min_length=1)]
+    contacts: list[Contact] = Field(default_factory=list)
+    """Contacts between links. Default: systems pass through each other."""
     events: list[Event] = Field(default_factory=list)
     simulation: WorldSettings
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        if key in ("contacts", "loops"):
+        if key == "loops":
             return "; it is not available yet"
         if key in ControlSettings.model_fields:
             return "; it belongs in each entry of 'systems'"
@@ -124,6 +127,7 @@ class WorldScenario(Document):
             self._check_neighbour(name, system)
             self._check_start(name, system)
             self._check_knows(name, system)
+        check_contacts(self.contacts, names)
         check_events(self.events, names)
         check_world_engine(self)
         return self

@@ -145,9 +145,9 @@ class _Saver:
 
 def _row_counts(columns: Mapping[str, Any]) -> int | dict[str, int]:
     """Return the number of recorded rows; in a world, a mapping from system names to numbers of rows."""
-    if not any(path.endswith("/time") for path in columns):
-        return len(columns.get("time", ()))
-    return {path.removesuffix("/time"): len(rows) for path, rows in columns.items() if path.endswith("/time")}
+    split = ((*path.partition("/"), len(rows)) for path, rows in columns.items())
+    counts = {system: rows for system, _, column, rows in split if column == "time"}
+    return counts or len(columns.get("time", ()))
 
 
 def _sum(a: int | dict[str, int], b: int | dict[str, int]) -> int | dict[str, int]:

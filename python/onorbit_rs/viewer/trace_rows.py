@@ -36,12 +36,14 @@ TIMELINE = "simulation_time"
 class TraceRows:
     """Rows of a trace: ``columns`` maps the name of each column to its values, (T, ...).
 
-    ``wrenches``, (T, bodies, 6), are stored by effect, and ``tracking`` errors, (T, k), by control.
+    ``wrenches``, (T, bodies, 6), are stored by effect, ``tracking`` errors, (T, k), by control, and
+    ``contacts``, (T, 14), by contact.
     """
 
     columns: Mapping[str, Floats]
     wrenches: Mapping[str, Floats] = field(default_factory=dict)
     tracking: Mapping[str, Floats] = field(default_factory=dict)
+    contacts: Mapping[str, Floats] = field(default_factory=dict)
 
     @classmethod
     def of_trace(cls, trace: Trace, chosen: NDArray[np.int64] | slice = slice(None)) -> TraceRows:
@@ -50,13 +52,14 @@ class TraceRows:
             {name: np.asarray(getattr(trace, name))[chosen] for name in trace.columns()},
             {shown(name): np.asarray(values)[chosen] for name, values in trace.wrenches.items()},
             {shown(name): np.asarray(values)[chosen] for name, values in trace.tracking.items()},
+            {shown(name): np.asarray(one.values)[chosen] for name, one in trace.contacts.items()},
         )
 
     @classmethod
     def of_checkpoint(cls, columns: Mapping[str, Floats]) -> TraceRows:
         """Return the rows of a checkpoint, with its flat (rows, width) columns reshaped as in a trace."""
         plain: dict[str, Floats] = {}
-        owned: dict[str, dict[str, Floats]] = {"wrenches": {}, "tracking": {}}
+        owned: dict[str, dict[str, Floats]] = {"wrenches": {}, "tracking": {}, "contacts": {}}
         joints = columns["q"].shape[1] - BASE_NQ
         for path, values in columns.items():
             name, owner = split_path(path)
@@ -87,7 +90,7 @@ class TraceRows:
 
     def at(self, chosen: NDArray[np.int64] | slice) -> TraceRows:
         """Return the rows with the chosen indices."""
-        parts = (self.columns, self.wrenches, self.tracking)
+        parts = (self.columns, self.wrenches, self.tracking, self.contacts)
         return TraceRows(*({name: values[chosen] for name, values in part.items()} for part in parts))
 
     def last(self) -> TraceRows:

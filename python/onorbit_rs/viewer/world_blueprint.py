@@ -27,6 +27,7 @@ _ALONE = ("arrows", "axes")
 _FIRST = (
     "position",
     "attitude",
+    "contact_force",
     "angular_momentum_z",
     "kinetic_energy",
     "radial",

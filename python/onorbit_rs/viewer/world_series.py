@@ -1,4 +1,4 @@
-"""Plots of several systems together: relative motion of captured frames, momentum, energy and distances."""
+"""Plots of several systems together: captured frames, contacts, momentum, energy and distances."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from onorbit_rs._core import COLUMNS
 from onorbit_rs.common.coordinates import POSITION
+from onorbit_rs.common.file_parts import file_part
 from onorbit_rs.common.frame_motion import MovingFrame, frame_motion
 from onorbit_rs.common.group_momentum import group_momentum, shared_rows
 from onorbit_rs.common.pairs import pairs_of
@@ -25,7 +26,8 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
 
-CONNECTIONS, MOMENTUM, ENERGY, PLACES = "Connections", "Momentum", "Energy", "Positions"
+CONNECTIONS, CONTACTS = "Connections", "Contacts"
+MOMENTUM, ENERGY, PLACES = "Momentum", "Energy", "Positions"
 
 SHARED = "plots/world/"
 """Prefix of the paths of plots of several systems; the name is reserved and cannot be that of a system."""
@@ -40,6 +42,9 @@ def world_series(world: WorldRows, *, is_live: bool = False) -> Iterator[tuple[T
 def _all(world: WorldRows) -> Iterator[tuple[TraceRows, Series]]:
     for connection in world.setting.pairs:
         yield from _relative(world, connection)
+    for rows in world.systems.values():
+        for name, values in rows.contacts.items():
+            yield from _contact(rows, name, values)
     for group in world.setting.groups:
         yield from _balance(world, group)
     yield from _places(world)
@@ -64,6 +69,21 @@ def _relative(world: WorldRows, connection: Connection) -> Iterator[tuple[TraceR
             chosen[0],
             Series(CONNECTIONS, f"{SHARED}connections/{connection.name}/{name}", title, unit, AXES, values),
         )
+
+
+def _contact(rows: TraceRows, name: str, values: Floats) -> Iterator[tuple[TraceRows, Series]]:
+    """Yield plots of gap, force, sliding speed and energies of a contact."""
+    parts, prefix = COLUMNS["contacts"].parts, f"{SHARED}contacts/{file_part(name)}"
+    for path, title, lines in (
+        ("gap", "gap", ("gap",)),
+        ("contact_force", "force on the second side", ("force",)),
+        ("slip", "sliding speed", ("sliding_speed",)),
+        ("energy", "energy", ("elastic", "dissipated")),
+    ):
+        shown = np.concatenate([values[:, parts[line][0]] for line in lines], axis=1)
+        names = AXES if path == "contact_force" else tuple(line.replace("_", " ") for line in lines)
+        unit = parts[lines[0]][1]
+        yield rows, Series(CONTACTS, f"{prefix}/{path}", f"{name}: {title}", unit, names, shown)
 
 
 def _balance(world: WorldRows, group: Sequence[str]) -> Iterator[tuple[TraceRows, Series]]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from onorbit_rs.scenario.connections import Connection, connected_groups, connections
+from onorbit_rs.scenario.connections import Connection, connected_groups, connections, touching
 from onorbit_rs.viewer.setting import Setting
 
 if TYPE_CHECKING:
@@ -20,6 +20,8 @@ class WorldSetting:
     systems: Mapping[str, Setting]
     connections: tuple[Connection, ...] = ()
     name: str = ""
+    touching: tuple[tuple[str, ...], ...] = ()
+    """Systems of each contact."""
 
     @classmethod
     def of(cls, built: BuiltWorld) -> WorldSetting:
@@ -28,7 +30,8 @@ class WorldSetting:
         systems = {
             name: Setting.of(alone, name, grasps_of(name, found)) for name, alone in built.systems.items()
         }
-        return cls(systems, found, built.scenario.name)
+        models = {name: alone.model for name, alone in built.systems.items()}
+        return cls(systems, found, built.scenario.name, touching(built.scenario, models))
 
     @property
     def names(self) -> list[str]:
@@ -42,8 +45,8 @@ class WorldSetting:
 
     @property
     def groups(self) -> list[list[str]]:
-        """Names of the systems in each group that connections can join."""
-        return connected_groups(self.names, self.connections)
+        """Names of the systems in each group that connections can join or that can touch."""
+        return connected_groups(self.names, self.connections, self.touching)
 
     @property
     def pairs(self) -> tuple[Connection, ...]:

@@ -20,6 +20,7 @@ from onorbit_rs.tools.validation import (
     bodies,
     capture,
     conservation,
+    contact,
     earth,
     gravity,
     kepler,
@@ -41,8 +42,8 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, capture, seating, worlds, order, against_pinocchio, against_mujoco, against_sgp4,
-        against_spart,
+        conservation, capture, seating, contact, worlds, order, against_pinocchio, against_mujoco,
+        against_sgp4, against_spart,
     )
     for case in module.CASES
 )  # fmt: skip
