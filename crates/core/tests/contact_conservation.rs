@@ -126,7 +126,7 @@ fn spheres_keep_momentum_and_energy() {
 fn polyhedra_keep_momentum() {
     for seed in 0..6 {
         for friction in [None, Some(FRICTION)] {
-            check(seed, Kind::Polyhedra, friction, 5e-2);
+            check(seed, Kind::Polyhedra, friction, 2e-2);
         }
     }
 }

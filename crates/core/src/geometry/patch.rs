@@ -6,8 +6,9 @@ use super::projection::Projection;
 use super::proximity::Proximity;
 use crate::spatial::Vec3;
 
-/// Slope between two surfaces from which the far side of a patch has no weight.
-const TILT: f64 = 0.1;
+/// Slope between two surfaces from which the far side of a patch has no weight. While the weights change, the forces at
+/// the points have no potential: with 0.1, collisions of polyhedra open the energy balance by up to 10 % of the loss.
+const TILT: f64 = 0.02;
 
 /// Contact point.
 #[derive(Clone, Copy, Debug, PartialEq)]
