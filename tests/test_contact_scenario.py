@@ -168,6 +168,18 @@ def test_systems_that_may_touch_form_a_group_in_figures_and_viewer() -> None:
     assert connected_groups(list(models), (), found) == [["a", "b"]]
 
 
+def test_the_command_info_shows_contacts(capsys: pytest.CaptureFixture[str]) -> None:
+    for arguments in ([], ["--json"]):
+        with pytest.raises(SystemExit) as done:
+            main(["info", "push_and_drift", *arguments])
+        assert done.value.code == 0
+    shown = capsys.readouterr().out
+    rows = [line.split() for line in shown.splitlines()]
+    assert "push_and_drift: 2 systems, 1 contact, 0 events" in shown and "moves alone" not in shown
+    assert ["push", "pusher/pad", "box/body", "hunt_crossley", "0.6"] in rows
+    assert '"between": [' in shown
+
+
 def test_two_spheres_leave_with_the_spins_of_coulomb_friction() -> None:
     trace: Any = oo.run("two_spheres", quiet=True).trace
     a, b = trace["still"], trace["moving"]

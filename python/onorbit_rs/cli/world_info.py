@@ -1,4 +1,4 @@
-"""Prints the systems, the events and the trees of a scenario with several systems."""
+"""Prints the systems, the contacts, the events and the trees of a scenario with several systems."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from onorbit_rs._core import Model
     from onorbit_rs.scenario import WorldScenario
+    from onorbit_rs.scenario.contact import Contact
     from onorbit_rs.scenario.event_stages import Stage
     from onorbit_rs.scenario.events import Event
 
@@ -32,6 +33,11 @@ def describe_world(scenario: WorldScenario, models: Mapping[str, Model]) -> dict
                 "controllers": [law.kind for law in scenario.scenarios[name].laws],
             }
             for name, model in models.items()
+        ],
+        "contacts": [
+            {"name": contact.label, "between": contact.between, "normal": _law(contact),
+             "friction": contact.friction is not None}
+            for contact in scenario.contacts
         ],
         "events": [
             {"name": event.name, "when": _when(event), "what": _what(event)} for event in scenario.events
@@ -60,11 +66,13 @@ def _trees(stage: Stage, models: Mapping[str, Model]) -> list[dict[str, Any]]:
 
 
 def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: Console) -> None:
-    """Print tables of the systems, the events, and the trees after each event."""
+    """Print tables of the systems, the contacts, the events, and the trees after each event."""
     from onorbit_rs.scenario.event_stages import stages
 
-    events = scenario.events
-    counts = f"{count(len(models), 'system', 'systems')}, {count(len(events), 'event', 'events')}"
+    events, contacts = scenario.events, scenario.contacts
+    touches = [count(len(contacts), "contact", "contacts")] if contacts else []
+    parts = [count(len(models), "system", "systems"), *touches, count(len(events), "event", "events")]
+    counts = ", ".join(parts)
     console.print(f"[bold]{text(scenario.name)}[/bold]: {counts}\n")
     table = new_table("system", "robot", "mass, kg", "joints", "controllers")
     _left(table, 0, 1, 4)
@@ -73,8 +81,11 @@ def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: C
         cells = (name, model.name, f"{model.mass:.5g}", str(len(model.joint_names)), laws)
         table.add_row(*map(text, cells))
     print_table(console, table)
+    if contacts:
+        console.print()
+        _print_contacts(contacts, console)
     if not events:
-        console.print("\nno events: every system moves alone")
+        console.print("\nno events" if contacts else "\nno events: every system moves alone")
         return
     console.print()
     table = new_table("event", "when", "what")
@@ -98,6 +109,22 @@ def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: C
             "events without a time depend on the motion or on a command; they are listed in the order of the "
             "scenario and may happen in another order", soft_wrap=True,
         )  # fmt: skip
+
+
+def _print_contacts(contacts: list[Contact], console: Console) -> None:
+    """Print a table of the contacts."""
+    table = new_table("contact", "between", "and", "normal force", "friction")
+    _left(table, 0, 1, 2, 3)
+    for contact in contacts:
+        sides = (", ".join(side) for side in contact.between)
+        friction = "-" if contact.friction is None else f"{contact.friction.static:g}"
+        table.add_row(*map(text, (contact.label, *sides, _law(contact), friction)))
+    print_table(console, table)
+
+
+def _law(contact: Contact) -> str:
+    """Return the kind of the normal force; for a contact without force, that its distance is recorded."""
+    return "distance only" if contact.normal is None else contact.normal.kind
 
 
 def _add_stage(table: Any, stage: Stage, models: Mapping[str, Model]) -> None:
