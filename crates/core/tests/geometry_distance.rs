@@ -250,3 +250,41 @@ fn unit_shape(kind: usize) -> Shape {
         _ => Shape::Cone { radius: 0.5, half_length: 0.5 },
     }
 }
+
+/// Returns a shape with lengths between 1 mm and 10 m.
+fn thin_or_long(random: &mut Random, kind: usize) -> Shape {
+    let mut length = || 10_f64.powf(random.within(-3.0, 1.0));
+    let (radius, half_length, third) = (length(), length(), length());
+    match kind {
+        0 => Shape::Sphere { radius },
+        1 => Shape::Capsule { radius, half_length },
+        2 => Shape::Box { half_edges: [radius, half_length, third] },
+        3 => Shape::Cylinder { radius, half_length },
+        4 => Shape::Cone { radius, half_length },
+        _ => {
+            let points = (0..20).map(|_| random.vector(1.0));
+            let scaled = |v: Vec3<f64>| Vec3::new(radius * v.x, half_length * v.y, third * v.z);
+            Shape::hull(&points.map(scaled).collect::<Vec<_>>()).unwrap()
+        }
+    }
+}
+
+#[test]
+fn plates_and_rods_close_to_contact_have_the_separation_of_their_planes() {
+    let (mut random, mut worst) = (Random(77), 0.0_f64);
+    for k in 0..3600 {
+        let (a, b) = (thin_or_long(&mut random, k % 6), thin_or_long(&mut random, k / 6 % 6));
+        let (at_a, mut at_b) = (random.pose(3.0), random.pose(3.0));
+        let size = a.bounding_sphere().radius.max(b.bounding_sphere().radius);
+        for sign in [1.0, -1.0, 0.0] {
+            let found = closest(&a, &at_a, &b, &at_b).unwrap_or_else(|error| panic!("{k}: {error}"));
+            let planes = separation((&a, &at_a), (&b, &at_b), found.normal);
+            worst = worst.max((planes - found.distance).abs() / size);
+            // next at a distance or a depth of 1e-9 to 1e-2 of the size, and in contact
+            let target = sign * size * 10_f64.powf(random.within(-9.0, -2.0));
+            at_b.pos += found.normal * (target - found.distance);
+        }
+    }
+    println!("plates and rods: {worst:e} of the size");
+    assert!(worst < ACCURACY);
+}
