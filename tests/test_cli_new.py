@@ -44,9 +44,12 @@ def test_every_bundled_robot_gets_a_scenario_that_passes_its_certificate(robot: 
     if "a body without joints" in done.stdout:
         assert not oo.robots.load(load(tmp_path / "mine.yaml").robot.bundled).joints
         return
+    assert summary["joint_limits_exceeded"] == ""
+    if robot == "pusher":  # three joints cannot move a tool in six directions, so the draft moves the joints
+        assert summary["tracking_arm_joint_error_max_rad"] < 1e-3
+        return
     assert summary["control_arm_result"] == "succeeded"
     assert summary["tracking_position_error_max_m"] < 1e-3
-    assert summary["joint_limits_exceeded"] == ""
 
 
 @pytest.mark.slow
