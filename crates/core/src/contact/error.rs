@@ -28,16 +28,6 @@ pub enum ContactError {
         /// Remedy.
         remedy: String,
     },
-    /// A collision shape is a mesh.
-    #[error(
-        "contact '{contact}': the collision shape '{file}' is a mesh, for which contact is not available; use boxes, cylinders, capsules and spheres"
-    )]
-    Mesh {
-        /// Name of the contact.
-        contact: String,
-        /// File.
-        file: String,
-    },
     /// A link that touches has no shape.
     #[error(
         "contact '{contact}': link '{link}' of system '{system}' has no collision shape; add a <collision> element to its URDF or give a shape"

@@ -2,41 +2,50 @@
 
 use super::declared::ContactSide;
 use super::error::ContactError;
-use crate::geometry::{Pose, Shape};
-use crate::model::{Geometry, Model, Visual, nearest};
+use crate::geometry::{GeometryError, LinkShape, Pose, Shape, link_shape};
+use crate::model::{Model, nearest};
 use crate::world::FrameIndex;
-use nalgebra::Isometry3;
 use std::sync::Arc;
+
+/// Collision shapes of links.
+#[derive(Debug, Default)]
+pub struct LinkShapes {
+    /// Pieces, in the order of the systems and their links.
+    pub sides: Vec<ContactSide>,
+    /// Defects of meshes, one line each; their convex hulls are used in spite of them.
+    pub warnings: Vec<String>,
+}
 
 /// Returns the collision shapes of the links that match `pattern`, a path `SYSTEM/LINK` in which `*` stands
 /// for any text. `systems` are the names and models of the systems, and `contact` is the name of the contact.
 ///
 /// # Errors
-/// [`ContactError::NoLink`] if no link matches, and [`ContactError::NoShape`] if the links that match have no
-/// collision shapes.
+/// [`ContactError::NoLink`] if no link matches, [`ContactError::NoShape`] if none of the links that match has
+/// a collision shape, and [`ContactError::Geometry`] for a shape that is missing or invalid.
 pub fn links_matching(
     contact: &str,
     pattern: &str,
     systems: &[(String, Arc<Model>)],
-) -> Result<Vec<ContactSide>, ContactError> {
-    let (mut sides, mut bare, mut known) = (Vec::new(), None, Vec::new());
+) -> Result<LinkShapes, ContactError> {
+    let (mut found, mut bare, mut known) = (LinkShapes::default(), None, Vec::new());
     for (system, (name, model)) in systems.iter().enumerate() {
         for (frame, description) in model.frames().iter().enumerate() {
             let path = format!("{name}/{}", description.name);
-            let shapes = model.collisions().iter().filter(|(owner, _)| *owner == frame);
-            let own: Result<Vec<_>, _> =
-                shapes.map(|(_, visual)| side(contact, FrameIndex { system, frame }, visual)).collect();
             if !matches(pattern, &path) {
                 known.push(path);
-            } else if model.collisions().iter().any(|(owner, _)| *owner == frame) {
-                sides.extend(own?);
-            } else {
-                bare = Some((name.clone(), description.name.clone()));
+                continue;
+            }
+            match link_shape(model, frame) {
+                Ok(shape) => found.add(FrameIndex { system, frame }, shape),
+                Err(GeometryError::NoCollision { .. }) => {
+                    bare = Some((name.clone(), description.name.clone()));
+                }
+                Err(source) => return Err(ContactError::Geometry { contact: contact.to_owned(), source }),
             }
         }
     }
     match bare {
-        _ if !sides.is_empty() => Ok(sides),
+        _ if !found.sides.is_empty() => Ok(found),
         Some((system, link)) => Err(ContactError::NoShape { contact: contact.to_owned(), system, link }),
         None => {
             let (contact, pattern) = (contact.to_owned(), pattern.to_owned());
@@ -46,23 +55,22 @@ pub fn links_matching(
     }
 }
 
-fn side(contact: &str, frame: FrameIndex, visual: &Visual) -> Result<ContactSide, ContactError> {
-    let shape = match &visual.geometry {
-        Geometry::Box(edges) => Shape::Box { half_edges: edges.map(|edge| 0.5 * edge) },
-        Geometry::Cylinder { radius, length } => {
-            Shape::Cylinder { radius: *radius, half_length: 0.5 * length }
+impl LinkShapes {
+    /// Adds the pieces of the shape of a link.
+    fn add(&mut self, frame: FrameIndex, LinkShape { shape, warnings }: LinkShape) {
+        self.warnings.extend(warnings);
+        match shape {
+            Shape::Compound(pieces) => {
+                let sides = pieces.iter().map(|(shape, pose)| ContactSide {
+                    frame,
+                    shape: shape.clone(),
+                    pose: *pose,
+                });
+                self.sides.extend(sides);
+            }
+            shape => self.sides.push(ContactSide { frame, shape, pose: Pose::identity() }),
         }
-        Geometry::Capsule { radius, length } => Shape::Capsule { radius: *radius, half_length: 0.5 * length },
-        Geometry::Sphere { radius } => Shape::Sphere { radius: *radius },
-        Geometry::Mesh { filename, .. } => {
-            return Err(ContactError::Mesh { contact: contact.to_owned(), file: filename.clone() });
-        }
-    };
-    Ok(ContactSide { frame, shape, pose: pose_of(&visual.pose) })
-}
-
-fn pose_of(pose: &Isometry3<f64>) -> Pose {
-    Pose { rot: pose.rotation.to_rotation_matrix().into_inner().into(), pos: pose.translation.vector.into() }
+    }
 }
 
 /// Returns true if `text` matches `pattern`, in which `*` stands for any text.

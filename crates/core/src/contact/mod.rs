@@ -17,6 +17,6 @@ mod restitution;
 pub use declared::{Contact, ContactLaw, ContactSide, ContactSteps};
 pub use error::ContactError;
 pub use friction::{Bristle, Friction, FrictionForce};
-pub use links::links_matching;
+pub use links::{LinkShapes, links_matching};
 pub use normal::NormalLaw;
 pub use restitution::dissipation_for;

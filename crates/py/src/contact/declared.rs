@@ -6,8 +6,10 @@ use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
 use onorbit_core::contact::{Contact, ContactLaw, ContactSide, links_matching};
 use onorbit_core::model::Model;
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use std::ffi::CString;
 use std::sync::Arc;
 
 /// Contact between the collision shapes of two sets of links.
@@ -106,9 +108,18 @@ impl PyContact {
         patterns: &[String],
         systems: &[(String, Arc<Model>)],
     ) -> PyResult<Vec<ContactSide>> {
-        let found = patterns.iter().map(|pattern| links_matching(&self.name, pattern, systems));
-        let found: Result<Vec<_>, _> = found.collect();
-        Ok(found.map_err(|error| error.into_python(py))?.concat())
+        let mut sides: Vec<ContactSide> = Vec::new();
+        for pattern in patterns {
+            let found =
+                links_matching(&self.name, pattern, systems).map_err(|error| error.into_python(py))?;
+            // a link that several patterns match is taken once
+            let known: Vec<_> = sides.iter().map(|side| side.frame).collect();
+            sides.extend(found.sides.into_iter().filter(|side| !known.contains(&side.frame)));
+            for warning in found.warnings {
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(warning)?, 1)?;
+            }
+        }
+        Ok(sides)
     }
 }
 

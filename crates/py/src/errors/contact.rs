@@ -14,10 +14,9 @@ impl IntoPython for ContactError {
             Self::DuplicateName { name } => fields!(py, "name": name),
             Self::Overlap { contact, depth, .. } => fields!(py, "name": contact, "got": depth),
             Self::NoLink { contact, pattern, .. } => fields!(py, "name": contact, "got": pattern),
-            Self::NoShape { contact, .. }
-            | Self::Mesh { contact, .. }
-            | Self::SameLink { contact }
-            | Self::Geometry { contact, .. } => fields!(py, "name": contact),
+            Self::NoShape { contact, .. } | Self::SameLink { contact } | Self::Geometry { contact, .. } => {
+                fields!(py, "name": contact)
+            }
         };
         raise(py, "WorldError", &message, &fields)
     }
