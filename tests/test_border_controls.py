@@ -220,7 +220,7 @@ def test_invalid_controls(dual: oo.Model, q: Any) -> None:
         ([oo.Control(everything, reference=oo.JointHold(q[7:] + 1))], ControlError, "starts 1 rad"),
         ([right, right], ControlError, "two controls are named"),
         ([reach(dual, q, "right", after="x")], ControlError, "starts after 'x'"),
-        ([3], ControlError, "no method update"),
+        ([3], ControlError, "each entry must be a Control"),
     ):  # fmt: skip
         with pytest.raises(error, match=words):
             at_rest(dual, q, controls)

@@ -62,7 +62,7 @@ def test_all_networks_are_used_only_when_asked() -> None:
     """Negative control of the test above."""
     participant = Participant(DOMAIN, network="all")
     assert b"lo" not in devices()
-    with pytest.raises(oo.exceptions.Ros2Error, match=f"has joined DDS domain {DOMAIN} on the all network"):
+    with pytest.raises(oo.exceptions.Ros2Error, match=f"has joined DDS domain {DOMAIN} with network='all'"):
         Participant(DOMAIN)
     participant.close()
 

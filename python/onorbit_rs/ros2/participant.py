@@ -65,7 +65,7 @@ class Participant:
             self._entity: Any = DomainParticipant(domain, qos=Qos(Policy.Userdata(graph.ENCLAVE)))
         except DDSException as error:
             raise Ros2Error(
-                f"cannot join DDS domain {domain} on the {network} network ({error}): check that an "
+                f"cannot join DDS domain {domain} with network={network!r} ({error}): check that a network "
                 f"interface is up, check the settings in CYCLONEDDS_URI, or use another domain"
             ) from error
         self._writers: list[Any] = []
@@ -146,7 +146,7 @@ def _join(domain: int, network: str) -> _Joined:
     if joined := _JOINED.get(domain):
         if joined.network != network:
             raise Ros2Error(
-                f"this process has joined DDS domain {domain} on the {joined.network} network; close that "
+                f"this process has joined DDS domain {domain} with network={joined.network!r}; close that "
                 "node, use the same network or another domain"
             )
         return joined

@@ -1,4 +1,4 @@
-"""Types of scenario fields; each type reads a quantity of one dimension and stores its value in SI."""
+"""Types of scenario fields; quantities are checked for their dimension and stored in SI."""
 
 from __future__ import annotations
 

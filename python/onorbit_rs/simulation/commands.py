@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
@@ -53,7 +54,10 @@ def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
         else:
             target.send(entry["control"], **_setpoint(target, entry), check_only=check_only)
     except AttributeError as error:  # a world of several systems
-        raise invalid(entry.where, f"'system' is missing: {error}") from None
+        names = ", ".join(re.findall(r'\["(.*?)"\]', str(error)))
+        raise invalid(
+            entry.where, f"'system' is missing; the run has several systems, so give one of: {names}"
+        ) from None
     except OnOrbitError as error:
         if entry.where:
             error.message = f"{entry.where}: {error.message}"

@@ -170,7 +170,15 @@ pub(crate) fn controls_of(
 
 /// Returns an entry of a list of controls, or an error if it has another type.
 fn one_control(item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
-    item.cast_into::<PyControl>().map_err(|error| no_controller(&error.into_inner()))
+    item.cast_into::<PyControl>().map_err(|error| {
+        let item = error.into_inner();
+        let message = format!(
+            "an entry of the list of controls is of type {}; each entry must be a Control, such as \
+             oo.Control(oo.JointPid(), reference=…)",
+            type_name(&item)
+        );
+        plain(item.py(), "ControlError", &message)
+    })
 }
 
 impl PyControl {

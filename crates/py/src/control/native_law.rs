@@ -63,8 +63,13 @@ pub(super) fn same_robot(py: Python<'_>, own: &Arc<Model>, model: &Arc<Model>) -
         return Ok(());
     }
     let (own, other) = (own.name(), model.name());
-    let message = format!(
-        "the controller belongs to robot '{own}', but the robot is '{other}'; construct it from the same model"
-    );
+    let message = if own == other {
+        format!(
+            "the controller was constructed from another model of robot '{own}', with other frames or joints; \
+             construct it from the model of the run"
+        )
+    } else {
+        format!("the controller belongs to robot '{own}', but the robot is '{other}'; construct it from the same model")
+    };
     Err(plain(py, "ControlError", &message))
 }
