@@ -158,8 +158,9 @@ fn turned(from: Vec3<f64>, rate: Vec3<f64>, path: f64, length: f64) -> Vec3<f64>
     if sine == 0.0 {
         return if cosine < 0.0 { from } else { to };
     }
-    // tan φ/2 = sin φ/(1 + cos φ)
-    let half = sine / (1.0 + cosine).max(f64::MIN_POSITIVE) * (-path / length).exp();
+    // tan φ/2 = sin φ/(1 + cos φ) = (1 − cos φ)/sin φ; only one form is finite near φ = π
+    let tangent = if cosine < 0.0 { (1.0 - cosine) / sine } else { sine / (1.0 + cosine) };
+    let half = tangent.min(1e100) * (-path / length).exp();
     let scale = 1.0 / (1.0 + half * half);
     // cos φ = (1 − tan² φ/2)/(1 + tan² φ/2),  sin φ = 2 tan φ/2/(1 + tan² φ/2)
     to * ((1.0 - half * half) * scale) + across * (2.0 * half * scale / sine)

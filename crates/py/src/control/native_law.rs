@@ -69,7 +69,9 @@ pub(super) fn same_robot(py: Python<'_>, own: &Arc<Model>, model: &Arc<Model>) -
              construct it from the model of the run"
         )
     } else {
-        format!("the controller belongs to robot '{own}', but the robot is '{other}'; construct it from the same model")
+        format!(
+            "the controller belongs to robot '{own}', but the robot is '{other}'; construct it from the same model"
+        )
     };
     Err(plain(py, "ControlError", &message))
 }

@@ -38,7 +38,7 @@ impl Touching {
         }
         let before = self.evaluate(motions, state)?;
         let phase = self.next_phase(&before, self.rounding(motions));
-        let [bristle, twist] = self.next_bristles(phase, &before);
+        let [bristle, twist] = self.next_bristles(phase, &before, self.rounding(motions));
         let mobility = if phase == Phase::Apart { [0.0; 3] } else { self.mode.mobility };
         self.mode = Mode {
             phase,
@@ -98,31 +98,39 @@ impl Touching {
     }
 
     /// Returns the bristles and their twist at the start of the next step, which begins in `phase`.
-    fn next_bristles(&self, phase: Phase, loading: &Loading) -> [Bristle; 2] {
+    fn next_bristles(&self, phase: Phase, loading: &Loading, rounding: f64) -> [Bristle; 2] {
         let friction = self.law.as_ref().and_then(|law| law.friction).filter(|_| phase == Phase::Pressing);
         let Some(friction) = friction else { return [AT_REST; 2] };
         let Mode { bristle, twist, speeds, mobility, .. } = &self.mode;
         let sliding = match &loading.friction {
             Some(found) => continued(bristle, found, loading.sliding, speeds[0]),
-            None => self.begun(&friction, loading, loading.sliding.norm(), mobility[1]),
+            None => self.begun(&friction, loading, loading.sliding.norm(), mobility[1], rounding),
         };
         let Some(torsion) = friction.torsion() else { return [sliding, AT_REST] };
         let twisting = match &loading.torsion {
             Some(found) => continued(twist, found, Vec3::new(loading.spin, 0.0, 0.0), speeds[1]),
-            None => self.begun(&torsion, loading, loading.spin.abs(), mobility[2]),
+            None => self.begun(&torsion, loading, loading.spin.abs(), mobility[2], rounding),
         };
         [sliding, twisting]
     }
 
     /// Returns the bristles of a contact that has just begun. They slip if the force in them grows faster
     /// than the friction cone.
-    fn begun(&self, friction: &Friction, loading: &Loading, speed: f64, mobility: f64) -> Bristle {
+    fn begun(
+        &self,
+        friction: &Friction,
+        loading: &Loading,
+        speed: f64,
+        mobility: f64,
+        rounding: f64,
+    ) -> Bristle {
         let Some(law) = &self.law else { return AT_REST };
         // σ |v_t| > μ dF/dt
         let growth = law.normal.tangent_stiffness(loading.depth) * loading.rate;
         let limit = friction.static_coefficient * law.normal.force(loading.depth, loading.rate).max(0.0);
+        let is_without_force = loading.depth <= rounding && law.normal.force(0.0, loading.rate) <= 0.0;
         let is_slipping = friction.damping_for(mobility) * speed > limit
-            || (limit == 0.0 && friction.stiffness * speed > friction.static_coefficient * growth);
+            || (is_without_force && friction.stiffness * speed > friction.static_coefficient * growth);
         Bristle { is_slipping, ..AT_REST }
     }
 }

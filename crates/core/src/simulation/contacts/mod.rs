@@ -145,9 +145,14 @@ impl Contacts {
                 touching.mode.phase = Phase::Far;
                 continue;
             }
-            let Some(loading) = touching.begin((t, end), &motions, own)? else { continue };
+            let before = touching.mode;
+            let Some(mut loading) = touching.begin((t, end), &motions, own)? else { continue };
             if touching.mode.phase == Phase::Pressing && touching.mode.mobility[0] == 0.0 {
-                touching.mode.mobility = mobility::mobility(&touching.sides, trees, &state.trees, &loading);
+                // whether the bristles stick depends on their damping, and thus on the mobility
+                let mobility = mobility::mobility(&touching.sides, trees, &state.trees, &loading);
+                touching.mode = Mode { mobility, ..if before.since == t { touching.mode } else { before } };
+                let Some(again) = touching.begin((t, end), &motions, own)? else { continue };
+                loading = again;
             }
             longest = longest.min(touching.longest_step(self.steps, &motions, &loading));
         }

@@ -24,12 +24,14 @@ impl Pressure {
     /// Computes the resultant `N = Σ w_i F(x_i, ẋ_i)` of the forces at points with the weights `w_i`. It acts
     /// at `Σ w_i F_i p_i/N`, about which the forces have no moment, since all are parallel to the normal.
     ///
-    /// A single point may pull: its force is continued beyond lift-off, which ends the step.
+    /// A single point may pull: its force is continued beyond lift-off, which ends the step. Pieces that
+    /// separate without force (`is_pressing` false) and points that would pull dissipate their elastic energy.
     pub(super) fn of(
         law: &NormalLaw,
         points: &[ContactPoint],
         normal: Vec3<f64>,
         [a, b]: &[SideMotion; 2],
+        is_pressing: bool,
     ) -> Self {
         let middle = |point: &ContactPoint| (point.point_a + point.point_b) * 0.5;
         let mut sum = Self { point: Vec3::zero(), force: 0.0, power: 0.0, dissipation: 0.0, elastic: 0.0 };
@@ -37,11 +39,12 @@ impl Pressure {
             let (at, depth) = (middle(point), point.depth);
             let rate = -normal.dot(b.velocity_at(at) - a.velocity_at(at));
             let force = match points {
+                _ if !is_pressing => 0.0,
                 [_] => law.force(depth, rate),
                 _ if depth > 0.0 => law.force(depth, rate).max(0.0),
                 _ => 0.0,
             };
-            let elastic = if force == 0.0 { 0.0 } else { law.elastic_force(depth) };
+            let elastic = if depth > 0.0 || force != 0.0 { law.elastic_force(depth) } else { 0.0 };
             let share = point.weight * force;
             sum.force += share;
             sum.point += at * share;

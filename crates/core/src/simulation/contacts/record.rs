@@ -87,7 +87,9 @@ impl Row {
 impl Touching {
     /// Returns the elastic energies of the normal force and of the bristles, J.
     fn elastic_energies(&self, loading: &Loading) -> [f64; 2] {
-        let Some(law) = self.law.as_ref().filter(|_| self.mode.phase == Phase::Pressing) else {
+        let Some(law) =
+            self.law.as_ref().filter(|_| matches!(self.mode.phase, Phase::Pressing | Phase::Separating))
+        else {
             return [0.0; 2];
         };
         let friction = law.friction.as_ref().zip(loading.friction.as_ref());

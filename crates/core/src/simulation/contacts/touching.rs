@@ -36,7 +36,7 @@ pub(in crate::simulation) struct Loading {
     pub(super) normal: Vec3<f64>,
     /// Point at which the forces act, m.
     pub(super) point: Vec3<f64>,
-    /// Resultant of the normal forces, if the pieces press on each other.
+    /// Resultant of the normal forces, if the pieces overlap.
     pub(super) pressure: Option<Pressure>,
     /// Force on the second side, N.
     pub(super) force: Vec3<f64>,
@@ -65,8 +65,9 @@ impl Touching {
             .contact_points(motions)
             .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
         let normal = proximity.normal;
-        let law = self.law.as_ref().filter(|_| self.mode.phase == Phase::Pressing);
-        let pressure = law.map(|law| Pressure::of(&law.normal, &points, normal, motions));
+        let is_pressing = self.mode.phase == Phase::Pressing;
+        let law = self.law.as_ref().filter(|_| is_pressing || self.mode.phase == Phase::Separating);
+        let pressure = law.map(|law| Pressure::of(&law.normal, &points, normal, motions, is_pressing));
         let witness = (proximity.point_a + proximity.point_b) * 0.5;
         // both forces act at one point, so that no moment remains
         let point = pressure.map_or(witness, |pressure| pressure.point);
@@ -85,7 +86,7 @@ impl Touching {
             spin: normal.dot(b.angular_velocity - a.angular_velocity),
             torsion: None,
         };
-        if let (Some(law), Some(pressure)) = (law, pressure) {
+        if let (Some(law), Some(pressure), true) = (law, pressure, is_pressing) {
             loading.force = normal * pressure.force;
             self.add_friction(law, state, a, &mut loading);
         }
