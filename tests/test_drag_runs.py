@@ -169,7 +169,7 @@ def test_nrlmsise_requires_space_weather(tmp_path: Any) -> None:
     assert air.density(400e3, 0.1, 0.2, earth=earth) == pytest.approx(
         history.density(400e3, 0.1, 0.2, earth=earth), rel=0.05
     )
-    with pytest.raises(EffectError, match="missing f107a, ap"):
+    with pytest.raises(EffectError, match="lacks f107a, ap"):
         oo.Nrlmsise00(f107=150.0)
     with pytest.raises(EffectError, match="Ap, not Kp"):
         oo.Nrlmsise00(f107=150.0, f107a=150.0, ap=-1.0)
