@@ -129,7 +129,7 @@ def test_a_space_weather_table_is_found_beside_the_scenario(tmp_path: Path) -> N
     ("environment", "parts", "error", "message"),
     [
         ({"kind": "drag", "atmosphere": "harris"}, {}, ScenarioError, "harris"),
-        (air(kind="nrlmsise00", f107=150), {}, EffectError, "missing f107a, ap"),
+        (air(kind="nrlmsise00", f107=150), {}, EffectError, "lacks f107a, ap"),
         (air(kind="constant", density=-1), {}, ScenarioError, "negative"),
         (air(kind="constant", density="1 kg"), {}, ScenarioError, "density"),
         ({"kind": "drag", "surfaces": {"kind": "cannonball", "area": -2}}, {}, ScenarioError, "negative"),

@@ -208,7 +208,7 @@ INVALID: dict[str, tuple[str, str, str]] = {
         r":6: systems.chaser.knows\[0\]: .*did you mean 'target'",
     ),
     "knows itself": ("    tool: tool", "    knows: [chaser]", r":6: systems.chaser.knows\[0\]: .*itself"),
-    "contacts": ("events:\n", "contacts: []\nevents:\n", r":17: contacts: .*not available yet"),
+    "loops": ("events:\n", "loops: []\nevents:\n", r":17: loops: .*not available yet"),
     "engine": (
         "systems:\n",
         "engine: mujoco\nsystems:\n",
