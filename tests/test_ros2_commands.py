@@ -22,6 +22,7 @@ needs_ros2()
 from onorbit_rs.ros2 import Node  # noqa: E402
 from onorbit_rs.ros2.command_topics import add_run_topics, add_system_topics  # noqa: E402
 from onorbit_rs.ros2.inbox import Inbox  # noqa: E402
+from onorbit_rs.ros2.live_run import LiveRun  # noqa: E402
 from onorbit_rs.ros2.transforms import frames_of  # noqa: E402
 
 ROBOT = oo.robots.load("humanoid_torso")
@@ -295,6 +296,17 @@ def test_a_wrench_ends_after_its_timeout(peer: Peer, tmp_path: Path, timeout: fl
     stepper = simulation().start()
     replay_commands(stepper, read_commands(log), 0.5)
     assert_same_bits(stepper.finish(), trace)
+
+
+def test_a_wrench_ends_at_a_time_that_rounding_puts_after_a_tick() -> None:
+    """0.1 + 0.2 is larger than 0.3, where a tick ends."""
+    run = LiveRun(simulation(), wrench_timeout=0.2)
+    (system,) = run.models
+    force = {"system": system, "body": ROBOT.body_names[0], "force": [1.0, 0, 0], "frame": "body"}
+    run.advance_to(0.1)
+    run.command([force])
+    ended = [run.advance_to(t) for t in (0.3, 0.301)]
+    assert sum(map(len, ended)) == 1
 
 
 def test_a_zero_wrench_needs_no_timeout(peer: Peer) -> None:

@@ -86,7 +86,7 @@ def _trajectory(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
         for name in ("positions", "velocities", "accelerations"):
             rows = [getattr(point, name) for point in content.points]
             if name == "positions" or any(len(row) for row in rows):
-                numbers = [_finite(name, row, joints) for row in rows]
+                numbers = [_finite(name, row, list(content.joint_names)) for row in rows]
                 found[name] = [[row[i] for i in order] for row in numbers]
         stamp = _seconds(content.header.stamp)
         return [to | {"trajectory": found | ({"start": stamp} if stamp > 0.0 else {})}]

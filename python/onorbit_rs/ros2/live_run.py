@@ -16,8 +16,8 @@ from onorbit_rs.simulation.commands import CommandLog
 if TYPE_CHECKING:
     from onorbit_rs._core import Checkpoint, EventRecord, Model, Simulation, Stepper, Trace, WorldTrace
 
-_SHORTEST_TICK = 1e-3
-"""Shortest simulated time between two looks at the topics, unless the time step is longer, s."""
+_LONGEST_TICK = 1e-3
+"""Longest simulated time between two looks at the topics, unless the time step is longer, s."""
 
 
 class LiveRun:
@@ -52,7 +52,7 @@ class LiveRun:
         self._keep_rows = keep_rows
         self._simulation = simulation
         self.models: Mapping[str, Model] = simulation.models
-        steps = max(1, min(simulation.record_every, round(_SHORTEST_TICK / simulation.time_step)))
+        steps = max(1, min(simulation.record_every, round(_LONGEST_TICK / simulation.time_step)))
         self.tick = simulation.time_step * steps
         self.end = np.inf
         self.log = CommandLog()
@@ -119,8 +119,9 @@ class LiveRun:
         """Advance to a simulated time, s; return the commands that ended wrenches on the way."""
         given: list[Entry] = []
         while self._wrenches.next <= t:
-            self._stepper.advance_to(max(self._wrenches.next, self.time))
-            for entry in self._wrenches.take(self.time):
+            end = max(self._wrenches.next, self.time)
+            self._stepper.advance_to(end)
+            for entry in self._wrenches.take(end):  # the stepper may stop at a cut that rounding puts before
                 self.log.apply(self._stepper, entry)
                 given.append(entry)
         self._stepper.advance_to(t)

@@ -84,11 +84,11 @@ class RealTime:
         while (ahead := self.ahead(t)) > 0.0:
             pass
         self._late.add(-ahead)
-        if -ahead > self.tick:
-            self._calm_at = t + _BUSY_S
         if -ahead > _BEHIND_S:
             self.slipped -= ahead
             self.restart(t)
+        if -ahead > self.tick:
+            self._calm_at = t + _BUSY_S
 
     def report(self) -> dict[str, float]:
         """Return the delays, s, and the fraction of ticks late by more than a tick; empty without ticks."""

@@ -34,5 +34,5 @@ class Rivals:
             session.say(
                 WARN, "/clock",
                 f"another node publishes the time in domain {self._domain}: both nodes obey the same "
-                "commands; give one of them another domain, by --domain, Node(domain=…) or ROS_DOMAIN_ID",
+                "commands; give one of them another domain, by --domain or, in Python, Node(domain=…)",
             )  # fmt: skip
