@@ -4,7 +4,7 @@
 mod common;
 
 use common::touch::{body, contact, side};
-use onorbit_core::contact::{ContactLaw, ContactSteps, NormalLaw};
+use onorbit_core::contact::{ContactLaw, ContactSteps, NormalLaw, dissipation_for};
 use onorbit_core::geometry::Shape;
 use onorbit_core::simulation::{Integrator, Recording, Simulation};
 
@@ -55,6 +55,23 @@ fn restitution_follows_from_the_dissipation() {
             }
         }
     }
+}
+
+#[test]
+fn dissipation_gives_the_restitution() {
+    for (p, restitution) in RESTITUTIONS {
+        let found = dissipation_for(restitution, SPEED).unwrap() * SPEED;
+        assert!((found / p - 1.0).abs() < 2e-10 / p.min(1.0), "{p}: {found}");
+    }
+    assert_eq!(dissipation_for(1.0, SPEED), Ok(0.0));
+}
+
+#[test]
+fn impossible_restitutions_are_refused() {
+    for restitution in [0.0, -0.1, 1.1, f64::NAN] {
+        assert!(dissipation_for(restitution, 1.0).is_err());
+    }
+    assert!(dissipation_for(0.5, 0.0).is_err());
 }
 
 #[test]

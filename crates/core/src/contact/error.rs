@@ -30,7 +30,7 @@ pub enum ContactError {
     },
     /// A link that touches has no shape.
     #[error(
-        "contact '{contact}': link '{link}' of system '{system}' has no collision shape; add a <collision> element to its URDF or give a shape"
+        "contact '{contact}': link '{link}' of system '{system}' has no collision shape; add a <collision> element to its URDF"
     )]
     NoShape {
         /// Name of the contact.

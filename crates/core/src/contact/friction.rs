@@ -39,7 +39,7 @@ pub struct Bristle {
     pub is_slipping: bool,
 }
 
-/// Friction on the second body after a dispose.
+/// Friction on the second body after a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionForce {
     /// Force, N.
@@ -54,7 +54,7 @@ pub struct FrictionForce {
 
 impl Friction {
     /// Returns the friction under the normal force `normal`, N, at the sliding velocity `rate`, m/s, after
-    /// the relative dispose `moved`, m, from the bristles `start`, with the damping `damping`, N s/m.
+    /// the relative displacement `moved`, m, from the bristles `start`, with the damping `damping`, N s/m.
     /// All vectors are tangential.
     ///
     /// Inside the cone, `ż = v` and `F = −(σ z + c v)`. On the cone, `|F| = μ N` and the bristles, of length

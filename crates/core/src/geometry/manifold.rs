@@ -19,7 +19,7 @@
 use super::closest::{check, nearest_pieces};
 use super::error::GeometryError;
 use super::feature::Feature;
-use super::patch::{ContactPoint, contact_points};
+use super::patch::{ContactPoint, contact_points, witness};
 use super::pose::Pose;
 use super::proximity::Proximity;
 use super::shape::Shape;
@@ -41,6 +41,9 @@ pub fn manifold(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Ma
     check(a, pose_a)?;
     check(b, pose_b)?;
     let (proximity, [(a, pose_a), (b, pose_b)]) = nearest_pieces(a, pose_a, b, pose_b)?;
+    if matches!((a, b), (Shape::Sphere { .. }, _) | (_, Shape::Sphere { .. })) {
+        return Ok(Manifold { proximity, points: vec![witness(&proximity, 1.0)] });
+    }
     let feature_a = Feature::of(a, &pose_a, proximity.point_a, proximity.normal);
     let feature_b = Feature::of(b, &pose_b, proximity.point_b, -proximity.normal);
     let points = contact_points(&proximity, &feature_a, &feature_b);

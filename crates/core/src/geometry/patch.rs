@@ -39,7 +39,7 @@ pub(super) fn contact_points(proximity: &Proximity, a: &Feature, b: &Feature) ->
 }
 
 /// Returns the witness points as a contact point.
-fn witness(proximity: &Proximity, weight: f64) -> ContactPoint {
+pub(super) fn witness(proximity: &Proximity, weight: f64) -> ContactPoint {
     let Proximity { distance, point_a, point_b, .. } = *proximity;
     ContactPoint { point_a, point_b, depth: -distance, weight }
 }

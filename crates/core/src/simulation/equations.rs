@@ -1,15 +1,16 @@
 //! Equations of motion of all trees of a run, which give the time derivatives of the state from the state,
 //! the loads and the joint torques.
 
-use super::contacts::{Contacts, at_time, move_to_own_centers, refer_to_common_center};
+use super::common_center::{move_to_own_centers, orbital_moment, refer_to_common_center};
+use super::contacts::{Contacts, at_time};
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
 use super::latch::Latch;
 use super::members::Members;
 use super::state::{Rate, State};
 use super::tree::Tree;
-use crate::dynamics::{Data, center_of_mass};
-use crate::spatial::{Real, Vec3};
+use crate::dynamics::Data;
+use crate::spatial::Real;
 
 /// Equations of motion of all trees under external loads and constant joint torques.
 ///
@@ -94,26 +95,10 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
             if has_contacts {
                 refer_to_common_center(&self.trees, state, rate);
             } else if is_loaded {
-                rate.orbital = self.orbital_moment(state, rate);
+                rate.orbital = orbital_moment(&self.trees, state, rate);
             }
         }
         self.contacts.rates(&mut rate.contacts);
-    }
-
-    /// Returns the moment of the external forces about the common centre of mass `c`, with each force `F_i`
-    /// acting at the centre of mass `c_i` of its tree: `Σ (c_i − c) × F_i`, W axes, N m.
-    fn orbital_moment(&self, state: &State<S>, rate: &Rate<S>) -> Vec3<S> {
-        let trees = || self.trees.iter().zip(&state.trees);
-        let centers: Vec<_> = trees().map(|(tree, state)| center_of_mass(&tree.data, &state.q)).collect();
-        let (mut mass, mut first_moment) = (S::of(0.0), Vec3::zero());
-        for (tree, center) in self.trees.iter().zip(&centers) {
-            mass += S::of(tree.model.mass());
-            first_moment += *center * S::of(tree.model.mass());
-        }
-        let common = first_moment * (S::of(1.0) / mass);
-        let moments = centers.iter().zip(&rate.trees);
-        let moments = moments.map(|(center, rate)| (*center - common).cross(rate.wrench.linear));
-        moments.fold(Vec3::zero(), |sum, moment| sum + moment)
     }
 
     /// Computes the kinematics, the loads and the time derivatives for a stage after the first.

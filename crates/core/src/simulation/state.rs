@@ -1,6 +1,6 @@
 //! State of all trees of a run and its time derivatives.
 
-use super::contacts::{ContactRate, ContactState};
+use super::contact_state::{ContactRate, ContactState};
 use super::tree::Tree;
 use super::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};

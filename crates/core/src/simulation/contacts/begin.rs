@@ -1,10 +1,10 @@
 //! Modes of a contact at the start of a step.
 
-use super::contact_state::ContactState;
 use super::mode::{Mode, Phase};
 use super::side::SideMotion;
 use super::touching::{Loading, Touching};
 use crate::contact::{Bristle, ContactError, Friction, FrictionForce};
+use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
 /// Fraction of the smaller reach by which pieces must be apart, beyond the distance that they may travel
@@ -37,8 +37,9 @@ impl Touching {
             return Ok(None);
         }
         let before = self.evaluate(motions, state)?;
-        let phase = self.next_phase(&before, self.rounding(motions));
-        let [bristle, twist] = self.next_bristles(phase, &before, self.rounding(motions));
+        let rounding = self.rounding(motions);
+        let phase = self.next_phase(&before, rounding);
+        let [bristle, twist] = self.next_bristles(phase, &before, rounding);
         let mobility = if phase == Phase::Apart { [0.0; 3] } else { self.mode.mobility };
         self.mode = Mode {
             phase,
@@ -61,8 +62,12 @@ impl Touching {
 
     /// Returns the rounding error of a distance, m.
     pub(super) fn rounding(&self, [a, b]: &[SideMotion; 2]) -> f64 {
-        let reach = self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min);
-        16.0 * f64::EPSILON * (a.frame.pos.norm() + b.frame.pos.norm() + reach)
+        16.0 * f64::EPSILON * (a.frame.pos.norm() + b.frame.pos.norm() + self.smaller_reach())
+    }
+
+    /// Returns the smaller of the reaches of both sides, m.
+    pub(super) fn smaller_reach(&self) -> f64 {
+        self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min)
     }
 
     /// Returns true if bounding spheres show that the pieces cannot touch within `h` seconds.

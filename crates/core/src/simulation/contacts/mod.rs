@@ -2,8 +2,6 @@
 //! cuts, and the length of steps while bodies touch.
 
 mod begin;
-mod common_center;
-mod contact_state;
 mod mobility;
 mod mode;
 mod pressure;
@@ -12,10 +10,9 @@ mod side;
 mod step_length;
 mod touching;
 
-pub(super) use common_center::{move_to_own_centers, refer_to_common_center};
-pub(super) use contact_state::{ContactRate, ContactState};
 pub(super) use mode::Mode;
 
+use super::contact_state::{ContactRate, ContactState};
 use super::error::SimulationError;
 use super::state::State;
 use super::tree::Tree;

@@ -27,7 +27,7 @@ pub(in crate::simulation) struct Mode {
     pub(super) twist: Bristle,
     /// Angle about the normal at the start of the step, rad.
     pub(super) turn: f64,
-    /// Sliding dispose at the start of the step, in axes of the first side, m.
+    /// Sliding displacement at the start of the step, in axes of the first side, m.
     pub(super) slip: Vec3<f64>,
     /// Normal at the start of the step, in axes of the first side.
     pub(super) normal: Vec3<f64>,

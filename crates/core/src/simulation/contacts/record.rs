@@ -1,9 +1,10 @@
 //! Rows of the contacts.
 
+use super::Contacts;
 use super::mode::Phase;
 use super::touching::{Loading, Touching};
-use super::{ContactState, Contacts};
 use crate::contact::ContactError;
+use crate::simulation::contact_state::ContactState;
 use crate::simulation::state::State;
 use crate::simulation::tree::Tree;
 use crate::spatial::{Real, Vec3};

@@ -75,8 +75,7 @@ impl Touching {
             Phase::Far => f64::INFINITY,
             Phase::Apart | Phase::Separating => {
                 let [a, b] = motions;
-                let reach = self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min);
-                ((-loading.depth).max(0.0) + OVERLAP * reach) / self.fastest([a, b])
+                ((-loading.depth).max(0.0) + OVERLAP * self.smaller_reach()) / self.fastest([a, b])
             }
             Phase::Pressing => {
                 let rates = Rates::of(law, &self.mode, loading);

@@ -1,11 +1,11 @@
 //! Contact between one convex piece of each side during a run.
 
-use super::contact_state::{ContactRate, ContactState};
 use super::mode::{Mode, Phase};
 use super::pressure::Pressure;
 use super::side::{Side, SideMotion};
 use crate::contact::{Bristle, ContactError, ContactLaw, Friction, FrictionForce};
-use crate::geometry::{ContactPoint, GeometryError, Manifold, Proximity, Shape, closest, manifold};
+use crate::geometry::{Manifold, manifold};
+use crate::simulation::contact_state::{ContactRate, ContactState};
 use crate::spatial::Vec3;
 
 /// Contact between one convex piece of each side.
@@ -61,8 +61,8 @@ impl Touching {
         state: &ContactState,
     ) -> Result<Loading, ContactError> {
         let [a, b] = motions;
-        let Manifold { proximity, points } = self
-            .contact_points(motions)
+        let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
+        let Manifold { proximity, points } = manifold(first, &a.shape, second, &b.shape)
             .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
         let normal = proximity.normal;
         let is_pressing = self.mode.phase == Phase::Pressing;
@@ -91,18 +91,6 @@ impl Touching {
             self.add_friction(law, state, a, &mut loading);
         }
         Ok(loading)
-    }
-
-    /// Returns the contact points; a sphere has a single one.
-    fn contact_points(&self, [a, b]: &[SideMotion; 2]) -> Result<Manifold, GeometryError> {
-        let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
-        if !matches!((first, second), (Shape::Sphere { .. }, _) | (_, Shape::Sphere { .. })) {
-            return manifold(first, &a.shape, second, &b.shape);
-        }
-        let proximity = closest(first, &a.shape, second, &b.shape)?;
-        let Proximity { distance, point_a, point_b, .. } = proximity;
-        let points = vec![ContactPoint { point_a, point_b, depth: -distance, weight: 1.0 }];
-        Ok(Manifold { proximity, points })
     }
 
     /// Adds the friction of pieces that press on each other.
@@ -171,7 +159,6 @@ impl Loading {
             turn,
             normal_loss: self.pressure.map_or(0.0, |pressure| pressure.dissipation),
             friction_work,
-            impulse: self.force,
         }
     }
 }

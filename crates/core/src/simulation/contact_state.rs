@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 
 /// Integrals of a contact over the time during which it acts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(in crate::simulation) struct ContactState {
-    /// Sliding dispose of the second side relative to the first, in axes of the first side, m.
+pub(super) struct ContactState {
+    /// Sliding displacement of the second side relative to the first, in axes of the first side, m.
     pub(super) slip: Vec3<f64>,
     /// Angle by which the second side has turned about the normal relative to the first, rad.
     pub(super) turn: f64,
@@ -14,31 +14,23 @@ pub(in crate::simulation) struct ContactState {
     pub(super) normal_loss: f64,
     /// Energy that friction has taken from the motion, J: dissipated, or stored in the bristles.
     pub(super) friction_work: f64,
-    /// Impulse on the second side, W axes, N s.
-    pub(super) impulse: Vec3<f64>,
 }
 
 /// Time derivative of [`ContactState`].
-pub(in crate::simulation) type ContactRate = ContactState;
+pub(super) type ContactRate = ContactState;
 
 impl ContactState {
     /// State without any contact so far.
-    pub(in crate::simulation) const ZERO: Self = Self {
-        slip: Vec3 { x: 0.0, y: 0.0, z: 0.0 },
-        turn: 0.0,
-        normal_loss: 0.0,
-        friction_work: 0.0,
-        impulse: Vec3 { x: 0.0, y: 0.0, z: 0.0 },
-    };
+    pub(super) const ZERO: Self =
+        Self { slip: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, turn: 0.0, normal_loss: 0.0, friction_work: 0.0 };
 
     /// Computes `self + h rate`.
-    pub(in crate::simulation) fn plus(&self, rate: &ContactRate, h: f64) -> Self {
+    pub(super) fn plus(&self, rate: &ContactRate, h: f64) -> Self {
         Self {
             slip: rate.slip.scale_add(h, self.slip),
             turn: rate.turn.mul_add(h, self.turn),
             normal_loss: rate.normal_loss.mul_add(h, self.normal_loss),
             friction_work: rate.friction_work.mul_add(h, self.friction_work),
-            impulse: rate.impulse.scale_add(h, self.impulse),
         }
     }
 }
