@@ -221,7 +221,7 @@ EXPECTED = {
     "xacro_macro_with_block": LOADS,
     "xacro_not_expanded": physics("'${m * 2}' (link 'base') is xacro"),
     "xacro_old_namespace": LOADS,
-    "xacro_simulator_include": warns("skipped, since it is for simulators only"),
+    "xacro_simulator_include": warns("only simulators need it"),
     "zero_mass_tip": LOADS,
     "zero_outside_limits": LOADS,
 }

@@ -313,7 +313,9 @@ def test_without_a_file_stdout_contains_only_the_scenario() -> None:
 def test_bad_input_is_reported_in_one_line(tmp_path: Path) -> None:
     assert "did you mean 'ets_vii'" in refusal("new", "ets_vi")
     assert "missing.urdf" in refusal("new", tmp_path / "missing.urdf")
-    assert "no such folder" in refusal("new", "ets_vii", "--out", tmp_path / "nowhere" / "a.yaml")
+    assert "nowhere does not exist; create it first" in refusal(
+        "new", "ets_vii", "--out", tmp_path / "nowhere" / "a.yaml"
+    )
     assert "did you mean 'tool'" in refusal("new", "humanoid_torso", "--tool", "toool")
     assert "no joint moves the frame 'torso'" in refusal("new", "humanoid_torso", "--tool", "torso")
     (tmp_path / "bad.urdf").write_text("<robot")

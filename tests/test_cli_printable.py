@@ -75,7 +75,9 @@ def test_no_command_prints_control_characters_of_a_name(tmp_path: Path) -> None:
         assert done.returncode in (0, 2) and said and not steers(said), (words, done)
         assert "\\u202e" in said or "\\xe2\\x80\\xae" in said, (words, done)
     assert json.loads(onorbit("show", EVIL, "--json", cwd=tmp_path).stdout)["scenario"] == EVIL
-    assert refusal("show", f"no{EVIL}", cwd=tmp_path).endswith(": no such folder")
+    assert refusal("show", f"no{EVIL}", cwd=tmp_path).endswith(
+        ": no such folder; give the output folder of a run"
+    )
 
 
 def test_a_comparison_printed_from_python_escapes_control_characters() -> None:

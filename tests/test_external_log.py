@@ -166,7 +166,7 @@ def test_without_commands_there_is_a_warning(scenario: Path) -> None:
 
 BAD = [
     ("{", "c.jsonl:2: the line is not valid JSON"),
-    ('{"time": 0.1}', "c.jsonl:2: a command has one of 'control', 'body' and 'trigger'"),
+    ('{"time": 0.1}', "c.jsonl:2: a command must have exactly one of the keys"),
     ('{"system": "chaser"}', "with the key 'time'"),
     ('{"time": 0.1, "control": "arm", "system": "chaser", "positon": [1]}', "did you mean 'position'"),
     ('{"time": NaN, "trigger": "grasp"}', "NaN is not a finite number"),

@@ -186,7 +186,7 @@ def test_folders_without_a_checkpoint(tmp_path: Path) -> None:
         oo.resume(tmp_path)
     out = tmp_path / "out"
     oo.run(long_reach(0.01), out=out, quiet=True)
-    with pytest.raises(CheckpointError, match="the run ended"):
+    with pytest.raises(CheckpointError, match="the run is complete"):
         oo.resume(out)
 
 

@@ -63,9 +63,9 @@ def test_a_header_that_claims_too_much_data_takes_no_memory(tmp_path: Path) -> N
     huge = honest.replace(b"(3,), }" + b" " * 13, b"(30000000000000,), }")
     none = "not an array of real numbers in the format that a run writes"
     for member, words in (
-        (claims, none), (huge, "has 24 bytes, but its shape"), (b"\x93NUMPY\x03\x00" + honest[8:], none),
+        (claims, none), (huge, "contains 24 bytes, but its shape"), (b"\x93NUMPY\x03\x00" + honest[8:], none),
         (npy(np.array([{}])), none), (npy(np.array(["text"])), none), (b"", none), (b"no array", none),
-        (honest[:-8], "has 16 bytes, but its shape"),
+        (honest[:-8], "contains 16 bytes, but its shape"),
     ):  # fmt: skip
         refused(tmp_path, npz(time=member), words)
 
@@ -80,12 +80,12 @@ def test_overlapping_columns_are_rejected(tmp_path: Path) -> None:
         struct.pack_into("<I", changed, place + 42, 0)
         struct.pack_into("<II", changed, place + 20, len(content), len(content))
         place += 4
-    refused(tmp_path, bytes(changed), "larger than the file")
+    refused(tmp_path, bytes(changed), "but the file has")
     twice = io.BytesIO()
     with zipfile.ZipFile(twice, "w") as archive, pytest.warns(UserWarning, match="Duplicate name"):
         archive.writestr("q.npy", npy(np.zeros(1)))
         archive.writestr("q.npy", npy(np.zeros(1)))
-    refused(tmp_path, twice.getvalue(), "duplicate columns")
+    refused(tmp_path, twice.getvalue(), "more than once")
 
 
 def test_an_npz_file_written_by_numpy_is_read_correctly() -> None:

@@ -209,7 +209,7 @@ def test_a_lock_whose_file_was_removed_by_hand_is_recreated(tmp_path: Path) -> N
     with OutputFolder.claim(tmp_path) as folder:
         (tmp_path / LOCK).unlink()
         with (
-            pytest.warns(UserWarning, match=f"{LOCK} was removed while this process was writing"),
+            pytest.warns(UserWarning, match=f"{LOCK} was removed during the run"),
             folder.writing("scenario.yaml") as path,
         ):
             path.write_text("mine")

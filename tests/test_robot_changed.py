@@ -105,7 +105,7 @@ def test_a_robot_edited_after_its_run_is_reported(urdf: Path, tmp_path: Path) ->
     assert shown.exit_code == 0
     assert f"note: {CHANGED}" in shown.output
     page = write_report(out).read_text()
-    assert "robot&#x27;s file was changed since the run" in page and "are omitted" in page
+    assert "robot differs from that of the run" in page and "are omitted" in page
 
     urdf.unlink()
     shown = CliRunner().invoke(app, ["show", str(out), "--no-viewer"])

@@ -124,7 +124,7 @@ def test_a_chain_of_500_links_is_printed_completely() -> None:
     [
         (["humanoid_tors"], ("humanoid_torso",)),
         (["/nowhere/robot.urdf"], ("/nowhere/robot.urdf", "no such file")),
-        (["humanoid_torso", "--arg", "side"], ("name=value",)),
+        (["humanoid_torso", "--arg", "side"], ("NAME=VALUE",)),
     ],
 )
 def test_an_error_is_reported_in_one_line(arguments: list[str], words: tuple[str, ...]) -> None:

@@ -127,7 +127,7 @@ def test_extensions_of_simulators_are_omitted_with_a_warning(tmp_path: Path) -> 
     with pytest.warns(UserWarning) as caught:
         model = oo.Model.from_urdf(file)
     assert model.frame_names == ["base"]
-    assert sum("skipped, since it is for simulators only" in str(warning.message) for warning in caught) == 2
+    assert sum("only simulators need it" in str(warning.message) for warning in caught) == 2
     assert model.warnings == [str(warning.message) for warning in caught]
 
 
@@ -160,7 +160,7 @@ BODIES = {
     ),
     "missing file of a package": (
         '<xacro:arg name="a" default="big"/><xacro:include filename="$(dirname)/$(arg a)/arm.xacro"/>',
-        ("/big/arm.xacro', which does not exist",),
+        ("/big/arm.xacro': the file does not exist",),
     ),
     "empty argument": (
         '<xacro:arg name="model" default=""/><xacro:include filename="$(find arm)/$(arg model)/a.xacro"/>',
@@ -172,7 +172,7 @@ BODIES = {
     ),
     "data of a missing package": (
         "<a b=\"${xacro.load_yaml('$(find arm_description)/a.yaml')}\"/>",
-        ("whose package 'arm_description' was not found", "package_paths="),
+        ("the package 'arm_description' was not found", "package_paths="),
     ),
     "missing file": ('<xacro:include filename="other.xacro"/>', ("'other.xacro'", "does not exist")),
     "endless macro": ('<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/>', ("nested too deeply",)),

@@ -171,7 +171,7 @@ def test_the_command_exports_a_folder(tmp_path: Path, no_pictures: None) -> None
 
 
 def test_invalid_requests_are_refused(arm: oo.Run, tmp_path: Path) -> None:
-    assert "give the file to write" in refusal("export", tmp_path)
+    assert "no output file is given" in refusal("export", tmp_path)
     assert "must end in .mcap" in refusal("export", tmp_path, "--mcap", tmp_path / "run.bag")
     assert "no run in this folder" in refusal("export", tmp_path, "--mcap", tmp_path / "run.mcap")
     with pytest.raises(InputError, match="models must be a Model"):

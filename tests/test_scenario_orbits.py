@@ -87,7 +87,7 @@ def test_one_of_several_messages_is_chosen_by_name(tmp_path: Path) -> None:
     np.testing.assert_allclose(made.state(60.0)[0], oo.Sgp4(LINE1, LINE2).state(60.0)[0], rtol=1e-13)
     with pytest.raises(
         ElementSetError,
-        match="2 messages; give a single message, or select one in a scenario with 'satellite'",
+        match="2 messages; give a single message, or select one in a scenario with",
     ):
         orbit_of(written(tmp_path, {"kind": "sgp4", "omm_file": "all.csv"}))
 

@@ -79,7 +79,7 @@ def test_an_invalid_satrec_is_rejected() -> None:
         oo.Sgp4(initialized(inclo=4.0))
     with pytest.raises(ElementSetError, match="argpo of the Satrec is nan"):
         oo.Sgp4(initialized(argpo=np.nan))
-    with pytest.raises(InputError, match="a Satrec of PyPI's sgp4 is required, got int"):
+    with pytest.raises(InputError, match="satrec is of type int; it must be a Satrec"):
         oo.Sgp4(5)
     with pytest.raises(InputError, match="give the two lines of an element set, or only a Satrec"):
         oo.Sgp4(initialized(), gravity="wgs72")  # type: ignore[call-overload]  # it has its own

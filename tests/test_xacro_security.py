@@ -192,7 +192,7 @@ def test_files_outside_the_package_are_not_read(tmp_path: Path) -> None:
     assert expanded(package / "urdf", "${m}", above).mass == 5.0
     every = '<xacro:include filename="../*.xacro"/>'
     assert expanded(package / "urdf", "${m}", every).mass == 5.0
-    with pytest.raises(ModelError, match="not of folders"):
+    with pytest.raises(ModelError, match="in the name of a folder"):
         expanded(package / "urdf", "${m}", '<xacro:include filename="/*/*/*.xacro"/>')
 
 

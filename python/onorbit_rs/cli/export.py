@@ -36,7 +36,7 @@ def export(
     check_bag_file("--bag", bag, ".bag", force=force)
     if mcap is None and bag is None:
         raise InputError(
-            "give the file to write: --mcap FILE for ROS 2, or --bag FILE for ROS 1", name="mcap"
+            "no output file is given; add --mcap FILE for ROS 2, or --bag FILE for ROS 1", name="mcap"
         )
     written: dict[str, Any] = {}
     with parts_bar("export", quiet=quiet) as tell:
@@ -53,7 +53,9 @@ def export(
         if not quiet:
             print_line(f"{kind}: {entry['file']} ({entry['bytes'] / 1e6:.1f} MB)")
         if entry.get("left_out"):
-            print_error(f"omitted, because ROS 1 has no such messages: {', '.join(entry['left_out'])}")
+            print_error(
+                f"omitted from the bag, because ROS 1 has no such messages: {', '.join(entry['left_out'])}"
+            )
 
 
 def _telling(tell: Callable[[str, float], None], file: Path) -> Callable[[float], None]:

@@ -95,7 +95,8 @@ def _world_info(scenario: WorldScenario, name: str, picture: Path | None, *, as_
 
     if picture is not None:
         raise InputError(
-            f"--picture {picture} draws a single robot, but {name} has several; give the robot of one system",
+            f"--picture {picture} draws a single robot, but {name} has {len(scenario.scenarios)} systems; "
+            "give the robot of one system: onorbit info ROBOT --picture FILE",
             name="picture",
             got=str(picture),
         )

@@ -77,9 +77,8 @@ def reading_options(
     is_xacro = xacro or Path(robot).suffix.lower() == ".xacro"
     if arguments and bus is not None and not is_xacro:
         raise InputError(
-            "--arg applies only to the robot, which is not a xacro file; set the arguments of the bus "
-            "in the scenario: "
-            "robot.bus.xacro_arguments",
+            f"--arg applies only to the robot, but {robot} does not end in .xacro; omit --arg, or add "
+            "--xacro; write the arguments of the bus in the scenario, as robot.bus.xacro_arguments",
             name="arg", got=arguments,
         )  # fmt: skip
     if (packages or arguments or xacro) and not robots.is_file(robot):
@@ -90,7 +89,10 @@ def reading_options(
         )  # fmt: skip
     for folder in packages or ():
         if not folder.is_dir():
-            raise InputError(f"--package-path {folder}: no such folder", name="package_path", got=str(folder))
+            raise InputError(
+                f"--package-path {folder} is not an existing folder; give a folder with ROS packages",
+                name="package_path", got=str(folder),
+            )  # fmt: skip
     if arguments and not is_xacro:
         raise InputError(
             f"--arg applies only to xacro files, but {robot} does not end in .xacro; omit --arg or add "
@@ -114,5 +116,5 @@ def xacro_arguments(arguments: list[str] | None) -> dict[str, str] | None:
     pairs = [argument.replace(":=", "=", 1).partition("=") for argument in arguments or []]
     for argument, (name, equals, _) in zip(arguments or [], pairs, strict=True):
         if not equals or not name:
-            raise typer.BadParameter(f"write a xacro argument as name=value, not {argument!r}")
+            raise typer.BadParameter(f"--arg {argument!r} has no name or no '='; write NAME=VALUE")
     return {name: value for name, _, value in pairs} or None

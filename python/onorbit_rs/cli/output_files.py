@@ -32,9 +32,10 @@ def check_output_file(file: Path | None, *, force: bool) -> None:
         if exists(file) and not force:
             raise OutputNotEmptyError(f"{file} already exists; replace it with --force", path=str(file))
         if not folder.is_dir():
-            raise OutputFolderError(f"cannot write {file}: no such folder; create it first", path=str(file))
+            message = f"cannot write {file}: the folder {folder} does not exist; create it first"
+            raise OutputFolderError(message, path=str(file))
         if not os.access(folder, os.W_OK):
-            message = f"cannot write {file}: its folder is not writable; choose another folder"
+            message = f"cannot write {file}: the folder {folder} is not writable; choose another folder"
             raise OutputFolderError(message, path=str(file))
 
 

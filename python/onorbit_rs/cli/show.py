@@ -78,7 +78,7 @@ def open_viewer(folder: Path) -> None:
 
     recording = folder / "run.rrd"
     if not recording.is_file():
-        print_line(f"no recording: {recording} does not exist")
+        print_line(f"there is no recording to show: {recording} does not exist")
         return
     suggestion = (
         f"save a picture with: onorbit show {shell_word(folder)} --picture FILE.png, "

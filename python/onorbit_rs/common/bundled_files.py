@@ -34,6 +34,7 @@ def path(name: str, kind: str, folder: Path, ending: str) -> Path:
     """
     known = names(folder, ending)
     if name not in known:
-        message = f"no bundled {kind} is named {name!r}{did_you_mean(name, known)}"
+        hint = did_you_mean(name, known) or "; onorbit list prints the names"
+        message = f"no bundled {kind} is named {name!r}{hint}"
         raise NotFoundError(message, path=name, kind=kind, suggestion=nearest(name, known))
     return folder / f"{name}{ending}"

@@ -45,7 +45,7 @@ def read_bounded(stream: BinaryIO, most: int) -> bytes:
     if size < len(content) <= most:  # the file has grown since its size was read
         content += stream.read(most + 1 - len(content))
     if max(size, len(content)) > most:
-        raise ValueError(f"it is larger than the limit of {most} bytes")
+        raise ValueError(f"it has more than {most} bytes, the largest permitted size")
     return content
 
 
@@ -55,7 +55,7 @@ def open_to_change(file: Path) -> BinaryIO:
     try:
         found = os.fstat(descriptor)
         if not stat.S_ISREG(found.st_mode) or found.st_nlink > 1 or is_link(file):
-            raise OSError(errno.EINVAL, "it must be a regular file and not a link", str(file))
+            raise OSError(errno.EINVAL, "it is a link or no regular file; remove it", str(file))
         return os.fdopen(descriptor, "r+b", buffering=0)
     except BaseException:
         os.close(descriptor)

@@ -43,7 +43,11 @@ def check_regular(path: str | os.PathLike[str], kind: str = "file") -> None:
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         raise _unreadable(path, str(getattr(error, "strerror", None) or error), kind) from None
     if stat.S_ISDIR(mode):
-        raise ReadError(f"{path} is a folder; give a file ({kind})", path=str(path), kind=kind)
+        raise ReadError(
+            f"{path} is a folder; give the path of a {kind}{'' if kind == 'file' else ' file'}",
+            path=str(path),
+            kind=kind,
+        )
     if not stat.S_ISREG(mode):
         raise _unreadable(path, "it is a pipe or a device; save its content as a file", kind)
 
@@ -102,7 +106,7 @@ def read_text(path: str | os.PathLike[str], limit: int = LARGEST_TEXT, kind: str
     try:
         return read_bytes(path, limit, kind).decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise _unreadable(path, "it is not UTF-8 text", kind) from None
+        raise _unreadable(path, "it is not UTF-8 text; save it as UTF-8", kind) from None
 
 
 def _unreadable(path: str | os.PathLike[str], why: str, kind: str) -> ReadError:

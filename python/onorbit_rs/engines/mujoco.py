@@ -192,10 +192,12 @@ class Mujoco:
             As for :meth:`step`, or if the instance was created for other systems.
         """
         if not self._is_world or len(q) != self._model.nq or len(tau) != len(self._dofs):
+            systems = count(len(self._shares), "system", "systems")
+            made = f"a world of {systems}" if self._is_world else "a single robot"
             raise EngineError(
-                f"this engine was created for {count(len(self._shares), 'system', 'systems')} with "
-                f"{self._model.nq} coordinates, but the world has {len(q)} coordinates; create "
-                "Mujoco({name: model, ...}) with all systems in the order of the world",
+                f"this engine was created for {made} and {self._model.nq} coordinates, but the world has "
+                f"{len(q)} coordinates; create Mujoco({{name: model, ...}}) with all systems in the order of "
+                "the world",
                 name="engine", got="mujoco",
             )  # fmt: skip
         qpos, qvel, acceleration, done = self._advance((start, end), (q, v, tau), wrenches, welds)

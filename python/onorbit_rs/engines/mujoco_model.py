@@ -113,7 +113,8 @@ def world_model(
         compiled = spec.compile()
     except ValueError as error:
         reason = " ".join(str(error).split())
-        raise ModelError(f"MuJoCo rejects this robot: {reason}; use engine: native") from error
+        robots = ", ".join(repr(model.name) for model in models.values())
+        raise ModelError(f"MuJoCo rejects the model of {robots}: {reason}; use engine: native") from error
     # set after compilation, since the compiler rejects moments that violate the triangle inequality, which
     # occur in published robots
     for name, moment in moments.items():
@@ -161,7 +162,7 @@ def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
         what = "no mass" if body.mass <= 0.0 else f"a principal moment of inertia of {moments[0]:g} kg m²"
         raise ModelError(
             f"link '{body.name}' has {what}, which MuJoCo does not support; give it a small mass and "
-            "inertia (planar and ball joints have such links), or use engine: native",
+            "inertia, or use engine: native, also for planar and ball joints, which consist of such links",
             link=body.name,
         )
     quat = np.empty(4)

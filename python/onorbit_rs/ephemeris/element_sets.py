@@ -40,7 +40,9 @@ def select_set(sets: Iterable[tuple[str, str, T]], satellite: str, where: str) -
     if len(found) > 1:
         sets_found = count(len(found), "element set", "element sets")
         numbers = {_word(number) for _, number, _ in sets if number}
-        fix = "keep one of them" if wanted in numbers else "keep one of them, or give the catalogue number"
+        fix = (
+            "remove all but one" if wanted in numbers else "remove all but one, or give the catalogue number"
+        )
         raise ElementSetError(
             f"{where} contains {sets_found} of {satellite!r}; {fix}",
             name="satellite", got=satellite,

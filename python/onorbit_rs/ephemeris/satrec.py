@@ -58,13 +58,17 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
         elements = SimpleNamespace(**{name: getattr(satrec, name) for name in names})
     except AttributeError:
         raise InputError(
-            f"a Satrec of PyPI's sgp4 is required, got {type(satrec).__name__}; create one with"
-            " Satrec.twoline2rv or sgp4init",
+            f"satrec is of type {type(satrec).__name__}; it must be a Satrec of PyPI's sgp4, from "
+            "Satrec.twoline2rv or sgp4init",
             name="satrec",
         ) from None
     for name in _NUMBERS:
         if not math.isfinite(value := getattr(elements, name)):
-            raise ElementSetError(f"{name} of the Satrec is {value}; it must be finite", name=name, got=value)
+            raise ElementSetError(
+                f"{name} of the Satrec is {value}; it must be finite; correct the element set",
+                name=name,
+                got=value,
+            )
     if elements.operationmode == "a" and not by_reference:
         raise ElementSetError(
             "the Satrec is in AFSPC mode ('a'), which the engine does not support; initialize it with 'i'"
@@ -77,7 +81,7 @@ def read(satrec: Any, by_reference: bool) -> tuple[SimpleNamespace, str]:
             return elements, name
     raise ElementSetError(
         f"the Satrec's gravity constants (mu {elements.mu} km³/s², radius {elements.radiusearthkm} km, ...)"
-        f" are not those of a known model; initialize it with one of {', '.join(MODELS)}",
+        f" are not those of a known Earth model; initialize it with one of {', '.join(MODELS)}",
         name="gravity",
     )  # fmt: skip
 

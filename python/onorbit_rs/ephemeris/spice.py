@@ -21,6 +21,8 @@ _NUMBERS = (2, 6)
 SOLAR_SYSTEM = 0
 """NAIF ID of the solar system's barycentre, at which the chains of segments end."""
 
+_DOWNLOAD = "download it again, or give another kernel, such as de440s.bsp"
+
 Segment = tuple[float, float, float, "NDArray[np.float64]"]
 """Sign, start (s of TDB from J2000.0), interval (s), Chebyshev coefficients (3, intervals, count), km."""
 
@@ -47,7 +49,7 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
         kernel = SPK.open(path)
     except Exception as error:  # jplephem raises many kinds of errors for a damaged file
         raise ReadError(
-            f"{path} cannot be read as a SPICE kernel of positions (SPK, .bsp): {error}",
+            f"{path} cannot be read as a SPICE kernel of positions (SPK, .bsp): {error}; {_DOWNLOAD}",
             path=str(path),
             kind="SPICE kernel",
         ) from None
@@ -64,7 +66,7 @@ def _check_records(path: str | Path) -> None:
 
     with Path(path).open("rb") as stream:
         numbers = stream.read(16)[8:]
-        if _NUMBERS not in (struct.unpack(order, numbers) for order in ("<2I", ">2I")):
+        if len(numbers) < 8 or _NUMBERS not in (struct.unpack(order, numbers) for order in ("<2I", ">2I")):
             raise ValueError("it contains no segments of positions")
         seen: set[int] = set()
         for number, _, _ in DAF(stream).summary_records():
@@ -113,11 +115,14 @@ def _series(segment: Any, path: str | Path) -> tuple[float, float, NDArray[np.fl
     except Exception as error:  # damaged data, or an AttributeError for another type of segment
         kind = getattr(segment, "data_type", "?")
         if kind in (2, 3):
-            message = f"{path}: the segment of body {segment.target} is damaged: {error}"
+            message = (
+                f"{path}: the positions of body {segment.target} cannot be read ({error}); the file may be "
+                f"damaged; {_DOWNLOAD}"
+            )
             raise ReadError(message, path=str(path), kind="SPICE kernel") from None
         message = (
-            f"{path}: the segment of body {segment.target} is of type {kind}; it must be of type 2 or 3 "
-            "(Chebyshev polynomials)"
+            f"{path}: the segment of body {segment.target} is of SPK type {kind}; it must be of type 2 or 3 "
+            "(Chebyshev polynomials); give another kernel, such as de440s.bsp"
         )
         raise EarthError(message, name="ephemeris", got=kind, expected=(2, 3)) from None
     return (

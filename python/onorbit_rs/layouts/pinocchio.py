@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.common.coordinates import BASE_NQ, BASE_NV, BASE_Q, BASE_V, JOINTS_Q, JOINTS_V, QUATERNION
+from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import InputError
 from onorbit_rs.layouts.state import (
     check_unit,
@@ -126,7 +127,8 @@ def _layout(model: Model, joints: Any, unbounded: Sequence[str]) -> tuple[Any, l
     unknown = [name for name in unbounded if name not in names]
     if unknown:
         raise InputError(
-            f"unbounded contains {unknown[0]!r}, which is not a moving joint of the robot",
+            f"unbounded contains {unknown[0]!r}, which is not a moving joint of the robot"
+            f"{did_you_mean(unknown[0], names)}",
             name="unbounded",
             got=unknown,
             expected=names,

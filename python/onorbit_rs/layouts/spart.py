@@ -136,7 +136,7 @@ def from_spart(
             else "its determinant is -1, so it contains a reflection"
         )
         raise InputError(
-            f"R0 is not a rotation matrix: {why}",
+            f"R0 is not a rotation matrix: {why}; give an orthonormal matrix with determinant 1",
             name="R0",
             got=float(off),
             expected="orthonormal",
@@ -156,6 +156,6 @@ def _com(model: Model, base_com: ArrayLike | None) -> Floats:
     com = checked("base_com", base_com, 3)
     if com.ndim != 1:
         raise InputError(
-            f"base_com has shape {com.shape}, expected (3,)", name="base_com", got=com.shape, expected=(3,)
+            f"base_com has shape {com.shape}; expected (3,)", name="base_com", got=com.shape, expected=(3,)
         )
     return com

@@ -100,13 +100,17 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
         return np.arange(len(known))
     if isinstance(names, str):
         raise DtypeError(
-            "joints is a string; it must be a list of names", name="joints", expected="list", got="str"
+            f"joints is the string {names!r}; it must be a list of joint names",
+            name="joints",
+            expected="list",
+            got="str",
         )
     given = [str(name) for name in names]
     for name in given:
         if name not in known:
             raise FrameError(
-                f"no joint is named {name!r}{did_you_mean(name, known)}",
+                f"joints contains {name!r}, which is not a moving joint of the robot"
+                f"{did_you_mean(name, known)}",
                 name=name, kind="joint", known=known, suggestion=nearest(name, known),
             )  # fmt: skip
     missing = [name for name in known if name not in given]
@@ -133,7 +137,8 @@ def names_in(joints: Any, attribute: str) -> bool:
 def no_floating_base(engine: str) -> InputError:
     """Return the error for a model that does not start with a free joint."""
     return InputError(
-        f"the {engine} model must start with a floating base, followed by one-degree-of-freedom joints",
+        f"the first joint of the {engine} model must be a free joint (floating base), and every other joint "
+        "must have one degree of freedom; give such a model, or the list of joint names",
         name="joints", got=engine, expected="a floating base",
     )  # fmt: skip
 

@@ -69,8 +69,7 @@ class CheckpointWriter:
             if not self._has_warned:
                 self._has_warned = True
                 warnings.warn(
-                    f"a checkpoint could not be written: {error}; the run continues and retries at the "
-                    "next checkpoint",
+                    f"{error}; the run continues without this checkpoint and tries again at the next one",
                     UserWarning, stacklevel=2,
                 )  # fmt: skip
             return False
@@ -101,7 +100,8 @@ class CheckpointWriter:
         content = sealed(record)
         if len(content) > _MOST:
             raise _refused(
-                f"the state of the run has {len(content)} bytes, which exceeds the limit of {_MOST}",
+                f"cannot write {self._path / STATE}: the state of the run has {len(content)} bytes; at most "
+                f"{_MOST} are allowed",
                 self._path,
             )
         sync_folder(self._path)
@@ -127,8 +127,8 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
     path = folder / CHECKPOINT
     if not has_checkpoint(folder):
         raise _refused(
-            f"no checkpoint in {folder}: the run ended, or was stopped before its first checkpoint; "
-            "run the scenario again",
+            f"there is no checkpoint in {folder}: the run is complete, or was stopped before its first "
+            "checkpoint; to repeat it, run the scenario again",
             path,
         )
     file = path / STATE
@@ -139,7 +139,7 @@ def read_checkpoint(folder: Path, digest: str) -> SavedCheckpoint:
         if found != digest:
             raise _refused(
                 f"the checkpoint in {folder} belongs to another scenario: scenario.yaml, or a file named in "
-                "it, was changed since; undo the change or run the scenario again",
+                "it, was changed after the checkpoint; undo the change or run the scenario again",
                 path,
             )
         columns, rows, digests = {}, {}, {}
@@ -194,7 +194,9 @@ def _append(file: Path, content: bytes, *, after: int) -> None:
     """Write rows at the byte offset ``after``, replacing invalid rows of a run that was killed."""
     with open_to_change(file) as stream:
         if stream.seek(0, os.SEEK_END) < after:
-            raise _refused(f"rows of the checkpoint are missing in {file}; run the scenario again", file)
+            raise _refused(
+                f"{file} has lost rows that this run wrote, so the checkpoint cannot be updated", file
+            )
         stream.truncate(after)
         stream.seek(after)
         left = memoryview(content)
@@ -213,7 +215,7 @@ def _column(file: Path, rows: int, width: int) -> tuple[Any, _Hash]:
         stream.seek(0)
         content = stream.read(8 * needed)
     if len(content) != 8 * needed:
-        raise ValueError("it is truncated")
+        raise ValueError(f"it ends after {len(content)} of {8 * needed} bytes")
     return np.frombuffer(content, dtype="<f8").reshape(rows, width), hashlib.sha256(content)
 
 

@@ -12,7 +12,7 @@ from onorbit_rs.output.manifest import MANIFEST
 def not_empty(folder: Path) -> OutputNotEmptyError:
     """Return the error for a folder that contains files."""
     return OutputNotEmptyError(
-        f"output folder is not empty: {folder}; choose another folder, or replace its run with --force "
+        f"the output folder {folder} is not empty; choose another folder, or replace its run with --force "
         "(force=True)",
         path=str(folder),
     )
@@ -40,6 +40,6 @@ def edited(file: Path) -> OutputNotEmptyError:
 def not_writable(folder: Path, error: OSError) -> OutputNotWritableError:
     """Return the error for an output folder that cannot be created or written."""
     return OutputNotWritableError(
-        f"output folder cannot be written: {folder}: {error.strerror or error}; choose another folder",
+        f"the output folder {folder} cannot be written: {error.strerror or error}; choose another folder",
         path=str(folder),
     )

@@ -159,8 +159,8 @@ class OutputFolder:
                 path=str(self.path),
             )
         warnings.warn(
-            f"{self._lock.path} was removed while this process was writing to the folder, and was created "
-            "again: do not remove the file, since it prevents other commands from writing",
+            f"{self._lock.path} was removed during the run and has been created again; keep it until the run "
+            "ends, because it prevents other commands from writing to the folder",
             UserWarning, stacklevel=2,
         )  # fmt: skip
 
@@ -296,7 +296,7 @@ def _make(folder: Path) -> None:
     try:
         if folder.exists() and not folder.is_dir():
             raise OutputNotWritableError(
-                f"output path is {file_kind(folder)}, but must be a folder: {folder}; choose another path",
+                f"the output path {folder} is {file_kind(folder)}, but must be a folder; choose another path",
                 path=str(folder),
             )
         folder.mkdir(parents=True, exist_ok=True)

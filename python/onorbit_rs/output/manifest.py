@@ -105,8 +105,8 @@ def read_manifest(folder: Path) -> Manifest | None:
         )
         raise ReadError(
             f"cannot read {file}: {reason}; the files of the run cannot be verified; repeat the run in "
-            f"another folder with onorbit run {shell_word(folder / SCENARIO)}, or remove {MANIFEST} to read "
-            "the folder without verification",
+            f"another folder with onorbit run {shell_word(folder / SCENARIO)} --out DIR, or remove "
+            f"{MANIFEST} to read the folder without verification",
             path=str(file), kind="manifest",
         ) from error  # fmt: skip
     return Manifest(files, names)

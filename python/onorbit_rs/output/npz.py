@@ -48,14 +48,15 @@ def _check_directory(members: list[zipfile.ZipInfo], size: int) -> None:
         raise ValueError(f"it has {len(names)} columns; at most {_MOST_COLUMNS} are allowed")
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"it has duplicate columns ({twice!r})")
+        raise ValueError(f"it contains {twice!r} more than once")
     for member in members:
         if not member.filename.endswith(".npy"):
             raise ValueError(f"it contains {member.filename!r}, which is not an array")
         if member.compress_type != zipfile.ZIP_STORED or member.compress_size != member.file_size:
             raise ValueError(f"{member.filename} is compressed, but must be uncompressed")
-    if sum(member.file_size for member in members) > size:
-        raise ValueError("its columns are larger than the file")
+    total = sum(member.file_size for member in members)
+    if total > size:
+        raise ValueError(f"its columns have {total} bytes in total, but the file has {size}")
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
@@ -70,11 +71,13 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
         shape = tuple(int(number) for number in header["shape"].split(b",") if number.strip())
         left, needed = member.file_size - 10 - length, math.prod(shape) * dtype.itemsize
         if needed != left:
-            raise ValueError(f"{member.filename} has {left} bytes, but its shape {shape} requires {needed}")
+            raise ValueError(
+                f"{member.filename} contains {left} bytes, but its shape {shape} requires {needed}"
+            )
         content = bytearray()
         while chunk := stream.read(_CHUNK):  # zipfile verifies the checksum at the end of the member
             content += chunk
     if len(content) != left:
-        raise ValueError(f"{member.filename} is truncated")
+        raise ValueError(f"{member.filename} ends after {len(content)} of {left} bytes")
     order: Literal["F", "C"] = "F" if header["is_fortran"] == b"True" else "C"
     return np.frombuffer(content, dtype=dtype).reshape(shape, order=order)

@@ -105,13 +105,7 @@ class SavedRun:
         except OSError as error:
             raise _unreadable(file, "summary", error) from error
         except (ValueError, TypeError) as error:
-            here = shell_word(self.folder)
-            again = (
-                f"repeat the run with onorbit run {shell_word(self.folder / SCENARIO)} --out {here} --force"
-            )
-            raise ReadError(
-                f"cannot read {file}: {error}; {again}", path=str(file), kind="summary"
-            ) from error
+            raise _damaged(file, "summary", error) from error
 
     def trace(self) -> Trace:
         """Return ``trace.npz`` of a run with one robot; raises the errors of :func:`read_trace`."""
@@ -131,7 +125,7 @@ class SavedRun:
         try:
             return saved_world(arrays, audits)
         except (ValueError, TypeError, KeyError, IndexError) as error:
-            raise _unreadable(self.folder / TRACE, "trace", error) from error
+            raise _damaged(self.folder / TRACE, "trace", error) from error
 
     def _arrays(self, required: set[str]) -> dict[str, Any]:
         file = self.folder / TRACE
@@ -139,16 +133,19 @@ class SavedRun:
             with self.opened(TRACE) as stream:
                 arrays = read_arrays(stream)
             if not required <= set(arrays):
-                raise ValueError(f"columns are missing ({', '.join(sorted(required - set(arrays)))})")
+                raise ValueError(f"it has no {' and no '.join(sorted(required - set(arrays)))}")
             for own in [system_in(arrays, name).arrays for name in systems_in(arrays)] or [arrays]:
                 check_shapes(own)
         except OnOrbitError:
             raise
         except FileNotFoundError as error:
-            message = f"no trace in this folder: {file}{_hint(self.folder)}"
+            hint = _hint(self.folder) or "; give the output folder of a run"
+            message = f"no trace in this folder ({TRACE} is missing): {self.folder}{hint}"
             raise NotFoundError(message, path=str(file), kind="trace") from error
-        except (OSError, ValueError, TypeError, AttributeError) as error:
+        except OSError as error:
             raise _unreadable(file, "trace", error) from error
+        except (ValueError, TypeError, AttributeError) as error:
+            raise _damaged(file, "trace", error) from error
         return arrays
 
     def scenario_text(self) -> str:
@@ -166,7 +163,10 @@ class SavedRun:
         except OnOrbitError:
             raise
         except FileNotFoundError as error:
-            message = f"no scenario in this folder: {file}"
+            message = (
+                f"no scenario in this folder ({SCENARIO} is missing): {self.folder}; give the output folder "
+                "of a run"
+            )
             raise NotFoundError(message, path=str(file), kind="scenario") from error
         except (OSError, ValueError) as error:
             raise _unreadable(file, "scenario", error) from error
@@ -182,8 +182,8 @@ class SavedRun:
         if not self._has_warned:
             self._has_warned = True
             warnings.warn(
-                f"{self.folder} has no {MANIFEST}, because the manifest was removed or an earlier version "
-                "wrote the folder; changes to the files since the run cannot be detected",
+                f"{self.folder} has no {MANIFEST} (it was removed, or an earlier version wrote the folder), "
+                "so changes to the files since the run cannot be detected; repeat the run to write one",
                 UserWarning, stacklevel=2,
             )  # fmt: skip
 
@@ -194,7 +194,7 @@ def check_folder(folder: Path) -> None:
         what = (
             f" is {file_kind(folder)}, but the output folder of a run is required"
             if exists(folder)
-            else ": no such folder"
+            else ": no such folder; give the output folder of a run"
         )
         raise NotFoundError(f"{folder}{what}", path=str(folder), kind="run")
 
@@ -217,6 +217,16 @@ def read_trace(folder: Path) -> Trace:
 def _unreadable(file: Path, kind: str, error: Exception) -> ReadError:
     reason = getattr(error, "strerror", None) or error
     return ReadError(f"cannot read {file}: {reason}", path=str(file), kind=kind)
+
+
+def _damaged(file: Path, kind: str, error: Exception) -> ReadError:
+    """Return the error for a file whose content is not what a run writes."""
+    reason = f"it has no {error}" if isinstance(error, KeyError) else error
+    scenario, folder = shell_word(file.parent / SCENARIO), shell_word(file.parent)
+    return ReadError(
+        f"cannot read {file}: {reason}; repeat the run with onorbit run {scenario} --out {folder} --force",
+        path=str(file), kind=kind,
+    )  # fmt: skip
 
 
 def _hint(folder: Path) -> str:
@@ -259,7 +269,7 @@ _KINDS: dict[str, tuple[type | tuple[type, ...], str]] = {
 
 def _checked(summary: Any) -> dict[str, Any]:
     if not isinstance(summary, dict):
-        raise TypeError(f"its content is of type {type(summary).__name__}; expected a mapping")
+        raise TypeError(f"its content is {_brief(summary)}; expected a mapping")
     if isinstance(summary.get("systems"), dict):
         return _checked_world(summary)
     for name, value in summary.items():

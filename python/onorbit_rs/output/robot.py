@@ -14,8 +14,8 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Model
 
 CHANGED = (
-    "the robot's file was changed since the run, so that the robot differs from that of the run; undo the "
-    "change, or repeat the run"
+    "the robot differs from that of the run; undo the changes to its file and to the files that it includes, "
+    "or repeat the run"
 )
 
 

@@ -32,7 +32,8 @@ class SavedContact:
         parts = COLUMNS["contacts"].parts
         wanted = _PART_OF.get(name, name)
         if name == "values" or wanted not in parts or name in _PART_OF.values():
-            raise AttributeError(f"a contact has no attribute {name!r}")
+            known = ", ".join([*(part for part in parts if part not in _PART_OF.values()), *_PART_OF])
+            raise AttributeError(f"a contact has no attribute {name!r}; its quantities are {known}")
         entries, _ = parts[wanted]
         return self.values[:, entries.start] if entries.stop == entries.start + 1 else self.values[:, entries]
 

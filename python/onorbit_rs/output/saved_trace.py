@@ -26,7 +26,7 @@ class SavedTrace:
     def __getattr__(self, name: str) -> Any:
         """Return a column; None if the run did not record it."""
         if name.startswith("__") or name == "arrays" or (name not in COLUMNS and name not in self.arrays):
-            raise AttributeError(f"the trace has no column {name!r}")
+            raise AttributeError(f"the trace has no column {name!r}; columns() lists its columns")
         return self.arrays.get(name)
 
     def columns(self) -> list[str]:

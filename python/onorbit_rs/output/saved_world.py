@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.common.counting import count
 from onorbit_rs.exceptions import WorldError
 from onorbit_rs.output.saved_trace import SavedTrace
 
@@ -110,7 +111,8 @@ def saved_world(arrays: Mapping[str, Any], audits: Sequence[Mapping[str, Any]]) 
     systems = {name: system_in(arrays, name) for name in systems_in(arrays)}
     if len(audits) != len(arrays["events/time"]):
         raise ValueError(
-            f"its number of events, {len(arrays['events/time'])}, differs from {len(audits)} in the summary"
+            f"it contains {count(len(arrays['events/time']), 'event', 'events')}, but summary.json contains "
+            f"{len(audits)}"
         )
     events = [_event(arrays, row, audit) for row, audit in enumerate(audits)]
     columns = (arrays[name] for name in ("time", "momentum", "kinetic_energy"))

@@ -25,7 +25,7 @@ def unsealed(text: bytes) -> dict[str, Any]:
     try:
         record = json.loads(text)
         if not isinstance(record, dict):
-            raise ValueError("it must contain a mapping")
+            raise ValueError("its content is not a JSON mapping")
         seal = record.pop(_SEAL, None)
         if seal is None:
             raise ValueError("it has no checksum")

@@ -22,6 +22,11 @@ from onorbit_rs.robots.xacro_parts import replace_parts
 
 _LOCK = threading.Lock()  # xacro keeps its state in global variables
 
+_TOO_DEEP = (
+    "macros, includes or elements are nested too deeply; check for a macro that calls itself or a file that "
+    "includes itself"
+)
+
 
 def expand(
     path: str | os.PathLike[str],
@@ -88,7 +93,9 @@ def _import_xacro(file: Path) -> Any:
         return importlib.import_module("xacro")
     except ImportError as error:
         raise ModelError(
-            f"{file}: a xacro file requires PyPI's xacro: pip install 'onorbit-rs[xacro]'", path=str(file)
+            f"{file}: xacro files require PyPI's xacro, which is not installed: "
+            "pip install 'onorbit-rs[xacro]'",
+            path=str(file),
         ) from error
 
 
@@ -114,9 +121,7 @@ def _model_errors(file: Path) -> Iterator[None]:
     try:
         yield
     except RecursionError:
-        raise ModelError(
-            f"{file}: macros, includes or elements are nested too deeply", path=str(file)
-        ) from None
+        raise ModelError(f"{file}: {_TOO_DEEP}", path=str(file)) from None
     except OSError as error:
         raise ReadError(
             f"cannot read {file}: {error.strerror or error}", path=str(file), kind="robot"
@@ -146,7 +151,7 @@ def _reason(error: Exception) -> str:
     """Return the message of an error in one line, without class names of xacro."""
     text = " ".join(str(error).split()) or type(error).__name__
     if "maximum recursion depth" in text:
-        return "macros, includes or elements are nested too deeply"
+        return _TOO_DEEP
     undefined = re.search(r"Undefined substitution argument\s+(\S+)", text)
     if undefined:
         name = undefined[1]
@@ -154,6 +159,14 @@ def _reason(error: Exception) -> str:
     if type(error).__module__.startswith("xml."):
         hint = '; declare xmlns:xacro="http://www.ros.org/wiki/xacro"' if "unbound prefix" in text else ""
         return f"not XML: {text}{hint}"
-    text = re.sub(r"^<class '[^']*'>: ", "", text)
+    text, *expressions = re.sub(r"^<class '[^']*'>: ", "", text).split(" when evaluating expression ")
     half = text[: len(text) // 2]
-    return half if text == f"{half} {half}" else text  # xacro repeats the reason
+    reason = half if text == f"{half} {half}" else text  # xacro repeats the reason
+    if not expressions:
+        return reason
+    return f"expression {', used in '.join(map(_shortened, expressions))}: {reason}"
+
+
+def _shortened(text: str) -> str:
+    """Return the start of an expression that is too long for a message."""
+    return text if len(text) <= 100 else f"{text[:100]} ..."

@@ -69,7 +69,7 @@ def evaluate(text: str, names: Callable[[str], Any], functions: Mapping[str, Any
     try:
         tree = parsed(text, _LONGEST)
     except SyntaxError as error:
-        raise ValueError(f"invalid syntax in {text!r}: {error.msg}") from None
+        raise ValueError(f"{text!r} is not a valid expression ({error.msg})") from None
     return _Evaluation(names, functions, work).visit(tree)
 
 
@@ -121,7 +121,9 @@ class _Evaluation(Evaluator):
         found = self._functions.get(name)
         if found is None or callable(found):
             raise NameError(
-                f"name {name!r} is not defined" if found is None else f"{name!r} is a function; call it"
+                f"name {name!r} is not defined; define a property of this name, or correct the name"
+                if found is None
+                else f"{name!r} is a function; call it, as {name}(...)"
             )
         return found
 
@@ -222,7 +224,10 @@ class _Evaluation(Evaluator):
         if name is not None:
             function = self._functions.get(name)
             if not callable(function):
-                raise NameError(f"function {name!r} is not available in xacro expressions")
+                raise NameError(
+                    f"function {name!r} is not available in xacro expressions; use arithmetic, or a function "
+                    "of Python's math"
+                )
             return function
         if not isinstance(node, ast.Attribute):
             raise self.refused(node)

@@ -29,7 +29,10 @@ class Work:
         """Subtract steps from the remaining steps; raises ValueError if too few remain."""
         self._left -= steps
         if self._left < 0:
-            raise ValueError(f"the expansion requires more than {self._steps} steps, the limit for a file")
+            raise ValueError(
+                f"the expansion of the file requires more than {self._steps} steps, the limit; simplify its "
+                "macros and expressions"
+            )
 
 
 def check_size(value: Any, work: Work) -> None:
@@ -45,7 +48,8 @@ def check_size(value: Any, work: Work) -> None:
         elif isinstance(item, int):
             if item.bit_length() > MAX_BITS:
                 raise ValueError(
-                    f"an integer has {item.bit_length()} bits, which exceeds the limit of {MAX_BITS}"
+                    f"an integer has {item.bit_length()} bits, which exceeds the limit of {MAX_BITS} bits in "
+                    "xacro expressions"
                 )
         elif isinstance(item, (list, tuple)):
             waiting.extend(list.__iter__(item) if isinstance(item, list) else item)
@@ -63,8 +67,9 @@ def repeated(a: Any, b: Any) -> Any:
     """Return ``a * b``; raises ValueError if a repeated string or list exceeds its size limit."""
     for items, times in ((a, b), (b, a)):
         if isinstance(items, (str, list, tuple)) and isinstance(times, int):
-            limit = MAX_TEXT if isinstance(items, str) else MAX_ITEMS
-            _check(len(items) * times <= limit, f"{count(len(items), 'item', 'items')} {times} times", limit)
+            limit, one = (MAX_TEXT, "character") if isinstance(items, str) else (MAX_ITEMS, "item")
+            what = f"{count(len(items), one, f'{one}s')} repeated {count(times, 'time', 'times')}"
+            _check(len(items) * times <= limit, what, f"{limit} {one}s")
     return operator.mul(a, b)
 
 
@@ -91,7 +96,7 @@ def remainder_or_text(a: Any, b: Any) -> Any:
 
 def _range(*ends: int) -> list[int]:
     made = range(*ends)
-    _check(len(made) <= MAX_ITEMS, f"a range of {len(made)} numbers", MAX_ITEMS)
+    _check(len(made) <= MAX_ITEMS, f"a range of {len(made)} numbers", f"{MAX_ITEMS} numbers")
     return list(made)
 
 
@@ -108,13 +113,13 @@ def _sum(values: Any, start: float = 0) -> Any:
 
 def _replace(text: str, old: str, new: str) -> str:
     length = len(text) + text.count(old) * len(new)
-    _check(length <= MAX_TEXT, f"a text of {length} characters", MAX_TEXT)
+    _check(length <= MAX_TEXT, f"a text of {length} characters", f"{MAX_TEXT} characters")
     return text.replace(old, new)
 
 
 def _join(text: str, parts: Any) -> str:
     length = len(text) * len(parts) + sum(map(len, parts))
-    _check(length <= MAX_TEXT, f"a text of {length} characters", MAX_TEXT)
+    _check(length <= MAX_TEXT, f"a text of {length} characters", f"{MAX_TEXT} characters")
     return text.join(parts)
 
 

@@ -29,8 +29,8 @@ def rebuild_robot(
     if has_changed(model, fingerprint):
         path = keywords.get("path")
         raise ModelError(
-            f"{path or 'the description'} no longer describes the pickled robot, because this file or an "
-            "included file was changed; restore the file, or load the robot again and pickle the new one",
+            f"{path or 'the description'} no longer describes the pickled robot; undo the changes to this "
+            "file or to the files that it includes, or load the robot again and pickle the new one",
             path=path and str(path),
         )
     return model

@@ -39,10 +39,12 @@ class Files:
         """
         if not package:
             raise ValueError(
-                "$(find …): the package name is empty because an argument in it is empty; give its value"
+                "$(find …): the package name is empty; give a value to the argument that it consists of"
             )
         if package in (".", "..") or "/" in package or "\\" in package:
-            raise ValueError(f"$(find {package}): {package!r} is not a valid package name")
+            raise ValueError(
+                f"$(find {package}): {package!r} is not a valid package name; give the name without a path"
+            )
         for folder in [*self._given, *self._above]:
             beside = folder / package
             if folder.name == package and folder.is_dir():
@@ -87,7 +89,8 @@ class Files:
         folder, last = os.path.split(pattern)
         if any(sign in folder for sign in "*?["):
             raise ValueError(
-                f"{pattern!r}: *, ? and [ are allowed in the names of files only, not of folders"
+                f"the include {pattern!r} has *, ? or [ in the name of a folder; use them in the name of the "
+                "file only"
             )
         return [str(found) for found in sorted(Path(folder or ".").glob(last))] if last else []
 
@@ -133,9 +136,9 @@ def _checked(raw: bytes, name: str) -> str:
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise ValueError(f"{name!r}: not UTF-8 text (at byte {error.start}); save it as UTF-8") from None
+        raise ValueError(f"{name!r} is not UTF-8 text (at byte {error.start}); save it as UTF-8") from None
     if not text.strip():
-        raise ValueError(f"{name!r}: the file is empty")
+        raise ValueError(f"the file {name!r} is empty; write its content, or remove its include")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise ValueError(f"{name!r}: a document type (<!DOCTYPE>) is not allowed; remove it")
+        raise ValueError(f"{name!r} contains a document type (<!DOCTYPE>), which is not allowed; remove it")
     return text

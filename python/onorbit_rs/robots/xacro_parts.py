@@ -75,7 +75,8 @@ def replace_parts(
 
     def refused(*_: Any) -> None:
         raise ValueError(
-            "this version of xacro is not supported because it would execute Python; install xacro 2.1"
+            "the installed version of xacro is not supported, because it would execute Python; "
+            "install xacro 2.1"
         )
 
     for owner, name, replacement in (
@@ -145,7 +146,7 @@ def _file_functions(xacro: Any, files: Files, work: Work) -> dict[str, Any]:
         try:
             text = files.open(path).read()
         except OSError:
-            raise ValueError(f"loads {_missing(name, path, files, {})}") from None
+            raise ValueError(f"cannot load {_missing(name, path, files, {})}") from None
         work.spend(10 * len(text))
         return xacro.YamlListWrapper.wrap(yaml.load(text, Loader=_loader(work)))
 
@@ -202,9 +203,9 @@ def _without_extras(
                 raise
             if not _EXTRAS.search(name):
                 path = paths[-1] if paths else ""
-                raise ValueError(f"includes {_missing(name, path, files, given)}") from error
+                raise ValueError(f"cannot include {_missing(name, path, files, given)}") from error
             xacro.filestack[:] = stack
-            _leave_out(node, f"the file {name!r} does not exist", remarks)
+            _leave_out(node, f"the included file {name!r} does not exist", remarks)
             left_out.append(name)
 
     def call_if_known(node: Any, *others: Any) -> Any:
@@ -214,33 +215,33 @@ def _without_extras(
             is_extra = left_out and _EXTRAS.search(node.tagName)
             if not (is_extra and str(error).startswith("unknown macro")):
                 raise
-            _leave_out(node, f"it defines the macro <{node.tagName}>", remarks)
+            _leave_out(node, f"the macro <{node.tagName}> is not defined", remarks)
             return True
 
     return include_if_there, call_if_known
 
 
 def _leave_out(node: Any, why: str, remarks: list[str]) -> None:
-    remarks.append(f"skipped, since it is for simulators only: {why}")
+    remarks.append(f"{why}; it was skipped, since its name indicates that only simulators need it")
     node.parentNode.removeChild(node)
 
 
 def _missing(name: str, path: str, files: Files, given: Mapping[str, Any]) -> str:
-    """Return why a file is missing: an argument or package is missing, or the file does not exist.
+    """Return the name of a missing file, and why it is missing: an argument, a package, or the file itself.
 
     ``name`` is the name in the file, ``path`` its expanded path, and ``given`` are the values of arguments.
     """
     if empty := _empty(name, given):
-        return f"{name!r}, in which the argument {empty!r} is empty; give it with {wording().argument(empty)}"
+        return f"{name!r}: the argument {empty!r} is empty; give it with {wording().argument(empty)}"
     found = re.search(r"\$\(find\s+([^)\s]+)\s*\)|package:/+([^/]+)", f"{name} {path}")
     package = (found[1] or found[2]) if found else None
     if package and files.find(package).startswith("package:"):
         return (
-            f"{name!r}, whose package {package!r} was not found; give the folder that contains it with "
+            f"{name!r}: the package {package!r} was not found; give the folder that contains it with "
             f"{wording().packages}"
         )
     shown = path if path and "$" in name else name
-    return f"{shown!r}, which does not exist"
+    return f"{shown!r}: the file does not exist; correct its name"
 
 
 def _empty(name: str, given: Mapping[str, Any]) -> str | None:

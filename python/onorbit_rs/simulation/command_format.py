@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from onorbit_rs.common.files import open_to_read, read_bounded
+from onorbit_rs.common.input_files import read_bytes
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import InputError, NotFoundError
 
@@ -57,11 +57,14 @@ def checked(entry: Mapping[str, Any], where: str = "") -> Command:
     kinds = [kind for kind in _KINDS if kind in command]
     if len(kinds) != 1:
         given = " and ".join(repr(kind) for kind in kinds) or "none of them"
-        raise invalid(where, f"a command has one of 'control', 'body' and 'trigger'; this one has {given}")
+        keys = "'control', 'body' and 'trigger'"
+        raise invalid(where, f"a command must have exactly one of the keys {keys}, but this one has {given}")
     known = ("time", *_KINDS[kinds[0]])
     for key in command:
         if key not in known:
-            raise invalid(where, f"a command with '{kinds[0]}' has no key {key!r}{did_you_mean(key, known)}")
+            raise invalid(
+                where, f"{key!r} is not a key of a command with '{kinds[0]}'{did_you_mean(key, known)}"
+            )
     for key in ("system", "control", "body", "trigger", "frame"):
         if not isinstance(command.get(key, ""), str):
             raise invalid(where, f"'{key}' is {command[key]!r:.60}; it must be a name (text)")
@@ -78,7 +81,7 @@ def checked(entry: Mapping[str, Any], where: str = "") -> Command:
         options = ", ".join((*SETPOINT, "values"))
         raise invalid(where, f"the command has no setpoint; give {options} or trajectory")
     if len(content) > 1 and not set(content) <= set(SETPOINT):
-        raise invalid(where, f"give either {content[-1]!r} or {content[0]!r}, not both")
+        raise invalid(where, f"the command has both {content[0]!r} and {content[-1]!r}; give one of them")
     return command
 
 
@@ -89,7 +92,7 @@ def _check_trajectory(command: Command) -> None:
         raise invalid(where, message)
     for key, value in path.items():
         if key not in TRAJECTORY:
-            raise invalid(where, f"a trajectory has no key {key!r}{did_you_mean(key, TRAJECTORY)}")
+            raise invalid(where, f"{key!r} is not a key of 'trajectory'{did_you_mean(key, TRAJECTORY)}")
         fits = _is_number(value) if key == "start" else _is_array(value)
         if not fits:
             kind = "a number of seconds" if key == "start" else "a list of finite numbers"
@@ -119,8 +122,7 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     path = Path(file)
     if not path.is_file():
         raise NotFoundError(f"no such file of commands: {path}", path=str(path), kind="commands")
-    with open_to_read(path) as stream:
-        content = read_bounded(stream, _MOST)
+    content = read_bytes(path, _MOST, "commands")
     try:
         text = content.decode()
     except UnicodeDecodeError as error:
@@ -146,7 +148,7 @@ def parse_commands(text: str, name: str) -> list[Command]:
             raise invalid(where, f"the line is not valid JSON: {reason}") from None
         if not isinstance(entry, dict) or "time" not in entry:
             message = "each line must be a JSON object with the key 'time', the simulated time in s"
-            raise invalid(where, message)
+            raise invalid(where, f"{message}, not {line.strip()!r:.60}")
         commands.append(checked(entry, where))
     return in_order(commands)
 

@@ -57,12 +57,13 @@ def decode(text: bytes) -> Any:
     try:
         data = json.loads(text)
         if data["format"] != _FORMAT:
-            raise ValueError(f"unknown format {data['format']!r}")
+            raise ValueError(f"its format is {data['format']!r}, expected {_FORMAT!r}")
         return _Decoder().decoded(data["state"])
     except (ValueError, KeyError, TypeError, IndexError, RecursionError, OverflowError) as error:
+        reason = f"the key {error} is missing" if isinstance(error, KeyError) else error
         raise CheckpointError(
-            f"the state of a Python controller in the checkpoint is invalid "
-            f"({type(error).__name__}: {error}); run the scenario again"
+            f"the state of a Python controller in the checkpoint is invalid ({reason}); run the scenario "
+            "again"
         ) from error
 
 

@@ -56,7 +56,8 @@ class Sgp4Orbit(Part):
     def build(self, folder: Path) -> _core.Sgp4:
         """Return the orbit; relative paths start at ``folder``."""
         if self.omm_file is not None:
-            message = entries(read_text(folder / self.omm_file), self.satellite)
+            file = folder / self.omm_file
+            message = entries(read_text(file, kind="OMM"), self.satellite, where=str(file))
             return _core.Sgp4.from_omm(message, gravity=self.gravity, propagator=self.propagator)
         return _core.Sgp4(
             *self._lines(folder),
@@ -68,7 +69,7 @@ class Sgp4Orbit(Part):
     def _lines(self, folder: Path) -> tuple[str, str]:
         if self.tle_file is not None:
             file = folder / self.tle_file
-            return two_lines(read_text(file), str(file), self.satellite)
+            return two_lines(read_text(file, kind="TLE"), str(file), self.satellite)
         if self.tle is not None:
             return two_lines(self.tle, "tle", self.satellite)
         assert self.line1 is not None and self.line2 is not None  # validated below
