@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
+import threading
+import time
 
 import numpy as np
 import pytest
-from ros2_runs import DOMAIN, needs_ros2, node_of
-from stepper_runs import scenario
+from ros2_runs import DOMAIN, Peer, needs_ros2, node_of, spinning
+from stepper_runs import passive, scenario
 
 needs_ros2()
 
@@ -24,14 +27,15 @@ class Machine:
     """A clock that each look advances by a microsecond, and sleeps that end too late."""
 
     def __init__(self, late: float) -> None:
-        self.now, self.late, self.sleeps = 100.0, late, 0
+        self.now, self.late = 100.0, late
+        self.sleeps: list[float] = []
 
     def clock(self) -> float:
         self.now += 1e-6
         return self.now
 
     def sleep(self, seconds: float) -> None:
-        self.sleeps += 1
+        self.sleeps.append(seconds)
         self.now += seconds + self.late
 
 
@@ -90,6 +94,56 @@ def test_a_tick_is_missed_if_it_is_late_by_a_tick() -> None:
     machine.now += 0.5
     pace.wait(10 * TICK)
     assert pace.slipped == pytest.approx(0.5, abs=0.01), "it does not catch up"
+
+
+def test_a_long_wait_is_many_short_sleeps_and_a_short_wait_is_one() -> None:
+    for tick, count in ((TICK, 1), (0.05, 1), (1.0, 21)):
+        machine = Machine(1.5e-4)
+        pace = RealTime(tick, clock=machine.clock, sleep=machine.sleep)
+        pace.early = 2e-4
+        pace.wait(0.0)
+        machine.sleeps.clear()
+        pace.wait(tick)
+        assert abs(len(machine.sleeps) - count) <= (count > 1)
+        assert max(machine.sleeps) <= 0.05
+        assert -pace.ahead(tick) < 5e-6
+
+
+def test_a_pause_neither_shortens_nor_lengthens_the_wait_for_a_tick() -> None:
+    machine = Machine(0.0)
+    pace = RealTime(10.0, clock=machine.clock, sleep=machine.sleep)
+    pace.wait(0.0)
+    machine.now += 3.0
+    for _ in range(100):
+        pace.idle(10.0, 0.5)
+    assert pace.ahead(10.0) == pytest.approx(7.0, abs=1e-3)
+    pace.idle(500.0, 0.5)  # after /step
+    assert pace.ahead(500.0) == pytest.approx(10.0, abs=1e-3)
+    machine.now += 60.0
+    pace.idle(500.0, 0.5)
+    assert pace.ahead(500.0) == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends SIGINT")
+def test_a_long_tick_ends_at_once_at_ctrl_c() -> None:
+    with node_of(passive(time_step=60.0)) as node:
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+        begin = time.perf_counter()
+        trace = node.spin(600.0)
+        assert 0.3 <= time.perf_counter() - begin < 5.0
+    assert trace.time[-1] == 60.0, "the state that is due at the end of the wait"
+
+
+def test_a_pause_is_answered_in_a_long_tick() -> None:
+    with Peer() as peer, node_of(passive(time_step=60.0)) as node:
+        peer.hear("/events", "diagnostic_msgs/msg/DiagnosticArray")
+        assert peer.publisher("/events")
+        with spinning(node, 120.0):
+            for is_paused, text in ((False, "running"), (True, "paused")):
+                peer.say("/pause", "std_msgs/msg/Bool", {"data": is_paused})
+                (answer,) = peer.take("/events", 1, seconds=10.0)
+                assert answer["status"][0]["message"] == text
+            peer.say("/step", "std_msgs/msg/Float64", {"data": 60.0})
 
 
 def test_delays_are_counted_in_bounded_memory() -> None:

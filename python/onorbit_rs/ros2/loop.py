@@ -46,21 +46,30 @@ class Loop:
             self._turn(tidy)
 
     def _turn(self, tidy: Callable[[float], None]) -> None:
-        """Read the messages shortly before the next tick, wait for it, and advance unless the run waits."""
+        """Read the messages shortly before the next tick, wait for it, and advance unless the run waits.
+
+        Before a tick that is due later, the messages are read every 50 ms.
+        """
         session, clock = self.session, self.clock
+        is_near = True
         if session.is_waiting:
             tidy(math.inf)
         elif clock is not None:
             tidy(clock.ahead(session.run.time))
-            clock.approach(session.run.time)
+            is_near = clock.approach(session.run.time)
         self.orders.obey()
         self.rivals.point_out(session)
         if session.is_waiting:
-            session.greet()
-            time.sleep(_IDLE_S)
+            self._idle()
+        elif is_near and not session.is_stopped():
             if clock is not None:
-                clock.restart(session.run.time)
-            return
-        if clock is not None:
-            clock.wait(session.run.time)
-        session.advance()
+                clock.wait(session.run.time)
+            session.advance()
+
+    def _idle(self) -> None:
+        """Sleep for a short time while the run waits for messages."""
+        self.session.greet()
+        if self.clock is None:
+            time.sleep(_IDLE_S)
+        else:
+            self.clock.idle(self.session.run.time, _IDLE_S)

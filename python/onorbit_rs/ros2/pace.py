@@ -17,6 +17,8 @@ _LONGEST_SPIN_S = 3e-4
 """Longest time before a tick in which the processor is kept busy, s."""
 _SPIN_PER_TICK = 0.3
 """Longest such time as a fraction of the tick."""
+_LONGEST_SLEEP_S = 0.05
+"""Longest time before a tick that is due later, s, in which the node does not read its topics."""
 _BUSY_S = 0.1
 """Time after a missed tick without such loops, s, since they make Linux prefer other programs."""
 _PROBES = 20
@@ -72,15 +74,32 @@ class RealTime:
             self.restart(t)
         return self._start + t - self.clock()
 
-    def approach(self, t: float) -> None:
-        """Sleep until shortly before simulated time ``t``, s, is due."""
+    def approach(self, t: float) -> bool:
+        """Sleep until shortly before simulated time ``t``, s, is due; return False if it is still far off.
+
+        A call lasts 50 ms at most.
+        """
         early = self.early if t >= self._calm_at else 0.0
         while (left := self.ahead(t) - early) > 0.0:
+            if left > _LONGEST_SLEEP_S:
+                self.sleep(_LONGEST_SLEEP_S)
+                return False
             self.sleep(left)
+        return True
+
+    def idle(self, t: float, seconds: float) -> None:
+        """Sleep while the run waits at simulated time ``t``, s.
+
+        The time until ``t`` is due is the same afterwards, and at most a tick, since ``/step`` moves ``t``.
+        """
+        left = min(max(self.ahead(t), 0.0), self.tick)
+        self.sleep(seconds)
+        self.restart(t - left)
 
     def wait(self, t: float) -> None:
         """Wait until simulated time ``t``, s, is due, and count the delay."""
-        self.approach(t)
+        while not self.approach(t):
+            pass
         while (ahead := self.ahead(t)) > 0.0:
             pass
         self._late.add(-ahead)
