@@ -9,7 +9,7 @@ import typer
 
 from onorbit_rs.cli.options import FolderArgument, JsonOption, QuietOption
 from onorbit_rs.cli.output_files import check_bag_file
-from onorbit_rs.cli.text_output import print_error, print_line
+from onorbit_rs.cli.text_output import print_line
 from onorbit_rs.exceptions import InputError
 
 if TYPE_CHECKING:
@@ -44,18 +44,15 @@ def export(
             ros2.export_mcap(folder, mcap, tell=_telling(tell, mcap))
             written["mcap"] = {"file": str(mcap), "bytes": mcap.stat().st_size}
         if bag is not None:
-            left_out = ros2.export_bag(folder, bag, tell=_telling(tell, bag))
-            written["bag"] = {"file": str(bag), "bytes": bag.stat().st_size, "left_out": left_out}
+            ros2.export_bag(folder, bag, tell=_telling(tell, bag))
+            written["bag"] = {"file": str(bag), "bytes": bag.stat().st_size}
     if as_json:
         print_json(written)
         return
+    if quiet:
+        return
     for kind, entry in written.items():
-        if not quiet:
-            print_line(f"{kind}: {entry['file']} ({entry['bytes'] / 1e6:.1f} MB)")
-        if entry.get("left_out"):
-            print_error(
-                f"omitted from the bag, because ROS 1 has no such messages: {', '.join(entry['left_out'])}"
-            )
+        print_line(f"{kind}: {entry['file']} ({entry['bytes'] / 1e6:.1f} MB)")
 
 
 def _telling(tell: Callable[[str, float], None], file: Path) -> Callable[[float], None]:

@@ -84,18 +84,14 @@ def export_bag(
     *,
     models: Models | None = None,
     tell: Callable[[float], None] = lambda done: None,
-) -> list[str]:
+) -> None:
     """Write a run as a bag of ROS 1; arguments and errors as for :func:`export_mcap`.
 
-    Returns
-    -------
-    list of str
-        Topics that are left out because ROS 1 does not have their types.
+    ROS 1 has the types of all topics.
     """
     source = recorded(run, models)
     with replacing(Path(file)) as temporary, Ros1Bag(temporary) as bag:
         _write(source, bag, tell)
-        return bag.left_out
 
 
 def _write(source: Recorded, bag: Bag, tell: Callable[[float], None]) -> None:

@@ -31,9 +31,7 @@ class Ros1Bag:
         self._store.register({_TF: get_types_from_msg(STORE.generate_msgdef(_TF)[0], _TF)[_TF]})
         self._writer = Writer(file)
         self._writer.set_compression(Writer.CompressionFormat.LZ4)
-        self._topics: list[Connection | None] = []
-        self.left_out: list[str] = []
-        """Topics whose types ROS 1 does not have."""
+        self._topics: list[Connection] = []
 
     def __enter__(self) -> Ros1Bag:
         """Create the file."""
@@ -48,20 +46,12 @@ class Ros1Bag:
 
     def add_topic(self, name: str, kind: str, *, is_latched: bool = False) -> int:
         """Add a topic, and return its number for :meth:`write`."""
-        if kind in self._store.fielddefs:
-            latching = int(is_latched)
-            self._topics.append(
-                self._writer.add_connection(name, kind, typestore=self._store, latching=latching)
-            )
-        else:
-            self._topics.append(None)
-            self.left_out.append(name)
+        latching = int(is_latched)
+        self._topics.append(self._writer.add_connection(name, kind, typestore=self._store, latching=latching))
         return len(self._topics) - 1
 
     def write(self, topic: int, times: NDArray[np.int64], messages: NDArray[np.uint8]) -> None:
-        """Write messages (T, size), in CDR, of times (T,), ns; ignored for a topic in ``left_out``."""
+        """Write messages (T, size), in CDR, of times (T,), ns."""
         connection = self._topics[topic]
-        if connection is None:
-            return
         for time, data in zip(times.tolist(), messages, strict=True):
             self._writer.write(connection, time, STORE.cdr_to_ros1(data.tobytes(), connection.msgtype))
