@@ -87,9 +87,13 @@ class Peer:
             time.sleep(0.002)
 
     def say(
-        self, topic: str, kind: str, values: Any, seconds: float = 20.0, nodes: Sequence[list[int]] = ()
-    ) -> bool:
-        """Sends a message when somebody listens, which must be one of some nodes if they are given."""
+        self, topic: str, kind: str, values: Any, seconds: float = 20.0, nodes: Sequence[list[int]] = (),
+        times: int = 1,
+    ) -> bool:  # fmt: skip
+        """Sends a message when somebody listens, which must be one of some nodes if they are given.
+
+        Of several equal messages, all have arrived afterwards.
+        """
         is_new = topic not in self.writers
         if is_new:
             named = Topic(self.participant, f"rt{topic}", TYPES[kind])
@@ -102,8 +106,9 @@ class Peer:
             time.sleep(0.002)
         if is_new:
             time.sleep(0.05)  # a reader finds a writer at another time than a writer finds the reader
-        writer.write(_message(TYPES[kind], values))
-        return True
+        for _ in range(times):
+            writer.write(_message(TYPES[kind], values))
+        return times == 1 or writer.wait_for_acks(duration(seconds=seconds))
 
     def publisher(
         self, topic: str, seconds: float = 20.0, nodes: Sequence[list[int]] = ()

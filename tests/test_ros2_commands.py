@@ -20,10 +20,7 @@ from onorbit_rs.simulation.replay import replay_commands
 needs_ros2()
 
 from onorbit_rs.ros2 import Node  # noqa: E402
-from onorbit_rs.ros2.command_topics import add_run_topics, add_system_topics  # noqa: E402
-from onorbit_rs.ros2.inbox import Inbox  # noqa: E402
 from onorbit_rs.ros2.live_run import LiveRun  # noqa: E402
-from onorbit_rs.ros2.transforms import frames_of  # noqa: E402
 
 ROBOT = oo.robots.load("humanoid_torso")
 ARM, WRIST = ROBOT.joint_names[:4], ROBOT.joint_names[4:]
@@ -351,47 +348,3 @@ def test_a_wrench_in_the_frame_base_is_on_the_root_link(peer: Peer, parent: str,
                 obeyed(node, count)
             step(peer, 0.01)
     assert [entry["body"] for entry in node.commands] == [parent, parent, child]
-
-
-class FakeReader:
-    def __init__(self, topic: str, kind: str, payloads: list[bytes], sent: int) -> None:
-        self.topic, self.kind, self.payloads, self.sent = topic, kind, payloads, sent
-
-    def take(self) -> list[tuple[int, int, bytes]]:
-        return [(self.sent, 1, payload) for payload in self.payloads]
-
-    def sender(self, publication: int) -> object:
-        return publication
-
-
-class FakeParticipant:
-    """Readers that have received bytes."""
-
-    def __init__(self, payloads: list[bytes]) -> None:
-        self.payloads, self.topics = payloads, 0
-
-    def reader(self, topic: str, kind: str) -> FakeReader:
-        self.topics += 1
-        return FakeReader(
-            topic, kind, self.payloads, -self.topics
-        )  # each topic is sent before the one before
-
-
-def test_malformed_bytes_are_refused_on_every_topic() -> None:
-    rng = np.random.default_rng(7)
-    sizes = (0, 1, 3, 4, 5, 8, 12, 40, 200)
-    payloads = [b"\0\1\0\0" + rng.bytes(size) for size in sizes] + [rng.bytes(size) for size in sizes]
-    inbox: Any = Inbox(FakeParticipant(payloads))  # type: ignore[arg-type]
-    add_run_topics(inbox)
-    add_system_topics(inbox, "robot", "", frames_of("", ROBOT), {"arm": list(ARM)})
-    found = inbox.take()
-    assert len(found) == len(payloads) * len(list(inbox.topics()))
-    refused = [one for one in found if one.refusal is not None]
-    assert any(one.refusal.startswith("the message is malformed (") for one in refused)
-    assert all(not one.entries for one in refused)
-    topics = [one.topic for one in found]
-    assert topics == sorted(topics, key=[name for name, _ in inbox.topics()][::-1].index), (
-        "in order of sending"
-    )
-    run = {"/pause", "/reset", "/step", "/trigger"}
-    assert {one.topic for one in found if one.refusal is None} <= run, "random bytes never name joints"

@@ -60,7 +60,14 @@ def test_the_domain_is_that_of_the_environment(
     needs_ros2()
     monkeypatch.setenv("ROS_DOMAIN_ID", "233")
     assert ran("humanoid_reach") == 2
-    assert "the DDS domain is 233; it must be an integer from 0 to 232" in capsys.readouterr().err
+    wanted = "must be an integer from 0 to 232"
+    assert f"ROS_DOMAIN_ID in the environment is '233'; it {wanted}" in capsys.readouterr().err
+    assert ran("humanoid_reach", "--domain", "233") == 2
+    assert f"the DDS domain is 233; it {wanted}" in capsys.readouterr().err
+    assert ran("humanoid_reach", "--domain", str(DOMAIN), "--for", "0.01") in (0, None)
+    monkeypatch.setenv("ROS_DOMAIN_ID", f" {DOMAIN}")
+    assert ran("humanoid_reach", "--for", "0.01") in (0, None)
+    assert f"ROS 2 domain {DOMAIN}, publishing:" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

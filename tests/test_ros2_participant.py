@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import socket
@@ -19,6 +20,7 @@ import onorbit_rs as oo
 needs_ros2()
 
 from onorbit_rs.ros2 import Node, loopback  # noqa: E402
+from onorbit_rs.ros2.domains import chosen_domain  # noqa: E402
 from onorbit_rs.ros2.participant import Participant  # noqa: E402
 
 STATES = ("/joint_states", "sensor_msgs/msg/JointState")
@@ -96,6 +98,29 @@ def test_a_domain_out_of_range_is_refused(domain: object) -> None:
         Participant(domain)  # type: ignore[arg-type]
     with pytest.raises(oo.exceptions.InputError, match="network is 'wifi'; give 'loopback' or 'all'"):
         Participant(0, network="wifi")
+
+
+def test_a_node_joins_the_domain_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
+    with contextlib.closing(Node(scenario())) as node, Peer() as peer:
+        assert node.domain == DOMAIN
+        peer.hear(*STATES)
+        assert peer.publisher("/joint_states"), "negative control: other domains do not hear it"
+    monkeypatch.setenv("ROS_DOMAIN_ID", "9999")
+    with contextlib.closing(Node(scenario(), domain=DOMAIN)) as node:
+        assert node.domain == DOMAIN
+    for text in ("9999", "233", "-1", "010", "0x10", "4.0", "x", "1" * 5000):
+        monkeypatch.setenv("ROS_DOMAIN_ID", text)
+        with pytest.raises(
+            oo.exceptions.InputError, match=r"ROS_DOMAIN_ID in .* is '.*from 0 to 232"
+        ) as found:
+            Node(scenario())
+        assert (found.value.name, found.value.got) == ("ROS_DOMAIN_ID", text)
+    for text in ("", "  ", "0"):
+        monkeypatch.setenv("ROS_DOMAIN_ID", text)
+        assert chosen_domain(None) == 0
+    monkeypatch.delenv("ROS_DOMAIN_ID")
+    assert chosen_domain(None) == 0
 
 
 def test_the_last_domain_can_be_joined(capfd: pytest.CaptureFixture[str]) -> None:

@@ -15,7 +15,9 @@ if TYPE_CHECKING:
     from onorbit_rs.ros2.node import Node
 
 PaceOption = Annotated[str, typer.Option(metavar="PACE", help="real_time, fast or stepped (by /step).")]
-DomainOption = Annotated[int, typer.Option(metavar="N", envvar="ROS_DOMAIN_ID", help="DDS domain, 0 to 232.")]
+DomainOption = Annotated[
+    int | None, typer.Option(metavar="N", help="DDS domain, 0 to 232; default: ROS_DOMAIN_ID, or else 0.")
+]
 ForOption = Annotated[
     float | None, typer.Option("--for", metavar="SECONDS", help="Simulated time, s; default: the scenario's.")
 ]
@@ -46,7 +48,7 @@ LogOption = Annotated[
 def ros2(
     scenario: ScenarioArgument,
     pace: PaceOption = "real_time",
-    domain: DomainOption = 0,
+    domain: DomainOption = None,
     for_: ForOption = None,
     network: NetworkOption = "loopback",
     paused: PausedOption = False,
@@ -81,9 +83,9 @@ def ros2(
         scenario, pace=pace, domain=domain, network=network, is_paused=paused, log=log, record=record,
         wrench_timeout=wrench_timeout, keep_rows=keep_rows, has_priority=priority, on_message=tell,
     )  # fmt: skip
-    if not quiet:
-        print_error(_greeting(node, domain))
     try:
+        if not quiet:
+            print_error(_greeting(node))
         trace = node.spin(node.duration if for_ is None else for_)
     finally:
         node.close()
@@ -99,11 +101,11 @@ def ros2(
         fail("the certificate failed", 1)
 
 
-def _greeting(node: Node, domain: int) -> str:
+def _greeting(node: Node) -> str:
     """Return the text that lists the topics of a node."""
     rows = [f"  {name:<32} {kind}" for name, kind in node.published]
     taken = [f"  {name:<32} {kind}" for name, kind in node.subscribed]
-    return "\n".join([f"ROS 2 domain {domain}, publishing:", *rows, "listening:", *taken])
+    return "\n".join([f"ROS 2 domain {node.domain}, publishing:", *rows, "listening:", *taken])
 
 
 def _closing(report: dict[str, Any]) -> str:

@@ -11,7 +11,9 @@ from cyclonedds.core import DDSException, InstanceState, SampleState, ViewState
 from onorbit_rs.exceptions import Ros2Error
 
 MOST = 1000
-"""Largest number of messages taken at once, and depth of topics that are not latched."""
+"""Largest number of messages of a topic that are obeyed at once, and depth of publishers."""
+MOST_COUNTED = 100_000
+"""Largest number of messages of a topic that are kept between two looks, to count those refused."""
 
 _ANY = SampleState.Any | ViewState.Any | InstanceState.Any
 _AGAIN_S = 0.2
@@ -36,7 +38,7 @@ class Writer:
             If CycloneDDS does not accept it.
         """
         if code := ddspy_write(self._entity._ref, data):
-            raise Ros2Error(f"CycloneDDS did not accept a message of {self.topic}: {DDSException(code).msg}")
+            raise _error(f"CycloneDDS did not accept a message of {self.topic}", code)
         self._served = self._found
 
     def subscribers(self) -> int:
@@ -79,15 +81,30 @@ class Reader:
     def take(self) -> list[tuple[int, int, bytes]]:
         """Return the messages since the last call: time of sending, ns, handle of the publisher, and CDR.
 
+        Of more than 100 000, only the last ones are kept.
+
         Raises
         ------
         Ros2Error
             If CycloneDDS reports an error.
         """
-        taken = ddspy_take(self._entity._ref, _ANY, MOST)
-        if isinstance(taken, int):
-            raise Ros2Error(f"CycloneDDS could not read {self.topic}: {DDSException(taken).msg}")
-        # a sender that leaves adds a sample without data
-        return [
-            (info.source_timestamp, info.publication_handle, data) for data, info in taken if info.valid_data
-        ]
+        found: list[tuple[int, int, bytes]] = []
+        for _ in range(MOST_COUNTED // MOST):  # at once, it would allocate memory for the largest number
+            taken = ddspy_take(self._entity._ref, _ANY, MOST)
+            if isinstance(taken, int):
+                raise _error(f"CycloneDDS could not read {self.topic}", taken)
+            # a sender that leaves adds a sample without data
+            found += [
+                (info.source_timestamp, info.publication_handle, data)
+                for data, info in taken
+                if info.valid_data
+            ]
+            if len(taken) < MOST:
+                break
+        return found
+
+
+def _error(task: str, code: int) -> Ros2Error:
+    """Return the error for a code that CycloneDDS returned."""
+    reason = str(DDSException(code)).strip()
+    return Ros2Error(f"{task}: {reason}", reason=reason)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from onorbit_rs.ros2.endpoints import MOST, MOST_COUNTED
 from onorbit_rs.ros2.entries import Entry, RefusedError
 from onorbit_rs.ros2.messages import decode
 
@@ -54,13 +55,16 @@ class Inbox:
             yield route.reader.topic, route.reader.kind
 
     def take(self) -> list[Arrived]:
-        """Return the messages that have arrived since the last call, in the order in which they were sent."""
-        taken = [
-            (sent, route, publication, data)
-            for route in self._routes
-            for sent, publication, data in route.reader.take()
-        ]
-        found = []
+        """Return the messages that have arrived since the last call, in the order in which they were sent.
+
+        Of more than 1000 on a topic, the newest are returned, after a refusal with the number of the others.
+        """
+        taken, found = [], []
+        for route in self._routes:
+            samples = route.reader.take()
+            if len(samples) > MOST:
+                found.append(_overflow(route, len(samples)))
+            taken += [(sent, route, publication, data) for sent, publication, data in samples[-MOST:]]
         for _, route, publication, data in sorted(taken, key=lambda message: message[0]):
             arrived = _arrived(route, data)
             found.append(
@@ -92,6 +96,16 @@ def _target(entry: Entry, topic: str) -> str:
     """Return the name of the target of an entry: a control or a link with its system, or else the topic."""
     name = entry.get("control", entry.get("body"))
     return topic if name is None else f"{name} of {entry['system']}"
+
+
+def _overflow(route: Route, count: int) -> Arrived:
+    """Return the refusal of the oldest of ``count`` messages that have arrived since the last look."""
+    least = "at least " if count >= MOST_COUNTED else ""
+    refusal = (
+        f"{least}{count - MOST} messages, the oldest of {least}{count} since the last look at the topic; the "
+        f"node obeys {MOST} at once, so send fewer"
+    )
+    return Arrived(route.reader.topic, route.reader.kind, b"", [], refusal)
 
 
 def _arrived(route: Route, data: bytes) -> Arrived:

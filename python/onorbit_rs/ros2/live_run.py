@@ -44,7 +44,8 @@ class LiveRun:
         A wrench ends ``wrench_timeout``, s, after its last command (None: never). The first row and the last
         ``keep_rows``, up to twice as many, remain in memory (None: all rows).
         """
-        if keep_rows is not None and not (isinstance(keep_rows, int) and keep_rows >= 1):
+        is_count = isinstance(keep_rows, int) and not isinstance(keep_rows, bool) and keep_rows >= 1
+        if keep_rows is not None and not is_count:
             raise InputError(
                 f"the number of rows to keep is {keep_rows!r}; it must be an integer of at least 1",
                 name="keep_rows", got=keep_rows, expected="a positive integer",

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
+from contextlib import ExitStack, suppress
+from numbers import Real
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.exceptions import InputError, OnOrbitError, Ros2Error
+from onorbit_rs._core import Simulation
+from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError, Ros2Error
 from onorbit_rs.ros2.command_topics import add_run_topics, add_system_topics
+from onorbit_rs.ros2.domains import chosen_domain, dds_errors
 from onorbit_rs.ros2.entries import Entry
 from onorbit_rs.ros2.events import ERROR, OK, WARN
 from onorbit_rs.ros2.inbox import Inbox
@@ -31,7 +36,9 @@ from onorbit_rs.scenario.build_world import build_world
 from onorbit_rs.simulation.commands import CommandLog
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Simulation, Trace, WorldTrace
+    from onorbit_rs._core import Trace, WorldTrace
+
+    _File = str | os.PathLike[str]
 
 NAME = "onorbit"
 """Name of the node."""
@@ -50,6 +57,8 @@ class Node:
     ----------
     duration : float or None
         Duration of the scenario, s; None for a simulation without one.
+    domain : int
+        DDS domain that the node has joined.
     """
 
     def __init__(
@@ -57,11 +66,11 @@ class Node:
         simulation: Simulation,
         *,
         pace: str = "real_time",
-        domain: int = 0,
+        domain: int | None = None,
         network: str = "loopback",
         is_paused: bool = False,
-        log: str | os.PathLike[str] | None = None,
-        record: str | os.PathLike[str] | None = None,
+        log: _File | None = None,
+        record: _File | None = None,
         wrench_timeout: float | None = None,
         keep_rows: int | None = None,
         has_priority: bool = False,
@@ -69,14 +78,16 @@ class Node:
     ) -> None:
         """Join a domain; the run starts with :meth:`spin`.
 
+        If this fails, nothing remains open and existing files are unchanged.
+
         Parameters
         ----------
         simulation : Simulation
             Simulation to run.
         pace : {"real_time", "fast", "stepped"}
             Simulated time follows the wall clock, runs as fast as possible, or advances on ``/step`` only.
-        domain : int
-            DDS domain, from 0 to 232, as in ``ROS_DOMAIN_ID``.
+        domain : int, optional
+            DDS domain, from 0 to 232. Default: that of the environment variable ``ROS_DOMAIN_ID``, or else 0.
         network : {"loopback", "all"}
             Whether the node is reachable from this machine only, or from all its networks.
         is_paused : bool
@@ -100,36 +111,43 @@ class Node:
 
         Raises
         ------
+        DtypeError
+            If ``simulation`` is no :class:`Simulation`.
         InputError
-            If an argument is invalid.
+            If another argument or ``ROS_DOMAIN_ID`` is invalid.
         Ros2Error
-            If the domain cannot be joined.
+            If the domain cannot be joined, or CycloneDDS does not create the topics.
         OutputFolderError
             If a file cannot be written.
         """
-        if pace not in PACES:
-            raise InputError(
-                f"pace is {pace!r}; give one of {', '.join(PACES)}", name="pace", got=pace, expected=PACES
-            )
+        _check(simulation, pace, log, record)
+        self.domain = chosen_domain(domain)
         self._run = LiveRun(simulation, wrench_timeout, keep_rows)
         self._clock = RealTime(self._run.tick)
         self._has_ended = False
         self.duration: float | None = None
         self.topics: Topics = topics(self._run.models, self._run.present(), simulation.orbit)
-        with prioritized(has_priority and pace == "real_time") as is_prioritized:  # threads of DDS inherit it
-            self._participant = Participant(domain, network=network)
-        self._recording = None if record is None else Recording(record, self.topics)
-        self._run.log = CommandLog(log)  # after everything that may fail, since it replaces the file
-        self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
-        self._session = Session(self._run, self._publisher, pace, is_paused)
-        self._inbox = self._subscribed()
-        fixed = "the commands are logged, and a log has one run" if log is not None else None
-        if record is not None:
-            fixed = "the run is recorded, and times in a bag do not go back"
-        orders = Orders(self._session, self._inbox, lambda: self._clock.restart(0.0), fixed)
-        clock = self._clock if pace == "real_time" else None
-        self._loop = Loop(self._session, orders, Rivals(self._participant, domain), clock, is_prioritized)
-        self._participant.announce(NAME)
+        with ExitStack() as stack:
+            # the threads of DDS inherit the priority
+            with prioritized(has_priority and pace == "real_time") as is_prioritized:
+                self._participant = Participant(self.domain, network=network)
+            stack.callback(self._participant.close)
+            self._recording = None if record is None else Recording(record, self.topics)
+            if self._recording is not None:
+                stack.callback(self._recording.discard)
+            self._publisher = Publisher(self._participant, self.topics, on_message, self._recording)
+            self._session = Session(self._run, self._publisher, pace, is_paused)
+            self._inbox = self._subscribed()
+            fixed = "the commands are logged, and a log has one run" if log is not None else None
+            if record is not None:
+                fixed = "the run is recorded, and times in a bag do not go back"
+            orders = Orders(self._session, self._inbox, lambda: self._clock.restart(0.0), fixed)
+            rivals = Rivals(self._participant, self.domain)
+            clock = self._clock if pace == "real_time" else None
+            self._loop = Loop(self._session, orders, rivals, clock, is_prioritized)
+            self._participant.announce(NAME)
+            self._run.log = CommandLog(log)  # after everything that may fail, since it replaces the file
+            stack.pop_all()
 
     @classmethod
     def of_scenario(cls, scenario: Any, **options: Any) -> Node:
@@ -204,15 +222,20 @@ class Node:
                 "set back; give it get_state() and set_state()",
             )  # fmt: skip
         try:
-            with noted_stop() as self._session.is_stopped:
+            with (
+                dds_errors("continue the run", "create another Node"),
+                noted_stop() as self._session.is_stopped,
+            ):
                 self._loop.spin()
                 if self._session.is_stopped():
                     self._session.say(OK, "run", "stopped")
         except KeyboardInterrupt:
             self._session.say(OK, "run", "stopped")
         except OnOrbitError as error:
-            self._session.publish()
-            self._session.say(ERROR, "run", f"failed: {error}")
+            with suppress(OnOrbitError):  # a recording on a full disk
+                self._session.publish()
+            with suppress(OnOrbitError):
+                self._session.say(ERROR, "run", f"failed: {error}")
             raise
         self._session.publish()
         trace, rows = self._run.finish()
@@ -224,16 +247,36 @@ class Node:
 
         A second call has no effect.
         """
-        self._run.log.close()
-        if self._recording is not None:
-            self._recording.close()
-        self._participant.wait_for_delivery(_DELIVERY_S)
-        self._participant.close()
+        self._has_ended = True
+        with ExitStack() as stack:  # each step even if an earlier one fails, as on a full disk
+            stack.callback(self._participant.close)
+            stack.callback(self._participant.wait_for_delivery, _DELIVERY_S)
+            if self._recording is not None:
+                stack.callback(self._recording.close)
+            self._run.log.close()
+
+
+def _check(simulation: object, pace: str, log: _File | None, record: _File | None) -> None:
+    """Raise an error for arguments of a node that are wrong in themselves."""
+    if not isinstance(simulation, Simulation):
+        raise DtypeError(
+            f"the simulation is {simulation!r:.80}; give a Simulation, or use Node.of_scenario",
+            name="simulation", got=simulation, expected="a Simulation",
+        )  # fmt: skip
+    if pace not in PACES:
+        raise InputError(
+            f"pace is {pace!r}; give one of {', '.join(PACES)}", name="pace", got=pace, expected=PACES
+        )
+    if log is not None and record is not None and Path(log).resolve() == Path(record).resolve():
+        raise InputError(
+            f"log and record are the same file, {record}; give each its own",
+            name="log", got=log, expected="another file than record",
+        )  # fmt: skip
 
 
 def check_duration(duration: float | None) -> None:
     """Raise an InputError if a duration, s, is not positive; None, for an open end, is valid."""
-    if duration is not None and not duration > 0.0:
+    if duration is not None and not (isinstance(duration, Real) and duration > 0.0):
         raise InputError(
             f"the duration is {duration!r} s; it must be positive",
             name="duration", got=duration, expected="a positive number of seconds",

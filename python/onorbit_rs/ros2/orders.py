@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.exceptions import OnOrbitError, OutputFolderError
 from onorbit_rs.ros2.events import ERROR, OK, WARN
 from onorbit_rs.ros2.messages import nanoseconds
 
@@ -97,6 +97,8 @@ class Orders:
         topic, entry, now = arrived.topic, arrived.entries[0], self._session.run.time
         try:
             self._session.run.command(arrived.entries)
+        except OutputFolderError:  # it was obeyed, but the log is incomplete
+            raise
         except OnOrbitError as error:
             return self._refuse(topic, str(error))
         if (start := entry.get("trajectory", {}).get("start", now)) > now + _FAR_S:

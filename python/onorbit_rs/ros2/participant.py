@@ -2,39 +2,27 @@
 
 from __future__ import annotations
 
-import os
 import time
-from dataclasses import dataclass
 from typing import Any
-from weakref import WeakValueDictionary
 
 from cyclonedds.builtin import BuiltinDataReader, BuiltinTopicDcpsPublication
 from cyclonedds.core import DDSException, Policy, Qos
-from cyclonedds.domain import Domain, DomainParticipant
+from cyclonedds.domain import DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from onorbit_rs.exceptions import InputError, Ros2Error
-from onorbit_rs.ros2 import graph, loopback
+from onorbit_rs.ros2 import graph
 from onorbit_rs.ros2.dds_types import declared
-from onorbit_rs.ros2.endpoints import MOST, Reader, Writer
+from onorbit_rs.ros2.domains import Joined, check_network, chosen_domain, dds_errors, join
+from onorbit_rs.ros2.endpoints import MOST, MOST_COUNTED, Reader, Writer
 from onorbit_rs.ros2.messages import STORE
 
-LARGEST_DOMAIN = 232
-"""Largest domain whose ports are below 65536, by the port mapping of DDSI-RTPS."""
-
-
-@dataclass(frozen=True)
-class _Joined:
-    """A domain that this process has joined; all its participants in the domain share it."""
-
-    domain: Domain
-    network: str
-
-
-_JOINED: WeakValueDictionary[int, _Joined] = WeakValueDictionary()
+_UNREACHABLE = (
+    "check that a network interface is up, check the settings in CYCLONEDDS_URI, or use another domain"
+)
+_FULL = "close other nodes of this program, or start it again"
 
 
 class Participant:
@@ -59,34 +47,65 @@ class Participant:
             If there is no network interface, the domain's ports are taken, or this process has joined the
             domain on the other network.
         """
-        _check(domain, network)
-        try:
-            self._joined: _Joined | None = _join(domain, network)
-            self._entity: Any = DomainParticipant(domain, qos=Qos(Policy.Userdata(graph.ENCLAVE)))
-        except DDSException as error:
-            raise Ros2Error(
-                f"cannot join DDS domain {domain} with network={network!r} ({error}): check that a network "
-                f"interface is up, check the settings in CYCLONEDDS_URI, or use another domain"
-            ) from error
+        chosen_domain(domain)
+        check_network(network)
         self._writers: list[Any] = []
         self._readers: list[Any] = []
-        self._found: Any = BuiltinDataReader(self._entity, BuiltinTopicDcpsPublication)
+        self._joined: Joined | None = None
+        self._entity: Any = None
+        self._found: Any = None
+        self._graph: Any = None
+        try:
+            with dds_errors(f"join DDS domain {domain} with network={network!r}", _UNREACHABLE):
+                self._open(domain, network)
+        except BaseException:
+            self.close()
+            raise
+
+    def _open(self, domain: int, network: str) -> None:
+        self._joined = join(domain, network)
+        self._entity = DomainParticipant(domain, qos=Qos(Policy.Userdata(graph.ENCLAVE)))
+        self._found = BuiltinDataReader(self._entity, BuiltinTopicDcpsPublication)
         topic = Topic(self._entity, graph.TOPIC, declared(graph.KIND))
-        self._graph: Any = DataWriter(self._entity, topic, qos=_qos(graph.KIND, is_latched=True))
+        self._graph = DataWriter(self._entity, topic, qos=_qos(graph.KIND, is_latched=True))
 
     def writer(self, topic: str, kind: str, *, is_latched: bool = False) -> Writer:
-        """Return a reliable publisher; a latched one repeats its last message to late subscribers."""
-        self._writers.append(DataWriter(self._entity, self._topic(topic, kind), qos=_qos(kind, is_latched)))
+        """Return a reliable publisher; a latched one repeats its last message to late subscribers.
+
+        Raises
+        ------
+        Ros2Error
+            If CycloneDDS does not create it.
+        """
+        with dds_errors(f"publish {topic}", _FULL):
+            entity = DataWriter(self._entity, self._topic(topic, kind), qos=_qos(kind, is_latched))
+        self._writers.append(entity)
         return Writer(self._writers[-1], topic)
 
     def reader(self, topic: str, kind: str) -> Reader:
-        """Return a reliable subscription that keeps the messages since the last :meth:`Reader.take`."""
-        self._readers.append(DataReader(self._entity, self._topic(topic, kind), qos=_qos(kind)))
+        """Return a reliable subscription that keeps the messages since the last :meth:`Reader.take`.
+
+        Raises
+        ------
+        Ros2Error
+            If CycloneDDS does not create it.
+        """
+        with dds_errors(f"subscribe to {topic}", _FULL):
+            qos = _qos(kind, depth=MOST_COUNTED)
+            entity = DataReader(self._entity, self._topic(topic, kind), qos=qos)
+        self._readers.append(entity)
         return Reader(self._readers[-1], topic, kind)
 
     def announce(self, node: str) -> None:
-        """Announce to ROS that the publishers and subscriptions created so far belong to a node."""
-        data = graph.entities_message(node, self._entity, self._writers, self._readers)
+        """Announce to ROS that the publishers and subscriptions created so far belong to a node.
+
+        Raises
+        ------
+        Ros2Error
+            If CycloneDDS does not accept the announcement.
+        """
+        with dds_errors(f"announce the node {node}", _FULL):
+            data = graph.entities_message(node, self._entity, self._writers, self._readers)
         Writer(self._graph, graph.TOPIC).write(data)
 
     def _topic(self, name: str, kind: str) -> Any:
@@ -118,45 +137,11 @@ class Participant:
         self._found = self._graph = self._entity = self._joined = None
 
 
-def _qos(kind: str, is_latched: bool = False) -> Qos:
+def _qos(kind: str, is_latched: bool = False, depth: int = MOST) -> Qos:
     return Qos(
         Policy.Reliability.Reliable(duration(milliseconds=100)),
         Policy.Durability.TransientLocal if is_latched else Policy.Durability.Volatile,
-        Policy.History.KeepLast(1 if is_latched else MOST),
+        Policy.History.KeepLast(1 if is_latched else depth),
         Policy.DataRepresentation(use_cdrv0_representation=True),
         Policy.Userdata(f"typehash={STORE.hash_rihs01(kind)};".encode()),
     )
-
-
-def _check(domain: int, network: str) -> None:
-    if isinstance(domain, bool) or not isinstance(domain, int) or not 0 <= domain <= LARGEST_DOMAIN:
-        raise InputError(
-            f"the DDS domain is {domain!r}; it must be an integer from 0 to {LARGEST_DOMAIN}",
-            name="domain", got=domain, expected=f"0 to {LARGEST_DOMAIN}",
-        )  # fmt: skip
-    if network not in ("loopback", "all"):
-        raise InputError(
-            f"network is {network!r}; give 'loopback' or 'all'",
-            name="network", got=network, expected="loopback or all",
-        )  # fmt: skip
-
-
-def _join(domain: int, network: str) -> _Joined:
-    """Join a domain, or return it if this process has joined it: CycloneDDS opens its sockets only once."""
-    if joined := _JOINED.get(domain):
-        if joined.network != network:
-            raise Ros2Error(
-                f"this process has joined DDS domain {domain} with network={joined.network!r}; close that "
-                "node, use the same network or another domain"
-            )
-        return joined
-    if network == "loopback":
-        loopback.check(domain)
-        before = set(loopback.udp_sockets())
-        joined = _Joined(Domain(domain, f"{loopback.ENDING},{loopback.LOOPBACK}"), network)
-        loopback.restrict(before)
-    else:
-        settings = filter(None, [loopback.ENDING, os.environ.get("CYCLONEDDS_URI")])
-        joined = _Joined(Domain(domain, ",".join(settings)), network)
-    _JOINED[domain] = joined
-    return joined

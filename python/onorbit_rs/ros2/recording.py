@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import os
 from collections import defaultdict
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.common.files import replacing
+from onorbit_rs.common.files import output_errors, replacing
 from onorbit_rs.ros2.extra import require
 from onorbit_rs.ros2.messages import nanoseconds
 from onorbit_rs.ros2.rows import Rows
@@ -24,6 +24,10 @@ _CHUNK_BYTES = 1 << 17
 """Length of a chunk before compression: 0.3 ms to compress, so that a node in real time is not late."""
 _ROWS = 64
 """Rows whose messages are computed together, at a thirtieth of the cost of one by one."""
+
+
+class _DiscardedError(Exception):
+    """Ends a file that is not to be completed."""
 
 
 class Recording:
@@ -42,11 +46,11 @@ class Recording:
         require("mcap")
         from onorbit_rs.ros2.mcap_file import McapFile
 
-        self._topics = topics
+        self._topics, self._file = topics, Path(file)
         self._pending: defaultdict[str, list[Rows]] = defaultdict(list)
         self._is_closed = False
         with ExitStack() as stack:
-            stream = stack.enter_context(stack.enter_context(replacing(Path(file))).open("wb"))
+            stream = stack.enter_context(stack.enter_context(replacing(self._file)).open("wb"))
             self._bag = McapFile(stream, chunk_bytes=_CHUNK_BYTES)
             self._numbers = {name: self._bag.add_topic(name, kind) for name, kind in topics.names}
             for topic in topics.latched:
@@ -55,11 +59,12 @@ class Recording:
             self._open = stack.pop_all()
 
     def rows(self, rows: Mapping[str, Rows]) -> None:
-        """Record the messages of the rows of each system."""
+        """Record the messages of the rows of each system; raises an OutputFolderError on a full disk."""
         for system, part in rows.items():
             self._pending[system].append(part)
         if max(sum(map(len, parts)) for parts in self._pending.values()) >= _ROWS:
-            self._write_rows()
+            with output_errors(self._file):
+                self._write_rows()
 
     def _write_rows(self) -> None:
         rows = {system: Rows.joined(parts) for system, parts in self._pending.items()}
@@ -68,10 +73,18 @@ class Recording:
         self._pending.clear()
 
     def message(self, topic: str, kind: str, time: float, data: bytes) -> None:
-        """Record a message, in CDR, of a simulated time, s."""
-        if topic not in self._numbers:
-            self._numbers[topic] = self._bag.add_topic(topic, kind)
-        self._bag.write(self._numbers[topic], nanoseconds([time]), np.frombuffer(data, np.uint8)[None])
+        """Record a message, in CDR, of a simulated time, s; raises an OutputFolderError on a full disk."""
+        with output_errors(self._file):
+            if topic not in self._numbers:
+                self._numbers[topic] = self._bag.add_topic(topic, kind)
+            self._bag.write(self._numbers[topic], nanoseconds([time]), np.frombuffer(data, np.uint8)[None])
+
+    def discard(self) -> None:
+        """Remove what was written; an existing file remains. After :meth:`close` this has no effect."""
+        if not self._is_closed:
+            self._is_closed = True
+            with suppress(_DiscardedError), self._open:
+                raise _DiscardedError
 
     def close(self) -> None:
         """Complete the file and give it its name; a second call has no effect."""

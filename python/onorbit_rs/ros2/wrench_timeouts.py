@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
+from numbers import Real
 from typing import Any
 
 from onorbit_rs.exceptions import InputError
@@ -15,7 +16,7 @@ class WrenchTimeouts:
 
     def __init__(self, timeout: float | None) -> None:
         """Begin without wrenches; if ``timeout``, s, is None, they do not end."""
-        if timeout is not None and not 0.0 < timeout < math.inf:
+        if timeout is not None and not (isinstance(timeout, Real) and 0.0 < timeout < math.inf):
             raise InputError(
                 f"the timeout of wrenches is {timeout!r} s; it must be positive and finite",
                 name="wrench_timeout", got=timeout, expected="a positive number of seconds",

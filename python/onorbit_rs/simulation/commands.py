@@ -142,10 +142,11 @@ class CommandLog:
                 self._stream.flush()
 
     def close(self) -> None:
-        """Close the file."""
-        if self._stream is not None:
-            self._stream.close()
-            self._stream = None
+        """Close the file; raises an OutputFolderError if its last command cannot be written."""
+        stream, self._stream = self._stream, None
+        if stream is not None and self._path is not None:
+            with output_errors(self._path):
+                stream.close()
 
     def __enter__(self) -> Self:
         """Return the log."""
