@@ -182,19 +182,19 @@ PART = [*states()[:5], state(1.7e9 + 1, NAMES[:3], [1, 2, 3])]
 TWICE = [state(1.7e9 + time, [NAMES[0], NAMES[0]], [0, 1]) for time in TIMES]
 
 INVALID: dict[str, tuple[dict[str, list[Any]], dict[str, Any], type[OnOrbitError], str]] = {
-    "no joints": ({"/chatter": [STRING]}, {}, ReadError, "no topic with JointState .* its topics: /chatter"),
+    "no joints": ({"/chatter": [STRING]}, {}, ReadError, "no topic with JointState .*its topics: /chatter"),
     "several": ({"/a": ONE, "/b": ONE}, {}, ReadError, "give one as 'topic': /a, /b"),
     "other topic": ({"/a": ONE, "/c": [STRING]}, {"topic": "/c"}, ReadError, "give one of the topics /a"),
     "misspelt topic": (
         {"/joint_states": states()}, {"topic": "/joint_state"}, ReadError, "did you mean '/joint_states'",
     ),
-    "one message": ({"/a": ONE}, {}, ReadError, "it has 1 message; a motion requires two or more"),
+    "one message": ({"/a": ONE}, {}, ReadError, "it has 1 message with the followed joints; a motion"),
     "back in time": ({"/a": BACK}, {}, ReadError, r"message 6 is at 0.04 s, after 0.08 s"),
     "doubled": ({"/a": TWICE}, {}, ReadError, f"message 1 names {NAMES[0]} more than once"),
     "too short": ({"/a": SHORT}, {}, ReadError, "in message 6 are 7, 2 and 0; give one position"),
     "only some": ({"/a": PART}, {}, ReadError, "message 6 lacks arm_joint_4, "),
     "unknown in the bag": (
-        {"/a": states()}, {"joints": {"arm_joint9": NAMES[0]}}, ReadError, "named 'arm_joint9'; did you mean",
+        {"/a": states()}, {"joints": {"arm_joint9": NAMES[0]}}, ReadError, "joint 'arm_joint9'; did you mean",
     ),
     "unknown in the robot": (
         {"/a": states()}, {"joints": {NAMES[0]: "arm_joint1"}}, FrameError, "'arm_joint1'; did you mean",

@@ -60,7 +60,7 @@ def test_the_keys_are_those_of_the_law(tmp_path: Path) -> None:
     ("changes", "message"),
     [
         ({"kp": -1}, "kp is -1; it must not be negative"),
-        ({"timeout": "0 s"}, "not positive"),
+        ({"timeout": "0 s"}, "it must be above zero"),
         ({"timeout": "1 s"}, r"on_timeout 'hold' requires kp > 0"),
         ({"timeout": "1 s", "on_timeout": "damp"}, r"on_timeout 'damp' requires kd > 0"),
         ({"on_timeout": "stop"}, "on_timeout"),

@@ -130,9 +130,9 @@ def test_a_space_weather_table_is_found_beside_the_scenario(tmp_path: Path) -> N
     [
         ({"kind": "drag", "atmosphere": "harris"}, {}, ScenarioError, "harris"),
         (air(kind="nrlmsise00", f107=150), {}, EffectError, "lacks f107a, ap"),
-        (air(kind="constant", density=-1), {}, ScenarioError, "negative"),
+        (air(kind="constant", density=-1), {}, ScenarioError, "zero or above"),
         (air(kind="constant", density="1 kg"), {}, ScenarioError, "density"),
-        ({"kind": "drag", "surfaces": {"kind": "cannonball", "area": -2}}, {}, ScenarioError, "negative"),
+        ({"kind": "drag", "surfaces": {"kind": "cannonball", "area": -2}}, {}, ScenarioError, "or above"),
         ({"kind": "drag", "surfaces": {"kind": "cannonball", "area": 2}}, {}, EffectError, "name the one"),
         ({"kind": "drag", "surfaces": "faces", "bodies": {"torso": "faces"}}, {}, ScenarioError, "both"),
         ({"kind": "drag", "bodies": {"torsso": "faces"}}, {}, OnOrbitError, "torso"),

@@ -83,17 +83,17 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "kind of a reference, missing": (
         LAW + "reference: {duration: 1}\n",
         "5: reference",
-        ("requires a 'kind': hold, line_parabola, line,",),
+        ("has no 'kind'; give one of hold, line_parabola, line,",),
     ),
     "kind of an effect, missing": (
         ORBIT + "environment:\n  - {body: base}\n",
         "7: environment[0]",
-        ("requires a 'kind': gravity_field,", "body_wrench"),
+        ("has no 'kind'; give one of gravity_field,", "body_wrench"),
     ),
     "kind of a controller, missing": (
         JOINTS + "controllers: [{name: a}]\n",
         "3: controllers[0]",
-        ("requires a 'kind': computed_torque,",),
+        ("has no 'kind'; give one of computed_torque,",),
     ),
     "kind, misspelt": (LAW + "orbit: {kind: keplr}\n", "5: orbit.kind", ("did you mean 'kepler'?",)),
     "kind, a number": (JOINTS + "controller: 5\n", "3: controller", ("'kind' (computed_torque", "not 5")),
@@ -187,7 +187,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "rows, a switch": (
         ROBOT + "simulation: {duration: 1, record_every: true}\n",
         "2: simulation.record_every",
-        ("give an integer",),
+        ("must be a whole number, not true",),
     ),
     "elements by their letters": (
         LAW + "orbit: {a: 7000 km}\n",
@@ -344,7 +344,7 @@ def test_an_empty_scenario_suggests_how_to_start(tmp_path: Path) -> None:
     (tmp_path / "empty.yaml").write_text("# nothing yet\n")
     with pytest.raises(
         OnOrbitError,
-        match=r"this is empty; a scenario must be a mapping of keys to values \(onorbit new writes",
+        match=r"the content is empty; a scenario must be a mapping of keys to values \(onorbit new writes",
     ):
         load(tmp_path / "empty.yaml")
 

@@ -152,7 +152,11 @@ def test_an_invalid_point_file_is_reported_with_its_line(
         ({"kind": "sgp4", "line1": LINE1, "line2": LINE2, "propagator": "own"}, ScenarioError, "reference"),
         ({"kind": "sgp44"}, ScenarioError, "did you mean 'sgp4'"),
         ({"kind": "custom_path", "times": [0, 1]}, ScenarioError, "'times' and 'positions'"),
-        ({"kind": "custom_path", "file": "a.csv", "times": [0]}, ScenarioError, "omit 'file' or 'times'"),
+        (
+            {"kind": "custom_path", "file": "a.csv", "times": [0]},
+            ScenarioError,
+            "omit 'file', or omit 'times'",
+        ),
         ({"kind": "custom_path", "times": [0, 0], "positions": [[0, 0, 0]] * 2}, PathError, "increase"),
         ({"kind": "custom_path", "times": [0, "1 m"], "positions": [[0, 0, 0]] * 2}, ScenarioError, "a time"),
         ({"kind": "fixed_frame", "gravity_mode": "free"}, ScenarioError, "'carried'"),

@@ -86,7 +86,9 @@ def _opened(path: Path) -> Iterator[Any]:
     except OnOrbitError:
         raise
     except Exception as error:  # errors of struct, zstd, sqlite3 and others, in addition to those of rosbags
-        raise _error(path, f"it is not a bag, or it is damaged or truncated ({error})") from error
+        raise _error(
+            path, f"it is not a bag, or it is damaged or truncated ({error}); record or copy it again"
+        ) from error
 
 
 def _choice(path: Path, topic: str | None, of_joints: list[str], topics: list[str]) -> str:
@@ -94,7 +96,11 @@ def _choice(path: Path, topic: str | None, of_joints: list[str], topics: list[st
     known = ", ".join(of_joints)
     if not of_joints:
         held = ", ".join(topics) or "none"
-        raise _error(path, f"it has no topic with JointState or JointTrajectory messages; its topics: {held}")
+        raise _error(
+            path,
+            "it has no topic with JointState or JointTrajectory messages; give another bag (its topics: "
+            f"{held})",
+        )
     if topic is None:
         if len(of_joints) > 1:
             raise _error(path, f"it has several topics with joint motions; give one as 'topic': {known}")

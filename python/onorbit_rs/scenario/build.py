@@ -124,8 +124,8 @@ def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:
     with located(scenario, "surfaces"):
         if not isinstance(surfaces, dict) and surfaces.kind != "faces" and len(bodies) > 1:
             raise EffectError(
-                f"the robot has {len(bodies)} bodies; give surfaces by link, such as "
-                f"{{{bodies[0]}: {{kind: {surfaces.kind}, …}}}}",
+                f"{surfaces.kind} is the surface of one body, but the robot has {len(bodies)} bodies; give "
+                f"surfaces by link, such as {{{bodies[0]}: {{kind: {surfaces.kind}, …}}}}",
                 name="surfaces",
             )
         at_rest = model.neutral(), np.zeros(model.nv)

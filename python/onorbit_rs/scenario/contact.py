@@ -64,7 +64,9 @@ class HuntCrossley(Part):
             message = f"{self.restitution:g} is outside its range; it must be more than 0 and at most 1"
             raise inconsistent("restitution", message)
         if self.restitution is not None and self.dissipation is not None:
-            raise inconsistent("dissipation", "give either 'dissipation', or 'restitution' and 'speed'")
+            raise inconsistent(
+                "dissipation", "'dissipation' and 'restitution' exclude each other; omit one of them"
+            )
         if self.restitution is not None and self.speed is None:
             message = "a restitution refers to a speed of approach; add 'speed', such as speed: 5 cm/s"
             raise inconsistent("restitution", message)
@@ -114,9 +116,7 @@ class Friction(Part):
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
         if self.kinetic is not None and self.kinetic > self.static:
-            message = (
-                f"{self.kinetic:g} exceeds the static coefficient, {self.static:g}; it must not be larger"
-            )
+            message = f"{self.kinetic:g} exceeds the static coefficient, {self.static:g}; give at most that"
             raise inconsistent("kinetic", message)
         return self
 

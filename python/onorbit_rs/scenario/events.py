@@ -47,7 +47,7 @@ def _quantities(*dimensions: Dimension, above_zero: bool = False) -> BeforeValid
         numbers = [parse_quantity(entry, kind) for entry, kind in zip(value, dimensions, strict=True)]
         for number in numbers:
             if above_zero and number <= 0.0:
-                message = f"{number:g} is not positive; it must be above zero"
+                message = f"a value is {number:g} in SI units; it must be above zero"
                 raise QuantityError(message, text=number, expected="above zero")
         return numbers
 
@@ -84,13 +84,17 @@ class When(Part):
 
     @model_validator(mode="after")
     def _exactly_one(self) -> Self:
-        given = [self.at is not None, self.after is not None, self.on_command, self.latch is not None]
-        if sum(given) != 1:
+        given = [name for name in ("at", "after", "latch") if getattr(self, name) is not None]
+        given += ["on_command"] if self.on_command else []
+        if len(given) != 1:
             raise invalid(
-                f"give exactly one of 'at', 'after', 'on_command: true' and 'latch'; {sum(given)} are given"
+                "give exactly one of 'at', 'after', 'on_command: true' and 'latch'; given: "
+                f"{', '.join(given) or 'none'}"
             )
         if self.delay and self.after is None:
-            raise inconsistent("delay", "a delay requires 'after'; add the name of an event")
+            raise inconsistent(
+                "delay", "'delay' requires 'after', the name of an event; add 'after' or omit 'delay'"
+            )
         return self
 
     def arguments(self) -> dict[str, Any]:

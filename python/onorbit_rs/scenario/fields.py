@@ -26,7 +26,7 @@ def _reader(*allowed: Dimension) -> BeforeValidator:
 def _positive(value: float) -> float:
     if value <= 0.0:
         raise QuantityError(
-            f"{value:g} is not positive; it must be above zero", text=value, expected="above zero"
+            f"the value is {value:g} in SI units; it must be above zero", text=value, expected="above zero"
         )
     return value
 
@@ -34,7 +34,9 @@ def _positive(value: float) -> float:
 def _not_negative(value: float) -> float:
     if value < 0.0:
         raise QuantityError(
-            f"{value:g} is negative; it must be zero or above", text=value, expected="zero or above"
+            f"the value is {value:g} in SI units; it must be zero or above",
+            text=value,
+            expected="zero or above",
         )
     return value
 
@@ -75,7 +77,9 @@ Inertia = Annotated[float, _reader(units.INERTIA)]
 
 def _whole(value: object) -> object:
     if isinstance(value, bool):
-        raise QuantityError(f"{value} is not a number; give an integer", text=value, expected="a number")
+        raise QuantityError(
+            f"must be a whole number, not {str(value).lower()}", text=value, expected="a number"
+        )
     return value
 
 

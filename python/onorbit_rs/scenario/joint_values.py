@@ -113,7 +113,10 @@ def joint_values(
         if len(given) != len(joints):
             entries = count(len(given), "entry", "entries")
             moving = count(len(joints), "moving joint", "moving joints")
-            message = f"{name} has {entries}, but the robot has {moving}"
+            message = (
+                f"{name} has {entries}, but the robot has {moving}; give one value per joint, or a mapping "
+                "from joint names to values"
+            )
             raise ShapeError(message, name=name, expected=(len(joints),), got=(len(given),))
         values[:] = given
     by_name = given if isinstance(given, dict) else dict(zip(joints, given, strict=False))

@@ -79,7 +79,7 @@ def locate(source: str | os.PathLike[str]) -> Path:
     name = os.fspath(source)
     if name in scenarios.names():
         return scenarios.path(name)
-    hint = did_you_mean(path.stem, scenarios.names())
+    hint = did_you_mean(path.stem, scenarios.names()) or "; onorbit list prints the bundled names"
     raise NotFoundError(
         f"no such scenario: {name!r} is neither a file nor a bundled name{hint}", path=name, kind="scenario"
     )
@@ -93,7 +93,8 @@ def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
     if not isinstance(data, dict):
         what = "empty" if data is None else _KINDS.get(type(data), f"of type {type(data).__name__}")
         message = (
-            f"this is {what}; a scenario must be a mapping of keys to values (onorbit new writes a template)"
+            f"the content is {what}; a scenario must be a mapping of keys to values (onorbit new writes a "
+            "template)"
         )
         raise scenario_error(message, file, None)
     if "systems" in data:

@@ -67,7 +67,7 @@ def of_kind(union: Any) -> BeforeValidator:
         if not isinstance(value, dict):
             raise invalid(f"must be a mapping with a 'kind' ({kinds}), not {shortened(value)}")
         if "kind" not in value:
-            raise invalid(f"requires a 'kind': {kinds}")
+            raise invalid(f"has no 'kind'; give one of {kinds}")
         own = keys.get(str(value["kind"]), [*value])  # an unknown kind accepts any key
         for key in value:
             others = [kind for kind, names in keys.items() if key in names]

@@ -157,8 +157,8 @@ class PlainRobot(Part):
 def _printable(value: Any) -> Any:
     if isinstance(value, str) and not value.isprintable():
         raise invalid(
-            f"{shortened(value)} contains characters that are not allowed in names, since "
-            "they cannot be printed"
+            f"{shortened(value)} contains characters that cannot be printed, which are not allowed in "
+            "names; remove them"
         )
     return value
 
@@ -195,7 +195,9 @@ class Robot(PlainRobot):
             return value
         has_bus, has_arms = value.get("bus") is not None, value.get("arms") is not None
         if has_arms and not has_bus:
-            raise invalid("'arms' requires a 'bus', the robot to which the arms are attached")
+            raise invalid(
+                "'arms' requires 'bus', the robot to which the arms are attached; add 'bus' or omit 'arms'"
+            )
         if has_bus and not has_arms:
             raise invalid("'bus' requires 'arms'; list at least one, each {urdf: FILE, at: FRAME}")
         return value

@@ -78,13 +78,14 @@ class IntegrationSettings(Part):
             )
         if self.duration / self.time_step > MAX_STEPS:
             raise invalid(
-                f"a duration of {self.duration:g} s with a time_step of {self.time_step:g} s requires more "
-                f"than {MAX_STEPS:.0e} steps; give a longer 'time_step'"
+                f"a duration of {self.duration:g} s with a time_step of {self.time_step:g} s requires "
+                f"{self.duration / self.time_step:.3g} steps; at most {MAX_STEPS:.0e} are permitted; give a "
+                f"'time_step' above {self.duration / MAX_STEPS:.3g} s, or a shorter 'duration'"
             )
         if self.steps / self.record_every > MAX_ROWS:
             raise invalid(
-                f"the trace would have {self.steps / self.record_every:.3g} rows, more than the maximum of "
-                f"{MAX_ROWS:.0e}; increase 'record_every'"
+                f"the trace would have {self.steps / self.record_every:.3g} rows; at most {MAX_ROWS:.0e} are "
+                f"permitted; set 'record_every' to at least {math.ceil(self.steps / MAX_ROWS)}"
             )
         return self
 
@@ -97,8 +98,8 @@ class SimulationSettings(ControlSettings, IntegrationSettings):
         if self.control_period is not None and self.control_period < self.time_step * (1.0 - 1e-9):
             raise inconsistent(
                 "control_period",
-                f"control_period {self.control_period:g} s is shorter than time_step {self.time_step:g} "
-                "s; it must be at least one step",
+                f"control_period {self.control_period:g} s is shorter than one time_step; give at least "
+                f"{self.time_step:g} s",
             )
         return self
 

@@ -90,7 +90,7 @@ def _message(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> st
     if kind == "less_than_equal":
         return f"{shortened(given)} is above the maximum, {context['le']}"
     if kind == "string_pattern_mismatch":
-        return f"{shortened(given)} has characters other than letters, digits, '_' and '-'"
+        return f"{shortened(given)} has characters other than letters, digits, '_' and '-'; remove them"
     what = kind.split("_")[0]
     if what in _MUST_BE and kind.endswith(("_type", "_parsing", "_from_float", "_size")):
         return f"must be {_MUST_BE[what]}, not {shortened(given)}"

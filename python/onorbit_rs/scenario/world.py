@@ -177,10 +177,12 @@ class WorldScenario(Document):
         others = [other for other in self.systems if other != name]
         for index, known in enumerate(system.knows):
             if known not in others:
-                what = "the system itself; omit it" if known == name else f"{known!r}, which is not a system"
-                raise inconsistent(
-                    ("systems", name, "knows", index), f"'knows' contains {what}{did_you_mean(known, others)}"
+                what = (
+                    "the system itself; omit it"
+                    if known == name
+                    else f"{known!r}, which is not a system{did_you_mean(known, others)}"
                 )
+                raise inconsistent(("systems", name, "knows", index), f"'knows' contains {what}")
 
     def _check_neighbour(self, name: str, system: System) -> None:
         """Raise an error if the initial state is relative to an unknown system, or systems form a circle."""

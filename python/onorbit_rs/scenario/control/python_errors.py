@@ -23,7 +23,7 @@ def no_class(name: str, source: str, classes: Iterable[str]) -> ControlError:
 def no_update(name: str, source: str) -> ControlError:
     """Return the error for a class without the method ``update``."""
     return ControlError(
-        f"{name} of {source} has no method update(t, state), which must return the efforts",
+        f"{name} of {source} has no method update(t, state), which must return the efforts; add it",
         name="class",
         got=name,
     )

@@ -54,7 +54,8 @@ def create_controller(part: PythonController, folder: Path) -> Any:
         return controller_class(**part.arguments)
     except Exception as error:
         raise ControlError(
-            f"{part.class_}(...) of {source} raised {_one_line(error)}; its arguments are {part.arguments}",
+            f"{part.class_}(...) of {source} raised {_one_line(error)}; correct the class or its "
+            f"'arguments', {part.arguments}",
             name="arguments",
             got=part.arguments,
         ) from error
@@ -81,9 +82,11 @@ def _import(name: str) -> ModuleType:
     except ModuleNotFoundError as error:
         if error.name and (name == error.name or name.startswith(f"{error.name}.")):
             raise no_module(name) from error
-        raise ControlError(f"module {name} raised {_one_line(error)}", name="module", got=name) from error
+        message = f"module {name} raised {_one_line(error)}; install the missing module"
+        raise ControlError(message, name="module", got=name) from error
     except Exception as error:
-        raise ControlError(f"module {name} raised {_one_line(error)}", name="module", got=name) from error
+        message = f"the controller's module {name} raised {_one_line(error)}; correct the module"
+        raise ControlError(message, name="module", got=name) from error
 
 
 def _one_line(error: Exception) -> str:

@@ -88,7 +88,9 @@ def inspect_source(part: PythonController, folder: Path) -> Placeholder:
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         reason = " ".join(str(error).split())
         raise ControlError(
-            f"{source} cannot be read as Python: {type(error).__name__}: {reason}", name="file", got=source
+            f"{source} cannot be read as Python: {type(error).__name__}: {reason}; correct the file",
+            name="file",
+            got=source,
         ) from error
     statements = list(_statements(tree.body))
     classes = {node.name: node for node in statements if isinstance(node, ast.ClassDef)}
@@ -165,7 +167,8 @@ def _check_class(
         inspect.Signature(parameters).bind(**part.arguments)
     except TypeError as error:
         raise ControlError(
-            f"{part.class_}(...) of {source} does not accept the arguments {part.arguments}: {error}",
+            f"{part.class_}(...) of {source} does not accept the arguments {part.arguments}: {error}; "
+            "correct 'arguments'",
             name="arguments",
             got=part.arguments,
         ) from error

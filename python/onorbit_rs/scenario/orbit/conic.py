@@ -77,10 +77,11 @@ class ConicOrbit(Part):
         if self.position is not None or self.velocity is not None:
             others = [name for name in given if name not in ("position", "velocity")]
             if self.position is None or self.velocity is None:
-                raise invalid("a state requires both 'position' and 'velocity'")
+                missing = "position" if self.position is None else "velocity"
+                raise invalid(f"{missing!r} is missing; an initial state requires 'position' and 'velocity'")
             if others:
                 raise invalid(
-                    f"'position' and 'velocity' define the orbit; omit {', '.join(map(repr, others))}"
+                    f"'position' and 'velocity' define the orbit; omit {' and '.join(map(repr, others))}"
                 )
             return self
         sizes = [name for name in SIZES if name in given]

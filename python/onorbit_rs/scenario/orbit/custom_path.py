@@ -69,7 +69,7 @@ class CustomPathOrbit(Part):
             extra = [name for name in ("velocities", "accelerations", "attitudes") if getattr(self, name)]
             if inline or extra:
                 raise invalid(
-                    f"'file' defines the path; omit 'file' or {', '.join(map(repr, inline + extra))}"
+                    f"'file' defines the path; omit 'file', or omit {' and '.join(map(repr, inline + extra))}"
                 )
         elif len(inline) != 2:
             raise invalid("give 'times' and 'positions', or a 'file' with them")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from onorbit_rs import _core
+from onorbit_rs.common.counting import count
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import FrameError, ReadError
 from onorbit_rs.scenario.bag_samples import Sample, read_samples
@@ -62,7 +63,9 @@ class BagReference(Part):
         robot = list(at.model.joint_names)
         for name in self.joints or ():
             if name not in recorded:
-                raise _BadRecordingError(f"no joint is named {name!r}{did_you_mean(name, recorded)}")
+                raise _BadRecordingError(
+                    f"the messages contain no joint {name!r}{did_you_mean(name, recorded)}"
+                )
         wanted = self.joints or {name: name for name in recorded}
         for joint in wanted.values():
             if joint not in robot:
@@ -75,7 +78,8 @@ class BagReference(Part):
         if not found:
             group, names = ", ".join(at.group), ", ".join(wanted.values()) or "none"
             raise _BadRecordingError(
-                f"none of its joints is controlled; it has {names}, and the controlled joints are {group}"
+                f"none of its joints ({names}) is among the controlled joints ({group}); map its joints to "
+                "those of the robot with 'joints'"
             )
         return found
 
@@ -103,8 +107,10 @@ def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
 def _check_lengths(number: int, sample: Sample) -> None:
     """Raise an error if the numbers of names and values in a message differ, or a name occurs twice."""
     joints = len(sample.names)
-    if doubled := [name for name, count in Counter(sample.names).items() if count > 1]:
-        raise _BadRecordingError(f"message {number} names {', '.join(doubled)} more than once")
+    if doubled := [name for name, times in Counter(sample.names).items() if times > 1]:
+        raise _BadRecordingError(
+            f"message {number} names {', '.join(doubled)} more than once; name each joint once"
+        )
     if len(sample.positions) != joints or len(sample.rates) not in (0, joints):
         raise _BadRecordingError(
             f"the numbers of names, positions and velocities in message {number} are {joints}, "
@@ -128,6 +134,7 @@ def _distinct(samples: list[Sample]) -> list[Sample]:
         found.append(sample)
     if len(found) < 2:
         raise _BadRecordingError(
-            f"it has {len(found)} message; a motion requires two or more" if found else "it has no messages"
+            f"it has {count(len(found), 'message', 'messages')} with the followed joints; a motion requires "
+            "two or more"
         )
     return found
