@@ -41,7 +41,7 @@ def test_without_the_extra_one_line_says_how_to_install_it() -> None:
     assert done.returncode == 2 and done.stdout == ""
     (line,) = done.stderr.splitlines()
     assert "require cyclonedds and rosbags" in line or "require rosbags and cyclonedds" in line
-    assert line.endswith("install them with: pip install 'onorbit-rs[ros2]'")
+    assert line.endswith("to install, use pip install 'onorbit-rs[ros2]'")
 
 
 def test_the_command_runs_a_scenario_and_reports_it(capsys: pytest.CaptureFixture[str]) -> None:

@@ -78,7 +78,9 @@ def test_show_without_a_screen_suggests_a_fix(folder: Path) -> None:
 @on_linux
 @pytest.mark.usefixtures("broken_display")
 def test_a_run_continues_without_a_viewer_that_does_not_start() -> None:
-    with pytest.warns(UserWarning, match="the viewer did not start: .*; the run continues without it"):
+    with pytest.warns(
+        UserWarning, match="the viewer did not start: .*; the run continues without the viewer"
+    ):
         assert oo.run(short(), quiet=True, view=True).trace.is_complete
 
 

@@ -98,7 +98,8 @@ def ros2(
     elif not quiet:
         print_text(_closing(report))
     if not report["certificate_passed"]:
-        fail("the certificate failed", 1)
+        failed = ", ".join(name for name, _, _, passed in trace.certificate() if not passed)
+        fail(f"the certificate failed ({failed}); try a shorter time_step", 1)
 
 
 def _greeting(node: Node) -> str:

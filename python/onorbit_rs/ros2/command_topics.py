@@ -71,8 +71,8 @@ def _order(names: list[str], joints: list[str]) -> list[int]:
     """Return the index in a message of each joint of a control; the message must name each joint once."""
     if sorted(names) != sorted(joints):
         raise RefusedError(
-            f"the joints in the message are {', '.join(names) or 'none'}; each joint of the control must be "
-            f"in it once: {', '.join(joints)}"
+            f"the message names the joints {', '.join(names) or 'none'}; it must name each joint of the "
+            f"control once: {', '.join(joints)}"
         )
     return [names.index(joint) for joint in joints]
 
@@ -81,7 +81,7 @@ def _trajectory(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
     def convert(content: Any) -> list[Entry]:
         order = _order(list(content.joint_names), joints)
         if not content.points:
-            raise RefusedError("the trajectory has no points; at least one is required")
+            raise RefusedError("the trajectory has no points; it must have at least one")
         found: dict[str, Any] = {"times": [_seconds(point.time_from_start) for point in content.points]}
         for name in ("positions", "velocities", "accelerations"):
             rows = [getattr(point, name) for point in content.points]
@@ -122,10 +122,15 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
                     numbers = _finite(field_name, values, names)
                     entry[field_name] = [numbers[i] for i in places]
             if len(entry) == 2:
-                raise RefusedError("the message has no position, velocity or effort; give one of them")
+                raise RefusedError(
+                    "position, velocity and effort of the message are empty; fill at least one of them, with "
+                    "one value per joint"
+                )
             entries.append(entry)
         if not entries:
-            raise RefusedError("the message names no joints; give their names in the field name")
+            raise RefusedError(
+                "the field name of the message is empty; it must contain the joints to command"
+            )
         return entries
 
     return convert
@@ -140,7 +145,7 @@ def _wrench(system: str, prefix: str, frames: Mapping[str, str]) -> Callable[[An
         body = bodies.get(content.header.frame_id.removeprefix(prefix))
         if body is None:
             raise RefusedError(
-                f"frame_id {content.header.frame_id!r} is no frame of the robot; its frames are "
+                f"frame_id {content.header.frame_id!r} is not a frame of the robot; its frames are "
                 f"{', '.join(dict.fromkeys((BASE, *frames.values())))}"
             )
         force, torque = ([v.x, v.y, v.z] for v in (content.wrench.force, content.wrench.torque))

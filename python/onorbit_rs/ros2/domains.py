@@ -91,7 +91,7 @@ def join(domain: int, network: str) -> Joined:
         if joined.network != network:
             raise Ros2Error(
                 f"this process has joined DDS domain {domain} with network={joined.network!r}; close that "
-                "node, use the same network or another domain",
+                "node, or use the same network or another domain",
                 reason="another network",
             )
         return joined

@@ -107,4 +107,4 @@ class Reader:
 def _error(task: str, code: int) -> Ros2Error:
     """Return the error for a code that CycloneDDS returned."""
     reason = str(DDSException(code)).strip()
-    return Ros2Error(f"{task}: {reason}", reason=reason)
+    return Ros2Error(f"{task}: {reason}; end the node and start it again", reason=reason)

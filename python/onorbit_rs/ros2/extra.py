@@ -19,4 +19,4 @@ def require(*packages: str) -> None:
     """
     missing = [name for name in packages if find_spec(name) is None]
     if missing:
-        raise Ros2Error(f"ROS 2 messages require {' and '.join(missing)}; install them with: {HINT}")
+        raise Ros2Error(f"ROS messages require {' and '.join(missing)}; to install, use {HINT}")

@@ -113,7 +113,9 @@ def _arrived(route: Route, data: bytes) -> Arrived:
     try:
         content = decode(data, route.reader.kind)
     except Exception as error:  # the decoder raises errors of many types for malformed bytes
-        return Arrived(*message, [], f"the message is malformed ({type(error).__name__})")
+        return Arrived(
+            *message, [], f"the message is malformed ({type(error).__name__}); send a {route.reader.kind}"
+        )
     try:
         return Arrived(*message, route.convert(content))
     except RefusedError as refusal:

@@ -27,7 +27,10 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     """
     wanted = {name: ros_name(name) for name in names}
     kept = {name for name, ros in wanted.items() if ros == name}
-    reason = f"ROS names contain letters, digits and single underscores; the topics of a {kind} use"
+    reason = (
+        "names in ROS are distinct and contain only letters, digits and single underscores; the topics of "
+        f"these {kind}s have other names"
+    )
     return _numbered(wanted, kept, kept, reason)
 
 
@@ -42,7 +45,7 @@ def frame_names(names: Iterable[str], reserved: Collection[str]) -> dict[str, st
         Names of other frames of the tree, such as ``world``.
     """
     wanted = {name: name for name in names}
-    reason = "the tree of frames has other frames of these names; links and frames of the robot become"
+    reason = "links and frames of the robot are renamed in /tf, because other frames have their names"
     return _numbered(wanted, wanted.keys() - reserved, {*wanted, *reserved}, reason)
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from onorbit_rs._core import Model
 from onorbit_rs.common.coordinates import JOINTS_Q
+from onorbit_rs.common.counting import count
 from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.ros2.rows import Rows, rows_of_trace
@@ -90,8 +91,8 @@ def _orbit(run: Run) -> Orbit | None:
         return build_environment(scenario, model).orbit
     except OnOrbitError as error:
         warnings.warn(
-            f"the reference orbit cannot be computed again ({error}); the rate in /orbit/twist is therefore "
-            "r × v / r², without the turn of the plane of a perturbed orbit",
+            f"the reference orbit cannot be computed again ({error}); /orbit/twist therefore contains the "
+            "angular rate r × v / r², which neglects the rotation of the orbital plane by perturbations",
             UserWarning, stacklevel=4,
         )  # fmt: skip
         return None
@@ -104,7 +105,8 @@ def _check_joints(trace: Any, models: Mapping[str, Model]) -> None:
         joints = np.asarray(own.q)[:, JOINTS_Q].shape[1]
         if joints != len(model.joint_names):
             raise InputError(
-                f"the model of {name} has {len(model.joint_names)} joints, but the trace has {joints}",
+                f"the model of {name} has {count(len(model.joint_names), 'joint', 'joints')}, but its trace "
+                f"has {joints}; give the model of the run",
                 name="models", got=model, expected=f"a model with {joints} joints",
             )  # fmt: skip
 
@@ -125,7 +127,7 @@ def _by_name(trace: Trace | WorldTrace, models: Models | None) -> Mapping[str, M
         return {name: models[name] for name in systems}
     expected = "a Model" if len(systems) == 1 else f"a mapping with the systems {', '.join(systems)}"
     raise InputError(
-        f"a trace does not contain its robots: models must be {expected}",
+        f"a trace does not contain its robots; models must be {expected}",
         name="models",
         got=models,
         expected=expected,

@@ -121,7 +121,9 @@ class View(ABC):
         if self._is_lost:
             return
         self._is_lost = True
-        warnings.warn(f"the viewer was closed or failed; the run continues without it: {error}", stacklevel=2)
+        warnings.warn(
+            f"the viewer was closed or failed ({error}); the run continues without it", stacklevel=2
+        )
 
 
 class LiveView(View):
@@ -199,12 +201,12 @@ def connected_recording(name: str) -> rr.RecordingStream | None:
     try:
         url = open_viewer()
     except ViewerError as error:
-        warnings.warn(f"{error}; the run continues without it", stacklevel=2)
+        warnings.warn(f"{error}; the run continues without the viewer", stacklevel=2)
         return None
     try:
         recording = new_recording(name)
         recording.connect_grpc(url)
     except Exception as error:
-        warnings.warn(f"the viewer cannot be reached; the run continues without it: {error}", stacklevel=2)
+        warnings.warn(f"the viewer cannot be reached ({error}); the run continues without it", stacklevel=2)
         return None
     return recording

@@ -94,7 +94,10 @@ def _picture(
             if has_ended or time.monotonic() > deadline:
                 said.seek(0)
                 why = reason(said.read()) if has_ended else str(error)
-                raise ViewerError(f"the viewer does not display the recording: {why}", reason=why) from error
+                raise ViewerError(
+                    f"the viewer does not display the recording: {why}; repeat the run to write it again",
+                    reason=why,
+                ) from error
             time.sleep(0.2)
 
 

@@ -128,8 +128,8 @@ def _mesh(visual: Visual) -> Mesh:
     size = float(np.ptp(mesh.bounds, axis=0).max())
     if not 0.0 < size < LARGEST:
         raise ReadError(
-            f"the size of {file} is {size:.3g} m with scale {visual.scale}; correct the scale or the unit of "
-            "the file",
+            f"the size of {file} is {size:.3g} m with scale {visual.scale}; it must be above 0 and below "
+            f"{LARGEST:g} m; correct the scale or the unit of the file",
             path=file,
             kind="mesh",
         )

@@ -37,7 +37,7 @@ def evaluate(value: object) -> float:
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return _finite(value, float(value) if abs(value) < 1e308 else math.inf)
     if not isinstance(value, str):
-        raise _refused(value, "is not a number; give a number, or arithmetic such as (60.0*pi)/180.0")
+        raise _refused(value, "is not a number")
     try:
         return _finite(value, _Arithmetic(value).visit(parsed(value.strip(), _LONGEST)))
     except (SyntaxError, ValueError, ZeroDivisionError, OverflowError, RecursionError) as error:
@@ -95,4 +95,5 @@ def _finite(text: object, number: float) -> float:
 
 
 def _refused(text: object, why: str) -> QuantityError:
-    return QuantityError(f"{text!r} {why}", text=text, expected="a number or arithmetic")
+    fix = "" if "did you mean" in why else "; give a number, or arithmetic such as (60.0*pi)/180.0"
+    return QuantityError(f"{text!r} {why}{fix}", text=text, expected="a number or arithmetic")

@@ -97,7 +97,9 @@ def convert(
         for key, part in source.result.items():
             if key in scenario and key not in ("simulation", "robot"):
                 raise scenario_error(
-                    f"'{key}' is defined in two files; give only one of them", source.file, None
+                    f"'{key}' is defined a second time in this file; omit one of the two files",
+                    source.file,
+                    None,
                 )
             scenario[key] = part
         comments |= source.comments

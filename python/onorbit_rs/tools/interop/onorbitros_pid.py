@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from onorbit_rs.scenario.errors import shortened
+
 if TYPE_CHECKING:
     from onorbit_rs.tools.interop.source import Source
 
@@ -61,7 +63,7 @@ def joint_names(source: Source) -> list[str]:
     joints = data["joints"] if "joints" in data else [data.get("joint")]
     if not isinstance(joints, list) or not joints or not all(isinstance(name, str) for name in joints):
         key = "joints" if "joints" in data else "joint"
-        raise source.fail(key, f"must name the controlled joints, not {data.get(key)!r:.60}")
+        raise source.fail(key, f"must name the controlled joints, not {shortened(data.get(key))}")
     return joints
 
 

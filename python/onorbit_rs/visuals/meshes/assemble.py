@@ -64,7 +64,8 @@ def make_part(
     if len(directions) != len(points) or (places is not None and len(places) != len(points)):
         uv = "" if places is None else f" and {len(places)} texture coordinates"
         raise ValueError(
-            f"it has {len(points)} vertices, but {len(directions)} normals{uv}; the numbers must be equal"
+            f"it has {len(points)} vertices, but {len(directions)} normals{uv}; the numbers must "
+            "be equal; export the mesh again"
         )
     if not np.isfinite(points).all():
         raise ValueError("it has vertices that are not finite; export the mesh again")

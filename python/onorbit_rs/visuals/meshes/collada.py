@@ -69,7 +69,9 @@ def _check_kind(content: bytes) -> None:
         if names:
             break
     if names and names[0].rpartition(":")[2] != "COLLADA":
-        raise ValueError(f"it is not a Collada file: its root is <{names[0][:80]}>")
+        raise ValueError(
+            f"it is not a Collada file: its root is <{names[0][:80]}>; export the mesh as Collada"
+        )
 
 
 def _without_lost_materials(content: bytes, known: set[str]) -> bytes:
