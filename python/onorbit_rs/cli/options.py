@@ -77,8 +77,8 @@ def reading_options(
     is_xacro = xacro or Path(robot).suffix.lower() == ".xacro"
     if arguments and bus is not None and not is_xacro:
         raise InputError(
-            f"--arg applies only to the robot, but {robot} does not end in .xacro; omit --arg, or add "
-            "--xacro; write the arguments of the bus in the scenario, as robot.bus.xacro_arguments",
+            f"--arg sets an argument of the robot, but {robot} does not end in .xacro; omit --arg, and write "
+            "the arguments of the bus in the scenario, as robot.bus.xacro_arguments",
             name="arg", got=arguments,
         )  # fmt: skip
     if (packages or arguments or xacro) and not robots.is_file(robot):

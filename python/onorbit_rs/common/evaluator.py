@@ -23,7 +23,7 @@ def parsed(text: str, longest: int) -> ast.expr:
     try:
         return ast.parse(text, mode="eval").body
     except (MemoryError, RecursionError):
-        raise ValueError("the expression is nested too deeply") from None
+        raise ValueError("the expression is nested too deeply; divide it into several expressions") from None
 
 
 class Evaluator(ast.NodeVisitor, ABC):

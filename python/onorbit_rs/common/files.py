@@ -55,7 +55,7 @@ def open_to_change(file: Path) -> BinaryIO:
     try:
         found = os.fstat(descriptor)
         if not stat.S_ISREG(found.st_mode) or found.st_nlink > 1 or is_link(file):
-            raise OSError(errno.EINVAL, "it is a link or no regular file; remove it", str(file))
+            raise OSError(errno.EINVAL, "it is a link, or not a regular file; remove it", str(file))
         return os.fdopen(descriptor, "r+b", buffering=0)
     except BaseException:
         os.close(descriptor)

@@ -63,7 +63,7 @@ def check_shapes(arrays: Mapping[str, Any]) -> None:
     """
     rows, joints = np.shape(arrays["time"]), max((np.shape(arrays["q"]) or (0,))[-1] - BASE_NQ, 0)
     if len(rows) != 1 or rows[0] == 0:
-        raise ValueError(f"column 'time' has shape {rows}; expected (T,) with T ≥ 1")
+        raise ValueError(f"column 'time' has shape {rows}; expected one dimension with at least one row")
     for path, values in arrays.items():
         name, _ = split_path(path)
         if name == "rereferenced":

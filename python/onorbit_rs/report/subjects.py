@@ -95,4 +95,4 @@ def _remarked(remarks: list[str], what: str) -> Iterator[None]:
     try:
         yield
     except OnOrbitError as error:
-        remarks.append(f"{what}: {error}")
+        remarks.append(f"{what} ({error})")
