@@ -162,7 +162,7 @@ def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
         what = "no mass" if body.mass <= 0.0 else f"a principal moment of inertia of {moments[0]:g} kg m²"
         raise ModelError(
             f"link '{body.name}' has {what}, which MuJoCo does not support; give it a small mass and "
-            "inertia, or use engine: native, also for planar and ball joints, which consist of such links",
+            "inertia, or use engine: native (the links inside of planar and ball joints have no mass)",
             link=body.name,
         )
     quat = np.empty(4)

@@ -114,7 +114,7 @@ def _from_kvn(text: str, where: str) -> dict[str, Any]:
         found[key.strip()] = value.split("[")[0].strip()
     if not found:
         raise ElementSetError(
-            f"{where} is no Orbit Mean-Elements Message: it is neither JSON, XML nor CSV, and has no line "
-            "KEYWORD = value"
+            f"{where} is not an Orbit Mean-Elements Message (OMM): it is neither JSON, XML nor CSV, and has "
+            "no line KEYWORD = value"
         )
     return found

@@ -97,7 +97,7 @@ def convert(
         for key, part in source.result.items():
             if key in scenario and key not in ("simulation", "robot"):
                 raise scenario_error(
-                    f"'{key}' is defined a second time in this file; omit one of the two files",
+                    f"'{key}' is also defined in an earlier file; omit one of the two files",
                     source.file,
                     None,
                 )
