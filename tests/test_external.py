@@ -283,7 +283,7 @@ def test_only_external_controls_that_have_not_ended_take_commands() -> None:
     stepper = oo.Simulation(model, q, v, controller=controls, time_step=1e-2).start()
     assert stepper.external == {"arm": names[:4]}
     with pytest.raises(
-        Errors.ControlError, match=r"'wrist' does not follow commands.*those that do are: arm"
+        Errors.ControlError, match=r"'wrist' does not follow external commands.*those that do are: arm"
     ):
         stepper.send("wrist", position=MOVE[:3])
     with pytest.raises(Errors.ControlError, match=r"'control'.*the known names are: arm"):

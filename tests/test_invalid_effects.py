@@ -99,9 +99,9 @@ def test_missing_tables_are_reported_without_the_message_of_the_system(tmp_path:
         ("space weather table", lambda path: oo.Nrlmsise00(table=path)),
         ("Earth-orientation table", lambda path: oo.Earth("2024-03-01T12:00:00 UTC", eop=path)),
     ):
-        with pytest.raises(NotFoundError, match=rf"none\.csv: there is no such {what}$"):
+        with pytest.raises(NotFoundError, match=rf"none\.csv: there is no such {what}; check the path$"):
             read(tmp_path / "none.csv")
-        with pytest.raises(ReadError, match=rf"the {what} .* cannot be read: it is a directory$"):
+        with pytest.raises(ReadError, match=rf"the {what} .* cannot be read: it is a directory; give the path of a file$"):
             read(tmp_path)
 
 

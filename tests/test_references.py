@@ -156,7 +156,7 @@ def test_a_reference_with_a_distant_start_reports_the_distance() -> None:
     law = oo.ComputedTorque(model, "tool")
     with pytest.raises(
         exceptions.ControlError,
-        match=r"starts 0\.2 m and 0 rad from the tool; it must start within 0\.05 m and .*_tolerance",
+        match=r"starts 0\.2 m and 0 rad from the frame; it must start within 0\.05 m and .*_tolerance",
     ) as caught:
         oo.Simulation(model, q, v, controller=law, reference=oo.Hold(pose))
     assert caught.value.got[0] == pytest.approx(0.2)
@@ -217,7 +217,7 @@ def test_scenarios_start_every_kind_at_the_tool(tmp_path: Path, reference: str) 
 def test_a_csv_reproduces_the_motion(tmp_path: Path) -> None:
     write_csv(tmp_path / "motion.csv")
     text = "{kind: sampled, file: motion.csv}"
-    with pytest.raises(exceptions.ControlError, match=r"mine.yaml.*starts .* m and .* rad from the tool"):
+    with pytest.raises(exceptions.ControlError, match=r"mine.yaml.*starts .* m and .* rad from the frame"):
         build(load(scenario(tmp_path, text)))
     from onorbit_rs.scenario.reference import SampledReference
     from onorbit_rs.scenario.reference.start import Start

@@ -164,7 +164,7 @@ INVALID: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "connected twice": (
         lambda: world(GRASP, oo.Capture("again", "chaser/tool", "target/base", at=0.4)),
-        "closes a loop",
+        "connect the same systems twice",
     ),
     "unknown capture": (lambda: world(oo.Release("let_go", "grip", at=1.0)), "unknown event 'grip'"),
     "release of a release": (

@@ -89,7 +89,7 @@ def test_the_world_frame_is_the_control_of_this_test():
     [
         ("targt/handle", ControlError, "not in a system of the world.*servicer, target"),
         ("target/handel", FrameError, "handle"),
-        ("servicer/tool", oo.exceptions.WorldError, "frame of the system itself"),
+        ("servicer/tool", oo.exceptions.WorldError, "frame of the same system"),
         ("handle", ControlError, "SYSTEM/FRAME"),
     ],
 )

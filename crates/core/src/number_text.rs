@@ -38,7 +38,21 @@ pub fn list(values: &[f64]) -> String {
 /// Formats a count with its noun: `1 number`, `2 numbers`.
 #[must_use]
 pub fn count(number: usize, one: &str) -> String {
-    format!("{number} {one}{}", if number == 1 { "" } else { "s" })
+    if number == 1 { format!("1 {one}") } else { format!("{number} {}", plural(one)) }
+}
+
+/// Formats the accepted indices of `count` things: `joints 0 to 5`, `only joint 0` or `no joints`.
+#[must_use]
+pub fn indices(count: usize, one: &str) -> String {
+    match count {
+        0 => format!("no {}", plural(one)),
+        1 => format!("only {one} 0"),
+        _ => format!("{} 0 to {}", plural(one), count - 1),
+    }
+}
+
+fn plural(one: &str) -> String {
+    one.strip_suffix('y').map_or_else(|| format!("{one}s"), |stem| format!("{stem}ies"))
 }
 
 /// Formats a number with `digits` significant digits, without trailing zeros.
@@ -62,7 +76,7 @@ fn without_zeros(text: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::{count, list, short, unlike};
+    use super::{count, indices, list, short, unlike};
 
     #[test]
     fn noise_of_rounding_is_not_printed() {
@@ -87,6 +101,8 @@ mod tests {
         }
         assert_eq!((count(1, "number"), count(0, "row")), ("1 number".to_owned(), "0 rows".to_owned()));
         assert_eq!(list(&[1.0, 0.1 + 0.2]), "[1, 0.3]");
+        assert_eq!([0, 1, 3].map(|n| indices(n, "joint")), ["no joints", "only joint 0", "joints 0 to 2"]);
+        assert_eq!(indices(2, "body"), "bodies 0 to 1");
     }
 
     #[test]

@@ -228,7 +228,7 @@ fn invalid_controls_are_refused_by_name() {
     assert!(refused(vec![effort("a", 1.0), effort("a", 1.0)]).contains("two controls are named 'a'"));
     let group = |joints: Vec<usize>| refused(vec![Control { joints, ..effort("a", 1.0) }]);
     assert!(group(vec![]).contains("drives no joint"));
-    assert!(group(vec![1]).contains("the robot has joints 0 to 0"));
+    assert!(group(vec![1]).contains("the robot has only joint 0"));
     assert!(group(vec![0, 0]).contains("twice"));
     let window =
         |begin: f64, end: f64| refused(vec![Control { begin: Begin::At(begin), end, ..effort("a", 1.0) }]);

@@ -32,7 +32,10 @@ fn frames_and_bodies_the_robot_does_not_have() {
         ),
     ] {
         let control = Control::new("arm", (0..model.joint_count()).collect(), law);
-        assert!(unknown(check_controls(&[control], &model).unwrap_err()));
+        let refused = check_controls(&[control], &model).unwrap_err();
+        assert!(refused.to_string().starts_with("control 'arm': frame "), "{refused}");
+        let ControlError::OfControl { source, .. } = refused else { panic!("{refused}") };
+        assert!(unknown(*source));
     }
     let error = Surface::from_shapes(&model, bodies, 2.2, Optics::default()).unwrap_err();
     assert_eq!(error, SurfaceError::UnknownBody { body: bodies.into(), count: bodies });

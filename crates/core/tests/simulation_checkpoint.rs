@@ -282,24 +282,24 @@ fn the_state_of_step_doubling_is_checked_on_resuming() {
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["ended"] = vec![0.0; 9].into()
             },
-            "joints with jumps of acceleration: 9 in the checkpoint",
+            "'joints with jumps of acceleration' has 9 entries in the checkpoint",
         ),
         (
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["jumps"] = vec![0.0; 0].into()
             },
-            "joints with jumps of acceleration: 0 in the checkpoint",
+            "'joints with jumps of acceleration' has 0 entries in the checkpoint",
         ),
         (
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["fastest"] = vec![0.0; 1].into()
             },
-            "joints with jumps of acceleration: 1 in the checkpoint",
+            "'joints with jumps of acceleration' has 1 entry in the checkpoint",
         ),
-        (|value| value["groups"][0]["progress"]["steps"] = 1.into(), "its numbers of steps (1)"),
+        (|value| value["groups"][0]["progress"]["steps"] = 1.into(), "the number of steps (1)"),
         (
             |value| value["groups"][0]["progress"]["steps"] = u64::MAX.into(),
-            "numbers of steps (18446744073709551615)",
+            "the number of steps (18446744073709551615)",
         ),
         (
             |value| value["groups"][0]["progress"]["idle_steps"] = u64::MAX.into(),

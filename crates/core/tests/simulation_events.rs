@@ -153,7 +153,7 @@ fn a_diverging_run_reports_time_and_state_and_keeps_its_trace() {
     stiff.time_step = 0.01;
     for mut simulation in [hard, stiff] {
         let failure = simulation.run(100.0).unwrap_err();
-        let SimulationError::Diverged { time, q, v } = &failure.error else { panic!("{failure}") };
+        let SimulationError::Diverged { time, q, v, .. } = &failure.error else { panic!("{failure}") };
         assert!(q.iter().chain(v).all(|x| x.is_finite()) && q.len() == 14 && v.len() == 13);
         assert!(*time > 0.0 && *time < 100.0, "{failure}");
         let trace = &failure.recording.systems[0];

@@ -17,8 +17,9 @@ pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), Control
             return Err(ControlError::RepeatedName { name: control.name.clone() });
         }
         check_group(control, model)?;
-        control.law.check(&control.name, &control.joints, model)?;
-        check_goal(control)?;
+        let fits =
+            control.law.check(&control.name, &control.joints, model).and_then(|()| check_goal(control));
+        fits.map_err(|error| error.of_control(&control.name))?;
         check_window(i, controls)?;
         for earlier in 0..i {
             check_pair(earlier, i, controls, model)?;

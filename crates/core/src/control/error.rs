@@ -1,7 +1,7 @@
 //! Errors of controls.
 
 use crate::model::nearest;
-use crate::number_text::{count, short, unlike};
+use crate::number_text::{count, indices, short, unlike};
 use crate::reference::ReferenceError;
 use thiserror::Error;
 
@@ -11,10 +11,13 @@ use thiserror::Error;
 pub enum ControlError {
     #[error("{name} has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: String, got: usize },
-    #[error("{name} holds {value}; it must be finite", value = short(*value))]
+    #[error(
+        "{name} holds {value}; give finite numbers (only limits and tolerances may be infinite)",
+        value = short(*value)
+    )]
     NotFinite { name: &'static str, value: f64 },
     #[error(
-        "{name} holds {value}; expected numbers between -{most} and {most}",
+        "{name} holds {value}; expected numbers between -{most} and {most} (SI units)",
         value = short(*value), most = short(*most)
     )]
     TooLarge { name: &'static str, value: f64, most: f64 },
@@ -22,26 +25,32 @@ pub enum ControlError {
     Negative { name: &'static str, value: f64 },
     #[error(
         "frame '{frame}' is moved by {joints}, but controlling its position and attitude requires at least 6 \
-         joints between the frame and the base",
+         joints between the frame and the base; control another frame, or control the joints instead",
         joints = count(*joints, "joint")
     )]
     TooFewJoints { frame: String, joints: usize },
     #[error(
-        "control '{control}' returned {value} for joint '{joint}' at t = {time} s; a torque must be finite",
+        "control '{control}' returned {value} for joint '{joint}' at t = {time} s; it must return finite torques",
         time = short(*time), value = short(*value)
     )]
     UserTorque { control: String, joint: String, time: f64, value: f64 },
     #[error(
-        "the torque of joint {joint} is {value} at t = {time} s; it must be finite; check the gains and the \
+        "the torque of joint '{joint}' is {value} at t = {time} s; it must be finite; check the gains and the \
          reference of its control",
         time = short(*time), value = short(*value)
     )]
-    Overflow { joint: usize, time: f64, value: f64 },
+    Overflow { joint: String, time: f64, value: f64 },
     #[error("control '{control}' drives no joint; name at least one joint")]
     EmptyGroup { control: String },
-    #[error("control '{control}' drives joint {joint}, but the robot has joints 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "control '{control}' drives joint {joint}, but the robot has {known}; give one of these indices",
+        known = indices(*count, "joint")
+    )]
     NoSuchJoint { control: String, joint: usize, count: usize },
-    #[error("a control tracks frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "frame {frame} does not exist, because the robot has {known}; track one of these frames",
+        known = indices(*count, "frame")
+    )]
     NoSuchFrame { frame: usize, count: usize },
     #[error("control '{control}' names joint '{joint}' twice; name each joint once")]
     RepeatedJoint { control: String, joint: String },
@@ -76,7 +85,7 @@ pub enum ControlError {
     EmptyWindow { control: String, begin: f64, end: f64 },
     #[error(
         "control '{control}' has {joints} in its group between frame '{frame}' and the base, but controlling the \
-         position and attitude of the frame requires at least 6",
+         position and attitude of the frame requires at least 6; add joints to the group",
         joints = count(*joints, "joint")
     )]
     TooFewInGroup { control: String, frame: String, joints: usize },
@@ -97,18 +106,18 @@ pub enum ControlError {
     )]
     GainOfEffort { name: &'static str },
     #[error(
-        "one of controls '{first}' and '{second}' compensates the environment and the other does not; set compensate_environment to the same \
-         value for all computed-torque laws of a robot"
+        "one of the controls '{first}' and '{second}' compensates the environment, but the other does not; set \
+         compensate_environment to the same value for all computed-torque laws of a robot"
     )]
     MixedCompensation { first: String, second: String },
     #[error(
-        "the checkpoint has {got}, but the simulation has {expected}: it belongs to a different scenario; resume \
+        "the checkpoint has {got}, but the simulation has {expected}, so it belongs to another scenario; resume \
          with the original scenario",
         got = count(*got, "control")
     )]
     OtherControls { got: usize, expected: usize },
     #[error(
-        "the checkpoint has no state for control '{control}': it belongs to a different scenario; resume \
+        "the checkpoint has no state for control '{control}', so it belongs to another scenario; resume \
          with the original scenario"
     )]
     OtherMemory { control: String },
@@ -126,7 +135,7 @@ pub enum ControlError {
     GoalOfExternal { control: String },
     #[error("there is no control '{name}'{hint}", hint = named(known, name))]
     UnknownControl { name: String, known: Vec<String> },
-    #[error("control '{control}' does not follow commands{hint}", hint = externals(known))]
+    #[error("control '{control}' does not follow external commands{hint}", hint = externals(known))]
     NotExternal { control: String, known: Vec<String> },
     #[error(
         "control '{control}' has ended, so it accepts no commands; send the command to an active control"
@@ -136,7 +145,7 @@ pub enum ControlError {
         "{name} of the command to '{control}' has {got}; expected {expected}",
         got = count(*got, "number"),
         expected = if *points == 1 { format!("{joints}, one per joint of its group") }
-            else { format!("{points} rows of {joints} numbers, with one row per time") }
+            else { format!("{points} rows of {}, with one row per time", count(*joints, "number")) }
     )]
     CommandLength { control: String, name: &'static str, points: usize, joints: usize, got: usize },
     #[error(
@@ -155,10 +164,10 @@ pub enum ControlError {
     )]
     AccelerationAlone { control: String },
     #[error(
-        "times[{index}] of the trajectory of '{control}' is {after} s; times must increase, and {least}",
+        "times[{index}] of the trajectory of '{control}' is {after} s; {least}",
         after = unlike(*after, &[*before]),
-        least = if *index == 0 { "the first must be at least 0 s".to_owned() }
-            else { format!("the time before is {} s", short(*before)) }
+        least = if *index == 0 { "the first time must be at least 0 s".to_owned() }
+            else { format!("times must increase, but the time before is {} s", short(*before)) }
     )]
     TimesNotIncreasing { control: String, index: usize, before: f64, after: f64 },
     #[error(
@@ -171,11 +180,33 @@ pub enum ControlError {
          External(kp=100, kd=20), or send efforts"
     )]
     CommandGain { control: String, gain: &'static str, of: &'static str },
+    #[error("control '{control}': {source}")]
+    OfControl { control: String, source: Box<ControlError> },
     #[error("at t = {time} s: {source}", time = short(*time))]
     Reference { time: f64, source: ReferenceError },
     /// Error of a user's controller, unchanged.
     #[error(transparent)]
     User(Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl ControlError {
+    /// Adds the name of the control to an error that does not contain it.
+    pub(super) fn of_control(self, control: &str) -> Self {
+        match self {
+            Self::WrongLength { .. }
+            | Self::NotFinite { .. }
+            | Self::TooLarge { .. }
+            | Self::Negative { .. }
+            | Self::TooFewJoints { .. }
+            | Self::NoSuchFrame { .. }
+            | Self::GainOfEffort { .. }
+            | Self::Timeout { .. }
+            | Self::TimeoutGain { .. } => {
+                Self::OfControl { control: control.to_owned(), source: Box::new(self) }
+            }
+            other => other,
+        }
+    }
 }
 
 /// Returns the hint for an unknown control: the nearest name, or all names, of the controls that follow

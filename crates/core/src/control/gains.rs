@@ -53,8 +53,10 @@ impl PerJoint {
             name,
             // the error of a tool has two components
             expected: match count {
-                2 => "1 or 2, one per joint of the group (for a tool: position and attitude)".to_owned(),
-                _ => format!("1 or {count}, one per joint of the group"),
+                1 => "1, because the group has one joint".to_owned(),
+                2 => "1 for all, or 2: one per joint of the group, or position and attitude of a tool"
+                    .to_owned(),
+                _ => format!("1 for all, or {count}: one per joint of the group"),
             },
             got,
         })

@@ -4,7 +4,7 @@ use super::check_references::{check_control_references, check_reference};
 use super::error::SimulationError;
 use super::modes::AT_LIMIT;
 use super::settings::Simulation;
-use super::state_range::{UNIT_NORM, attitude_norm, check_range};
+use super::state_range::{UNIT_NORM, attitude_norm, check_range, unit_of};
 use crate::contact::{Contact, ContactError};
 use crate::control::check_controls;
 use crate::environment::BodyIndex;
@@ -25,11 +25,12 @@ impl Simulation {
     /// an Earth whose epoch or axes differ from those of the orbit; invalid names, events or controls; a
     /// reference without a tool; a reference that starts too far from the tool or the joints that follow it.
     pub fn check(&self) -> Result<(), SimulationError> {
-        self.systems.iter().try_for_each(|system| check_state(&system.model, &system.q, &system.v))?;
+        self.check_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;
-        for period in self.systems.iter().filter_map(|system| system.control_period) {
-            SimulationError::check_positive("control_period", period)?;
-        }
+        self.check_each(|system| {
+            let period = system.control_period;
+            period.map_or(Ok(()), |period| SimulationError::check_positive("control_period", period))
+        })?;
         if !STEPS.contains(&self.time_step) {
             return Err(SimulationError::TimeStep { value: self.time_step });
         }
@@ -39,7 +40,7 @@ impl Simulation {
         if self.rereference_beyond.is_nan() || self.rereference_beyond < 1.0 {
             return Err(SimulationError::RereferenceBeyond { value: self.rereference_beyond });
         }
-        self.systems.iter().try_for_each(check_stops)?;
+        self.check_each(check_stops)?;
         if self.record_every == 0 {
             return Err(SimulationError::RecordEvery);
         }
@@ -64,7 +65,20 @@ impl Simulation {
             self.check_engine()?;
         }
         self.place_moving_frames()?;
-        self.systems.iter().try_for_each(check_system)
+        self.check_each(check_system)
+    }
+
+    /// Checks each system. If there are several, an error contains the name of the system.
+    fn check_each(
+        &self,
+        check: impl Fn(&System) -> Result<(), SimulationError>,
+    ) -> Result<(), SimulationError> {
+        self.systems.iter().try_for_each(|system| {
+            check(system).map_err(|source| match self.systems.len() {
+                1 => source,
+                _ => SimulationError::OfSystem { system: system.name.clone(), source: Box::new(source) },
+            })
+        })
     }
 
     /// Rejects settings that only the native engine supports, because they need the tree of connected
@@ -130,8 +144,6 @@ impl Simulation {
     }
 }
 
-/// Checks that every seating motion lasts at least a thousandth of `time_step`, so that the schedule can
-/// resolve it.
 /// Checks laws and shapes of the contacts, and that their names are unique.
 fn check_contacts(contacts: &[Contact]) -> Result<(), ContactError> {
     for (number, contact) in contacts.iter().enumerate() {
@@ -143,6 +155,8 @@ fn check_contacts(contacts: &[Contact]) -> Result<(), ContactError> {
     Ok(())
 }
 
+/// Checks that every seating motion lasts at least a thousandth of `time_step`, so that the schedule can
+/// resolve it.
 fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> {
     for Event { name, action, .. } in events {
         let Action::Capture { seat: Some(Seat { duration, .. }), .. } = action else { continue };
@@ -193,11 +207,12 @@ fn check_stops(system: &System) -> Result<(), SimulationError> {
     if !(0.0..=1.0).contains(&restitution) {
         return Err(SimulationError::Restitution { value: restitution });
     }
-    for (joint, &value) in system.model.joints().iter().zip(&system.q[BASE_NQ..]) {
+    let joints = system.model.joints().iter().zip(&system.q[BASE_NQ..]);
+    for (number, (joint, &value)) in joints.enumerate() {
         let Some((lower, upper)) = joint.limits.position else { continue };
         if value < lower - AT_LIMIT || value > upper + AT_LIMIT {
-            let joint = joint.name.clone();
-            return Err(SimulationError::OutsideLimits { joint, value, lower, upper });
+            let (joint, unit) = (joint.name.clone(), unit_of(&system.model, number));
+            return Err(SimulationError::OutsideLimits { joint, value, unit, lower, upper });
         }
     }
     Ok(())

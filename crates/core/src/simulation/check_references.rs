@@ -1,6 +1,7 @@
 //! Checks that references start at the initial pose or at the initial joint positions of the robot.
 
 use super::error::SimulationError;
+use super::state_range::unit_of;
 use crate::control::{Begin, Control, Interface};
 use crate::dynamics::{Data, base_rotation, frame_pose, kinematics};
 use crate::model::{BASE_NQ, Model};
@@ -27,7 +28,8 @@ pub(super) fn check_reference(
     let offset = reference.start_offset(&rot, pos, 0.0);
     let (position, angle) = offset.map_err(|source| SimulationError::Reference { time: 0.0, source })?;
     if position > tolerance[0] || angle > tolerance[1] {
-        return Err(SimulationError::ReferenceStartsAway { position, angle, tolerance });
+        let frame = model.frames()[frame].name.clone();
+        return Err(SimulationError::ReferenceStartsAway { frame, position, angle, tolerance });
     }
     Ok(())
 }
@@ -51,9 +53,10 @@ pub(super) fn check_control_references(
             let here: Vec<f64> = control.joints.iter().map(|&j| q[BASE_NQ + j]).collect();
             let (joint, offset) = joint_start_offset(&**path, &here);
             if offset > tolerance[1] {
-                let joint = model.joints()[control.joints[joint]].name.clone();
-                let (control, tolerance) = (control.name.clone(), tolerance[1]);
-                return Err(SimulationError::JointsStartAway { control, joint, offset, tolerance });
+                let (number, control, tolerance) =
+                    (control.joints[joint], control.name.clone(), tolerance[1]);
+                let (joint, unit) = (model.joints()[number].name.clone(), unit_of(model, number));
+                return Err(SimulationError::JointsStartAway { control, joint, unit, offset, tolerance });
             }
         }
     }

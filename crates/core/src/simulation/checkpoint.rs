@@ -19,6 +19,7 @@ use super::tree_state::TreeState;
 use super::wrench_commands::WrenchCommands;
 use crate::control::ControlMemory;
 use crate::model::BASE_NV;
+use crate::number_text::short;
 use crate::spatial::InstructionSet;
 use crate::world::{Layout, SystemPlace};
 use serde::{Deserialize, Serialize};
@@ -218,7 +219,8 @@ impl GroupCheckpoint {
         if there.is_consistent(self.time) {
             Ok(())
         } else {
-            let reason = format!("its time, {} s, does not match its position in the schedule", self.time);
+            let reason =
+                format!("its time, {} s, does not match its position in the schedule", short(self.time));
             Err(CheckpointError::Unreadable { reason })
         }
     }
@@ -284,7 +286,8 @@ impl GroupCheckpoint {
         let probed = errors.map(|errors| errors.step).max().unwrap_or(0);
         if probed > *steps || *steps.max(idle_steps) > MOST_STEPS {
             let reason = format!(
-                "its numbers of steps ({steps}), idle steps ({idle_steps}) and the last doubled step ({probed}) are inconsistent"
+                "the number of steps ({steps}), that of idle steps ({idle_steps}) and the index of the last step with an error \
+                 estimate ({probed}) are inconsistent"
             );
             return Err(CheckpointError::Unreadable { reason });
         }

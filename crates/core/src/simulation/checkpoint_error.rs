@@ -10,29 +10,30 @@ pub enum CheckpointError {
     #[error("the checkpoint is damaged: {reason}; run the scenario again")]
     Unreadable { reason: String },
     #[error(
-        "the checkpoint was written by version {found} of onorbit_rs; version {own} may round differently: resume with \
-         version {found}, or run the scenario again"
+        "the checkpoint was written by version {found} of onorbit_rs, but this is version {own}, which may round \
+         differently; resume with version {found}, or run the scenario again"
     )]
     OtherVersion { found: String, own: String },
     #[error(
-        "the checkpoint was written with the instruction set {found}; this run uses {own}, which rounds differently: set \
-         ONORBIT_INSTRUCTION_SET={found}, or run the scenario again"
+        "the checkpoint was written with the instruction set {found}, but this run uses {own}, which rounds \
+         differently; set ONORBIT_INSTRUCTION_SET={found}, or run the scenario again"
     )]
     OtherInstructionSet { found: String, own: String },
     #[error(
-        "the checkpoint was written after {expected}, but the given trace has {got}; pass all rows recorded before the \
+        "the checkpoint was written after {expected}, but the given trace has {got}; pass exactly the rows recorded before the \
          checkpoint",
         expected = count(*expected, "row"), got = count(*got, "row")
     )]
     MissingRows { got: usize, expected: usize },
     #[error(
-        "the checkpoint belongs to another scenario (size of {name}: {got} in the checkpoint, {expected} in this \
-         simulation); resume with the original scenario"
+        "the checkpoint belongs to another scenario: '{name}' has {got} in the checkpoint, but {expected} in this \
+         simulation; resume with the original scenario",
+        got = count(*got, "entry")
     )]
     OtherSize { name: &'static str, got: usize, expected: usize },
     #[error(
-        "the checkpoint is of a run {duration} with steps of {step} s, but this run differs in {what}: the checkpoint \
-         belongs to another scenario; resume with the original scenario",
+        "the checkpoint belongs to another scenario, a run {duration} with steps of {step} s, from which this run differs \
+         in {what}; resume with the original scenario",
         duration = duration.map_or("without a planned end".to_owned(), |end| format!("of {} s", short(end))),
         step = short(*step)
     )]

@@ -65,7 +65,10 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         self.set.update(t, model, data, &state.q, &state.v, command)?;
         modes.requested_mut().copy_from_slice(self.set.desired_accelerations());
         let overflow = command.iter().map(|tau| tau.value()).enumerate().find(|(_, tau)| !tau.is_finite());
-        let overflow = overflow.map(|(joint, value)| ControlError::Overflow { joint, time: t, value });
+        let overflow = overflow.map(|(joint, value)| {
+            let joint = model.joints()[joint].name.clone();
+            ControlError::Overflow { joint, time: t, value }
+        });
         overflow.map_or(Ok(()), |error| Err(error.into()))
     }
 }

@@ -8,7 +8,7 @@ use crate::earth::EarthError;
 use crate::environment::EnvironmentError;
 use crate::gravity::GravityError;
 use crate::model::ModelError;
-use crate::number_text::{count, short, unlike};
+use crate::number_text::{count, indices, short, unlike};
 use crate::orbit::OrbitError;
 use crate::reference::ReferenceError;
 use crate::world::WorldError;
@@ -20,6 +20,8 @@ use thiserror::Error;
 pub enum SimulationError {
     #[error("{name} has {got}; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
+    #[error("system '{system}': {source}")]
+    OfSystem { system: String, source: Box<SimulationError> },
     #[error("{name}[{index}] is {value}; it must be finite", value = short(*value))]
     NotFinite { name: &'static str, index: usize, value: f64 },
     #[error("{name} is {value} s; it must be positive and finite", value = short(*value))]
@@ -47,14 +49,14 @@ pub enum SimulationError {
     #[error("restitution is {value}; it must be between 0 and 1", value = short(*value))]
     Restitution { value: f64 },
     #[error(
-        "joint '{joint}' starts at {value} rad (m); start it within its limits, {lower} to {upper}, or \
+        "joint '{joint}' starts at {value} {unit}; start it within its limits, {lower} to {upper} {unit}, or \
          set enforce_limits to false",
         value = unlike(*value, &[*lower, *upper]), lower = short(*lower), upper = short(*upper)
     )]
-    OutsideLimits { joint: String, value: f64, lower: f64, upper: f64 },
+    OutsideLimits { joint: String, value: f64, unit: &'static str, lower: f64, upper: f64 },
     #[error(
-        "at t = {time} s, the error exceeds the tolerance even with a step of {step} s; increase tolerance, or \
-         reduce gains or the stiffness of effects",
+        "at t = {time} s, the error of a step exceeds the tolerance even with a step of {step} s; increase tolerance, \
+         or reduce gains or the stiffness of effects",
         time = short(*time), step = short(*step)
     )]
     StepTooSmall { time: f64, step: f64 },
@@ -76,8 +78,8 @@ pub enum SimulationError {
     )]
     EffectTwice { effect: String, body: String },
     #[error(
-        "the {effect} acts on none of the systems of the run; assign it to a system with a number from 0 to {last}",
-        last = count.saturating_sub(1)
+        "the {effect} acts on none of the systems of the run; assign it to one of them ({known})",
+        known = indices(*count, "system")
     )]
     EffectOnNoSystem { effect: String, count: usize },
     #[error(
@@ -85,31 +87,36 @@ pub enum SimulationError {
          frame for both"
     )]
     OtherTool { controller: String, tool: String },
-    #[error("a reference is given without a tool; set tool to the frame that tracks it")]
+    #[error("a reference is given, but no tool that tracks it; set tool to the name of a frame of the robot")]
     NeedsTool,
-    #[error("frame {frame} does not exist; the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "frame {frame} does not exist, because the robot has {known}; give the index of one of them",
+        known = indices(*count, "frame")
+    )]
     UnknownFrame { frame: usize, count: usize },
     #[error(
-        "the reference starts {position} m and {angle} rad from the tool; it must start within \
-         {tolerance_m} m and {tolerance_rad} rad; start it at the tool, or increase reference_start_tolerance",
+        "the reference of frame '{frame}' starts {position} m and {angle} rad from the frame; it must start within \
+         {tolerance_m} m and {tolerance_rad} rad; start it at the pose of the frame, or increase \
+         reference_start_tolerance",
         position = unlike(without_noise(*position), &[tolerance[0]]), angle = unlike(without_noise(*angle), &[tolerance[1]]),
         tolerance_m = short(tolerance[0]), tolerance_rad = short(tolerance[1])
     )]
-    ReferenceStartsAway { position: f64, angle: f64, tolerance: [f64; 2] },
+    ReferenceStartsAway { frame: String, position: f64, angle: f64, tolerance: [f64; 2] },
     #[error(
-        "the reference of control '{control}' starts {offset} rad (m) from the position of joint '{joint}'; it must \
-         start within {tolerance} rad (m); start it there (starts_at_present), or increase reference_start_tolerance",
+        "the reference of control '{control}' starts {offset} {unit} from the position of joint '{joint}'; it must \
+         start within {tolerance} {unit}; start it at this position (with starts_at_present), or increase \
+         reference_start_tolerance",
         offset = unlike(*offset, &[*tolerance]), tolerance = short(*tolerance)
     )]
-    JointsStartAway { control: String, joint: String, offset: f64, tolerance: f64 },
+    JointsStartAway { control: String, joint: String, unit: &'static str, offset: f64, tolerance: f64 },
     #[error("{rows} recorded rows do not fit in memory; record fewer rows with record_every")]
     TooManyRows { rows: usize },
     #[error(
-        "the run diverged at t = {time} s: the state is not finite; reduce time_step, initial rates, gains or joint \
-         damping (the attributes q and v of the error hold the last finite state)",
+        "the run diverged at t = {time} s: the state of {systems} is not finite; reduce time_step, initial rates, gains or \
+         joint damping (the attributes q and v of the error hold the last finite state)",
         time = short(*time)
     )]
-    Diverged { time: f64, q: Vec<f64>, v: Vec<f64> },
+    Diverged { time: f64, systems: String, q: Vec<f64>, v: Vec<f64> },
     #[error(
         "t is {t} s, which is before the current time, {time} s; give a later time",
         t = unlike(*t, &[*time]), time = short(*time)
@@ -146,11 +153,11 @@ pub enum SimulationError {
     #[error(transparent)]
     Engine(Box<dyn std::error::Error + Send + Sync>),
     #[error(
-        "after the step from t = {time} s, the quaternion q[3:7] returned by the engine has norm {length}; it must \
-         be 1 within 1e-9; normalise it at the end of each step",
+        "after the step from t = {time} s, the quaternion q[3:7] that the engine returned for '{system}' has norm \
+         {length}; it must be 1 within 1e-9; normalise it at the end of each step",
         time = short(*time), length = unlike(*length, &[1.0])
     )]
-    EngineAttitude { time: f64, length: f64 },
+    EngineAttitude { time: f64, system: String, length: f64 },
     #[error(transparent)]
     Control(ControlError),
     #[error(transparent)]

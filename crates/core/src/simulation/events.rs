@@ -88,7 +88,7 @@ impl Events {
     pub(super) fn check_trigger(&self, number: usize) -> Result<(), SimulationError> {
         let (event, state) = (&self.list[number], &self.states[number]);
         let reason = match event.when {
-            _ if state.happened.is_some() => "it has already happened",
+            _ if state.happened.is_some() => "it has already happened; an event happens once",
             When::OnCommand => return Ok(()),
             _ => "it does not happen on command; declare it with on_command",
         };

@@ -85,26 +85,29 @@ impl<'a> ExternalEngine<'a> {
         *has_output = false;
         engine.step(&StepInput { interval, q, v, tau, welds }, output)?;
         *has_output = true;
-        self.check_output(interval.0)?;
+        self.check_output(trees, interval.0)?;
         self.update_state(state);
         Ok(())
     }
 
-    /// Checks the output of a step that started at `t`, s.
-    fn check_output(&self, t: f64) -> Result<(), SimulationError> {
+    /// Checks the output of a step of `trees` that started at `t`, s.
+    fn check_output<S: Scalar>(&self, trees: &[Tree<'_, S>], t: f64) -> Result<(), SimulationError> {
         let is_finite = |[q, v]: &&[Range<usize>; 2]| {
             let values = self.output.q[q.clone()].iter().chain(&self.output.v[v.clone()]);
             values.chain(&self.output.acceleration[v.clone()]).all(|x| x.is_finite())
         };
         if !self.output.is_finite() {
-            let [q, v] = self.ranges.iter().find(|range| !is_finite(range)).unwrap_or(&self.ranges[0]);
+            let number = self.ranges.iter().position(|range| !is_finite(&range)).unwrap_or(0);
+            let [q, v] = &self.ranges[number];
             let (q, v) = (self.q[q.clone()].to_vec(), self.v[v.clone()].to_vec());
-            return Err(SimulationError::Diverged { time: t, q, v });
+            let systems = format!("'{}'", trees[number].model.name());
+            return Err(SimulationError::Diverged { time: t, systems, q, v });
         }
-        for [q, _] in &self.ranges {
+        for ([q, _], tree) in self.ranges.iter().zip(trees) {
             let length = attitude_norm(&self.output.q[q.clone()]);
             if (length - 1.0).abs() > UNIT {
-                return Err(SimulationError::EngineAttitude { time: t, length });
+                let system = tree.model.name().to_owned();
+                return Err(SimulationError::EngineAttitude { time: t, system, length });
             }
         }
         Ok(())

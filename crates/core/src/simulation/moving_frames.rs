@@ -27,14 +27,19 @@ impl Simulation {
     /// Sets the motion of the frames in which references are given, at the initial state.
     ///
     /// # Errors
-    /// [`WorldError::ReferenceFrame`] for a frame that does not exist or belongs to the system of the
-    /// reference itself.
+    /// [`WorldError::ReferenceFrame`] for a frame that does not exist, and [`WorldError::OwnReferenceFrame`] for a
+    /// frame of the system of the reference itself.
     pub(super) fn place_moving_frames(&self) -> Result<(), SimulationError> {
         for (number, system) in self.systems.iter().enumerate() {
             for moving in system.moving_frames() {
-                let other = self.systems.get(moving.system).filter(|_| moving.system != number);
+                let name = || system.name.clone();
+                if moving.system == number {
+                    return Err(WorldError::OwnReferenceFrame { system: name() }.into());
+                }
+                let other = self.systems.get(moving.system);
                 let other = other.filter(|other| moving.frame < other.model.frames().len());
-                let error = || WorldError::ReferenceFrame { system: system.name.clone() };
+                let (place, frame) = (moving.system, moving.frame);
+                let error = || WorldError::ReferenceFrame { system: name(), other: place, frame };
                 let other = other.ok_or_else(error)?;
                 moving.set_motion(motion(&other.model, &other.q, &other.v, moving.frame));
             }

@@ -42,6 +42,11 @@ pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), Sim
     Ok(())
 }
 
+/// Returns the unit of the position of a joint.
+pub(super) fn unit_of(model: &Model, joint: usize) -> &'static str {
+    if matches!(model.nodes()[joint + 1].axis, Axis::Prismatic) { "m" } else { "rad" }
+}
+
 /// Returns the norm of the quaternion of a configuration.
 pub(super) fn attitude_norm(q: &[f64]) -> f64 {
     q[QUATERNION].iter().map(|x| x * x).sum::<f64>().sqrt()

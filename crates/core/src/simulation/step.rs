@@ -2,7 +2,7 @@
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
-use super::members::{Part, Place};
+use super::members::{Members, Part, Place};
 use super::mover::Mover;
 use super::record::complete_rows;
 use super::run_state::RunState;
@@ -205,6 +205,13 @@ impl<S: Scalar> RunState<'_, S> {
     fn diverged(&self, time: f64) -> SimulationError {
         let number = self.mover.first_diverged(&self.state).unwrap_or(0); // if all are finite, a torque overflowed
         let [q, v] = self.mover.last_finite(number, &self.state);
-        SimulationError::Diverged { time, q, v }
+        let Members { places, parts } = &self.equations.members;
+        let is_in_tree = |place: &Place| match *place {
+            Place::Tree(tree) => tree == number,
+            Place::Part(part) => parts[part].tree == number,
+        };
+        let systems = self.layout.systems().iter().zip(places).filter(|(_, place)| is_in_tree(place));
+        let systems: Vec<_> = systems.map(|(system, _)| format!("'{}'", system.name)).collect();
+        SimulationError::Diverged { time, systems: systems.join(" and "), q, v }
     }
 }

@@ -22,7 +22,10 @@ impl Stepper<'_> {
             }
         }
         let known: Vec<String> = self.groups.iter().flat_map(|group| group.run.events()).collect();
-        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        let known = match known.len() {
+            0 => "it has no events".to_owned(),
+            _ => format!("its events are: {}", known.join(", ")),
+        };
         Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
     }
 

@@ -180,6 +180,9 @@ fn check_circles(events: &[Event]) -> Result<(), WorldError> {
         let (mut at, mut path) = (start, Vec::new());
         while let When::After { event, .. } = events[at].when {
             path.push(events[at].name.as_str());
+            if event == start && path.len() == 1 {
+                return Err(WorldError::AfterItself { event: events[start].name.clone() });
+            }
             if event == start {
                 return Err(WorldError::Circle { names: path.join(", ") });
             }

@@ -1,7 +1,7 @@
 //! Errors of the systems and events of a world.
 
 use crate::model::ModelError;
-use crate::number_text::short;
+use crate::number_text::{indices, short};
 use thiserror::Error;
 
 /// Reason why a system or an event of a world is invalid.
@@ -11,32 +11,45 @@ pub enum WorldError {
     #[error("the world has no systems; give at least one system")]
     NoSystems,
     #[error(
-        "'{name}' is not a valid name of a system; it must start with a letter, contain only letters, digits, '_' and '-', \
-         and differ from world, lvlh, base and path"
+        "'{name}' is not a valid name of a system; a name must start with a letter, contain only letters, digits, '_' \
+         and '-', and differ from world, lvlh, base and path"
     )]
     SystemName { name: String },
     #[error("two systems have the name '{name}'; give each system a different name")]
     SystemTwice { name: String },
     #[error("two events have the name '{name}'; give each event a different name")]
     EventTwice { name: String },
-    #[error("both frames of the event '{event}' belong to '{system}'; they must belong to different systems")]
+    #[error(
+        "both frames of the event '{event}' belong to the system '{system}'; give frames of two different systems"
+    )]
     OwnSystem { event: String, system: String },
     #[error(
-        "a reference of the system '{system}' is given in a frame of the system itself, or in a frame that does not exist; \
-         give it in a frame of another system"
+        "a reference of the system '{system}' is given in a frame of the same system; give it in a frame of another \
+         system, or in the frame 'base'"
     )]
-    ReferenceFrame { system: String },
+    OwnReferenceFrame { system: String },
+    #[error(
+        "a reference of the system '{system}' is given in frame {frame} of system {other}, which does not exist; give \
+         the index of another system and of one of its frames"
+    )]
+    ReferenceFrame { system: String, other: usize, frame: usize },
     #[error("the event '{event}' connects two systems into a robot that is not valid: {source}")]
     Merged { event: String, source: ModelError },
-    #[error("the event '{event}' refers to system {system}; the world has systems 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "the event '{event}' refers to system {system}, but the world has {known}; give one of these indices",
+        known = indices(*count, "system")
+    )]
     UnknownSystem { event: String, system: usize, count: usize },
     #[error(
-        "the event '{event}' refers to frame {frame} of '{system}', which has frames 0 to {last}",
-        last = count.saturating_sub(1)
+        "the event '{event}' refers to frame {frame} of the system '{system}', which has {known}; give one of these \
+         indices",
+        known = indices(*count, "frame")
     )]
     UnknownFrame { event: String, system: String, frame: usize, count: usize },
     #[error("the event '{event}' refers to event {other}, which {reason}")]
     UnknownEvent { event: String, other: usize, reason: &'static str },
+    #[error("the event '{event}' waits for itself; let it happen at a time or on command")]
+    AfterItself { event: String },
     #[error("the events {names} wait for each other; let one of them happen at a time or on command")]
     Circle { names: String },
     #[error(
@@ -47,17 +60,18 @@ pub enum WorldError {
     #[error("the event '{event}' has a latch, but only a capture can have one; use at, after or on_command")]
     LatchWithoutCapture { event: String },
     #[error(
-        "the captures {names} would connect the same systems twice, which closes a loop; closed loops are not supported yet; release one of the captures first"
+        "the captures {names} would connect the same systems twice, but closed loops are not supported yet; release one of \
+         the captures first"
     )]
     Loop { names: String },
     #[error(
-        "at t = {time} s the event '{event}' would connect '{first}' and '{second}', which are already connected; \
-         closed loops are not supported yet; release one of the captures first",
+        "at t = {time} s the event '{event}' would connect '{first}' and '{second}', which are already connected, but \
+         closed loops are not supported yet; release the earlier capture first",
         time = short(*time)
     )]
     AlreadyConnected { event: String, time: f64, first: String, second: String },
-    #[error("the world has no event '{name}'; the events are: {known}")]
+    #[error("the world has no event '{name}'; {known}")]
     NoSuchEvent { name: String, known: String },
-    #[error("the event '{name}' cannot be triggered: {reason}")]
+    #[error("the event '{name}' cannot be triggered, because {reason}")]
     NotTriggered { name: String, reason: &'static str },
 }

@@ -1,6 +1,6 @@
 //! Errors of controllers and references.
 
-use super::{IntoPython, fields, plain, raise, shape_error};
+use super::{IntoPython, fields, plain, raise, shape_error, with_message};
 use onorbit_core::control::ControlError;
 use onorbit_core::reference::ReferenceError;
 use onorbit_core::spatial::SplineError;
@@ -42,6 +42,7 @@ impl IntoPython for ControlError {
                 Ok(raised) => *raised, // the same object, including its traceback
                 Err(other) => plain(py, "ControlError", &other.to_string()),
             },
+            Self::OfControl { source, .. } => with_message(py, source.into_python(py), &message),
             Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
             Self::NotFinite { name, value }
             | Self::Negative { name, value }

@@ -55,7 +55,12 @@ pub(crate) fn in_file(py: Python<'_>, path: &Path, error: impl IntoPython) -> Py
     let value = error.value(py);
     let original = value.getattr("message").and_then(|message| message.extract::<String>());
     let message = format!("{}: {}", path.display(), original.unwrap_or_else(|_| value.to_string()));
-    let _ = value.setattr("message", message); // if this fails, the message is unchanged
+    with_message(py, error, &message)
+}
+
+/// Returns the error with another message.
+pub(crate) fn with_message(py: Python<'_>, error: PyErr, message: &str) -> PyErr {
+    let _ = error.value(py).setattr("message", message); // if this fails, the message is unchanged
     error
 }
 
@@ -67,7 +72,9 @@ pub(crate) const LARGEST_TABLE: usize = 100_000_000;
 pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &TextFileError) -> PyErr {
     let file = path.display();
     let (class, message) = match error {
-        TextFileError::NotFound => ("NotFoundError", format!("{file}: there is no such {what}")),
+        TextFileError::NotFound => {
+            ("NotFoundError", format!("{file}: there is no such {what}; check the path"))
+        }
         error => ("ReadError", format!("the {what} {file} cannot be read: {error}")),
     };
     raise(py, class, &message, &fields!(py, "path": file.to_string(), "kind": what))

@@ -1,6 +1,6 @@
 //! Errors of runs, some with the partial trace.
 
-use super::{IntoPython, fields, plain, raise, shape_error};
+use super::{IntoPython, fields, plain, raise, shape_error, with_message};
 use onorbit_core::control::ControlError;
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
@@ -15,6 +15,7 @@ impl SimulationErrorExt for SimulationError {
         let message = self.to_string();
         match self {
             Self::WrongLength { name, expected, got } => shape_error(py, &message, name, expected, got),
+            Self::OfSystem { source, .. } => with_message(py, source.into_python_with(py, trace), &message),
             Self::NotFinite { name, value, .. } | Self::NotPositive { name, value } => {
                 raise(py, "InputError", &message, &fields!(py, "name": name, "got": value))
             }
@@ -42,7 +43,7 @@ impl SimulationErrorExt for SimulationError {
             Self::Restitution { value } => {
                 raise(py, "InputError", &message, &fields!(py, "name": "restitution", "got": value))
             }
-            Self::OutsideLimits { joint, value, lower, upper } => raise(
+            Self::OutsideLimits { joint, value, lower, upper, .. } => raise(
                 py,
                 "InputError",
                 &message,
@@ -68,7 +69,7 @@ impl SimulationErrorExt for SimulationError {
             }
             Self::NeedsOrbit { .. } => plain(py, "OrbitError", &message),
             Self::NeedsTool | Self::OtherTool { .. } => plain(py, "ControlError", &message),
-            Self::ReferenceStartsAway { position, angle, tolerance } => raise(
+            Self::ReferenceStartsAway { position, angle, tolerance, .. } => raise(
                 py,
                 "ControlError",
                 &message,
@@ -81,7 +82,7 @@ impl SimulationErrorExt for SimulationError {
                 &fields!(py, "name": "reference", "got": offset, "expected": tolerance),
             ),
             Self::UnknownFrame { .. } | Self::TooManyRows { .. } => plain(py, "InputError", &message),
-            Self::Diverged { time, q, v } => raise(
+            Self::Diverged { time, q, v, .. } => raise(
                 py,
                 "SimulationError",
                 &message,
@@ -108,7 +109,7 @@ impl SimulationErrorExt for SimulationError {
                 raised
             }
             Self::Control(source) => source.into_python(py),
-            Self::EngineAttitude { time, length } => {
+            Self::EngineAttitude { time, length, .. } => {
                 let fields = fields!(py, "name": "q", "got": length, "expected": 1.0);
                 with_trace(py, raise(py, "EngineError", &message, &fields), time, trace)
             }

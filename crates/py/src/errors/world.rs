@@ -15,6 +15,7 @@ impl IntoPython for WorldError {
             Self::NoSuchEvent { name, .. } | Self::NotTriggered { name, .. } => name.clone(),
             Self::Circle { names } | Self::Loop { names } => names.clone(),
             Self::OwnSystem { event, .. }
+            | Self::AfterItself { event }
             | Self::UnknownSystem { event, .. }
             | Self::UnknownFrame { event, .. }
             | Self::UnknownEvent { event, .. }
@@ -22,7 +23,7 @@ impl IntoPython for WorldError {
             | Self::Number { event, .. }
             | Self::LatchWithoutCapture { event }
             | Self::AlreadyConnected { event, .. } => event.clone(),
-            Self::ReferenceFrame { system } => system.clone(),
+            Self::OwnReferenceFrame { system } | Self::ReferenceFrame { system, .. } => system.clone(),
         };
         raise(py, "WorldError", &message, &fields!(py, "name": name))
     }
