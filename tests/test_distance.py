@@ -142,15 +142,15 @@ def test_a_mesh_with_a_defect_is_a_hull_with_one_warning(
     ("name", "content", "message"),
     [
         ("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "no convex hull with a volume"),
-        ("a.obj", "v 0 0\n", "line 1 does not have three numbers: 'v 0 0'"),
-        ("b.obj", "v 0 0 0\nf 1 2 3\n", "line 2 is not a face: 'f 1 2 3'"),
-        ("c.obj", "", "it has no triangles"),
-        ("d.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a coordinate is not finite"),
-        ("e.dae", "<x/>", "the format '.dae' is not supported; convert the file to .stl or .obj"),
+        ("a.obj", "v 0 0\n", "line 1 is 'v 0 0'; expected a vertex with three numbers"),
+        ("b.obj", "v 0 0 0\nf 1 2 3\n", "line 2 is 'f 1 2 3'; expected a face with at least three"),
+        ("c.obj", "", "the file has no triangles"),
+        ("d.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a coordinate of a vertex is infinite or NaN"),
+        ("e.dae", "<x/>", "the ending '.dae' is not supported; convert the mesh to .stl or .obj"),
         (
             "f.stl",
             "solid x\nvertex 0 0 0\nendloop\n",
-            "the loop that ends in line 3 does not have three vertices",
+            "the loop that ends in line 3 has 1 instead of 3 vertices",
         ),
     ],
 )

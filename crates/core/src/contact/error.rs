@@ -7,13 +7,13 @@ use crate::number_text::short;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ContactError {
     /// A parameter is outside its range.
-    #[error("the {name} of a contact is {got}{unit}; it must be {range}", unit = with_space(unit))]
+    #[error("the {name} of a contact is {got}{unit}; it must be {range}{unit}", got = short(*got), unit = with_space(unit))]
     Parameter {
         /// Name of the parameter.
         name: &'static str,
-        /// Value.
+        /// Given value, in `unit`.
         got: f64,
-        /// Permitted values.
+        /// Accepted range, as text without the unit.
         range: String,
         /// Unit; empty for a number.
         unit: &'static str,
@@ -23,45 +23,50 @@ pub enum ContactError {
     NoLink {
         /// Name of the contact.
         contact: String,
-        /// Pattern.
+        /// Pattern `SYSTEM/LINK`, in which `*` stands for any text.
         pattern: String,
-        /// Remedy.
+        /// Rest of the message, which suggests similar links; may be empty.
         remedy: String,
     },
-    /// A link that touches has no shape.
+    /// None of the links that match a pattern has a collision shape.
     #[error(
-        "contact '{contact}': link '{link}' of system '{system}' has no collision shape; add a <collision> element to its URDF"
+        "contact '{contact}': link '{link}' of system '{system}' has no collision shape; add a <collision> element to the \
+         link in its URDF"
     )]
     NoShape {
         /// Name of the contact.
         contact: String,
         /// Name of the system.
         system: String,
-        /// Name of the link.
+        /// Name of the last link that matches.
         link: String,
     },
     /// Both sides of a contact are the same link.
-    #[error("contact '{contact}': both sides are the same link, which cannot touch itself; give two links")]
+    #[error(
+        "contact '{contact}': both sides are the same link, which cannot touch itself; give two different links"
+    )]
     SameLink {
         /// Name of the contact.
         contact: String,
     },
     /// Two contacts have the same name.
-    #[error("two contacts are named '{name}'; give each contact its own name")]
+    #[error("two contacts are named '{name}'; give each contact a different name")]
     DuplicateName {
-        /// Name.
+        /// Name that both contacts have.
         name: String,
     },
     /// The bodies overlap at the start of a run.
     #[error(
-        "contact '{contact}': at the start, {links} overlap by {depth} m; move them apart, or allow it with start_overlapping", depth = short(*depth)
+        "contact '{contact}': at the start, the links {links} overlap by {depth} m; move them apart, or permit \
+         the overlap with start_overlapping",
+        depth = short(*depth)
     )]
     Overlap {
         /// Name of the contact.
         contact: String,
-        /// Both links.
+        /// Names of both links, as text.
         links: String,
-        /// Depth, m.
+        /// Depth of the overlap, m.
         depth: f64,
     },
     /// The distance between two shapes could not be computed.
@@ -69,7 +74,7 @@ pub enum ContactError {
     Geometry {
         /// Name of the contact.
         contact: String,
-        /// Cause.
+        /// Error of the distance or of a shape.
         source: GeometryError,
     },
 }
@@ -96,5 +101,5 @@ pub(super) fn at_least(
     if got >= least && got.is_finite() {
         return Ok(());
     }
-    Err(ContactError::Parameter { name, got, range: format!("finite and at least {least}"), unit })
+    Err(ContactError::Parameter { name, got, range: format!("finite and at least {}", short(least)), unit })
 }

@@ -17,7 +17,7 @@ pub struct BoundaryPoint {
 
 /// Returns the nearest boundary point to `p`, in the axes of the shape; `None` for a hull or a compound.
 ///
-/// Where several boundary points are equally near, as on the axis of a cylinder, one of them is chosen always alike.
+/// Where several boundary points are equally near, as on the axis of a cylinder, the same one is chosen every time.
 pub fn signed_distance(shape: &Shape, p: Vec3<f64>) -> Option<BoundaryPoint> {
     match shape {
         Shape::Sphere { radius } => Some(about(Vec3::zero(), *radius, p)),

@@ -9,14 +9,14 @@ use std::collections::BinaryHeap;
 /// Difference of the bounds of the depth at which the iteration ends, relative to the size of the difference set.
 const CONVERGED: f64 = 1e-10;
 
-/// Height of a point above a triangle below which it is not seen, relative to the same size.
+/// Height of a point above a triangle below which the triangle is not visible from it, relative to the same size.
 const LEVEL: f64 = 1e-14;
 
 /// Steps after which the best direction is returned although the bounds differ: the depth has then nearly the same value
 /// for many directions.
 const STEPS: usize = 400;
 
-/// Triangle by its distance from the origin; the nearest is the greatest.
+/// Distance of a triangle from the origin and the index of the triangle; the nearest is the greatest.
 #[derive(PartialEq)]
 struct Entry(f64, usize);
 

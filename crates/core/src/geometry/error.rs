@@ -1,6 +1,7 @@
 //! Errors of shapes and distances.
 
 use super::pose::Pose;
+use crate::number_text::{self, list, short};
 
 /// Two shapes, by the names of their kinds, and their poses.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,30 +20,31 @@ pub struct PosedPair {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GeometryError {
     /// A length of a shape is not positive and finite.
-    #[error("the {name} of {shape} is {got} m; it must be positive and finite")]
+    #[error("the {name} of {shape} is {got} m; it must be positive and finite", got = short(*got))]
     Length {
         /// Kind of the shape.
         shape: &'static str,
         /// Name of the length.
         name: &'static str,
-        /// Value, m.
+        /// Given value, m.
         got: f64,
     },
     /// Points have no convex hull with a volume.
     #[error(
-        "{count} points have no convex hull with a volume ({cause}); give at least four points that are not in a plane"
+        "{points} have no convex hull with a volume ({cause}); give at least four points that are not in a plane",
+        points = number_text::count(*count, "point")
     )]
     Hull {
         /// Number of points.
         count: usize,
-        /// Cause.
+        /// Reason, as text.
         cause: &'static str,
     },
     /// A compound has no pieces.
     #[error("a compound has no pieces; give at least one shape")]
     EmptyCompound,
     /// The pose of a shape has a number that is not finite.
-    #[error("the pose of {name} is not finite; give finite positions and rotations")]
+    #[error("the pose of {name} contains infinity or NaN; give a finite position and rotation")]
     Pose {
         /// Kind of the shape.
         name: &'static str,
@@ -62,19 +64,17 @@ pub enum GeometryError {
     Collision {
         /// Name of the link.
         link: String,
-        /// Cause.
+        /// Reason and remedy, as text.
         cause: String,
     },
     /// No distance is defined between two shapes.
-    #[error(
-        "the distance between {} and {} is not available; a shape may overlap a torus by less than its minor radius, and two half-spaces have no distance",
-        .0.a, .0.b
-    )]
+    #[error("the distance between {} and {} is not available, because {}", .0.a, .0.b, unavailable(.0))]
     Unavailable(Box<PosedPair>),
     /// The distance between two shapes was not found.
     #[error(
-        "the distance between {a} at {at_a:?} and {b} at {at_b:?} was not found to rounding: the bounds differ by {gap:e} m",
-        a = pair.a, b = pair.b, at_a = pair.pose_a, at_b = pair.pose_b
+        "the distance between {a} at {at_a} m and {b} at {at_b} m was not found: its lower and upper bounds still differ by \
+         {gap} m; change one of the shapes slightly, and report the failure with both shapes and poses",
+        a = pair.a, b = pair.b, at_a = position(&pair.pose_a), at_b = position(&pair.pose_b), gap = short(*gap)
     )]
     NotConverged {
         /// Shapes and poses.
@@ -82,6 +82,19 @@ pub enum GeometryError {
         /// Difference between the lower and the upper bound, m.
         gap: f64,
     },
+}
+
+/// Returns why two shapes have no distance.
+fn unavailable(pair: &PosedPair) -> &'static str {
+    match (pair.a, pair.b) {
+        ("a half-space", "a half-space") => "both are unbounded; replace one of them by a box",
+        _ => "the circle in the middle of the torus meets the other shape; move the shapes apart",
+    }
+}
+
+/// Returns the origin of a shape as text.
+fn position(pose: &Pose) -> String {
+    list(&[pose.pos.x, pose.pos.y, pose.pos.z])
 }
 
 /// Returns the part of a message that lists the links with collision shapes.

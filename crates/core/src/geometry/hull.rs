@@ -147,7 +147,7 @@ fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Poly
     Some(polytope)
 }
 
-/// Gives each point to the first triangle, from index `first` on, that it lies outside of.
+/// Assigns each point to the first triangle, from index `first` on, outside of which it lies.
 fn assign(
     polytope: &Polytope,
     points: &[Vec3<f64>],

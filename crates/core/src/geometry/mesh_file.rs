@@ -16,7 +16,7 @@ const STL_TRIANGLE: usize = 50;
 pub(super) fn read_mesh(path: &Path) -> Result<Mesh, String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !matches!(ending.as_str(), "stl" | "obj") {
-        return Err(format!("the format '.{ending}' is not supported; convert the file to .stl or .obj"));
+        return Err(format!("the ending '.{ending}' is not supported; convert the mesh to .stl or .obj"));
     }
     let bytes = read_bytes(path, LARGEST).map_err(|error| error.to_string())?;
     let mesh = match ending.as_str() {
@@ -25,10 +25,10 @@ pub(super) fn read_mesh(path: &Path) -> Result<Mesh, String> {
         _ => obj(&String::from_utf8_lossy(&bytes))?,
     };
     if mesh.triangles.is_empty() {
-        return Err("it has no triangles".to_owned());
+        return Err("the file has no triangles; export the mesh again".to_owned());
     }
     if mesh.vertices.iter().any(|p| !p.norm().is_finite()) {
-        return Err("a coordinate is not finite".to_owned());
+        return Err("a coordinate of a vertex is infinite or NaN; export the mesh again".to_owned());
     }
     Ok(mesh)
 }
@@ -70,7 +70,7 @@ fn vector(line: &str, number: usize) -> Result<Vec3<f64>, String> {
     let values: Vec<_> = line.split_whitespace().skip(1).take(3).filter_map(read).collect();
     match values[..] {
         [x, y, z] => Ok(Vec3::new(x, y, z)),
-        _ => Err(format!("line {number} does not have three numbers: '{}'", shortened(line))),
+        _ => Err(format!("line {number} is '{}'; expected a vertex with three numbers", shortened(line))),
     }
 }
 
@@ -87,8 +87,9 @@ fn ascii_stl(text: &str) -> Result<Mesh, String> {
             Some("endloop") => {
                 let [a, b, c] = corners[..] else {
                     return Err(format!(
-                        "the loop that ends in line {} does not have three vertices",
-                        index + 1
+                        "the loop that ends in line {} has {} instead of 3 vertices; export the mesh as triangles",
+                        index + 1,
+                        corners.len()
                     ));
                 };
                 push(&mut mesh, [a, b, c]);
@@ -111,7 +112,10 @@ fn obj(text: &str) -> Result<Mesh, String> {
                     line.split_whitespace().skip(1).map(|corner| vertex(corner, mesh.vertices.len()));
                 let corners: Option<Vec<usize>> = corners.collect();
                 let Some(corners) = corners.filter(|corners| corners.len() >= 3) else {
-                    return Err(format!("line {number} is not a face: '{}'", shortened(line)));
+                    return Err(format!(
+                        "line {number} is '{}'; expected a face with at least three indices of earlier vertices",
+                        shortened(line)
+                    ));
                 };
                 mesh.triangles.extend(corners[1..].windows(2).map(|pair| [corners[0], pair[0], pair[1]]));
             }

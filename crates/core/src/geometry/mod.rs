@@ -5,7 +5,7 @@
 //! |-|-|
 //! | signed distance from a point to a shape, its closest point and normal | [`signed_distance`] |
 //! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` for convex ones | [`closest()`] |
-//! | contact points, `w_i = a_i g_i / Σ a_j g_j` | [`manifold()`] |
+//! | contact points, `w = f a + (1 − f) e` | [`manifold()`] |
 
 mod boundary;
 mod bounding_sphere;

@@ -1,4 +1,4 @@
-//! Shapes.
+//! Collision shapes.
 
 use super::bounding_sphere::BoundingSphere;
 use super::error::GeometryError;

@@ -37,8 +37,8 @@ impl Simplex {
         used.fold(Vec3::zero(), |sum, (corner, weight)| of(corner).scale_add(*weight, sum))
     }
 
-    /// Returns the nearest point to the origin and keeps the corners that carry it; `None` if the origin lies inside a
-    /// tetrahedron. The newest corner is part of the result, because it is nearer than the plane of the others.
+    /// Returns the nearest point to the origin and keeps only the corners with nonzero weights; `None` if the
+    /// origin lies inside a tetrahedron. The newest corner is part of the result, because it is nearer than the plane of the others.
     ///
     /// All subsets with the newest corner are compared. Thresholds on areas, which would end the search early for
     /// curved shapes, are not needed.

@@ -5,7 +5,7 @@ use crate::spatial::Vec3;
 
 /// Returns the point of a shape that is farthest in the direction `d`, in the axes of the shape.
 ///
-/// Half-spaces have none; compounds are replaced by their pieces before.
+/// Half-spaces have none; callers replace compounds by their pieces.
 pub(super) fn support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     match shape {
         Shape::Sphere { radius } => Some(ball(Vec3::zero(), *radius, d)),
