@@ -11,15 +11,15 @@ use thiserror::Error;
 pub enum TextFileError {
     #[error("there is no such file")]
     NotFound,
-    #[error("it is a directory")]
+    #[error("it is a directory; give the path of a file")]
     Folder,
     #[error("it is a pipe or a device; save its content as a file")]
     NotRegular,
-    #[error("it is larger than {limit} bytes")]
+    #[error("it is larger than {limit} bytes, the limit for such files")]
     TooLarge { limit: usize },
-    #[error("it is not UTF-8 text (at byte {at}); save it as UTF-8")]
+    #[error("it is not UTF-8 text (its byte {at} is invalid); save it as UTF-8")]
     NotUtf8 { at: usize },
-    #[error("{reason}")]
+    #[error("{reason}; check the path and its permissions")]
     Unreadable { reason: String },
 }
 

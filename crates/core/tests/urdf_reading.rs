@@ -286,7 +286,7 @@ fn extensions_are_recognized_by_prefix_not_by_namespace() {
     );
     let model = load(&both);
     assert_eq!(model.mass(), 2.0);
-    assert!(notes(&model)[0].starts_with("<p:x> has a foreign prefix"), "{:?}", notes(&model));
+    assert!(notes(&model)[0].starts_with("<p:x> has a prefix that URDF"), "{:?}", notes(&model));
     assert_eq!(notes(&model).len(), 1);
 }
 
@@ -391,7 +391,7 @@ fn elements_that_are_not_urdf_are_ignored_and_named() {
     let model = load(&format!("<link name='a'>{INERTIAL}</link>\n{inside}"));
     let said = notes(&model);
     assert_eq!(said.len(), 2, "{said:?}");
-    assert!(said[0].starts_with("<gazebo:x> has a foreign prefix"), "{said:?}");
+    assert!(said[0].starts_with("<gazebo:x> has a prefix that URDF"), "{said:?}");
     assert!(said[0].ends_with("ignored (so are '<drake:joint>')"), "{said:?}");
     assert!(said[1].starts_with("<Link> is not an element of URDF and is ignored"), "{said:?}");
 }

@@ -3,7 +3,7 @@
 use super::call::{Call, RowsMut, Wrenches};
 use super::kernels::Kernel;
 use crate::model::{Model, QUATERNION};
-use crate::number_text::{count, short, unlike};
+use crate::number_text::{count, indices, short, unlike};
 use crate::orbit::OrbitError;
 use thiserror::Error;
 
@@ -15,15 +15,18 @@ pub enum InputError {
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("{name} has {got}, but the first argument has {expected}", got = count(*got, "state"))]
     WrongBatch { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got}; expected a multiple of {width}, the length of a row", got = count(*got, "number"))]
+    #[error("{name} has {got}; expected a multiple of {width}, which is the length of a row", got = count(*got, "number"))]
     Ragged { name: &'static str, width: usize, got: usize },
     #[error("the number of {what} is {got}; this function requires {expected}")]
     WrongCount { what: &'static str, expected: usize, got: usize },
     #[error("output {output} has a capacity of {got}; it must be {expected}", got = count(*got, "number"))]
     WrongOutput { output: usize, expected: usize, got: usize },
-    #[error("got {got} states; expected one; use Evaluator::many for several")]
+    #[error("the number of states is {got}; expected 1; use Evaluator::many for several states")]
     NotSingle { got: usize },
-    #[error("there is no frame {frame}; the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "there is no frame {frame}, because the robot has {known}; give the index of one of them",
+        known = indices(*count, "frame")
+    )]
     UnknownFrame { frame: usize, count: usize },
     #[error("{name} holds {value} in state {state}; it must be finite", value = short(*value))]
     NotFinite { name: &'static str, state: usize, value: f64 },
@@ -45,7 +48,10 @@ pub enum InputError {
          'semi_implicit_euler', or run a simulation per state"
     )]
     Adaptive,
-    #[error("the reference is in an orbital frame, but a rollout has no orbit; use a Simulation")]
+    #[error(
+        "the reference is given in an orbital frame, but a rollout has no orbit; give the reference in the frame 'world' or \
+             'base', or use a Simulation"
+    )]
     NeedsOrbit,
     #[error("threads is 0; it must be at least 1; omit it to use all cores")]
     NoThreads,

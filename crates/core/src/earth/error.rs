@@ -89,7 +89,9 @@ pub enum EarthError {
         minimum: f64,
     },
     /// The epochs of the orbit and of the Earth differ.
-    #[error("the epoch of the orbit is {orbit}, but that of the run is {run}; give both the same epoch")]
+    #[error(
+        "the epoch of the orbit is {orbit}, but that of the Earth of the run is {run}; give both the same epoch"
+    )]
     OtherEpoch {
         /// Epoch of the orbit.
         orbit: String,
@@ -107,7 +109,7 @@ pub enum EarthError {
         run: &'static str,
     },
     /// A number in a segment of a SPICE kernel is implausible.
-    #[error("{name} of a segment of the kernel is {value}; expected {expected}")]
+    #[error("{name} of a segment of the kernel is {value}; expected {expected} (the kernel may be damaged)", value = short(*value))]
     Segment {
         /// Name of the number.
         name: &'static str,
@@ -124,8 +126,9 @@ pub enum EarthError {
     },
     /// A segment of a SPICE kernel does not consist of complete intervals.
     #[error(
-        "a segment of the kernel has {got}; their number must be a positive multiple of 3 × {per_interval}, three components \
-         with {per_interval} per interval", got = count(*got, "coefficient")
+        "a segment of the kernel has {got}, which is not a positive multiple of 3 × {per_interval} (3 components with \
+         {per_interval} per interval); the kernel may be damaged",
+        got = count(*got, "coefficient")
     )]
     SegmentLength {
         /// Number of coefficients.

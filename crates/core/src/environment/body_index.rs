@@ -21,10 +21,11 @@ impl From<usize> for BodyIndex {
 
 impl fmt::Display for BodyIndex {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.system {
-            0 => write!(f, "body {}", self.body),
-            system => write!(f, "body {} of system {system}", self.body),
+        match self.body {
+            0 => f.write_str("the base")?,
+            body => write!(f, "body {body} (the base is body 0)")?,
         }
+        if self.system > 0 { write!(f, " of system {}", self.system) } else { Ok(()) }
     }
 }
 

@@ -5,7 +5,7 @@ use super::body_index::BodyIndex;
 use super::surfaces::SurfaceError;
 use crate::earth::EarthError;
 use crate::gravity::GravityError;
-use crate::number_text::{short, unlike};
+use crate::number_text::{indices, short, unlike};
 
 /// Errors of the `environment` module; each holds the offending numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -64,7 +64,10 @@ pub enum EnvironmentError {
         end: f64,
     },
     /// A wrench acts on a body that does not exist.
-    #[error("the wrench acts on {body}, but the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "the wrench acts on {body}, but the robot has {known}; give one of these indices",
+        known = indices(*count, "body")
+    )]
     UnknownBody {
         /// Given body.
         body: BodyIndex,
@@ -72,7 +75,10 @@ pub enum EnvironmentError {
         count: usize,
     },
     /// A wrench acts on a frame that does not exist.
-    #[error("the wrench acts on frame {frame}, but the robot has frames 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "the wrench acts on frame {frame}, but the robot has {known}; give one of these indices",
+        known = indices(*count, "frame")
+    )]
     UnknownFrame {
         /// Index of the given frame.
         frame: usize,
@@ -89,7 +95,7 @@ pub enum EnvironmentError {
     #[error(transparent)]
     Earth(#[from] EarthError),
     /// The numbers of bodies and wrenches differ.
-    #[error("the number of wrenches is {got}; expected {expected}, one per body")]
+    #[error("the number of wrenches is {got}; expected {expected}, one for each body")]
     WrongLength {
         /// Number of bodies.
         expected: usize,

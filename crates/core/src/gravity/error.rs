@@ -17,17 +17,18 @@ pub enum GravityError {
          harmonics"
     )]
     ZonalDegree { degree: usize },
-    #[error("order is {order}; it must be at most the degree, {degree}")]
+    #[error("order is {order}; it must be at most the degree, which is {degree}")]
     OrderAboveDegree { degree: usize, order: usize },
     #[error(
-        "degree {degree} and order {order} are requested, but {model} ends at degree {highest}; request at most these, or read a larger model from a .gfc file"
+        "degree {degree} and order {order} are requested, but {model} ends at degree {highest}; request at most degree \
+         {highest}, or read a larger model from a .gfc file"
     )]
     BeyondModel { model: String, degree: usize, order: usize, highest: usize },
     #[error("degree is {degree}; it must be from 2 to 2700")]
     Degree { degree: usize },
     #[error(
-        "no gravity model is named '{name}'; expected {known} (in Python GravityField.zonal) \
-         or a .gfc file",
+        "no gravity model is named '{name}'; expected {known} (in Python: GravityField.zonal) or the path of a .gfc \
+         file",
         known = known.join(", ")
     )]
     UnknownModel { name: String, known: Vec<&'static str> },
@@ -50,12 +51,12 @@ pub enum GravityError {
     )]
     Implausible { model: String, degree: usize, order: usize, value: f64, limit: f64 },
     #[error(
-        "{name}[{degree}, {order}] is {value}, but this term does not exist: rows are degrees, columns orders, and \
-         s[:, 0] is zero",
+        "{name}[{degree}, {order}] is {value}, but this term does not exist (rows are degrees, columns are orders, \
+         and s[:, 0] is zero); set it to 0",
         value = short(*value)
     )]
     NoSuchTerm { name: &'static str, degree: usize, order: usize, value: f64 },
-    #[error("{file}: there is no such file")]
+    #[error("{file}: there is no such file; check the path")]
     NotFound { file: String },
     #[error("{file} cannot be read: {reason}")]
     Unreadable { file: String, reason: String },
@@ -87,7 +88,7 @@ pub enum GravityError {
     Truncated { file: String, degree: usize, order: usize },
     #[error(
         "a point {distance} m from the planet's centre is below the surface; the field is valid from \
-         {minimum} m outwards",
+         {minimum} m outwards; give positions relative to the centre, in m",
         distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     BelowSurface { distance: f64, minimum: f64 },
@@ -97,7 +98,7 @@ pub enum GravityError {
     )]
     NeedsEarth { field: String },
     #[error(
-        "the orbit has μ = {orbit} m³/s², but the gravity field has {field} m³/s²; give the orbit the \
+        "mu of the orbit is {orbit} m³/s², but that of the gravity field is {field} m³/s²; give the orbit the \
          field's mu, or use the field of its planet",
         field = short(*field), orbit = unlike(*orbit, &[*field])
     )]

@@ -11,8 +11,8 @@ pub enum ModelError {
     #[error("link '{link}' has a mass of {mass} kg; it must be positive", mass = short(*mass))]
     MassNotPositive { link: String, mass: f64 },
     #[error(
-        "the inertia of link '{link}' is not positive definite; its principal moments are {moments} kg m2 and \
-         none may be negative",
+        "the inertia of link '{link}' is not positive definite; its principal moments are {moments} kg m2, but \
+         none may be negative; correct its entries, such as the signs of the products of inertia",
         moments = list(moments)
     )]
     IndefiniteInertia { link: String, moments: [f64; 3] },
@@ -21,17 +21,18 @@ pub enum ModelError {
         difference = short(*difference)
     )]
     AsymmetricInertia { link: String, difference: f64 },
-    #[error("{what} of '{name}' is infinite or NaN; specify finite numbers")]
+    #[error("{what} of '{name}' contains infinity or NaN; specify finite numbers")]
     NotFinite { what: &'static str, name: String },
     #[error("{what} of '{name}' is {value}; expected {expected} (check the units)", value = short(*value))]
     OutOfRange { what: &'static str, name: String, value: f64, expected: &'static str },
     #[error(
-        "the robot has more than {most} moving joints: matrices over all of them would require too much \
+        "the robot has more than {most} moving joints, and matrices over all of them would require too much \
          memory; declare joints that do not move as fixed"
     )]
     TooManyJoints { most: usize },
     #[error(
-        "the robot has no mass, but a floating base requires mass; give a link an inertial, or a mass with 'links'"
+        "the robot has no mass, but a floating base requires mass; give a link an inertial, or pass its mass in the \
+         argument 'links'"
     )]
     NoMass,
     #[error(
@@ -55,7 +56,7 @@ pub enum ModelError {
     UnknownName { what: &'static str, name: String, candidates: Vec<String> },
     #[error("joint '{joint}' has an axis of length zero; specify a nonzero vector")]
     ZeroAxis { joint: String },
-    #[error("joint '{joint}': {what} is {value}, but must not be negative", value = short(*value))]
+    #[error("joint '{joint}': {what} is {value}; it must not be negative", value = short(*value))]
     Negative { joint: String, what: &'static str, value: f64 },
     #[error(
         "joint '{joint}': its static friction {at_rest} N m (N) is below its kinetic friction {moving} N m \
@@ -111,7 +112,7 @@ impl fmt::Display for ModelWarning {
             Self::TriangleInequality { link, moments: [a, b, c] } => write!(
                 f,
                 "the inertia of link '{link}' breaks the triangle inequality: {} + {} < {} kg m2; no rigid \
-                 body has such principal moments (it is used unchanged)",
+                 body has such principal moments (it is used unchanged); check its entries",
                 short(a.max(0.0)), // a moment below zero is within the rounding tolerance here
                 short(b.max(0.0)),
                 unlike(*c, &[a + b])
@@ -130,7 +131,8 @@ impl fmt::Display for ModelWarning {
             ),
             Self::InertiaWithoutMass { link } => write!(
                 f,
-                "link '{link}' has no mass but a rotational inertia, which is added to that of its body"
+                "link '{link}' has no mass but a rotational inertia, which is added to that of the body to which the link \
+                 belongs; give the link a mass if it should have one"
             ),
             Self::Note(text) => f.write_str(text),
         }

@@ -14,7 +14,8 @@ pub enum OrbitError {
     Gravity(#[from] GravityError),
     /// The two orbits are around different planets.
     #[error(
-        "mu of the orbit is {mu} m³/s², but that of its reference is {expected} m³/s²; both must orbit the same planet",
+        "mu of the orbit is {mu} m³/s², but that of its reference orbit is {expected} m³/s²; give orbits around the same \
+         planet",
         mu = unlike(*mu, &[*expected]), expected = short(*expected)
     )]
     OtherPlanet {
@@ -33,7 +34,8 @@ pub enum OrbitError {
     },
     /// The axes of the two orbits differ, and no Earth with an epoch is given to convert them.
     #[error(
-        "the orbit has {orbit} axes and its reference {reference} axes; give an earth with an epoch to convert them"
+        "the orbit has {orbit} axes, but its reference orbit has {reference} axes; give an earth with an epoch, which converts \
+         them"
     )]
     OtherAxes {
         /// Axes of the orbit.
@@ -71,7 +73,7 @@ pub enum OrbitError {
         value: f64,
     },
     /// A quantity that must be positive is zero or negative.
-    #[error("{name} is {value}; it must be greater than zero", value = short(*value))]
+    #[error("{name} is {value}; it must be greater than zero (SI units)", value = short(*value))]
     NotPositive {
         /// Name of the input.
         name: &'static str,
@@ -87,7 +89,7 @@ pub enum OrbitError {
     /// The sign of the semi-major axis contradicts the eccentricity.
     #[error(
         "semi-major axis is {semi_major_axis} m with eccentricity {eccentricity}; it must be positive below \
-         eccentricity 1 and negative above it",
+         eccentricity 1 and negative above 1",
         semi_major_axis = short(*semi_major_axis), eccentricity = short(*eccentricity)
     )]
     AxisSign {
@@ -267,7 +269,7 @@ pub enum OrbitError {
     /// The integration needs a smaller step than permitted.
     #[error(
         "the orbit cannot be integrated beyond t = {time} s: even with a step of {length} s, the integration error \
-         exceeds the tolerance (is the field discontinuous there?)",
+         exceeds the tolerance; check whether the gravity field is discontinuous there",
         time = short(*time), length = short(*length)
     )]
     StepTooShort {

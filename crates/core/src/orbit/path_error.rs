@@ -8,12 +8,12 @@ use crate::spatial::SplineError;
 #[non_exhaustive]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum PathError {
-    #[error("the path has {got}; expected at least 2", got = count(*got, "point"))]
+    #[error("the path has {got}; give at least 2 points", got = count(*got, "point"))]
     TooFewPoints { got: usize },
     #[error("{name} has {got}; expected {expected}, one per time", got = count(*got, "row"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
-        "{name}[{index}] holds {value}; expected finite numbers up to 1e60 (SI units)",
+        "{name}[{index}] holds {value}; expected finite numbers between -1e60 and 1e60 (SI units)",
         value = short(*value)
     )]
     NotFinite { name: &'static str, index: usize, value: f64 },
@@ -23,7 +23,7 @@ pub enum PathError {
         before = short(*before), time = unlike(*time, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, time: f64 },
-    #[error("accelerations are given without velocities; give both, give only velocities, or give neither")]
+    #[error("the path has accelerations without velocities; give both, only velocities, or neither")]
     AccelerationsAlone,
     #[error(
         "attitudes[{index}] (x, y, z, w) has norm {norm}; it must be 1 within 1e-6; normalise it",
@@ -31,8 +31,8 @@ pub enum PathError {
     )]
     QuaternionNorm { index: usize, norm: f64 },
     #[error(
-        "the attitude rotates by {angle} rad from point {before} to the next; it must rotate by at most 2.0 \
-         rad, because larger rotations are ambiguous in direction; give points closer in time",
+        "the attitude rotates by {angle} rad from point {before} to point {index}; it must rotate by at most 2 rad, \
+         because larger rotations are ambiguous in direction; give points that are closer in time",
         before = index - 1,
         angle = short(*angle)
     )]

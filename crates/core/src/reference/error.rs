@@ -1,6 +1,6 @@
 //! Errors of references.
 
-use crate::number_text::{count, list, short};
+use crate::number_text::{count, indices, list, short};
 use crate::orbit::OrbitError;
 use crate::spatial::SplineError;
 
@@ -16,24 +16,23 @@ pub enum ReferenceError {
     #[error("{name} of the reference has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
-        "duration of the reference is {value} s; it must be at least 1e-12 s",
+        "duration of the reference is {value} s; it must be finite and at least 1e-12 s",
         value = short(*value)
     )]
     DurationNotPositive { value: f64 },
     #[error(
-        "ramp of the reference is {value}; it is a fraction of the duration and must be above 0 and at most \
-         0.5",
+        "ramp of the reference is {value}; it must be above 0 and at most 0.5, as a fraction of the duration",
         value = short(*value)
     )]
     Ramp { value: f64 },
     #[error(
-        "the limit {name} of the reference is {value}; it must be positive; omit it for no limit",
+        "the limit '{name}' of the reference is {value}; it must be positive (omit it for no limit)",
         value = short(*value)
     )]
     LimitNotPositive { name: String, value: f64 },
     #[error(
-        "none of the given limits applies to the motion of the reference, so its duration is undetermined; give a duration or \
-         times, or limit a rate or acceleration of the motion"
+        "none of the given limits applies to the motion of the reference, so its duration is undetermined; give a \
+         duration or times, or limit a rate or acceleration of this motion"
     )]
     NoLimit,
     #[error(
@@ -42,13 +41,16 @@ pub enum ReferenceError {
         next = point + 1
     )]
     SamePoint { point: usize },
-    #[error("the axis of the reference has length {length}; it must be at least 1e-9", length = short(*length))]
+    #[error("the axis of the reference has length {length}; give a vector with a length of at least 1e-9", length = short(*length))]
     NoAxis { length: f64 },
-    #[error("the reference moves joint {joint}, but the robot has joints 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "the reference moves joint {joint}, but the robot has {known}; give one of these indices",
+        known = indices(*count, "joint")
+    )]
     NoJoint { joint: usize, count: usize },
     #[error(
-        "the rotation part of the pose is not a rotation matrix: RᵀR differs from 1 by {error}; it must be \
-         within 1e-6",
+        "the upper left 3 × 3 block R of the pose is not a rotation matrix: RᵀR differs from the identity, or det R \
+         from 1, by {error}, but both must agree within 1e-6; give an orthonormal, right-handed R",
         error = short(*error)
     )]
     NotARotation { error: f64 },
@@ -56,7 +58,7 @@ pub enum ReferenceError {
     LastRow { row: [f64; 4] },
     #[error("the points of the reference do not define a curve: {0}")]
     Spline(#[from] SplineError),
-    #[error("the pose of the orbital frame of the reference could not be computed: {0}")]
+    #[error("the orbital frame of the reference cannot be computed: {0}")]
     Orbit(#[from] OrbitError),
 }
 

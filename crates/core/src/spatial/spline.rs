@@ -13,17 +13,20 @@ pub enum SplineError {
         value = short(*value)
     )]
     NotFinite { name: &'static str, point: usize, value: f64 },
-    #[error("{name} holds {got}; expected {expected}, one row per time", got = count(*got, "number"))]
+    #[error("{name} holds {got}; expected {expected} (one row per time)", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("the curve has {got}; expected at least {least}", got = count(*got, "point"))]
+    #[error("the curve has {got}; give at least {least}", got = count(*got, "point"))]
     TooFew { got: usize, least: usize },
     #[error(
-        "times[{index}] is {after} s; times must increase, and the time before is {before} s",
+        "times[{index}] is {after} s, but the time before is {before} s; times must increase",
         before = short(*before), after = unlike(*after, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, after: f64 },
-    #[error("the attitudes at points {point} and {next} are half a turn apart, so the direction of rotation \
-    is ambiguous; add a point between them", next = point + 1)]
+    #[error(
+        "the attitudes at points {point} and {next} are half a turn apart, so the direction of rotation is ambiguous; \
+         add a point between them",
+        next = point + 1
+    )]
     HalfTurn { point: usize },
 }
 

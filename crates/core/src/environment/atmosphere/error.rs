@@ -9,7 +9,7 @@ use crate::number_text::{short, unlike};
 pub enum AtmosphereError {
     /// A position is inside the Earth.
     #[error(
-        "altitude is {altitude} m, which is below the surface; expected at least 0 m",
+        "altitude is {altitude} m, which is below the surface; expected at least 0 m above the ellipsoid",
         altitude = short(*altitude)
     )]
     BelowSurface {

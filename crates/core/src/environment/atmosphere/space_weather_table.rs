@@ -4,6 +4,7 @@ use super::error::AtmosphereError;
 use super::space_indices::{
     ACTIVITY, FLUX as FLUX_RANGE, MagneticActivity, SpaceIndices, is_activity, is_flux,
 };
+use crate::number_text::count;
 
 /// Names of the columns, as in CelesTrak's files; the eight three-hourly `AP` are last.
 const COLUMNS: [&str; 11] =
@@ -55,11 +56,11 @@ impl SpaceWeatherTable {
         for (line, row) in lines {
             let fields: Vec<&str> = row.split(',').map(str::trim).collect();
             if fields.len() < names.len() {
-                let (has, needed) = (fields.len(), names.len());
+                let (has, needed) = (count(fields.len(), "field"), names.len());
                 return Err(wrong(
                     line,
                     format!(
-                        "the row has {has} fields, but the header has {needed}; add the missing fields, or download the \
+                        "the row has {has}, but the header has {needed}; add the missing fields, or download the \
                          file again if it is truncated"
                     ),
                 ));

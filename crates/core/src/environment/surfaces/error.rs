@@ -1,7 +1,7 @@
 //! Errors of surfaces.
 
 use crate::environment::body_index::BodyIndex;
-use crate::number_text::{count, list, short};
+use crate::number_text::{count, indices, list, short};
 
 /// Errors of surfaces; each holds the offending value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -42,7 +42,7 @@ pub enum SurfaceError {
     )]
     NoPlates,
     /// The normal of a plate is zero or not finite.
-    #[error("the normal of plate {plate} is {normal}; its length must be positive and finite", normal = list(normal))]
+    #[error("the normal of plate {plate} is {normal}; give a finite vector that is not zero", normal = list(normal))]
     Normal {
         /// Index of the plate.
         plate: usize,
@@ -51,7 +51,7 @@ pub enum SurfaceError {
     },
     /// The numbers of areas, normals and centroids differ.
     #[error(
-        "plates have {areas}, {normals} and {centroids}; give one of each per plate",
+        "the plates have {areas}, {normals} and {centroids}; give one of each for every plate",
         areas = count(*areas, "area"), normals = count(*normals, "normal"),
         centroids = count(*centroids, "centroid")
     )]
@@ -65,7 +65,7 @@ pub enum SurfaceError {
     },
     /// A body has no visual geometry from which faces can be derived.
     #[error(
-        "{body} has no visual geometry to derive faces from; give it plates or a cannonball, or remove it \
+        "{body} has no visual geometry from which faces can be derived; give it plates or a cannonball, or remove it \
          from the surfaces"
     )]
     NoShape {
@@ -90,7 +90,10 @@ pub enum SurfaceError {
         body: BodyIndex,
     },
     /// A surface is assigned to a body that does not exist.
-    #[error("a surface is on {body}, but the robot has bodies 0 to {last}", last = count.saturating_sub(1))]
+    #[error(
+        "a surface is on {body}, but the robot has {known}; give one of these indices",
+        known = indices(*count, "body")
+    )]
     UnknownBody {
         /// Given body.
         body: BodyIndex,

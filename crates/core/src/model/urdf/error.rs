@@ -62,8 +62,10 @@ pub enum UrdfProblem {
     NotFound,
     #[error("the path is a directory; expected a URDF file")]
     IsFolder,
-    #[error("the file cannot be read ({reason})")]
+    #[error("the file cannot be read: {reason}")]
     Unreadable { reason: String },
+    #[error("<{element}> of {owner} cannot be read ({reason}); correct this element")]
+    InvalidElement { owner: String, element: String, reason: String },
     #[error("the URDF is empty; expected a <robot> element")]
     Empty,
     #[error(
@@ -80,7 +82,7 @@ pub enum UrdfProblem {
          that URDF does not define"
     )]
     TooManyAttributes { limit: usize },
-    #[error("the file is not UTF-8 text (at byte {at}); save it as UTF-8")]
+    #[error("the file is not UTF-8 text (its byte {at} is invalid); save it as UTF-8")]
     NotUtf8 { at: usize },
     #[error("the text is not XML ({reason}); correct the text at this line")]
     NotXml { reason: String },
@@ -135,7 +137,7 @@ pub enum UrdfProblem {
     #[error("the links {} form a closed loop; remove a joint so that all links descend from one root link", list(.links))]
     Loop { links: Vec<String> },
     #[error(
-        "{} links are not the child of a joint: {}; connect all of them except the root by joints",
+        "{} links are not children of joints: {}; connect all of them except the root by joints",
         .roots.len(), list(.roots)
     )]
     ManyRoots { roots: Vec<String> },

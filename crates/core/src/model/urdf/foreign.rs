@@ -72,9 +72,10 @@ impl<'a> Ignored<'a> {
                 tag(*first)
             ));
         }
-        for (nodes, what) in
-            [(&self.prefixed, "has a foreign prefix"), (&self.unknown, "is not an element of URDF")]
-        {
+        for (nodes, what) in [
+            (&self.prefixed, "has a prefix that URDF does not define"),
+            (&self.unknown, "is not an element of URDF"),
+        ] {
             let Some(first) = nodes.first() else { continue };
             let mut names: Vec<String> = nodes.iter().skip(1).map(|node| tag(*node)).collect();
             names.sort();

@@ -91,7 +91,7 @@ fn limits(
     let position = position.filter(|&(low, high)| {
         if low > high {
             note(format!(
-                "lower limit {} is above upper limit {}; both are ignored",
+                "lower limit {} is above upper limit {} (rad or m), so both are ignored; exchange them",
                 unlike(low, &[high]),
                 short(high)
             ));
@@ -101,7 +101,10 @@ fn limits(
     let mut largest = |what: &str, value: f64| {
         // Gazebo writes -1 for "no limit"
         if value.is_finite() && value < 0.0 {
-            note(format!("its {what} limit is negative and is ignored ({})", short(value)));
+            note(format!(
+                "its {what} limit is negative and is ignored (it is {}); give a limit of at least 0, or omit it",
+                short(value)
+            ));
         }
         (value.is_finite() && value >= 0.0).then_some(value)
     };

@@ -61,13 +61,15 @@ fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<
     let owner = element.owner;
     let mut note = |text: String| context.warnings.push(ModelWarning::Note(text));
     if element.child("mass").is_none() {
-        note(format!("the <inertial> of {owner} is ignored, because {owner} has no <mass>"));
+        note(format!("the <inertial> of {owner} is ignored, because {owner} has no <mass>; add one"));
         return Ok(None);
     }
     let urdf_rs::Inertial { origin, mass, inertia: given } = element.read()?;
     match element.child("inertia") {
         None if mass.value != 0.0 => {
-            note(format!("{owner} has a mass but no <inertia>; it is read as a point mass"));
+            note(format!(
+                "{owner} has a mass but no <inertia>; it is read as a point mass; add an <inertia> if the link has an extent"
+            ));
         }
         None => {}
         Some(inertia) => {

@@ -22,7 +22,10 @@ impl Refusal {
         match self {
             Self::Missing(name) if elements(element.tag()).contains(&name) => element.lacks_element(name),
             Self::Missing(name) => element.lacks_attribute(name),
-            Self::Other(reason) => element.fail(UrdfProblem::Unreadable { reason }),
+            Self::Other(reason) => {
+                let (owner, element_name) = (element.owner.to_owned(), element.tag().to_owned());
+                element.fail(UrdfProblem::InvalidElement { owner, element: element_name, reason })
+            }
             Self::Placed(error) => error,
         }
     }

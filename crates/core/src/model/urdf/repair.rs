@@ -64,7 +64,9 @@ fn outermost(xml: &str) -> (Range<usize>, Option<ModelWarning>) {
     let (robot, _) = found.remove(robot);
     let note = found.first().map(|(range, name)| {
         let line = line(xml, range.start).unwrap_or_default();
-        ModelWarning::Note(format!("line {line}: <{name}> is outside <robot> and is ignored"))
+        ModelWarning::Note(format!(
+            "line {line}: <{name}> is outside <robot> and is ignored; move it into <robot> if it is needed"
+        ))
     });
     (robot, note)
 }

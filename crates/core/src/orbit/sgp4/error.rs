@@ -29,7 +29,7 @@ pub enum ElementSetError {
     },
     /// The checksum is wrong.
     #[error(
-        "line {line} of the TLE, column 69: the checksum is {got}, but the line adds up to {expected}; copy \
+        "line {line} of the TLE, column 69: the checksum is {got}, but that of the line is {expected}; copy \
          the line again, or accept it with check_checksum=False"
     )]
     Checksum {
@@ -42,7 +42,7 @@ pub enum ElementSetError {
     },
     /// The two lines belong to different satellites.
     #[error(
-        "line 1 of the TLE belongs to satellite {first:?}, but line 2 to {second:?}; give two lines of one \
+        "line 1 of the TLE belongs to satellite {first:?}, but line 2 to satellite {second:?}; give both lines of one \
          satellite"
     )]
     TwoSatellites {
@@ -68,7 +68,11 @@ pub enum ElementSetError {
         expected: &'static str,
     },
     /// An element is outside its accepted range.
-    #[error("{name} is {got}; it must be from {} to {}", short(*range.start()), short(*range.end()), got = unlike(*got, &[*range.start(), *range.end()]))]
+    #[error(
+        "{name} of the element set is {got}; it must be {}",
+        bounds(range),
+        got = unlike(*got, &[*range.start(), *range.end()])
+    )]
     Range {
         /// Name of the element.
         name: &'static str,
@@ -160,6 +164,16 @@ pub enum Sgp4Error {
         /// Error code of the reference implementation.
         code: u8,
     },
+}
+
+/// Returns a range as text; a bound next to 0 or 1 is an excluded bound.
+fn bounds(range: &RangeInclusive<f64>) -> String {
+    let (start, end) = (*range.start(), *range.end());
+    let lower =
+        if start == f64::MIN_POSITIVE { "above 0".to_owned() } else { format!("at least {}", short(start)) };
+    let upper =
+        if end == 1.0 - f64::EPSILON { "below 1".to_owned() } else { format!("at most {}", short(end)) };
+    format!("{lower} and {upper}")
 }
 
 /// Returns the meaning of an error code of the reference implementation.
