@@ -224,7 +224,7 @@ def test_invalid_controls(dual: oo.Model, q: Any) -> None:
     ):  # fmt: skip
         with pytest.raises(error, match=words):
             at_rest(dual, q, controls)
-    with pytest.raises(ControlError, match="has no common reference"):
+    with pytest.raises(ControlError, match="have no common reference"):
         at_rest(dual, q, [right], reference=hold)
     with pytest.raises(ControlError, match="'position', 'velocity' and 'effort'"):
         oo.JointPid(interface="positon")  # type: ignore[arg-type]

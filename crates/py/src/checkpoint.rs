@@ -157,7 +157,8 @@ pub(crate) fn columns_since<'py>(
         let rows = trace.rows();
         if since > rows {
             let whose = if names.len() == 1 { "the run".to_owned() } else { format!("system '{name}'") };
-            let message = format!("since is {since}, but {whose} has {}", count(rows, "row"));
+            let message =
+                format!("since is {since}, but {whose} has {}; give at most this number", count(rows, "row"));
             return Err(raise(py, "InputError", &message, &fields!(py, "name": "since", "got": since)));
         }
         add_columns(py, &columns, &prefix, trace, since)?;
@@ -193,8 +194,9 @@ pub(crate) fn checkpoint_of(
     let checkpoint = stepper.checkpoint().map_err(|error| match error {
         SimulationError::Control(error) => {
             let reason = error.into_python(py);
-            let message =
-                format!("the controller cannot be saved ({reason}); give it get_state() and set_state()");
+            let message = format!(
+                "the controller cannot be saved ({reason}); give it the methods get_state() and set_state()"
+            );
             let refused = plain(py, "ControlError", &message);
             refused.set_cause(py, Some(reason));
             refused

@@ -13,7 +13,7 @@ pub(crate) fn torques(model: &Model, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Opt
     let Ok(by_name) = tau.cast::<PyDict>() else {
         let input = Input::new(tau, "tau")?;
         if input.shape() != [n] {
-            return Err(wrong_shape(py, "tau", &format!("({n},)"), input.shape()));
+            return Err(wrong_shape(py, "tau", &format!("({n},), one torque per joint"), input.shape()));
         }
         return Ok(input.data().iter().copied().map(Some).collect());
     };
@@ -22,14 +22,15 @@ pub(crate) fn torques(model: &Model, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Opt
         let name = name.str()?.to_string();
         let Ok(joint) = model.joint(&name) else {
             let message = format!(
-                "tau contains the unknown joint '{name}'; the joints are {}",
+                "tau contains the unknown joint '{name}'; the joints of robot '{}' are {}",
+                model.name(),
                 model.joint_names().collect::<Vec<_>>().join(", ")
             );
             return Err(raise(py, "InputError", &message, &fields!(py, "name": "tau", "got": name)));
         };
         let input = Input::new(&value, &format!("tau['{name}']"))?;
         let [torque] = input.data() else {
-            return Err(wrong_shape(py, &format!("tau['{name}']"), "()", input.shape()));
+            return Err(wrong_shape(py, &format!("tau['{name}']"), "one number", input.shape()));
         };
         torques[joint] = Some(*torque);
     }

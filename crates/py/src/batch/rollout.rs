@@ -107,8 +107,7 @@ pub(super) fn rollout<'py>(
             return Err(plain(
                 py,
                 "ControlError",
-                "a reference is given, but no controller that tracks it; \
-            give a controller",
+                "a reference is given, but no controller that tracks it; give a controller",
             ));
         }
         (None, None, None) => RolloutControl::Passive,
@@ -127,12 +126,15 @@ pub(super) fn rollout<'py>(
             return Err(plain(
                 py,
                 "ControlError",
-                "a controller is given, but no reference to track; give a \
-            reference",
+                "a controller is given, but no reference to track; give a reference",
             ));
         }
         (Some(_), Some(_), _) => {
-            return Err(plain(py, "ControlError", "give either tau or a controller, not both"));
+            return Err(plain(
+                py,
+                "ControlError",
+                "both tau and a controller are given; give only one of them",
+            ));
         }
     };
     let integrator = integrator_named(py, integrator)?;

@@ -70,13 +70,17 @@ impl PyHuntCrossley {
             }
             (None, Some(_), None) => {
                 return refuse(
-                    "a restitution refers to a speed of approach; give speed, such as speed=0.05 (m/s)",
+                    "restitution is given without speed, the speed of approach to which it refers; give speed, such as 0.05 (m/s)",
                 );
             }
             (None, None, Some(_)) => {
                 return refuse("speed is given without restitution; give both or neither");
             }
-            _ => return refuse("give either dissipation, or restitution and speed"),
+            _ => {
+                return refuse(
+                    "dissipation is given together with restitution or speed; give either dissipation, or restitution and speed",
+                );
+            }
         };
         let law = Self { stiffness, exponent, dissipation };
         law.law().check().map_err(|error| error.into_python(py))?;

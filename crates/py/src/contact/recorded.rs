@@ -1,5 +1,6 @@
 //! Recorded distances and forces of a contact.
 
+use onorbit_core::number_text::count;
 use onorbit_core::simulation::CONTACTS;
 use pyo3::prelude::*;
 use pyo3::types::PySlice;
@@ -88,6 +89,6 @@ impl PyContactTrace {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        Ok(format!("<ContactTrace: {} rows>", self.__len__(py)?))
+        Ok(format!("<ContactTrace: {}>", count(self.__len__(py)?, "row")))
     }
 }

@@ -156,7 +156,8 @@ pub(crate) fn controls_of(
     }
     let Ok(items) = controller.try_iter() else { return Err(no_controller(controller)) };
     if reference.is_some() {
-        let message = "a list of controls has no common reference; give each Control its 'reference'";
+        let message = "a reference is given with a list of controls, which have no common reference; \
+                       give each Control its own 'reference'";
         return Err(plain(py, "ControlError", message));
     }
     let items = items.map(|item| one_control(item?)).collect::<PyResult<Vec<_>>>()?;

@@ -38,7 +38,7 @@ impl Group<'_, '_> {
     }
 
     fn required(&self, py: Python<'_>) -> PyResult<Any<'_, '_>> {
-        let message = "the controller requires a reference, such as a Hold or a JointHold";
+        let message = "a controller is given without the reference that it tracks; give reference, such as a Hold or a JointHold";
         self.reference.ok_or_else(|| plain(py, "ControlError", message))
     }
 }

@@ -1,6 +1,6 @@
 //! Controllers written in Python.
 
-use crate::arrays::{Input, array_of, wrong_shape};
+use crate::arrays::{Input, array_of, type_name, wrong_shape};
 use onorbit_core::control::{ControlError, Controller, Observation};
 use pyo3::call::PyCallArgs;
 use pyo3::prelude::*;
@@ -64,10 +64,11 @@ impl Controller for PythonController {
         Python::attach(|py| {
             let state = Bound::new(py, PyState::new(py, observation))?;
             let result = self.object.bind(py).call_method1("update", (observation.time, state))?;
-            let torques = Input::new(&result, "the torque returned by update")?;
+            let name = format!("the torque returned by {}.update", type_name(self.object.bind(py)));
+            let torques = Input::new(&result, &name)?;
             if torques.shape() != [tau.len()] {
                 let expected = format!("({},), one torque per joint", tau.len());
-                return Err(wrong_shape(py, "the torque returned by update", &expected, torques.shape()));
+                return Err(wrong_shape(py, &name, &expected, torques.shape()));
             }
             tau.copy_from_slice(torques.data());
             Ok(())

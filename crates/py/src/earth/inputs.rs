@@ -45,7 +45,7 @@ pub(super) fn earth_parameters(
     match (eop, ut1_minus_utc, polar_motion) {
         (Some(table), None, None) => parameter_table(table),
         (Some(_), ..) => {
-            let message = "give either eop, or ut1_minus_utc and polar_motion, not both";
+            let message = "eop is given together with ut1_minus_utc or polar_motion; give either eop or the other two, not both";
             Err(raise(py, "EarthError", message, &fields!(py,)))
         }
         (None, ut1_minus_utc, pole) => {

@@ -86,7 +86,7 @@ impl PyEarth {
         let epoch = epoch.map(inputs::epoch).transpose()?;
         let earth = match rotation {
             "iau2006" if angle.is_some() || rate.is_some() => {
-                let message = "angle and rate apply to rotation 'about_z' only; omit them for 'iau2006'";
+                let message = "angle or rate is given for rotation 'iau2006', but they apply only to 'about_z'; omit them";
                 return Err(raise(py, "EarthError", message, &fields!(py,)));
             }
             "iau2006" => {
@@ -96,7 +96,8 @@ impl PyEarth {
                 Earth::new(epoch, &parameters).map_err(|error| error.into_python(py))?
             }
             "about_z" if eop.is_some() || ut1_minus_utc.is_some() || polar_motion.is_some() => {
-                let message = "UT1 and polar motion apply to rotation 'iau2006' only; give angle and rate for 'about_z'";
+                let message = "eop, ut1_minus_utc or polar_motion is given for rotation 'about_z', but they apply only \
+                               to 'iau2006'; give angle and rate instead";
                 return Err(raise(py, "EarthError", message, &fields!(py,)));
             }
             "about_z" => inputs::about_z(py, angle, rate, epoch)?,

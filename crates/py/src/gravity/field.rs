@@ -115,7 +115,7 @@ impl PyGravityField {
                 return Err(plain(
                     py,
                     "GravityError",
-                    "give either degree, for the zonal harmonics of the Earth, or all of j, mu and radius",
+                    "the zonal field is not determined; give either degree, for the Earth, or all of j, mu and radius",
                 ));
             }
         };

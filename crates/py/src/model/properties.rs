@@ -4,6 +4,7 @@ use super::description::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use super::{Array, PyModel};
 use crate::arrays::array_of;
 use onorbit_core::model::neutral;
+use onorbit_core::number_text::count;
 use pyo3::prelude::*;
 
 #[pymethods]
@@ -101,10 +102,10 @@ impl PyModel {
     fn __repr__(&self) -> String {
         let m = &self.model;
         format!(
-            "<Model '{}': {} bodies, {} joints, {:.6} kg>",
+            "<Model '{}': {}, {}, {:.6} kg>",
             m.name(),
-            m.nodes().len(),
-            m.joint_count(),
+            count(m.nodes().len(), "body"),
+            count(m.joint_count(), "joint"),
             m.mass()
         )
     }

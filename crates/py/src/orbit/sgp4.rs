@@ -137,8 +137,8 @@ impl PySgp4 {
             (Ok(line1), Some(line2)) => (&*line1.to_cow()?, line2),
             (Err(_), None) if gravity.is_none() => return of_satrec(line1, propagator, by_reference),
             _ => {
-                let message = "give the two lines of an element set, or only a Satrec, which includes its gravity \
-                     constants";
+                let message = "the arguments are neither two lines of text nor a Satrec alone; give the two lines of \
+                     an element set, or only a Satrec, which includes its gravity constants";
                 return Err(raise(py, "InputError", message, &fields!(py, "name": "line1")));
             }
         };

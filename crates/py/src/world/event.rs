@@ -32,7 +32,7 @@ impl Condition {
             .filter(|given| **given)
             .count();
         let problem = if count != 1 {
-            "needs exactly one of at, after, on_command or (for a capture) within"
+            "has none or several of at, after, on_command and (for a capture) within; give exactly one of them"
         } else if delay != 0.0 && after.is_none() {
             "has a delay without after; add after, or omit delay"
         } else {

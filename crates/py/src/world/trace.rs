@@ -71,7 +71,10 @@ impl PyWorldTrace {
         Err(if owns {
             attribute_of_systems(&self.names, "trace", name)
         } else {
-            PyAttributeError::new_err(format!("the trace of a world has no attribute '{name}'"))
+            PyAttributeError::new_err(format!(
+                "the trace of a world has no attribute '{name}'; the traces of its systems are trace['{}']",
+                self.names.join("'], trace['")
+            ))
         })
     }
 

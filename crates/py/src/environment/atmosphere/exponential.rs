@@ -37,8 +37,8 @@ impl PyExponentialAtmosphere {
                 ExponentialAtmosphere::new(vec![Layer { base, density, scale_height }])
             }
             _ => {
-                let message =
-                    "give all of density, altitude and scale_height, or none of them for the table of layers";
+                let message = "only some of density, altitude and scale_height are given; give all of them, or none for \
+                               the table of layers";
                 return Err(raise(
                     py,
                     "EffectError",

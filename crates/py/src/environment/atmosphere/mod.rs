@@ -170,11 +170,11 @@ fn broadcast<'py, const N: usize>(
     let numpy = py.import("numpy")?;
     let together = numpy.call_method1("broadcast_arrays", PyTuple::new(py, values)?);
     let together: Vec<Bound<'py, PyAny>> = together.and_then(|arrays| arrays.extract()).map_err(|_| {
-        plain(
-            py,
-            "ShapeError",
-            &format!("the shapes of {} cannot be broadcast to one shape", names.join(", ")),
-        )
+        let message = format!(
+            "the shapes of {} cannot be broadcast to one shape; give numbers, or arrays of one shape",
+            names.join(", ")
+        );
+        plain(py, "ShapeError", &message)
     })?;
     let shape: Vec<usize> = together[0].getattr("shape")?.extract()?;
     let mut inputs = Vec::with_capacity(N);
