@@ -1,4 +1,5 @@
-//! Checks that effects address systems by their numbers in the world, also in the runs of groups.
+//! Checks that effects address systems by their numbers in the world, also in the runs of groups, and that errors
+//! contain the names of systems.
 
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -79,4 +80,19 @@ fn a_second_drag_on_a_body_is_refused_on_every_system() {
         matches!(&refused, Err(SimulationError::EffectTwice { effect, body }) if effect == "drag" && body == "c/base"),
         "{refused:?}"
     );
+}
+
+#[test]
+fn errors_about_one_of_several_systems_contain_its_name() {
+    let mut simulation = three_spheres();
+    simulation.systems[1].v[4] = f64::NAN;
+    let refused = simulation.check().unwrap_err().to_string();
+    assert_eq!(refused, "system 'b': v[4] is NaN; it must be finite");
+    let mut simulation = three_spheres();
+    let force = BodyIndex { system: 2, body: 0 };
+    let force = BodyWrench::new(force, Vector3::x() * 1e300, Vector3::zeros()).unwrap();
+    simulation.effects = vec![Arc::new(force)];
+    simulation.time_step = 1e9; // the position overflows
+    let refused = simulation.run(1e9).unwrap_err().to_string();
+    assert!(refused.contains("diverged at t = 0 s: the state of 'c' is not finite"), "{refused}");
 }
