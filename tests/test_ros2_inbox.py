@@ -71,6 +71,31 @@ def test_the_number_of_refused_messages_is_a_least_number_if_they_were_not_all_k
     assert not first.entries and len(rest) == 1000 and all(one.entries for one in rest)
 
 
+def test_a_step_beyond_the_times_of_ros_is_refused() -> None:
+    said: list[str] = []
+    with node_of(simulation(), pace="stepped", on_message=said.append) as node:
+        orders = node._loop.orders
+        for length in (1e308, 2.0**31):
+            assert not orders._step("/step", length)
+        assert orders._step("/step", 0.01)
+    assert said[1:] == [
+        "/step: refused: the step is 2147483648.0 s; times of ROS end at 2147483647 s",
+        "/step: advanced to t = 0.01 s",
+    ]
+
+
+def test_control_characters_of_others_do_not_reach_the_terminal() -> None:
+    said: list[str] = []
+    with Peer() as peer, node_of(simulation(), pace="stepped", on_message=said.append) as node:
+        peer.hear("/events", "diagnostic_msgs/msg/DiagnosticArray")
+        assert peer.publisher("/events")
+        with spinning(node, 0.01):
+            peer.say("/trigger", "std_msgs/msg/String", {"data": "\x1b[31m"})
+            peer.say("/step", "std_msgs/msg/Float64", {"data": 0.01})
+            texts = [one["status"][0]["message"] for one in peer.take("/events", 2)]
+    assert r"no event '\x1b[31m'" in texts[0] and r"no event '\x1b[31m'" in said[0]
+
+
 class FakeReader:
     def __init__(self, topic: str, kind: str, payloads: list[bytes], sent: int) -> None:
         self.topic, self.kind, self.payloads, self.sent = topic, kind, payloads, sent

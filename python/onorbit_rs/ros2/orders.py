@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from onorbit_rs.ros2.inbox import Arrived, Inbox
     from onorbit_rs.ros2.session import Session
 
+_LATEST_S = 2**31 - 1
+"""Largest time, s, in ``builtin_interfaces/Time``."""
 _FAR_S = 3600.0
 """A trajectory that starts so long after the current time, s, was probably stamped by another clock."""
 
@@ -86,7 +88,9 @@ class Orders:
             return self._refuse(topic, "the run is not paused; use pace stepped, or /pause first")
         if not 0.0 < length < np.inf:
             return self._refuse(topic, f"the step is {length!r} s; it must be positive and finite")
-        if nanoseconds(now + length) == nanoseconds(now):
+        if min(now + length, session.run.end) > _LATEST_S:
+            return self._refuse(topic, f"the step is {length!r} s; times of ROS end at {_LATEST_S} s")
+        if length < 1.0 and nanoseconds(now + length) == nanoseconds(now):
             return self._refuse(topic, f"the step is {length!r} s; the clock resolves 1e-09 s")
         session.advance_by(length)
         session.publish_present()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from onorbit_rs.common.printable import printable
 from onorbit_rs.ros2.events import EVENTS, EVENTS_TYPE, event_message, message_of_event
 from onorbit_rs.ros2.topics import Topics
 
@@ -75,7 +76,11 @@ class Publisher:
             self._tell(f"{record.name}: {record.kind} at t = {record.time:.9g} s")
 
     def answer(self, time: float, level: int, name: str, text: str) -> None:
-        """Publish an answer to a message, or a warning, about ``name`` at a simulated time, s."""
+        """Publish an answer to a message, or a warning, about ``name`` at a simulated time, s.
+
+        Control characters are escaped, since the text may repeat what another program sent.
+        """
+        text = printable(text)
         self._event(time, event_message(time, name, level, text, {}))
         self._tell(f"{name}: {text}")
 
