@@ -10,6 +10,7 @@ use crate::spatial::{
 /// If moments were taken about the origin of the base instead, rounding errors would be `(L/l)²` times larger
 /// for a body of size `l` at a distance `L` from the base.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))] // one cache line, so that equal fields of all bodies are equally aligned
 pub struct BodyData<S> {
     /// Rotation from body axes to B. Set by [`positions`](super::positions).
     pub rot_bk: Mat3<S>,
