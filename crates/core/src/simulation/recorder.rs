@@ -16,6 +16,7 @@ use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Scalar, Vec3, pose_rows};
 use nalgebra::Vector3;
 use std::borrow::Cow;
+use std::hint::black_box;
 
 /// Quantities that a run records in addition to its state.
 #[derive(Clone, Default)]
@@ -69,6 +70,14 @@ pub(super) struct Recorder {
     dropped: usize,
 }
 
+/// Returns an empty vector with memory for `rows` rows of `width` numbers.
+fn reserved(rows: usize, width: usize) -> Result<Vec<f64>, SimulationError> {
+    let too_many = || SimulationError::TooManyRows { rows };
+    let mut numbers = Vec::new();
+    numbers.try_reserve_exact(rows.checked_mul(width).ok_or_else(too_many)?).map_err(|_| too_many())?;
+    Ok(numbers)
+}
+
 impl Recorder {
     pub(super) fn new(
         rows: usize,
@@ -88,9 +97,11 @@ impl Recorder {
         let named = tracking.iter().chain(&wrenches).chain(&contacts);
         let widths: Vec<usize> = widths.chain(named.map(|column| column.width)).collect();
         let mut trace = Trace { rows_suffice, tracking, wrenches, contacts, ..Trace::default() };
+        // All columns in one block, which is freed at once. It shows that the memory suffices, and glibc then
+        // keeps the freed memory of a trace for the next run, which would otherwise wait for new pages.
+        black_box(reserved(rows, widths.iter().sum())?);
         for ((_, column), width) in trace.columns_mut().zip(&widths) {
-            let numbers = rows.checked_mul(*width).ok_or(SimulationError::TooManyRows { rows })?;
-            column.try_reserve_exact(numbers).map_err(|_| SimulationError::TooManyRows { rows })?;
+            *column = reserved(rows, *width)?;
         }
         Ok(Self { trace, number, options, shift: None, widths, dropped: 0 })
     }
