@@ -24,12 +24,16 @@ pub struct ContactSteps {
     /// True if steps are shortened near touch-down and lift-off for exponents between 1 and 4, where equal
     /// steps reduce the order of the integrator.
     pub is_graded: bool,
+    /// Part of the energy of a contact that a step may gain or lose by the error of the integrator. Steps with
+    /// larger errors are repeated with half of their length, as where the nearest faces or edges change.
+    pub energy_error: f64,
 }
 
 impl Default for ContactSteps {
-    /// Returns 128 graded steps, with which an elastic impact keeps its energy to about 1e-11.
+    /// Returns 128 graded steps, with which an elastic impact of spheres keeps its energy to about 1e-11, and
+    /// an energy error of 1e-10 per step.
     fn default() -> Self {
-        Self { count: 128, is_graded: true }
+        Self { count: 128, is_graded: true, energy_error: 1e-10 }
     }
 }
 

@@ -10,8 +10,8 @@ pub(super) struct ContactState {
     pub(super) slip: Vec3<f64>,
     /// Angle by which the second side has turned about the normal relative to the first, rad.
     pub(super) turn: f64,
-    /// Energy dissipated by the normal force, J.
-    pub(super) normal_loss: f64,
+    /// Energy that the normal force has taken from the motion, J: dissipated, or stored elastically.
+    pub(super) normal_work: f64,
     /// Energy that friction has taken from the motion, J: dissipated, or stored in the bristles.
     pub(super) friction_work: f64,
 }
@@ -22,14 +22,14 @@ pub(super) type ContactRate = ContactState;
 impl ContactState {
     /// State without any contact so far.
     pub(super) const ZERO: Self =
-        Self { slip: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, turn: 0.0, normal_loss: 0.0, friction_work: 0.0 };
+        Self { slip: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, turn: 0.0, normal_work: 0.0, friction_work: 0.0 };
 
     /// Computes `self + h rate`.
     pub(super) fn plus(&self, rate: &ContactRate, h: f64) -> Self {
         Self {
             slip: rate.slip.scale_add(h, self.slip),
             turn: rate.turn.mul_add(h, self.turn),
-            normal_loss: rate.normal_loss.mul_add(h, self.normal_loss),
+            normal_work: rate.normal_work.mul_add(h, self.normal_work),
             friction_work: rate.friction_work.mul_add(h, self.friction_work),
         }
     }

@@ -9,7 +9,8 @@ use super::latch::Latch;
 use super::members::Members;
 use super::state::{Rate, State};
 use super::tree::Tree;
-use crate::dynamics::Data;
+use super::tree_state::TreeState;
+use crate::dynamics::{Data, kinetic_energy};
 use crate::spatial::Real;
 
 /// Equations of motion of all trees under external loads and constant joint torques.
@@ -162,6 +163,16 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         let latches = self.latches.iter().map(margin).fold(f64::INFINITY, f64::min);
         let contacts = self.contacts.margin(&self.trees, state).map_err(at_time(t))?;
         Ok(latches.min(contacts))
+    }
+
+    /// Returns the kinetic energy less the work done on all trees, J, which is constant but for the error of
+    /// the integrator. Requires the kinematics of `state` relative to W in the trees.
+    pub(super) fn energy_balance(&self, state: &State<S>) -> S {
+        let pairs = self.trees.iter().zip(&state.trees);
+        let balance = |(tree, state): (&Tree<'_, S>, &TreeState<S>)| {
+            kinetic_energy(&tree.model, &tree.data, &state.v) - state.work
+        };
+        pairs.map(balance).fold(S::of(0.0), |sum, one| sum + one)
     }
 
     /// Returns true if a joint of any tree is locked.

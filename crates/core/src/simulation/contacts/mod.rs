@@ -31,6 +31,8 @@ pub(crate) struct Contacts {
     /// Names of the declared contacts.
     pub(super) names: Vec<String>,
     steps: ContactSteps,
+    /// Largest error of the energy in the next step, J; infinite without contacts between faces or edges.
+    pub(super) energy_error: f64,
     /// True if changes between sticking and slipping do not end a step.
     pub(super) ignores_slip: bool,
 }
@@ -57,7 +59,7 @@ impl Contacts {
             }
         }
         let names = declared.iter().map(|contact| contact.name.clone()).collect();
-        Self { list, names, steps, ignores_slip: false }
+        Self { list, names, steps, energy_error: f64::INFINITY, ignores_slip: false }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -135,7 +137,7 @@ impl Contacts {
         trees: &[Tree<'_, S>],
         state: &State<S>,
     ) -> Result<f64, ContactError> {
-        let mut longest = f64::INFINITY;
+        let (mut longest, mut energy) = (f64::INFINITY, 0.0);
         for (touching, own) in self.list.iter_mut().zip(&state.contacts) {
             let motions = touching.motions(trees, state);
             if touching.is_rigid(trees) {
@@ -152,7 +154,9 @@ impl Contacts {
                 loading = again;
             }
             longest = longest.min(touching.longest_step(self.steps, &motions, &loading));
+            energy += touching.energy(&loading);
         }
+        self.energy_error = if energy > 0.0 { self.steps.energy_error * energy } else { f64::INFINITY };
         if longest >= end - t {
             return Ok(end);
         }

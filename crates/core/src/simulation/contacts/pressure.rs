@@ -14,8 +14,6 @@ pub(super) struct Pressure {
     pub(super) force: f64,
     /// Power taken from the motion, W.
     pub(super) power: f64,
-    /// Power dissipated, W.
-    pub(super) dissipation: f64,
     /// Elastic energy, J.
     pub(super) elastic: f64,
 }
@@ -34,7 +32,7 @@ impl Pressure {
         is_pressing: bool,
     ) -> Self {
         let middle = |point: &ContactPoint| (point.point_a + point.point_b) * 0.5;
-        let mut sum = Self { point: Vec3::zero(), force: 0.0, power: 0.0, dissipation: 0.0, elastic: 0.0 };
+        let mut sum = Self { point: Vec3::zero(), force: 0.0, power: 0.0, elastic: 0.0 };
         for point in points {
             let (at, depth) = (middle(point), point.depth);
             let rate = -normal.dot(b.velocity_at(at) - a.velocity_at(at));
@@ -44,12 +42,10 @@ impl Pressure {
                 _ if depth > 0.0 => law.force(depth, rate).max(0.0),
                 _ => 0.0,
             };
-            let elastic = if depth > 0.0 || force != 0.0 { law.elastic_force(depth) } else { 0.0 };
             let share = point.weight * force;
             sum.force += share;
             sum.point += at * share;
             sum.power += share * rate;
-            sum.dissipation += point.weight * (force - elastic) * rate;
             sum.elastic += point.weight * law.elastic_energy(depth);
         }
         sum.point = match points {

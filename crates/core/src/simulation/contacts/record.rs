@@ -75,7 +75,7 @@ impl Row {
         self.power += loading.pressure.map_or(0.0, |pressure| pressure.power) + loading.rates().friction_work;
         let [normal, bristles] = touching.elastic_energies(loading);
         self.elastic += normal + bristles;
-        self.dissipated += state.normal_loss + state.friction_work - bristles;
+        self.dissipated += (state.normal_work - normal) + (state.friction_work - bristles);
     }
 
     fn values(&self) -> [f64; 14] {

@@ -4,6 +4,7 @@ use super::mode::{Mode, Phase};
 use super::side::SideMotion;
 use super::touching::{Loading, Touching};
 use crate::contact::{ContactLaw, ContactSteps, Friction};
+use crate::geometry::Shape;
 use std::f64::consts::PI;
 
 /// Depth, as a fraction of the smaller reach, to which pieces that are apart may overlap at the end of a step
@@ -91,6 +92,18 @@ impl Touching {
                 };
                 h * fraction.min(1.0)
             }
+        }
+    }
+
+    /// Returns the elastic energy at the largest depth of the present motion, J; zero for pieces that do not
+    /// press on each other, and for spheres, whose forces are smooth.
+    pub(super) fn energy(&self, loading: &Loading) -> f64 {
+        let is_smooth = self.sides.iter().any(|side| matches!(side.shape, Shape::Sphere { .. }));
+        match &self.law {
+            Some(law) if self.mode.phase == Phase::Pressing && !is_smooth => {
+                law.normal.elastic_energy(Rates::of(law, &self.mode, loading).depth)
+            }
+            _ => 0.0,
         }
     }
 

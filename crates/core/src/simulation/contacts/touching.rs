@@ -157,7 +157,7 @@ impl Loading {
         ContactRate {
             slip: self.sliding,
             turn,
-            normal_loss: self.pressure.map_or(0.0, |pressure| pressure.dissipation),
+            normal_work: self.pressure.map_or(0.0, |pressure| pressure.power),
             friction_work,
         }
     }

@@ -73,6 +73,11 @@ impl<S: Real> Integration<S> {
         }
     }
 
+    /// Returns true if the integrator is RK4.
+    pub(crate) fn is_rk4(&self) -> bool {
+        self.integrator == Integrator::Rk4
+    }
+
     /// Returns true if the tolerance determines the length of steps.
     pub(crate) fn is_adaptive(&self) -> bool {
         self.dormand_prince.is_some()

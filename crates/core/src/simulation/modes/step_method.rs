@@ -17,6 +17,10 @@ const MOST_IDLE_STEPS: usize = 32;
 const IDLE: f64 = 1e-6;
 /// Displacement, rad or m, below which a step is idle although the joint came to rest or reached its stop.
 const STILL: f64 = 1e-9;
+/// Length of the shortest step that closes the energy balance, relative to that of the first attempt.
+const SHORTEST: f64 = 1e-6;
+/// Rounding error of the energy balance, relative to the energy.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
 
@@ -76,6 +80,8 @@ impl<S: Real> StepMethod<S> {
         if !equations.has_modes() {
             return self.integration.advance(equations, state, interval);
         }
+        let is_balanced = equations.contacts.energy_error.is_finite() && self.integration.is_rk4();
+        let balance = is_balanced.then(|| equations.energy_balance(state));
         self.start.copy_from(state);
         let end = self.integration.advance(equations, state, interval)?;
         if !state.is_finite() {
@@ -85,11 +91,40 @@ impl<S: Real> StepMethod<S> {
         equations.contacts.ignores_slip = self.ignores_slip;
         let fraction = self.locate(equations, state, (interval.0, end))?;
         let reached = if fraction < 1.0 { interval.0 + fraction * (end - interval.0) } else { end };
+        let reached = match balance {
+            Some(balance) => self.close_energy_balance(equations, state, (interval.0, reached), balance)?,
+            None => reached,
+        };
         let parts = equations.trees.iter().zip(&self.start.trees).zip(&mut state.trees);
         parts.for_each(|((tree, start), state)| tree.snap_to_event(start, state));
         let is_idle = fraction < 1.0 && self.is_idle(equations, state, reached - interval.0);
         self.idle_steps = if is_idle { self.idle_steps + 1 } else { 0 };
         Ok(reached)
+    }
+
+    /// Shortens the step over `interval` that ended at `state` until the energy `balance` at its start still
+    /// holds at its end, and returns the time reached, s. A force that jumps within a step, as where the nearest
+    /// faces of two bodies change, opens the balance by the square of the length of the step.
+    fn close_energy_balance(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        (start, mut end): (f64, f64),
+        balance: S,
+    ) -> Result<f64, SimulationError> {
+        let permitted = equations.contacts.energy_error;
+        let shortest = SHORTEST * (end - start);
+        loop {
+            self.settled.copy_from(state);
+            equations.project_momentum(&mut self.settled);
+            let open = (equations.energy_balance(&self.settled) - balance).lane(0).abs();
+            let rounding = ROUNDING * balance.lane(0).abs();
+            if open <= permitted + rounding || end - start <= shortest {
+                return Ok(end);
+            }
+            end = 0.5 * (start + end);
+            self.repeat_step(equations, state, (start, end), 1.0)?;
+        }
     }
 
     /// Returns true if the step of length `h`, s, that ended at `state` is idle, that is, if it made almost
