@@ -119,7 +119,7 @@ def test_units_and_short_forms() -> None:
         ({"normal": {"kind": "hertz", "stiffness": 1e6}}, "normal.kind", ["unknown kind 'hertz'"]),
         ({"normal": {"kind": "spring_dashpot", "stiffness": "1 N", "damping": 1}}, "normal.stiffness",
          ["N/m"]),
-        ({"friction": {"static": -0.1}}, "friction.static", ["-0.1 is negative"]),
+        ({"friction": {"static": -0.1}}, "friction.static", ["-0.1 in SI units; it must be zero or above"]),
         ({"friction": {"static": 0.1, "kinetic": 0.2}}, "friction.kinetic", ["exceeds the static"]),
         ({"normal": None}, "friction", ["add 'normal'"]),
         ({"friktion": {}, "friction": None}, "friktion", ["did you mean 'friction'"]),
