@@ -47,7 +47,7 @@ def test_the_record_has_force_point_and_normal_of_the_second_side() -> None:
     trace = run(pair())
     touch, time = trace.contacts["touch"], trace["a"].time
     rows = len(time)
-    assert len(touch) == rows and touch.values.shape == (rows, 14)
+    assert len(touch) == rows and touch.values.shape == (rows, 19)
     assert {touch.force.shape, touch.point.shape, touch.normal.shape} == {(rows, 3)}
     assert touch.gap.shape == touch.power.shape == (rows,)
     gap = trace["b"].q[:, 0] - trace["a"].q[:, 0] - 0.2

@@ -150,7 +150,7 @@ def test_an_event_record_is_checked() -> None:
         return oo.EventRecord("x", changed.pop("kind", "capture"), 0.0, ("a", "b"), **(values | changed))
 
     assert record(impulse=np.full(6, np.nan)).name == "x"  # of a run that diverged
-    with pytest.raises(InputError, match="kind is 'docking'; it must be 'capture' or 'release'"):
+    with pytest.raises(InputError, match="kind is 'docking'; it must be one of 'capture', 'release'"):
         record(kind="docking")
     with pytest.raises(ShapeError, match=r"point.*\(3,\)"):
         record(point=[1.0, 2.0])

@@ -95,7 +95,7 @@ fn totals(models: &[Arc<Model>], recording: &Recording, k: usize) -> Totals {
         angular += Vector3::new(h[3], h[4], h[5]) + c.cross(&p);
         energy += trace.kinetic_energy[k];
     }
-    let contact = &recording.systems[0].contacts[0].values[14 * k..];
+    let contact = &recording.systems[0].contacts[0].values[19 * k..];
     Totals { linear, angular, energy: energy + contact[12] + contact[13] }
 }
 
@@ -107,7 +107,7 @@ fn open_energy(models: &[Arc<Model>], recording: &Recording) -> f64 {
 
 /// Returns the energy dissipated during a run, J.
 fn dissipated(recording: &Recording) -> f64 {
-    recording.systems[0].contacts[0].values[14 * (recording.rows() - 1) + 13]
+    recording.systems[0].contacts[0].values[19 * (recording.rows() - 1) + 13]
 }
 
 fn check(seed: u64, kind: Kind, friction: Option<Friction>, energy: f64) {
@@ -115,7 +115,7 @@ fn check(seed: u64, kind: Kind, friction: Option<Friction>, energy: f64) {
     let (first, end) = (totals(&models, &recording, 0), totals(&models, &recording, recording.rows() - 1));
     let contact = &recording.systems[0].contacts[0].values;
     let lost = dissipated(&recording);
-    assert!(contact.chunks_exact(14).any(|row| row[0] < 0.0) && lost > 0.1, "no contact for seed {seed}");
+    assert!(contact.chunks_exact(19).any(|row| row[0] < 0.0) && lost > 0.1, "no contact for seed {seed}");
     let (linear, angular) = ((end.linear - first.linear).norm(), (end.angular - first.angular).norm());
     assert!(linear < 2e-14 && angular < 1e-12, "{seed} {kind:?}: {linear:e} N s, {angular:e} N m s");
     let open = open_energy(&models, &recording) / lost;

@@ -72,7 +72,7 @@ const FRICTION: Friction = Friction {
 
 /// Friction in row `k`, N.
 fn friction(recording: &Recording, k: usize) -> f64 {
-    let row = &recording.systems[0].contacts[0].values[14 * k..14 * k + 14];
+    let row = &recording.systems[0].contacts[0].values[19 * k..19 * k + 19];
     row[1].hypot(row[2])
 }
 

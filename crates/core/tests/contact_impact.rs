@@ -98,7 +98,7 @@ fn the_adaptive_integrator_resolves_an_impact() {
 fn depth_and_force_are_those_of_hertz() {
     let normal = NormalLaw::HuntCrossley { stiffness: 1e7, exponent: 1.5, dissipation: 0.0 };
     let recording = spheres(normal, [2.0, 2.0]).run(0.02).unwrap();
-    let rows = recording.systems[0].contacts[0].values.chunks_exact(14);
+    let rows = recording.systems[0].contacts[0].values.chunks_exact(19);
     let depth = rows.clone().map(|row| -row[0]).fold(0.0, f64::max);
     let force = rows.map(|row| row[1]).fold(0.0, f64::max);
     let expected = (5.0 * SPEED * SPEED / 4e7_f64).powf(0.4);

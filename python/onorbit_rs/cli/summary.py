@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.cli.console import new_console, new_table, print_table, text
 from onorbit_rs.common.display_units import digits
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.printable import shell_word
 from onorbit_rs.output.checks import Check, checks, is_incomplete, world_checks
 from onorbit_rs.output.summary_labels import EXCEEDED, goal_of, tracking
@@ -35,6 +36,7 @@ _FILES = (
     ("commands.jsonl", "the commands that the run was given"),
 )
 _AUDIT = (("impulse_ns", "N s"), ("energy_lost_j", "J"))
+_TOTALS = (("normal_force_max_n", "N"), ("impulse_ns", "N s"), ("dissipated_j", "J"), ("gap_min_m", "m"))
 _OF_THE_RUN = ("simulated_s", "wall_s", "real_time_factor")
 """Summary keys whose values apply to all systems of a run."""
 _VERDICTS = {True: "[green]holds[/green]", False: "[red]BROKEN[/red]", None: "[yellow]not evaluated[/yellow]"}
@@ -83,15 +85,9 @@ def _print_run(console: Console, summary: dict[str, Any]) -> None:
 
 
 def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, Any]) -> None:
-    """Print the events, each system, and the certificate of the world."""
-    if summary["events"]:
-        table = new_table("event", "kind", "time", "systems", "impulse", "energy lost")
-        for event in summary["events"]:
-            impulse, lost = (_formatted(event[key], unit) for key, unit in _AUDIT)
-            names = ", ".join(event["systems"])
-            cells = (event["name"], event["kind"], _formatted(event["time_s"], "s"), names, impulse, lost)
-            table.add_row(*map(text, cells))
-        print_table(console, table)
+    """Print the events, the contacts, each system, and the certificate of the world."""
+    _print_events(console, [event for event in summary["events"] if event["kind"] not in OF_CONTACT])
+    _print_contacts(console, summary.get("contacts", ()))
     for name, system in systems.items():
         console.print(f"[bold]{text(name)}[/bold]:", soft_wrap=True)
         _print_run(console, {key: value for key, value in system.items() if key not in _OF_THE_RUN})
@@ -104,6 +100,33 @@ def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, A
     lines = world_checks(summary)
     if lines:
         print_table(console, _certificate(lines))
+
+
+def _print_events(console: Console, events: Sequence[dict[str, Any]]) -> None:
+    """Print a table of captures and releases."""
+    if not events:
+        return
+    table = new_table("event", "kind", "time", "systems", "impulse", "energy lost")
+    for event in events:
+        impulse, lost = (_formatted(event[key], unit) for key, unit in _AUDIT)
+        names = ", ".join(event["systems"])
+        cells = (event["name"], event["kind"], _formatted(event["time_s"], "s"), names, impulse, lost)
+        table.add_row(*map(text, cells))
+    print_table(console, table)
+
+
+def _print_contacts(console: Console, contacts: Sequence[dict[str, Any]]) -> None:
+    """Print a table of the totals of the contacts."""
+    if not contacts:
+        return
+    table = new_table("contact", "touches", "first", "largest normal force", "impulse", "energy dissipated",
+                      "smallest gap")  # fmt: skip
+    for contact in contacts:
+        first = contact["first_touch_down_s"]
+        totals = (_formatted(contact[key], unit) for key, unit in _TOTALS)
+        begun = "never" if first is None else _formatted(first, "s")
+        table.add_row(*map(text, (contact["name"], str(contact["touches"]), begun, *totals)))
+    print_table(console, table)
 
 
 def _errors(summary: dict[str, Any]) -> list[tuple[str, str]]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from matplotlib.axes import Axes
 
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.figures.style import FAINT_INK, SMALL, legend_name
 
 if TYPE_CHECKING:
@@ -23,13 +24,14 @@ def mark_events(
 ) -> None:
     """Draw a vertical line for each event: solid for a capture, dashed for a release.
 
-    ``time_scale`` is the number of seconds in the unit of the time axis.
+    Events of contacts are not drawn. ``time_scale`` is the number of seconds in the unit of the time axis.
     """
-    for event in events:
+    jumps = [event for event in events if event.kind not in OF_CONTACT]
+    for event in jumps:
         at, style = event.time / time_scale, STYLES.get(event.kind, _OTHER)
         axes.axvline(at, color=FAINT_INK, linewidth=0.8, linestyle=style, zorder=0.5)
     if has_names:
-        for at, name in _joined(events):
+        for at, name in _joined(jumps):
             axes.annotate(
                 legend_name(name), (at / time_scale, 1.0), xycoords=axes.get_xaxis_transform(),
                 xytext=(0, 1.5), textcoords="offset points", ha="center", va="bottom", fontsize=SMALL,
@@ -52,5 +54,6 @@ def _joined(events: Sequence[EventMark]) -> list[tuple[float, str]]:
 
 
 def of_systems(events: Sequence[EventMark], systems: Sequence[str]) -> list[EventMark]:
-    """Return the events between these systems."""
-    return [event for event in events if set(event.systems) <= set(systems)]
+    """Return the captures and releases between these systems."""
+    return [event for event in events
+            if event.kind not in OF_CONTACT and set(event.systems) <= set(systems)]  # fmt: skip

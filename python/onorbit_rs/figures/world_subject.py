@@ -32,7 +32,7 @@ class WorldSubject:
     models : dict of Model
         Robots by system, except those whose file cannot be read or was changed since the run.
     events : tuple of EventMark
-        Captures and releases that happened.
+        Events that happened; figures mark the captures and releases.
     connections : tuple of Connection
         Pairs of frames that captures connect.
     touching : tuple of tuple of str

@@ -288,13 +288,12 @@ def _checked_world(summary: dict[str, Any]) -> dict[str, Any]:
     """Return the summary of a run with several systems after checking the types of its parts."""
     for system in summary["systems"].values():
         _checked(system)
-    for part in ("events", "certificate"):
-        rows = summary.get(part)
+    lists = ("events", "certificate", "contacts")
+    for part in lists:
+        rows = summary.get(part, [] if part == "contacts" else None)
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
             raise TypeError(f"{part} is {_brief(rows)}; expected a list of mappings")
-    _checked(
-        {key: value for key, value in summary.items() if key not in ("systems", "events", "certificate")}
-    )
+    _checked({key: value for key, value in summary.items() if key not in ("systems", *lists)})
     return summary
 
 

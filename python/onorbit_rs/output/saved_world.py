@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     from onorbit_rs._core import EventRecord, Trace, WorldTrace
 
 
-EVENTS = {"time": (), "impulse": (6,), "point": (3,), "energy_lost": (), "momentum_error": (2,)}
-"""Names of the columns of the events, with the shape of one row."""
+EVENTS = {
+    "time": (), "impulse": (6,), "point": (3,), "energy_lost": (), "momentum_error": (2,), "peak_force": (),
+}  # fmt: skip
+"""Names of the columns of the events, with the shape of one row; NaN stands for None."""
 
 
 def systems_in(arrays: Mapping[str, Any]) -> list[str]:
@@ -124,9 +126,11 @@ def _event(arrays: Mapping[str, Any], row: int, audit: Mapping[str, Any]) -> Eve
         return arrays[f"events/{name}"][row]
 
     by, of = audit["systems"]
+    peak = value("peak_force") if "events/peak_force" in arrays else np.nan
     return _core.EventRecord(
         audit["name"], audit["kind"], value("time"), (by, of), impulse=value("impulse"), point=value("point"),
         energy_lost=value("energy_lost"), momentum_error=value("momentum_error"),
+        peak_force=None if np.isnan(peak) else peak,
     )  # fmt: skip
 
 

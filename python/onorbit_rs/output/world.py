@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.printable import json_value
 from onorbit_rs.output.checks import CHECKS
+from onorbit_rs.output.contact_totals import contact_totals
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.saved_world import EVENTS
 from onorbit_rs.output.summary import Summary, run_numbers, summarize
@@ -25,8 +27,8 @@ def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "comp
     """Return the summary of a run with several systems.
 
     ``systems`` contains the summary of each system; ``certificate`` the checks of the events and of the
-    groups of systems that events may connect; ``events`` the events that happened. ``certificate_passed`` is
-    True if no check of a system, group or event failed.
+    groups of systems that events may connect; ``events`` the events that happened; ``contacts`` the totals
+    of the contacts. ``certificate_passed`` is True if no check of a system, group or event failed.
     """
     scenario = built.scenario
     systems = {name: summarize(trace[name], alone, status=status) for name, alone in built.systems.items()}
@@ -47,13 +49,14 @@ def summarize_world(trace: WorldTrace, built: BuiltWorld, *, status: str = "comp
         "warnings": "\n".join(messages),
         "certificate": [_check(*row) for row in rows],
         "events": [_event(record) for record in trace.events],
+        "contacts": contact_totals(trace),
         "systems": systems,
     }
 
 
 def _missed(trace: WorldTrace, built: BuiltWorld) -> list[str]:
     """Issue a warning for each event that did not happen, and return the warnings."""
-    happened = {record.name for record in trace.events}
+    happened = {record.name for record in trace.events if record.kind not in OF_CONTACT}
     found = [
         f"event {event.name!r} did not happen before the end of the run; check its condition 'when'"
         for event in built.scenario.events
@@ -80,6 +83,8 @@ def _event(record: EventRecord) -> Summary:
     }  # fmt: skip
     linear, angular = np.asarray(record.momentum_error).tolist()
     values |= {"linear_momentum_error_rel": linear, "angular_momentum_error_rel": angular}
+    if record.peak_force is not None:
+        values["peak_force_n"] = record.peak_force
     return {key: value if isinstance(value, list) else json_value(value) for key, value in values.items()}
 
 

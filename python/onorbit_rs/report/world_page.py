@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from html import escape
 from typing import Any
 
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.output.checks import checks, world_checks
 from onorbit_rs.report.numbers import Row, groups, row
 from onorbit_rs.report.page import (
@@ -19,13 +20,17 @@ from onorbit_rs.report.page import (
     warnings_of,
 )
 
-_PARTS = ("events", "systems", "certificate")
+_PARTS = ("events", "contacts", "systems", "certificate")
 """Entries of the summary of a world that are shown elsewhere than in the tables of numbers."""
 
 _COLUMNS = ("time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
             "angular_momentum_error_rel")  # fmt: skip
 _HEADS = ("event", "kind", "systems", "time", "impulse", "angular impulse", "energy lost",
           "error of linear momentum", "error of angular momentum")  # fmt: skip
+
+_TOTALS = ("first_touch_down_s", "normal_force_max_n", "impulse_ns", "dissipated_j", "gap_min_m")
+_TOTALS_HEADS = ("contact", "touches", "first touch-down", "largest normal force", "impulse",
+                 "energy dissipated", "smallest gap")  # fmt: skip
 
 _OF_THE_ORBIT = ("inertial_axes", "velocity_eci_source", "gravity_mode")
 """Entries of a system's summary that describe the common orbit, and are therefore shown once."""
@@ -46,7 +51,11 @@ def world_page(
     own = {key: value for key, value in summary.items() if key not in _PARTS}
     first = next(iter(systems.values()))
     own |= {key: first[key] for key in _OF_THE_ORBIT if key in first}
-    parts = [_events(summary["events"]), numbers_section("All systems", groups(own))]
+    contacts = summary.get("contacts", ())
+    events = [event for event in summary["events"] if event["kind"] not in OF_CONTACT]
+    parts = [] if contacts and not events else [_events(events)]
+    parts += [_contacts(contacts)] if contacts else []
+    parts.append(numbers_section("All systems", groups(own)))
     for name, system in systems.items():
         alone = {key: value for key, value in system.items() if key not in own}
         parts.append(numbers_section(name, [(title, _named(name, rows)) for title, rows in groups(alone)]))
@@ -65,15 +74,45 @@ def _events(events: Sequence[dict[str, Any]]) -> str:
     """Return an HTML table of the events with their balances of momentum and energy."""
     if not events:
         return "<h2>Events</h2>\n<p>No event happened.</p>"
-    head = "".join(f'<th scope="col">{name}</th>' for name in _HEADS)
-    lines = "\n".join(f"<tr>{''.join(_cells(event))}</tr>" for event in events)
     about = (
         "The impulse acts on the second system. If the energy lost is negative, a spring added energy. The "
         "errors are the changes of the momentum of the group, relative to the sum of the magnitudes of the "
         "momenta of its bodies."
     )
+    return _table("Events", about, _HEADS, map(_cells, events))
+
+
+def _contacts(contacts: Sequence[dict[str, Any]]) -> str:
+    """Return an HTML table of the totals of the contacts."""
+    about = (
+        "The impulse is that on the second side, over all touches. The smallest gap is that of the rows of "
+        "the trace; where it is negative, it is the depth. The events of each touch are in summary.json."
+    )
+    return _table("Contacts", about, _TOTALS_HEADS, map(_total_cells, contacts))
+
+
+def _total_cells(contact: dict[str, Any]) -> Iterator[str]:
+    """Yield the cells of a contact's table row as HTML."""
+    yield f"<td>{escape(contact['name'])}</td>"
+    yield f"<td>{data_html(row('touches', contact['touches'])._replace(key=_path(contact, 'touches')))}</td>"
+    for key in _TOTALS:
+        if contact[key] is None and key == "first_touch_down_s":
+            yield "<td>never</td>"
+            continue
+        entry = row(key, contact[key])
+        yield f"<td>{data_html(entry._replace(key=_path(contact, key)))} {escape(entry.unit)}</td>"
+
+
+def _path(contact: dict[str, Any], key: str) -> str:
+    return f"contacts/{contact['name']}/{key}"
+
+
+def _table(title: str, about: str, heads: Sequence[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return the HTML of a section with a table; ``rows`` are the cells of each row."""
+    head = "".join(f'<th scope="col">{name}</th>' for name in heads)
+    lines = "\n".join(f"<tr>{''.join(cells)}</tr>" for cells in rows)
     table = f'<table class="events"><thead><tr>{head}</tr></thead>{lines}</table>'
-    return f'<h2>Events</h2>\n<p class="faint">{about}</p>\n<div class="scroll">{table}</div>'
+    return f'<h2>{title}</h2>\n<p class="faint">{about}</p>\n<div class="scroll">{table}</div>'
 
 
 def _cells(event: dict[str, Any]) -> Iterator[str]:

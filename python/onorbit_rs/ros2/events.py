@@ -19,12 +19,14 @@ OK, WARN, ERROR = 0, 1, 2
 
 
 def message_of_event(record: EventRecord) -> bytes:
-    """Return the message of a capture or a release, for ``/events``, with numbers in full precision."""
+    """Return the message of an event, for ``/events``, with numbers in full precision."""
     by, of = record.systems
     numbers = {
         "impulse": record.impulse, "point": record.point,
         "energy_lost": np.array(record.energy_lost), "momentum_error": record.momentum_error,
     }  # fmt: skip
+    if record.peak_force is not None:
+        numbers["peak_force"] = np.array(record.peak_force)
     values = {"kind": record.kind, "systems": f"{by} {of}"}
     values |= {name: " ".join(map(repr, array.ravel().tolist())) for name, array in numbers.items()}
     return event_message(record.time, record.name, OK, f"{record.kind}: {by} and {of}", values)

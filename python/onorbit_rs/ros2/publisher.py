@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping
 from typing import TYPE_CHECKING
 
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.printable import printable
 from onorbit_rs.ros2.events import EVENTS, EVENTS_TYPE, event_message, message_of_event
 from onorbit_rs.ros2.topics import Topics
@@ -70,10 +71,11 @@ class Publisher:
                     writer.write(data[k].tobytes())
 
     def events(self, records: Iterable[EventRecord]) -> None:
-        """Publish captures and releases."""
+        """Publish events; captures and releases are also printed."""
         for record in records:
             self._event(record.time, message_of_event(record))
-            self._tell(f"{record.name}: {record.kind} at t = {record.time:.9g} s")
+            if record.kind not in OF_CONTACT:  # there may be thousands of touches
+                self._tell(f"{record.name}: {record.kind} at t = {record.time:.9g} s")
 
     def answer(self, time: float, level: int, name: str, text: str) -> None:
         """Publish an answer to a message, or a warning, about ``name`` at a simulated time, s.

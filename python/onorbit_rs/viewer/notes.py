@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.printable import printable
 from onorbit_rs.visuals.shapes import missing_meshes
 
@@ -29,11 +30,16 @@ def world_notes(summary: dict[str, Any], scenario: WorldScenario) -> str:
     """Return the summary of a run with several systems as Markdown, with the events first."""
     own = {key: value for key, value in summary.items() if not isinstance(value, (dict, list))}
     text = notes(own, scenario)
-    if summary["events"]:
-        rows = [_event(event) for event in summary["events"]]
+    events = [event for event in summary["events"] if event["kind"] not in OF_CONTACT]
+    if events:
+        rows = [_event(event) for event in events]
         head = "| event | t [s] | lost [J] | impulse [N s] | [N m s] | momentum errors |\n|-|-|-|-|-|-|\n"
         title, _, rest = text.partition("\n\n| |")
         text = f"{title}\n\n{head}" + "\n".join(rows) + f"\n\n| |{rest}"
+    if summary.get("contacts"):
+        head = ("| contact | touches | first [s] | largest force [N] | impulse [N s] | dissipated [J] "
+                "| smallest gap [m] |\n|-|-|-|-|-|-|-|\n")  # fmt: skip
+        text += "\n## Contacts\n\n" + head + "\n".join(map(_contact, summary["contacts"])) + "\n"
     for name, system in summary["systems"].items():
         lines = "\n".join(f"| {escaped(key)} | {escaped(_short(value))} |" for key, value in system.items())
         text += f"\n## {escaped(name)}\n\n| | |\n|-|-|\n{lines}\n"
@@ -45,6 +51,15 @@ def _event(event: dict[str, Any]) -> str:
     errors = ", ".join(_short(event[f"{part}_momentum_error_rel"]) for part in ("linear", "angular"))
     numbers = (event[key] for key in ("time_s", "energy_lost_j", "impulse_ns", "angular_impulse_nms"))
     cells = [f"{event['name']} ({event['kind']})", *map(_short, numbers), errors]
+    return "| " + " | ".join(map(escaped, cells)) + " |"
+
+
+def _contact(contact: dict[str, Any]) -> str:
+    """Return the row of a contact in a Markdown table."""
+    first = contact["first_touch_down_s"]
+    numbers = (contact[key] for key in ("normal_force_max_n", "impulse_ns", "dissipated_j", "gap_min_m"))
+    begun = "never" if first is None else _short(first)
+    cells = (contact["name"], str(contact["touches"]), begun, *map(_short, numbers))
     return "| " + " | ".join(map(escaped, cells)) + " |"
 
 

@@ -37,6 +37,8 @@ _FIRST = (
 )
 """Last parts of the paths of the plots in the overview."""
 _MOST_IN_A_COLUMN = 4
+_MOST_LANES = 6
+"""Largest number of connections and contacts for which the timeline of their states grows."""
 _APART = ("flight", "near")
 """Parts of a system that have separate views."""
 
@@ -77,10 +79,12 @@ def world_layout(
     top = rrb.Tabs(*scenes, active_tab=0)
     left = rrb.Vertical(top, rrb.Horizontal(*below), row_shares=[5, 3]) if below else top
     right: rrb.Container = _plots(setting.names, plots, duration_s, is_live=is_live)
-    if setting.connections:
-        states = rrb.StateTimelineView(origin=STATES, name="Connections", time_view=whole_run(duration_s))
+    lanes = {"Connections": len(setting.connections), "Contacts": len(setting.contacts)}
+    if count := sum(lanes.values()):
+        title = " and ".join(name for name, number in lanes.items() if number).capitalize()
+        states = rrb.StateTimelineView(origin=STATES, name=title, time_view=whole_run(duration_s))
         parts: list[rrb.Container | rrb.View] = [right, states]
-        shares = [8.0, 0.8 + 0.5 * len(setting.connections)]
+        shares = [8.0, 0.8 + 0.5 * min(count, _MOST_LANES)]
         if has_events:
             columns = rrb.TextLogColumns(timeline_columns=[TIMELINE], text_log_columns=["body"])
             parts.append(rrb.TextLogView(origin=LOG, name="Events", columns=columns))

@@ -8,6 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.common.display_units import amount, digits
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.viewer.axes import log_axes, log_name
 from onorbit_rs.viewer.font import shown
 from onorbit_rs.viewer.frames import FOLLOW, put_in
@@ -33,9 +34,13 @@ if TYPE_CHECKING:
 LOG, STATES = "events", "connections"
 """Paths of the entities of the event log, and of the states of the connections."""
 
-COLORS = {"capture": (110, 220, 130), "release": (255, 190, 80)}
+COLORS = {
+    "capture": (110, 220, 130), "release": (255, 190, 80),
+    "touch_down": (235, 110, 110), "lift_off": (110, 180, 255),
+}  # fmt: skip
 _OTHER = (220, 220, 220)
 _FREE, _CONNECTED = "free", "connected"
+_APART, _TOUCHING = "apart", "touching"
 _GREY = (95, 100, 110)
 
 SHOWN_FOR = 0.05
@@ -70,12 +75,19 @@ def _of_frame(system: Setting, frame: str) -> str:
 
 
 def log_states(recording: rr.RecordingStream, setting: WorldSetting) -> None:
-    """Log the colours of the connections' states; initially, all connections are free."""
-    for connection in setting.connections:
-        path = f"{STATES}/{connection.name}"
-        style = rr.StateConfiguration(values=[_FREE, _CONNECTED], colors=[_GREY, COLORS["capture"]])
+    """Log the colours of the states of connections and contacts, which are initially free and apart."""
+    lanes = [(f"{STATES}/{connection.name}", (_FREE, _CONNECTED), COLORS["capture"])
+             for connection in setting.connections]  # fmt: skip
+    lanes += [(_of_contact(name), (_APART, _TOUCHING), COLORS["touch_down"]) for name in setting.contacts]
+    for path, states, color in lanes:
+        style = rr.StateConfiguration(values=list(states), colors=[_GREY, color])
         recording.log(path, style, static=True, strict=True)
-        _send_state(recording, path, 0.0, _FREE)
+        _send_state(recording, path, 0.0, states[0])
+
+
+def _of_contact(name: str) -> str:
+    """Return the path of the entity with the state of a contact."""
+    return rr.new_entity_path([STATES, shown(name)])
 
 
 def send_events(
@@ -94,7 +106,9 @@ def send_events(
                 for name in (connection.name, *connection.releases)}  # fmt: skip
     colors = [COLORS.get(event.kind, _OTHER) for event in new]
     log = rr.TextLog.columns(
-        text=[described(event, by_event.get(event.name)) for event in new],
+        text=[
+            described(event, None if event.kind in OF_CONTACT else by_event.get(event.name)) for event in new
+        ],
         level=[event.kind for event in new],
         color=colors,
     )
@@ -104,8 +118,11 @@ def send_events(
     largest = max(float(np.linalg.norm(event.impulse[:3])) for event in events)
     shown_s = SHOWN_FOR * duration_s
     for number, (event, color) in enumerate(zip(new, colors, strict=True), first):
-        line = sum(event.time - other.time < shown_s for other in events[:number])
-        connection = by_event.get(event.name)
+        line = len(_shown_before(event, events[:number], shown_s))
+        connection = None if event.kind in OF_CONTACT else by_event.get(event.name)
+        if event.kind in OF_CONTACT:
+            state = _TOUCHING if event.kind == "touch_down" else _APART
+            _send_state(recording, _of_contact(event.name), event.time, state)
         if connection is not None:
             state = _CONNECTED if event.kind == "capture" else _FREE
             _send_state(recording, f"{STATES}/{connection.name}", event.time, state)
@@ -133,6 +150,12 @@ def send_marks(
 def described(event: EventRecord, connection: Connection | None = None) -> str:
     """Return one line that describes an event and its balances of momentum and energy."""
     by, of = event.systems if connection is None else connection.frames
+    if event.kind in OF_CONTACT:
+        peak, lost = event.peak_force, amount(event.energy_lost, "J")
+        about = "" if peak is None else (
+            f", largest normal force {amount(peak, 'N')}, impulse {impulse_of(event)}, {lost} dissipated"
+        )  # fmt: skip
+        return f"{event.name}: {event.kind}{about}; {by} and {of}"
     linear, angular = np.asarray(event.momentum_error).tolist()
     return (
         f"{event.name}: {event.kind}, {energy_of(event.energy_lost)}, "
@@ -183,6 +206,19 @@ def _send_arrow(
     _show(recording, path, arrow, event.time, shown_s)
 
 
+def _shown_before(event: EventRecord, earlier: Sequence[EventRecord], shown_s: float) -> set[str]:
+    """Return the names of the other events whose labels are shown at the time of an event.
+
+    A contact, whose events have one name, has one label.
+    """
+    found = set()
+    for other in reversed(earlier):
+        if event.time - other.time >= shown_s:
+            break
+        found.add(other.name)
+    return found - {event.name}
+
+
 def _send_label(
     recording: rr.RecordingStream, event: EventRecord, place: Floats, color: Color, shown_s: float
 ) -> None:
@@ -190,7 +226,9 @@ def _send_label(
     path = f"world/lvlh/events/{event.name}"
     put_in(recording, path, FOLLOW)
     size = float(np.linalg.norm(event.impulse[:3]))
-    text = f"{event.name}: {event.kind}, {amount(size, 'N s')}, {energy_of(event.energy_lost)}"
+    text = f"{event.name}: {event.kind}"
+    if event.kind != "touch_down":
+        text += f", {amount(size, 'N s')}, {energy_of(event.energy_lost)}"
     label = rr.Points3D([place], colors=[color], radii=[0.0], labels=[text], show_labels=True)
     _show(recording, path, label, event.time, shown_s)
 

@@ -86,7 +86,7 @@ class WorldLiveView(View):
         if self._stage is None:
             self._stage = log_world(
                 recording, world, plots, self._duration_s,
-                has_events=bool(self._setting.connections), is_live=True,
+                has_events=bool(self._setting.connections or self._setting.contacts), is_live=True,
             )  # fmt: skip
             self._arrows = {name: Arrows(recording, system, self._stage.alone[name])
                             for name, system in systems.items()}  # fmt: skip

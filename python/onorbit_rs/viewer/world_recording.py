@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onorbit_rs.common.event_kinds import OF_CONTACT
+from onorbit_rs.common.file_parts import file_part
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_compass
 from onorbit_rs.viewer.colors import of_systems
@@ -30,7 +32,7 @@ from onorbit_rs.viewer.viewpoint import Viewpoint
 from onorbit_rs.viewer.world_blueprint import world_layout
 from onorbit_rs.viewer.world_events import log_grasps, log_states, send_events, send_marks
 from onorbit_rs.viewer.world_rows import WorldRows
-from onorbit_rs.viewer.world_series import SHARED, world_series
+from onorbit_rs.viewer.world_series import PLOTS_OF_CONTACTS, SHARED, world_series
 from onorbit_rs.viewer.world_viewpoint import common_viewpoint
 
 if TYPE_CHECKING:
@@ -192,14 +194,18 @@ def bodies_of(world: WorldRows) -> list[Body]:
 
 
 def _events_of(series: Series, setting: WorldSetting, events: Sequence[EventRecord]) -> list[EventRecord]:
-    """Return the events between the systems that a plot shows."""
+    """Return the events between the systems that a plot shows; in plots of a contact, its own touches."""
     systems = set(setting.names)
     for connection in setting.connections:
         if series.path.startswith(f"{SHARED}connections/{connection.name}/"):
             systems = set(connection.systems)
     if SUM in series.names:
         systems = set(series.names)
-    return [event for event in events if set(event.systems) <= systems]
+    found = [event for event in events if set(event.systems) <= systems]
+    if not series.path.startswith(PLOTS_OF_CONTACTS):
+        return found
+    owner = series.path.removeprefix(PLOTS_OF_CONTACTS).partition("/")[0]
+    return [event for event in found if event.kind not in OF_CONTACT or file_part(event.name) == owner]
 
 
 def _orbit_labels(world: WorldRows) -> dict[str, str]:

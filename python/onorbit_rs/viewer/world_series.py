@@ -31,6 +31,8 @@ MOMENTUM, ENERGY, PLACES = "Momentum", "Energy", "Positions"
 
 SHARED = "plots/world/"
 """Prefix of the paths of plots of several systems; the name is reserved and cannot be that of a system."""
+PLOTS_OF_CONTACTS = f"{SHARED}contacts/"
+"""Prefix of the paths of plots of a contact, which then contain its name as a part of a file name."""
 
 
 def world_series(world: WorldRows, *, is_live: bool = False) -> Iterator[tuple[TraceRows, Series]]:
@@ -73,7 +75,7 @@ def _relative(world: WorldRows, connection: Connection) -> Iterator[tuple[TraceR
 
 def _contact(rows: TraceRows, name: str, values: Floats) -> Iterator[tuple[TraceRows, Series]]:
     """Yield plots of gap, force, sliding speed and energies of a contact."""
-    parts, prefix = COLUMNS["contacts"].parts, f"{SHARED}contacts/{file_part(name)}"
+    parts, prefix = COLUMNS["contacts"].parts, f"{PLOTS_OF_CONTACTS}{file_part(name)}"
     for path, title, lines in (
         ("gap", "gap", ("gap",)),
         ("contact_force", "force on the second side", ("force",)),

@@ -22,6 +22,8 @@ class WorldSetting:
     name: str = ""
     touching: tuple[tuple[str, ...], ...] = ()
     """Systems of each contact."""
+    contacts: tuple[str, ...] = ()
+    """Names of the contacts with a force."""
 
     @classmethod
     def of(cls, built: BuiltWorld) -> WorldSetting:
@@ -31,7 +33,8 @@ class WorldSetting:
             name: Setting.of(alone, name, grasps_of(name, found)) for name, alone in built.systems.items()
         }
         models = {name: alone.model for name, alone in built.systems.items()}
-        return cls(systems, found, built.scenario.name, touching(built.scenario, models))
+        forces = tuple(contact.label for contact in built.scenario.contacts if contact.normal is not None)
+        return cls(systems, found, built.scenario.name, touching(built.scenario, models), forces)
 
     @property
     def names(self) -> list[str]:

@@ -2,7 +2,7 @@
 
 use super::checkpoint_error::CheckpointError;
 use super::connections::SavedMembers;
-use super::contacts::Mode;
+use super::contacts::{Mode, Touch};
 use super::estimates::Estimates;
 use super::events::{Attached, EventState};
 use super::every_step::SavedChecks;
@@ -93,6 +93,7 @@ pub(super) struct SystemProgress {
 pub(super) struct WorldProgress {
     pub(super) members: SavedMembers,
     pub(super) events: Vec<EventState>,
+    /// Events that have happened; empty while a trial step is undone, which removes only its own events.
     pub(super) records: Vec<EventRecord>,
     pub(super) attached: Vec<Attached>,
     pub(super) ledger: Ledger,
@@ -100,6 +101,9 @@ pub(super) struct WorldProgress {
     /// Modes of the contacts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) contacts: Vec<Mode>,
+    /// Touches of the declared contacts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) touches: Vec<Touch>,
 }
 
 /// State of the controllers and joint torques of a run.

@@ -1,7 +1,8 @@
-//! Checks that the connections in a checkpoint belong to systems and events of the run.
+//! Checks that the connections and contacts in a checkpoint belong to systems and events of the run.
 
-use super::checkpoint::{WorldProgress, check_each};
+use super::checkpoint::{Progress, WorldProgress, check_each};
 use super::checkpoint_error::CheckpointError;
+use super::contacts::Touch;
 use super::run_state::RunState;
 use crate::spatial::Scalar;
 use crate::world::FrameIndex;
@@ -23,6 +24,23 @@ impl<S: Scalar> RunState<'_, S> {
             return Ok(());
         };
         Err(CheckpointError::Unreadable { reason: reason.to_owned() })
+    }
+
+    /// Checks the numbers of contacts, and the systems of their touches.
+    pub(super) fn check_contacts(&self, progress: &Progress) -> Result<(), CheckpointError> {
+        let (Progress { state, world, .. }, own) = (progress, &self.equations.contacts);
+        let pieces = self.state.contacts.len();
+        check_each([
+            ("pairs of pieces that may touch", state.contacts.len(), pieces),
+            ("modes of contacts", world.contacts.len(), pieces),
+            ("contacts", world.touches.len(), own.count()),
+        ])?;
+        let count = self.systems.len();
+        if world.touches.iter().flat_map(Touch::systems).all(|system| system < count) {
+            return Ok(());
+        }
+        let reason = "a contact does not belong to systems of the run".to_owned();
+        Err(CheckpointError::Unreadable { reason })
     }
 
     /// Checks the sizes of the states of systems that share trees. Requires that these systems have been

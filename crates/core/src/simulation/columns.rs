@@ -172,6 +172,9 @@ const CONTACT: &[Part] = &[
     part("power", 11, Some(12)),
     part("elastic", 12, Some(13)),
     part("dissipated", 13, Some(14)),
+    part("impulse", 14, Some(17)),
+    part("touches", 17, Some(18)),
+    part("largest_force", 18, Some(19)),
 ];
 
 /// Converts one axis of a shape in the table to a [`Length`].
@@ -311,14 +314,15 @@ pub static WRENCHES: Column = column!(
 pub static CONTACTS: Column = column!(
     contacts,
     "contact_*",
-    (T, 14),
-    "m; N; m; 1; m/s; W; J; J",
+    (T, 19),
+    "m; N; m; 1; m/s; W; J; J; N s; 1; N",
     "W",
     Contacts,
     CONTACT,
     "Smallest distance of the two sides (negative: depth), force on the second side, point and normal (from the \
      first side to the second) at the smallest distance, sliding speed, power taken from the motion, elastic energy, \
-     and energy dissipated so far."
+     and, since the start of the run, energy dissipated, impulse on the second side, number of touches and largest \
+     normal force."
 );
 
 /// Times at which the run changed to a new reference orbit.

@@ -14,6 +14,11 @@ pub(super) struct ContactState {
     pub(super) normal_work: f64,
     /// Energy that friction has taken from the motion, J: dissipated, or stored in the bristles.
     pub(super) friction_work: f64,
+    /// Impulse on the second side, W axes, N s.
+    pub(super) impulse: Vec3<f64>,
+    /// Angular impulse on the second side, W axes, N m s: the integral of the moments about the point at which
+    /// the links of the contact touched last.
+    pub(super) angular_impulse: Vec3<f64>,
 }
 
 /// Time derivative of [`ContactState`].
@@ -21,8 +26,17 @@ pub(super) type ContactRate = ContactState;
 
 impl ContactState {
     /// State without any contact so far.
-    pub(super) const ZERO: Self =
-        Self { slip: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, turn: 0.0, normal_work: 0.0, friction_work: 0.0 };
+    pub(super) const ZERO: Self = {
+        let zero = Vec3 { x: 0.0, y: 0.0, z: 0.0 };
+        Self {
+            slip: zero,
+            turn: 0.0,
+            normal_work: 0.0,
+            friction_work: 0.0,
+            impulse: zero,
+            angular_impulse: zero,
+        }
+    };
 
     /// Computes `self + h rate`.
     pub(super) fn plus(&self, rate: &ContactRate, h: f64) -> Self {
@@ -31,6 +45,8 @@ impl ContactState {
             turn: rate.turn.mul_add(h, self.turn),
             normal_work: rate.normal_work.mul_add(h, self.normal_work),
             friction_work: rate.friction_work.mul_add(h, self.friction_work),
+            impulse: rate.impulse.scale_add(h, self.impulse),
+            angular_impulse: rate.angular_impulse.scale_add(h, self.angular_impulse),
         }
     }
 }

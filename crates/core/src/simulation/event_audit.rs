@@ -56,7 +56,7 @@ impl<S: Scalar> RunState<'_, S> {
         let (energy_lost, expected) = match event.kind {
             _ if is_driven => (difference, difference),
             EventKind::Capture => (energy_of_change, energy_of_change),
-            EventKind::Release => (difference, -event.spring_work),
+            _ => (difference, -event.spring_work),
         };
         let (mut impulse_w, mut point_w) = ([0.0; 6], [0.0; 3]);
         impulse.write(&mut impulse_w);
@@ -72,6 +72,7 @@ impl<S: Scalar> RunState<'_, S> {
             momentum_error: balances[1].error_since(&balances[0]),
             twist_left: self.twist_left(event, &after),
             energy_error: (difference - expected).abs() / energies[0].max(energies[1]).max(f64::MIN_POSITIVE),
+            peak_force: None,
         }
     }
 

@@ -35,6 +35,7 @@ pub(super) struct Events {
     /// Number of each event in the world.
     pub(super) numbers: Vec<usize>,
     pub(super) states: Vec<EventState>,
+    /// Captures and releases, and touch-downs and lift-offs of contacts, that have happened.
     pub(super) records: Vec<EventRecord>,
     /// Controls that follow a frame to which their own frame has been rigidly connected.
     pub(super) attached: Vec<Attached>,

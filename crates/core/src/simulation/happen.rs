@@ -37,6 +37,15 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
+    /// Adds the touch-downs and lift-offs at the current cut to the events that have happened.
+    pub(super) fn take_touches(&mut self) {
+        let Self { equations, events, numbers, .. } = self;
+        for mut record in equations.contacts.happened.drain(..) {
+            record.systems = record.systems.map(|system| numbers[system]);
+            events.records.push(record);
+        }
+    }
+
     /// Determines for which latches the conditions hold at `t`, s, and sets or clears the times at which
     /// their captures are due.
     fn update_latches(&mut self, t: f64) {

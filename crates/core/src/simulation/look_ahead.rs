@@ -71,12 +71,13 @@ impl<S: Scalar> RunState<'_, S> {
         records_before: f64,
         work: impl FnOnce(&mut Self) -> Result<R, SimulationError>,
     ) -> Result<R, SimulationError> {
-        let before: Progress = self.progress();
+        let (before, events): (Progress, usize) = (self.progress(), self.events.records.len());
         self.keeps_commands = !self.controllers_updated;
         self.records_before = records_before;
         let result = work(self);
         self.records_before = f64::INFINITY;
         self.has_event = false;
+        self.events.records.truncate(events);
         self.restore(before)?;
         self.controllers_updated = !std::mem::take(&mut self.keeps_commands);
         result

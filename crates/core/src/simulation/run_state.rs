@@ -79,9 +79,11 @@ pub(super) struct RunState<'a, S> {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns everything that a step changes, except the state of the controllers.
+    /// Returns everything that a step changes, except the state of the controllers and the list of events,
+    /// which only grows.
     pub(super) fn progress(&self) -> Progress {
         let (step_control, idle_steps) = self.mover.save();
+        let (contacts, touches) = self.equations.contacts.save();
         let tree = |(number, tree): (usize, &Tree<'_, S>)| {
             let (errors, checks) = self.accuracy.save(number);
             TreeProgress { modes: tree.modes.save(), errors, checks }
@@ -101,11 +103,12 @@ impl<S: Scalar> RunState<'_, S> {
             world: WorldProgress {
                 members: self.save_members(),
                 events: self.events.states.clone(),
-                records: self.events.records.clone(),
+                records: Vec::new(),
                 attached: self.events.attached.clone(),
                 ledger: self.ledger,
                 balance: self.balance.clone(),
-                contacts: self.equations.contacts.save(),
+                contacts,
+                touches,
             },
         }
     }
@@ -133,9 +136,9 @@ impl<S: Scalar> RunState<'_, S> {
     fn restore_world(&mut self, world: WorldProgress) -> Result<(), SimulationError> {
         self.restore_members(world.members)?;
         self.balance = world.balance;
-        self.equations.contacts.restore(world.contacts);
+        self.equations.contacts.restore((world.contacts, world.touches));
         if !self.events.list.is_empty() {
-            (self.events.states, self.events.records) = (world.events, world.records);
+            self.events.states = world.events;
             self.events.attached = world.attached;
             self.ledger = world.ledger;
             self.events_changed();
@@ -162,10 +165,12 @@ impl<S: Scalar> RunState<'_, S> {
         let systems = systems
             .map(|(number, run)| run.save_controllers(members.system(number, trees, &self.state.trees).1));
         let systems = systems.collect::<Result<_, _>>()?;
+        let mut progress = self.progress();
+        progress.world.records.clone_from(&self.events.records);
         Ok(GroupCheckpoint {
             time: self.time,
             schedule: self.schedule.clone(),
-            progress: self.progress(),
+            progress,
             local_reference: loads.local_reference().cloned(),
             wrenches: loads.commands.clone(),
             controllers: SavedControllers { controllers_updated: self.controllers_updated, systems },
@@ -177,10 +182,12 @@ impl<S: Scalar> RunState<'_, S> {
         let counts: Vec<usize> = rows.iter().map(Trace::rows).collect();
         from.check(&self.layout, &self.schedule, &counts, self.events.list.len())?;
         self.check_connections(&from.progress.world)?;
+        self.check_contacts(&from.progress)?;
         self.restore_members(from.progress.world.members.clone())?;
         self.check_members(&from.progress.world)?;
         from.check_trees(&self.state)?;
-        let GroupCheckpoint { time, progress, local_reference, wrenches, controllers: saved, .. } = from;
+        let GroupCheckpoint { time, mut progress, local_reference, wrenches, controllers: saved, .. } = from;
+        self.events.records = std::mem::take(&mut progress.world.records);
         self.equations.loads.commands = wrenches;
         self.check_estimates(&progress)?;
         for (run, rows) in self.systems.iter_mut().zip(rows) {

@@ -11,7 +11,7 @@ use pyo3::types::PySlice;
 /// but while bodies touch, every step is a row if ``record_every=1``.
 #[pyclass(name = "ContactTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyContactTrace {
-    /// Array (T, 14) with all quantities in the order of ``onorbit_rs.COLUMNS``.
+    /// Array (T, 19) with all quantities in the order of ``onorbit_rs.COLUMNS``.
     #[pyo3(get)]
     values: Py<PyAny>,
 }
@@ -82,6 +82,24 @@ impl PyContactTrace {
     #[getter]
     fn dissipated<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.part(py, "dissipated")
+    }
+
+    /// Impulse on the second side since the start, (T, 3), N s, axes of W.
+    #[getter]
+    fn impulse<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "impulse")
+    }
+
+    /// Number of touches since the start, (T,).
+    #[getter]
+    fn touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "touches")
+    }
+
+    /// Largest normal force since the start, (T,), N. It includes the steps between two rows.
+    #[getter]
+    fn largest_force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.part(py, "largest_force")
     }
 
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {

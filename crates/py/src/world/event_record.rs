@@ -15,27 +15,33 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// Parameters
 /// ----------
 /// name : str
-///     Name of the event.
-/// kind : {"capture", "release"}
-///     Kind of the event.
+///     Name of the event, or of the contact.
+/// kind : {"capture", "release", "touch_down", "lift_off"}
+///     Kind of the event. A contact touches down when the first pieces of its links touch, and lifts off when
+///     the last ones separate.
 /// time : float
 ///     Time, s.
 /// systems : (str, str)
-///     Names of the two systems, beginning with the capturing system.
+///     Names of the two systems, beginning with the capturing system; for a contact, those of the links that
+///     touched first, in the order of its sides.
 /// impulse : (6,) array
 ///     Impulse on the second system and the systems connected to it: N s, then N m s about ``point``, axes of
-///     W.
+///     W. For a lift-off, the impulse of the contact since its touch-down; for a touch-down zero.
 /// point : (3,) array
-///     Point at which the impulse acts, in W, m.
+///     Point at which the impulse acts, in W, m; for a contact, the point of contact.
 /// energy_lost : float
-///     Kinetic energy lost, J; negative if a spring added energy.
+///     Kinetic energy lost, J; negative if a spring added energy. For a lift-off, the energy dissipated since
+///     the touch-down.
 /// momentum_error : (2,) array
 ///     Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes
-///     of the momenta of its bodies.
+///     of the momenta of its bodies; zero for a contact, whose forces on both sides act at one point.
+/// peak_force : float, optional
+///     Largest normal force since the touch-down, N; None unless the event is a lift-off. It is the largest
+///     force at the ends of steps, or of the parabola through three of them.
 #[pyclass(name = "EventRecord", frozen, module = "onorbit_rs")]
 #[derive(PartialEq)]
 pub(crate) struct PyEventRecord {
-    /// Name of the event.
+    /// Name of the event, or of the contact.
     #[pyo3(get)]
     name: String,
     kind: EventKind,
@@ -51,13 +57,15 @@ pub(crate) struct PyEventRecord {
     #[pyo3(get)]
     energy_lost: f64,
     momentum_error: [f64; 2],
+    /// Largest normal force since the touch-down, N; None unless the event is a lift-off.
+    #[pyo3(get)]
+    peak_force: Option<f64>,
 }
 
 impl PyEventRecord {
     /// Creates the record of an event of systems with these names.
     pub(crate) fn of(record: &EventRecord, names: &[String]) -> Self {
-        let EventRecord { name, kind, time, systems, impulse, point, energy_lost, momentum_error, .. } =
-            record;
+        let EventRecord { name, kind, time, systems, impulse, point, energy_lost, .. } = record;
         let [by, of] = systems.map(|system| names[system].clone());
         Self {
             name: name.clone(),
@@ -67,7 +75,8 @@ impl PyEventRecord {
             impulse: *impulse,
             point: *point,
             energy_lost: *energy_lost,
-            momentum_error: *momentum_error,
+            momentum_error: record.momentum_error,
+            peak_force: record.peak_force,
         }
     }
 }
@@ -75,7 +84,7 @@ impl PyEventRecord {
 #[pymethods]
 impl PyEventRecord {
     #[new]
-    #[pyo3(signature = (name, kind, time, systems, *, impulse, point, energy_lost, momentum_error))]
+    #[pyo3(signature = (name, kind, time, systems, *, impulse, point, energy_lost, momentum_error, peak_force=None))]
     fn new(
         py: Python<'_>,
         name: String,
@@ -86,18 +95,19 @@ impl PyEventRecord {
         point: &Bound<'_, PyAny>,
         energy_lost: f64,
         momentum_error: &Bound<'_, PyAny>,
+        peak_force: Option<f64>,
     ) -> PyResult<Self> {
-        let kinds = [EventKind::Capture, EventKind::Release];
-        let Some(kind) = kinds.into_iter().find(|known| known.name() == kind) else {
-            let message = format!("kind is '{kind}'; it must be 'capture' or 'release'");
+        let Some(kind) = EventKind::ALL.into_iter().find(|known| known.name() == kind) else {
+            let known = EventKind::ALL.map(|kind| format!("'{}'", kind.name())).join(", ");
+            let message = format!("kind is '{kind}'; it must be one of {known}");
             return Err(raise(py, "InputError", &message, &fields!(py, "name": "kind", "got": kind)));
         };
         let (impulse, point) = (entries(impulse, "impulse")?, entries(point, "point")?);
         let momentum_error = entries(momentum_error, "momentum_error")?;
-        Ok(Self { name, kind, time, systems, impulse, point, energy_lost, momentum_error })
+        Ok(Self { name, kind, time, systems, impulse, point, energy_lost, momentum_error, peak_force })
     }
 
-    /// Kind of the event, ``capture`` or ``release``.
+    /// Kind of the event: ``capture``, ``release``, ``touch_down`` or ``lift_off``.
     #[getter]
     fn kind(&self) -> &'static str {
         self.kind.name()
@@ -139,14 +149,21 @@ impl PyEventRecord {
         keywords.set_item("point", self.point)?;
         keywords.set_item("energy_lost", self.energy_lost)?;
         keywords.set_item("momentum_error", self.momentum_error)?;
+        keywords.set_item("peak_force", self.peak_force)?;
         let arguments = (&self.name, self.kind.name(), self.time, &self.systems);
         ConstructorCall::new("EventRecord", arguments, &keywords)?.reduce(py)
     }
 
     fn __repr__(&self) -> String {
-        let (Self { name, time, energy_lost, .. }, (by, of)) = (self, &self.systems);
-        let (kind, lost) = (self.kind.name(), short(*energy_lost));
-        format!("<{kind} '{name}' of {of} by {by} at t = {} s: {lost} J lost>", short(*time))
+        let (Self { name, energy_lost, .. }, (by, of)) = (self, &self.systems);
+        let (kind, lost, time) = (self.kind.name(), short(*energy_lost), short(self.time));
+        match self.kind {
+            EventKind::TouchDown => format!("<{kind} '{name}' of {by} and {of} at t = {time} s>"),
+            EventKind::LiftOff => {
+                format!("<{kind} '{name}' of {by} and {of} at t = {time} s: {lost} J lost>")
+            }
+            _ => format!("<{kind} '{name}' of {of} by {by} at t = {time} s: {lost} J lost>"),
+        }
     }
 }
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.printable import json_value
 from onorbit_rs.exceptions import CompareError
 from onorbit_rs.tools.comparison.robots import Comparison, compared_robots
@@ -51,7 +52,7 @@ class WorldComparison(Verdict):
     systems: Mapping[str, Comparison]
     """Comparison of each system, by name."""
     events: tuple[EventDifference, ...]
-    """Differences of the events, five quantities each."""
+    """Differences of the events, five quantities each, six for a lift-off."""
     notes: tuple[str, ...]
     """Notes on differing settings and on events that were not compared."""
 
@@ -99,7 +100,10 @@ def compared_worlds(
     systems = {name: compared_robots(own, b.systems[name], tolerance) for name, own in a.systems.items()}
     end = min(float(compared.time[-1]) for compared in systems.values())
     events, notes = [], list(settings)
-    for name, pair in _pairs(a.events, b.events):
+    compared, left_out = zip(*(_first_touches(world.events) for world in (a, b)), strict=True)
+    if any(left_out):
+        notes.append("of each contact, only the first touch is compared as an event")
+    for name, pair in _pairs(*compared):
         if min(record.time for record in pair if record is not None) > end:
             notes.append(f"event {name!r} is not compared: it happened after the end of one of the runs")
         else:
@@ -107,12 +111,28 @@ def compared_worlds(
     return WorldComparison(a.name, b.name, tolerance, systems, tuple(events), tuple(notes))
 
 
+Named = tuple[str, "EventRecord"]
+
+
+def _first_touches(records: Sequence[EventRecord]) -> tuple[list[Named], bool]:
+    """Return the events with unique names, of each contact only those of its first touch.
+
+    Small differences grow with every touch. The second value is True if events were left out.
+    """
+    found: dict[str, EventRecord] = {}
+    for record in records:
+        is_of_contact = record.kind in OF_CONTACT
+        name = f"{record.name} ({record.kind.replace('_', '-')})" if is_of_contact else record.name
+        found.setdefault(name, record)
+    return list(found.items()), len(found) < len(records)
+
+
 Pair = tuple["EventRecord | None", "EventRecord | None"]
 
 
-def _pairs(a: Sequence[EventRecord], b: Sequence[EventRecord]) -> Iterator[tuple[str, Pair]]:
+def _pairs(a: Sequence[Named], b: Sequence[Named]) -> Iterator[tuple[str, Pair]]:
     """Yield the name of each event and its records in both runs, in the order of the first run."""
-    by_name = [{record.name: record for record in records} for records in (a, b)]
+    by_name = [dict(records) for records in (a, b)]
     for name in dict.fromkeys([*by_name[0], *by_name[1]]):
         yield name, (by_name[0].get(name), by_name[1].get(name))
 
@@ -138,7 +158,9 @@ def _differences(name: str, pair: Pair, tolerance: float) -> Iterator[EventDiffe
 def _quantities(record: EventRecord) -> list[tuple[str, str, Any]]:
     """Return name, unit and value of the compared quantities of an event; vectors are in axes of W."""
     impulse = np.asarray(record.impulse)
+    peak = [] if record.peak_force is None else [("peak force", "N", np.array([record.peak_force]))]
     return [
+        *peak,
         ("time", "s", np.array([record.time])),
         ("impulse", "N s", impulse[:3]),
         ("angular impulse", "N m s", impulse[3:]),

@@ -1,7 +1,7 @@
 //! Modes of a contact at the start of a step.
 
 use super::mode::{Mode, Phase};
-use super::side::SideMotion;
+use super::side::{Side, SideMotion};
 use super::touching::{Loading, Touching};
 use crate::contact::{Bristle, ContactError, Friction, FrictionForce};
 use crate::simulation::contact_state::ContactState;
@@ -19,26 +19,31 @@ const REACHED: f64 = 1e-9;
 
 impl Touching {
     /// Determines the mode for the step from `t` to `end`, s. A mode that was determined at `t` remains.
-    /// Returns the loading in the new mode; `None` if the pieces are far apart.
+    /// Returns the loading in the new mode; `None` if the pieces are far apart. `mobility` gives the mobility
+    /// of the sides at the point of contact.
     pub(super) fn begin(
         &mut self,
         (t, end): (f64, f64),
         motions: &[SideMotion; 2],
         state: &ContactState,
+        mobility: impl Fn(&[Side; 2], &Loading) -> [f64; 3],
     ) -> Result<Option<Loading>, ContactError> {
-        if self.mode.since == t {
-            return match self.mode.phase {
-                Phase::Far => Ok(None),
-                _ => self.evaluate(motions, state).map(Some),
-            };
-        }
-        if self.is_far(motions, end - t) {
+        let is_known = self.mode.since == t;
+        if if is_known { self.mode.phase == Phase::Far } else { self.is_far(motions, end - t) } {
             (self.mode.phase, self.mode.since) = (Phase::Far, t);
             return Ok(None);
         }
-        let before = self.evaluate(motions, state)?;
         let rounding = self.rounding(motions);
-        let phase = self.next_phase(&before, rounding);
+        let mut before = self.evaluate(motions, state)?;
+        let phase = if is_known { self.mode.phase } else { self.next_phase(&before, rounding) };
+        if phase == Phase::Pressing && self.mode.mobility[0] == 0.0 {
+            // whether the bristles stick depends on their damping, and thus on the mobility
+            self.mode.mobility = mobility(&self.sides, &self.evaluate_in(phase, motions, state)?);
+            before = self.evaluate(motions, state)?;
+        }
+        if is_known {
+            return Ok(Some(before));
+        }
         let [bristle, twist] = self.next_bristles(phase, &before, rounding);
         let mobility = if phase == Phase::Apart { [0.0; 3] } else { self.mode.mobility };
         self.mode = Mode {

@@ -2,18 +2,22 @@
 //! cuts, and the length of steps while bodies touch.
 
 mod begin;
+mod follow;
 mod mobility;
 mod mode;
 mod pressure;
 mod record;
 mod side;
 mod step_length;
+mod touches;
 mod touching;
 
 pub(super) use mode::Mode;
+pub(super) use touches::Touch;
 
 use super::contact_state::{ContactRate, ContactState};
 use super::error::SimulationError;
+use super::recording::EventRecord;
 use super::state::State;
 use super::tree::Tree;
 use crate::contact::{Contact, ContactError, ContactSteps};
@@ -22,6 +26,7 @@ use crate::spatial::Real;
 use crate::world::FrameIndex;
 use mode::Phase;
 use side::{Side, SideMotion};
+use touches::Sample;
 use touching::{Loading, Touching};
 
 /// Contacts of a run, one entry per combination of convex pieces of both sides.
@@ -35,6 +40,12 @@ pub(crate) struct Contacts {
     pub(super) energy_error: f64,
     /// True if changes between sticking and slipping do not end a step.
     pub(super) ignores_slip: bool,
+    /// Touches of the declared contacts.
+    touches: Vec<Touch>,
+    /// Declared contacts at the start of the step.
+    samples: Vec<Sample>,
+    /// Touch-downs and lift-offs that have not yet been taken, with the systems of the group.
+    pub(super) happened: Vec<EventRecord>,
 }
 
 impl Contacts {
@@ -59,7 +70,17 @@ impl Contacts {
             }
         }
         let names = declared.iter().map(|contact| contact.name.clone()).collect();
-        Self { list, names, steps, energy_error: f64::INFINITY, ignores_slip: false }
+        let (touches, samples) = (vec![Touch::NONE; declared.len()], vec![Sample::FAR; declared.len()]);
+        Self {
+            list,
+            names,
+            steps,
+            energy_error: f64::INFINITY,
+            ignores_slip: false,
+            touches,
+            samples,
+            happened: Vec::new(),
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -79,12 +100,13 @@ impl Contacts {
         self.list.iter_mut().for_each(|touching| touching.mode.mobility = [0.0; 3]);
     }
 
-    pub(super) fn save(&self) -> Vec<Mode> {
-        self.list.iter().map(|touching| touching.mode).collect()
+    pub(super) fn save(&self) -> (Vec<Mode>, Vec<Touch>) {
+        (self.list.iter().map(|touching| touching.mode).collect(), self.touches.clone())
     }
 
-    pub(super) fn restore(&mut self, modes: Vec<Mode>) {
+    pub(super) fn restore(&mut self, (modes, touches): (Vec<Mode>, Vec<Touch>)) {
         self.list.iter_mut().zip(modes).for_each(|(touching, mode)| touching.mode = mode);
+        self.touches = touches;
     }
 
     /// Returns the loadings computed last, which a trial step overwrites.
@@ -125,7 +147,8 @@ impl Contacts {
     /// Writes the time derivatives of the states of the contacts for the loadings computed last.
     pub(super) fn rates(&self, rates: &mut [ContactRate]) {
         for (touching, rate) in self.list.iter().zip(rates) {
-            *rate = touching.last.as_ref().map_or(ContactState::ZERO, |loading| loading.rates());
+            let center = self.touches[touching.contact].center;
+            *rate = touching.last.as_ref().map_or(ContactState::ZERO, |loading| loading.rates(center));
         }
     }
 
@@ -138,25 +161,21 @@ impl Contacts {
         state: &State<S>,
     ) -> Result<f64, ContactError> {
         let (mut longest, mut energy) = (f64::INFINITY, 0.0);
+        self.samples.fill(Sample::FAR);
         for (touching, own) in self.list.iter_mut().zip(&state.contacts) {
             let motions = touching.motions(trees, state);
             if touching.is_rigid(trees) {
                 touching.mode.phase = Phase::Far;
                 continue;
             }
-            let before = touching.mode;
-            let Some(mut loading) = touching.begin((t, end), &motions, own)? else { continue };
-            if touching.mode.phase == Phase::Pressing && touching.mode.mobility[0] == 0.0 {
-                // whether the bristles stick depends on their damping, and thus on the mobility
-                let mobility = mobility::mobility(&touching.sides, trees, &state.trees, &loading);
-                touching.mode = Mode { mobility, ..if before.since == t { touching.mode } else { before } };
-                let Some(again) = touching.begin((t, end), &motions, own)? else { continue };
-                loading = again;
-            }
+            let mobility = |sides: &_, loading: &_| mobility::mobility(sides, trees, &state.trees, loading);
+            let Some(loading) = touching.begin((t, end), &motions, own, mobility)? else { continue };
             longest = longest.min(touching.longest_step(self.steps, &motions, &loading));
             energy += touching.energy(&loading);
+            self.samples[touching.contact].add(touching, &motions, &loading);
         }
         self.energy_error = if energy > 0.0 { self.steps.energy_error * energy } else { f64::INFINITY };
+        self.update_touches(t, &state.contacts);
         if longest >= end - t {
             return Ok(end);
         }

@@ -2,6 +2,7 @@
 
 use super::Contacts;
 use super::mode::Phase;
+use super::touches::Touch;
 use super::touching::{Loading, Touching};
 use crate::contact::ContactError;
 use crate::simulation::contact_state::ContactState;
@@ -19,6 +20,7 @@ struct Row {
     power: f64,
     elastic: f64,
     dissipated: f64,
+    impulse: Vec3<f64>,
 }
 
 impl Contacts {
@@ -41,7 +43,7 @@ impl Contacts {
         contact: usize,
         trees: &[Tree<'_, S>],
         state: &State<S>,
-    ) -> Result<[f64; 14], ContactError> {
+    ) -> Result<[f64; 19], ContactError> {
         let mut row = Row {
             gap: f64::INFINITY,
             force: Vec3::zero(),
@@ -51,6 +53,7 @@ impl Contacts {
             power: 0.0,
             elastic: 0.0,
             dissipated: 0.0,
+            impulse: Vec3::zero(),
         };
         for (touching, own) in self.list.iter().zip(&state.contacts).filter(|(one, _)| one.contact == contact)
         {
@@ -60,7 +63,7 @@ impl Contacts {
             };
             row.add(touching, &loading, own);
         }
-        Ok(row.values())
+        Ok(row.values(&self.touches[contact]))
     }
 }
 
@@ -72,22 +75,29 @@ impl Row {
             self.sliding_speed = loading.sliding.norm();
         }
         self.force += loading.force;
-        self.power += loading.pressure.map_or(0.0, |pressure| pressure.power) + loading.rates().friction_work;
+        self.power += loading.pressure.map_or(0.0, |pressure| pressure.power) + loading.friction_power();
         let [normal, bristles] = touching.elastic_energies(loading);
         self.elastic += normal + bristles;
         self.dissipated += (state.normal_work - normal) + (state.friction_work - bristles);
+        self.impulse += state.impulse;
     }
 
-    fn values(&self) -> [f64; 14] {
-        let Self { gap, force, point, normal, sliding_speed, power, elastic, dissipated } = *self;
-        let [f, p, n] = [force, point, normal].map(|v| [v.x, v.y, v.z]);
-        [gap, f[0], f[1], f[2], p[0], p[1], p[2], n[0], n[1], n[2], sliding_speed, power, elastic, dissipated]
+    fn values(&self, touch: &Touch) -> [f64; 19] {
+        let Self { gap, force, point, normal, sliding_speed, power, elastic, dissipated, impulse } = *self;
+        let mut values = [0.0; 19];
+        values[0] = gap;
+        for (vector, start) in [(force, 1), (point, 4), (normal, 7), (impulse, 14)] {
+            vector.write(&mut values[start..start + 3]);
+        }
+        values[10..14].copy_from_slice(&[sliding_speed, power, elastic, dissipated]);
+        values[17..].copy_from_slice(&[touch.count as f64, touch.largest_force]);
+        values
     }
 }
 
 impl Touching {
     /// Returns the elastic energies of the normal force and of the bristles, J.
-    fn elastic_energies(&self, loading: &Loading) -> [f64; 2] {
+    pub(super) fn elastic_energies(&self, loading: &Loading) -> [f64; 2] {
         let Some(law) =
             self.law.as_ref().filter(|_| matches!(self.mode.phase, Phase::Pressing | Phase::Separating))
         else {

@@ -60,13 +60,23 @@ impl Touching {
         motions: &[SideMotion; 2],
         state: &ContactState,
     ) -> Result<Loading, ContactError> {
+        self.evaluate_in(self.mode.phase, motions, state)
+    }
+
+    /// Returns the distance of the pieces, and the force in another phase; see [`Self::evaluate`].
+    pub(super) fn evaluate_in(
+        &self,
+        phase: Phase,
+        motions: &[SideMotion; 2],
+        state: &ContactState,
+    ) -> Result<Loading, ContactError> {
         let [a, b] = motions;
         let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
         let Manifold { proximity, points } = manifold(first, &a.shape, second, &b.shape)
             .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
         let normal = proximity.normal;
-        let is_pressing = self.mode.phase == Phase::Pressing;
-        let law = self.law.as_ref().filter(|_| is_pressing || self.mode.phase == Phase::Separating);
+        let is_pressing = phase == Phase::Pressing;
+        let law = self.law.as_ref().filter(|_| is_pressing || phase == Phase::Separating);
         let pressure = law.map(|law| Pressure::of(&law.normal, &points, normal, motions, is_pressing));
         let witness = (proximity.point_a + proximity.point_b) * 0.5;
         // both forces act at one point, so that no moment remains
@@ -149,16 +159,21 @@ impl Loading {
         self.torsion.map_or(0.0, |torsion| torsion.force.x)
     }
 
-    /// Returns the time derivative of the state of the contact.
-    pub(super) fn rates(&self) -> ContactRate {
+    /// Returns the power that friction takes from the motion, W.
+    pub(super) fn friction_power(&self) -> f64 {
         let friction = self.friction.map_or(0.0, |friction| friction.force.dot(self.sliding));
-        let friction_work = -friction - self.moment() * self.spin;
-        let turn = self.spin;
+        -friction - self.moment() * self.spin
+    }
+
+    /// Returns the time derivative of the state of the contact, with moments about `center` in W.
+    pub(super) fn rates(&self, center: Vec3<f64>) -> ContactRate {
         ContactRate {
             slip: self.sliding,
-            turn,
+            turn: self.spin,
             normal_work: self.pressure.map_or(0.0, |pressure| pressure.power),
-            friction_work,
+            friction_work: self.friction_power(),
+            impulse: self.force,
+            angular_impulse: (self.point - center).cross(self.force) + self.normal * self.moment(),
         }
     }
 }

@@ -1,0 +1,33 @@
+//! Touch-downs and lift-offs at the starts of steps.
+
+use super::Contacts;
+use super::touches::Integrals;
+use crate::simulation::contact_state::ContactState;
+
+impl Contacts {
+    /// Finds the contacts that touch or separate at `t`, s, and adds their records to `happened`. Requires
+    /// the samples at `t`.
+    pub(super) fn update_touches(&mut self, t: f64, states: &[ContactState]) {
+        let Self { list, touches, samples, happened, names, .. } = self;
+        for (contact, (touch, sample)) in touches.iter_mut().zip(samples).enumerate() {
+            let integrals = || {
+                let own = list.iter().zip(states).filter(|(touching, _)| touching.contact == contact);
+                let mut sum = own.fold(Integrals::ZERO, |sum, (_, state)| sum.with(state));
+                sum.loss -= sample.elastic;
+                sum
+            };
+            if touch.is_closed {
+                touch.follow(t, sample);
+                if sample.pieces == 0 && touch.is_listed() {
+                    happened.push(touch.lift_off(&names[contact], t, &integrals()));
+                }
+                touch.is_closed = sample.pieces > 0;
+            } else if sample.is_noticeable() {
+                touch.begin(t, sample, integrals());
+                if touch.is_listed() {
+                    happened.push(touch.touch_down(&names[contact], t));
+                }
+            }
+        }
+    }
+}

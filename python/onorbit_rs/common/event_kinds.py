@@ -1,0 +1,6 @@
+"""Kinds of the events of a run."""
+
+from __future__ import annotations
+
+OF_CONTACT = frozenset({"touch_down", "lift_off"})
+"""Kinds of the events of contacts. Their forces change velocities gradually, unlike captures and releases."""

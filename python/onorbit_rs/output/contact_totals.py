@@ -1,0 +1,39 @@
+"""Totals of the contacts of a run, for its summary."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs.common.printable import json_value
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import WorldTrace
+    from onorbit_rs.output.summary import Summary
+
+
+def contact_totals(trace: WorldTrace) -> list[Summary]:
+    """Return an entry for each contact, in the order of the trace.
+
+    ``first_touch_down_s`` is None if the contact never touched, ``touches`` the number of touches,
+    ``normal_force_max_n`` the largest normal force, ``impulse_ns`` the magnitude of the impulse on the second
+    side, ``dissipated_j`` the energy dissipated, and ``gap_min_m`` the smallest gap of all rows (negative:
+    depth).
+    """
+    first: dict[str, float] = {}
+    for record in trace.events:
+        if record.kind == "touch_down":
+            first.setdefault(record.name, record.time)
+    found: list[Summary] = []
+    for name, contact in trace.contacts.items():
+        touches = float(np.asarray(contact.touches)[-1])
+        numbers = {
+            "normal_force_max_n": float(np.asarray(contact.largest_force)[-1]),
+            "impulse_ns": float(np.linalg.norm(np.asarray(contact.impulse)[-1])),
+            "dissipated_j": float(np.asarray(contact.dissipated)[-1]),
+            "gap_min_m": float(np.min(np.asarray(contact.gap))),
+        }
+        entry: Summary = {"name": name, "first_touch_down_s": first.get(name), "touches": int(touches)}
+        found.append(entry | {key: json_value(value) for key, value in numbers.items()})
+    return found
