@@ -43,6 +43,7 @@ def test_a_trajectory_moves_a_captured_load_as_the_law_of_the_joints_does(knows:
     same = oo.Control(law, reference=reference, name="arm")
     expected = oo.Simulation(world(same, knows), time_step=5e-3).run(2.0)["servicer"]
     stepper = oo.Simulation(world(oo.External(49.0, 14.0), knows), time_step=5e-3).start(duration=2.0)
+    assert stepper.systems == ["servicer", "target"]
     assert stepper["servicer"].external == {"arm": list(oo.robots.load("servicer").joint_names)}
     assert stepper["servicer"].interfaces == {"arm": "position"} and stepper["target"].external == {}
     rest = np.zeros((2, 7))

@@ -123,8 +123,7 @@ impl PyStepper {
     /// ControlError
     ///     If an active controller drives one of the joints.
     fn command(&self, tau: &Bound<'_, PyAny>) -> PyResult<()> {
-        let system = self.only("command")?;
-        self.command_system(system, tau)
+        self.command_system(self.only("command")?, tau)
     }
 
     /// Send a command to the joints of an :class:`External` controller.
@@ -244,15 +243,13 @@ impl PyStepper {
     /// Names of the joints of each :class:`External` controller, by the name of the control.
     #[getter]
     fn external(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
-        let system = self.only("external")?;
-        self.external_of(py, system)
+        self.external_of(py, self.only("external")?)
     }
 
     /// Quantity that each :class:`External` controller tracks, by its name; ``effort`` if it has no gains.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
-        let system = self.only("interfaces")?;
-        self.interfaces_of(py, system)
+        self.interfaces_of(py, self.only("interfaces")?)
     }
 
     /// Trigger an event that happens on command, at the current time.
@@ -270,6 +267,12 @@ impl PyStepper {
     ///     If there is no such event, or it has happened or is not ``on_command``; the run is unchanged.
     fn trigger(&self, py: Python<'_>, name: &str) -> PyResult<()> {
         self.try_with(py, |stepper| stepper.trigger(name))
+    }
+
+    /// Names of the systems of the run; ``stepper[name]`` is the view of one.
+    #[getter]
+    fn systems(&self) -> Vec<String> {
+        self.systems.names.clone()
     }
 
     /// Events of the world in the completed steps, in order of time.

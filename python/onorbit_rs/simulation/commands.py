@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
@@ -41,6 +40,11 @@ def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
 
     ``check_only`` checks a constant command to joints without giving it; it has no effect on other commands.
     """
+    if "trigger" not in entry and "system" not in entry and len(stepper.systems) > 1:
+        names = ", ".join(stepper.systems)
+        raise invalid(
+            entry.where, f"'system' is missing; the run has several systems, so give one of: {names}"
+        )
     try:
         if "trigger" in entry:
             stepper.trigger(entry["trigger"])
@@ -53,11 +57,6 @@ def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
             target.send_trajectory(entry["control"], path.pop("times"), path.pop("positions"), **path)
         else:
             target.send(entry["control"], **_setpoint(target, entry), check_only=check_only)
-    except AttributeError as error:  # a world of several systems
-        names = ", ".join(re.findall(r'\["(.*?)"\]', str(error)))
-        raise invalid(
-            entry.where, f"'system' is missing; the run has several systems, so give one of: {names}"
-        ) from None
     except OnOrbitError as error:
         if entry.where:
             error.message = f"{entry.where}: {error.message}"
