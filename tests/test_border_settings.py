@@ -137,7 +137,7 @@ BAD: dict[str, Bad] = {
         lambda: oo.BodyWrench("torso", start=2.0, end=1.0), "EffectError", ("2 s", "1 s"), {"got": (2.0, 1.0)}
     ),
     "a controller without a reference": Bad(
-        lambda: simulation(controller=law()), "ControlError", ("requires a reference", "JointHold")
+        lambda: simulation(controller=law()), "ControlError", ("without the reference", "JointHold")
     ),
     "a reference without a tool": Bad(
         lambda: simulation(reference=oo.Hold(np.eye(4))), "ControlError", ("tool", "set tool")

@@ -230,7 +230,7 @@ WRONG: list[tuple[Callable[[oo.Stepper], None], type[Exception], str]] = [
     (lambda s: s.send("control", acceleration=MOVE), Errors.ControlError, "without velocities"),
     (lambda s: s.send_trajectory("control", [], np.zeros((0, 7))), Errors.ControlError, "is empty"),
     (lambda s: s.send_trajectory("control", [1, 1], [MOVE, MOVE]), Errors.InputError, "increase"),
-    (lambda s: s.send_trajectory("control", [-1], [MOVE]), Errors.InputError, "increase"),
+    (lambda s: s.send_trajectory("control", [-1], [MOVE]), Errors.InputError, "at least 0 s"),
     (lambda s: s.send_trajectory("control", [np.nan], [MOVE]), Errors.InputError, "finite"),
     (lambda s: s.send_trajectory("control", [1], [MOVE], start=-2), Errors.InputError, "later 'start'"),
     (lambda s: s.send_trajectory("control", [1, 2], [MOVE]), Errors.ShapeError, "2 rows of 7"),

@@ -93,7 +93,7 @@ def test_a_field_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
         (lambda: oo.GravityField("egm2008", degree=71), "ends at degree 70"),
         (
             lambda: oo.GravityField("egm2008", degree=8, order=9),
-            "order is 9; it must be at most the degree, 8",
+            "order is 9; it must be at most the degree, which is 8",
         ),
         (lambda: oo.GravityField("egm2008", degree=-1), "degree is -1"),
         (lambda: oo.GravityField.zonal(7), "is 7; it must be from 2 to 6"),
@@ -119,7 +119,7 @@ def test_a_field_requires_its_planet_and_its_rotation() -> None:
         simulation(oo.GravityField("egm2008"))
     simulation(oo.GravityField.zonal())
     simulation(oo.GravityField("egm2008"), earth=oo.Earth(rotation="about_z"))
-    with pytest.raises(GravityError, match="the orbit has") as other:
+    with pytest.raises(GravityError, match="mu of the orbit is") as other:
         simulation(oo.GravityField.zonal(j=[1e-3], mu=4.9e12, radius=1.7e6))
     assert (other.value.got, other.value.expected) == (MU, 4.9e12)
     with pytest.raises(oo.exceptions.OrbitError, match="requires an orbit"):
