@@ -218,13 +218,14 @@ def test_systems_have_prefixes_and_share_one_tree() -> None:
 
 def test_names_that_ros_does_not_allow_are_mapped_and_named() -> None:
     with pytest.warns(
-        UserWarning, match=r"topics of a link use: 'a-b' → 'a_b', 'a b' → 'a_b_2', '1st' → 'n1st'"
+        UserWarning,
+        match=r"topics of these links have other names: 'a-b' → 'a_b', 'a b' → 'a_b_2', '1st' → 'n1st'",
     ):
         found = ros_names(["a-b", "a b", "1st", "ok"], "link")
     assert found == {"a-b": "a_b", "a b": "a_b_2", "1st": "n1st", "ok": "ok"}
     with pytest.warns(UserWarning):
         assert ros_names(["é", "__", "x/y/"], "link") == {"é": "x", "__": "x_2", "x/y/": "x_y"}
-    with pytest.warns(UserWarning, match="topics of a link use: 'a-b' → 'a_b_2'$"):
+    with pytest.warns(UserWarning, match="topics of these links have other names: 'a-b' → 'a_b_2'$"):
         assert ros_names(["a-b", "a_b"], "link") == {"a-b": "a_b_2", "a_b": "a_b"}
     assert ros_names(["tool", "tool_2"], "link") == {"tool": "tool", "tool_2": "tool_2"}
 
@@ -268,7 +269,7 @@ def test_links_with_names_of_other_frames_get_names_of_their_own() -> None:
     assert parents["base"] == "world" and parents["eci_2"] == "base" and parents["base_3"] == "eci_2"
     read = oo.Model.from_urdf_string(urdf_text(model, names))
     assert set(read.body_names) | {frame.name for frame in read.frames} == set(names.values())
-    with pytest.warns(UserWarning, match="become: 'base' → 'base_3'$"):
+    with pytest.warns(UserWarning, match="because other frames have their names: 'base' → 'base_3'$"):
         assert frames_of("chaser/", model)["world"] == "world", "chaser/world is another frame"
 
 
