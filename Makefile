@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak test-ros2 notices clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak test-ros2 test-peers notices clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -101,5 +101,8 @@ soak: $(VENV)/.built $(VENV)/.tested ## tests kills, disk faults, leaks and long
 test-ros2: $(VENV)/.built $(VENV)/.tested ## tests the live node with rclpy of Jazzy, in .venv-ros2 (250 MB); skipped without wheels
 	$(BIN)/python tests/rclpy_peer $(if $(SECONDS),--seconds $(SECONDS))
 
+test-peers: $(VENV)/.built $(VENV)/.tested ## compares contacts with Drake's, in .venv-peers (420 MB); skipped without wheels
+	$(BIN)/python tests/drake_peer
+
 clean: ## removes builds and the environment
-	rm -rf target $(VENV) .venv-ros2 out
+	rm -rf target $(VENV) .venv-ros2 .venv-peers out

@@ -149,13 +149,11 @@ def test_an_overlap_at_the_start_is_located_and_may_be_accepted() -> None:
     built(values)
 
 
-def test_names_are_unique_and_mujoco_does_not_support_contacts() -> None:
+def test_names_are_unique() -> None:
     twice = data(TEXT)
     twice["contacts"] *= 2
     with pytest.raises(ScenarioError, match=r"contacts\[1\].name: two contacts are named 'touch'"):
         load(twice)
-    with pytest.raises(ScenarioError, match="engine mujoco does not support contacts"):
-        load(data(TEXT) | {"engine": "mujoco"})
 
 
 def test_systems_that_may_touch_form_a_group_in_figures_and_viewer() -> None:

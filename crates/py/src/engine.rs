@@ -1,6 +1,6 @@
 //! External engines that are implemented in Python.
 
-use crate::arrays::{Input, array_of, finite, wrong_shape};
+use crate::arrays::{Input, array_of, finite, names_in, wrong_shape};
 use crate::errors::{SimulationErrorExt, fields, raise};
 use onorbit_core::simulation::{
     BodyWeld, Engine, EnvironmentQuery, Simulation, SimulationError, StepInput, StepOutput,
@@ -64,6 +64,8 @@ fn state<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input
 pub(crate) struct PythonEngine {
     object: Py<PyAny>,
     wrenches: Py<PyWrenches>,
+    /// Names of the contacts whose forces the engine computes.
+    contacts: Vec<String>,
     is_world: bool,
 }
 
@@ -74,7 +76,11 @@ impl PythonEngine {
         let models = || simulation.systems.iter().map(|system| &system.model);
         let (nq, nv) = (models().map(|model| model.nq()).sum(), models().map(|model| model.nv()).sum());
         let sizes = [nq, nv, models().map(|model| model.nodes().len()).sum()];
-        let is_world = simulation.systems.len() > 1;
+        let contacts = match engine.getattr_opt("contacts")? {
+            Some(names) => names_in(&names, "the contacts of the engine", "names of contacts", "touch")?,
+            None => Vec::new(),
+        };
+        let is_world = simulation.systems.len() > 1 || !contacts.is_empty();
         if is_world && !engine.hasattr("step_world")? {
             let message = "an engine of a world of several systems needs a method step_world; see the notes of \
                            Simulation, or use the native engine";
@@ -82,7 +88,7 @@ impl PythonEngine {
         }
         let query = Mutex::new((simulation.outside(), (0.0, 0.0)));
         let wrenches = Py::new(py, PyWrenches { query, sizes })?;
-        Ok(Self { object: engine.clone().unbind(), wrenches, is_world })
+        Ok(Self { object: engine.clone().unbind(), wrenches, contacts, is_world })
     }
 
     /// Calls the engine and copies its results to `output`.
@@ -96,8 +102,11 @@ impl PythonEngine {
             let welds: Vec<_> = input.welds.iter().map(|weld| described(py, weld)).collect();
             let arguments = (start, end, state.0, state.1, state.2, &self.wrenches, welds);
             let result = object.call_method1("step_world", arguments)?;
-            let [q, v, a, impulse, work, loss, weld_impulse, weld_work, orbital]: [Bound<'_, PyAny>; 9] =
-                result.extract()?;
+            let ([q, v, a, impulse, work, loss, weld_impulse, weld_work, orbital], contacts) =
+                self.returned(&result)?;
+            if let Some(contacts) = contacts {
+                read_contacts(output, &contacts)?;
+            }
             read_exchange(output, [&impulse, &work, &loss, &weld_impulse, &weld_work, &orbital])?;
             [q, v, a]
         } else {
@@ -119,7 +128,21 @@ impl PythonEngine {
         }
         Ok(())
     }
+
+    /// Splits the tuple that ``step_world`` returned. Its last entry belongs to the contacts and is absent
+    /// without them.
+    fn returned<'py>(&self, result: &Bound<'py, PyAny>) -> PyResult<Returned<'py>> {
+        if self.contacts.is_empty() {
+            return Ok((result.extract()?, None));
+        }
+        let parts: [Bound<'py, PyAny>; 10] = result.extract()?;
+        let contacts = parts[9].clone();
+        Ok((std::array::from_fn(|k| parts[k].clone()), Some(contacts)))
+    }
 }
+
+/// Result of ``step_world``: nine arrays, and that of the contacts.
+type Returned<'py> = ([Bound<'py, PyAny>; 9], Option<Bound<'py, PyAny>>);
 
 const IMPULSE: &str = "the impulse that the engine returned";
 
@@ -132,6 +155,23 @@ fn described<'py>(py: Python<'py>, weld: &BodyWeld) -> Described<'py> {
     let turned = weld.rotation.transpose(); // the matrix is stored by columns
     let (points, rotation) = (rows(&weld.points), rows(&[turned.x, turned.y, turned.z]));
     (by, of, array_of(py, &[2, 3], &points).into_any(), array_of(py, &[3, 3], &rotation).into_any())
+}
+
+/// Reads force, moment and power of each contact at the start of the step, and their integrals.
+fn read_contacts(output: &mut StepOutput, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    let name = "the contacts that the engine returned";
+    let (rows, n) = (Input::new(value, name)?, output.contacts.len());
+    if rows.shape() != [n, 14] {
+        return Err(wrong_shape(value.py(), name, &format!("({n}, 14)"), rows.shape()));
+    }
+    for (done, row) in output.contacts.iter_mut().zip(rows.data().chunks_exact(14)) {
+        let (now, over_step) = row.split_at(7);
+        let (impulse, work) = over_step.split_at(done.impulse.len());
+        done.force.copy_from_slice(&now[..3]);
+        done.impulse.copy_from_slice(impulse);
+        (done.power, done.work) = (now[6], work[0]);
+    }
+    Ok(())
 }
 
 /// Reads the exchange of each system in a step of a world: impulse, work and loss; impulse and work of the
@@ -165,6 +205,10 @@ fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyR
 }
 
 impl Engine for PythonEngine {
+    fn contacts(&self) -> Vec<String> {
+        self.contacts.clone()
+    }
+
     fn step(&mut self, input: &StepInput<'_>, output: &mut StepOutput) -> Result<(), SimulationError> {
         let outcome = Python::attach(|py| self.call(py, input, output));
         outcome.map_err(|error| SimulationError::Engine(Box::new(error)))

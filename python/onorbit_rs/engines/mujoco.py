@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import threading
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -11,15 +12,16 @@ import numpy as np
 from onorbit_rs.common.counting import count
 from onorbit_rs.engines.mujoco_log import without_log
 from onorbit_rs.engines.mujoco_model import import_mujoco, world_model
+from onorbit_rs.engines.mujoco_pressure import WIDTH, Contacts
 from onorbit_rs.engines.mujoco_share import connect, exchanged, shares
 from onorbit_rs.exceptions import EngineError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Model
+    from onorbit_rs._core import Contact, Model
     from onorbit_rs.engines.mujoco_share import Share, Weld
 
     Floats = NDArray[np.float64]
@@ -55,12 +57,15 @@ class Mujoco:
         Time constant of the connections of a world (``solref`` of their welds), s, at least two time steps. A
         longer one is resolved by more steps, which reduces the error of the energy balance but permits a
         larger gap between the connected frames. Default: two time steps.
+    contacts : list of Contact
+        Contacts of a world, all that have a normal force. MuJoCo finds the points at which their links touch
+        and applies the declared normal force there; friction is MuJoCo's, which creeps under every load.
 
     Raises
     ------
     EngineError
-        If MuJoCo is not installed, the integrator is not available with MuJoCo, or the time constant is out
-        of range.
+        If MuJoCo is not installed, the integrator is not available with MuJoCo, the time constant is out of
+        range, or MuJoCo cannot represent a contact, such as one with torsional friction.
     ModelError
         If MuJoCo cannot represent the robot.
     """
@@ -73,6 +78,7 @@ class Mujoco:
         integrator: Literal["rk4", "semi_implicit_euler"] = "rk4",
         enforce_limits: bool | Collection[str] = False,
         weld_time_constant: float | None = None,
+        contacts: Sequence[Contact] = (),
     ) -> None:
         """Build MuJoCo's model of the robot or of the world."""
         if integrator not in ("rk4", "semi_implicit_euler"):
@@ -84,9 +90,11 @@ class Mujoco:
         self._is_euler = integrator == "semi_implicit_euler"
         models = dict(model) if isinstance(model, Mapping) else {"": model}
         stops = enforce_limits if isinstance(enforce_limits, Collection) else [*models] * enforce_limits
-        self._model = world_model(
-            models, time_step=time_step, with_stops=stops, weld_time_constant=weld_time_constant
-        )
+        self._model, touches = world_model(
+            models, time_step=time_step, with_stops=stops, weld_time_constant=weld_time_constant,
+            contacts=contacts,
+        )  # fmt: skip
+        self._contacts = Contacts(self._mujoco, self._model, touches)
         self._data = self._mujoco.MjData(self._model)
         self._shares = shares(self._model, models)
         self._is_world = isinstance(model, Mapping)
@@ -100,6 +108,11 @@ class Mujoco:
     def version(self) -> str:
         """Version of the installed MuJoCo, such as ``4.0.1``."""
         return str(self._mujoco.__version__)
+
+    @property
+    def contacts(self) -> list[str]:
+        """Names of the contacts whose forces the engine computes."""
+        return self._contacts.names
 
     def step(
         self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
@@ -141,7 +154,7 @@ class Mujoco:
         EngineError
             If another simulation is in a step of this instance, or MuJoCo raises a fatal error.
         """
-        qpos, qvel, acceleration, done = self._advance((start, end), (q, v, tau), wrenches, [])
+        qpos, qvel, acceleration, done, _ = self._advance((start, end), (q, v, tau), wrenches, [])
         return qpos, qvel, acceleration, done[:6], float(done[6]), float(done[7])
 
     def step_world(
@@ -179,12 +192,15 @@ class Mujoco:
         work, loss : (systems,) arrays
             Work of motors and environment minus the energy dissipated in the joints; dissipated energy; J.
         weld_impulse : (systems, 6) array
-            Linear and angular impulse of the welds on each system, N s and N m s.
+            Linear and angular impulse of welds and contacts on each system, N s and N m s.
         weld_work : (systems,) array
-            Work of the welds on each system, J.
+            Work of welds and contacts on each system, J.
         orbital : (3,) array
             Integral of the moments of the environment's forces, acting at the centres of mass of the systems,
             about the common centre of mass, axes of W, N m s.
+        contacts : (contacts, 14) array
+            Only with contacts: at the start the force on the second side, N, its moment about the origin of
+            W, N m, and the power taken from the motion, W; then the integrals of these seven over the step.
 
         Raises
         ------
@@ -200,11 +216,14 @@ class Mujoco:
                 "the world",
                 name="engine", got="mujoco",
             )  # fmt: skip
-        qpos, qvel, acceleration, done = self._advance((start, end), (q, v, tau), wrenches, welds)
-        of = done[:-3].reshape(len(self._shares), 15)
-        return (
-            qpos, qvel, acceleration, of[:, :6], of[:, 6], of[:, 7], of[:, 8:14], of[:, 14], done[-3:]
-        )  # fmt: skip
+        qpos, qvel, acceleration, done, first = self._advance((start, end), (q, v, tau), wrenches, welds)
+        end_of_systems = 15 * len(self._shares)
+        of, orbital = done[:end_of_systems].reshape(-1, 15), done[end_of_systems:][:3]
+        result = (qpos, qvel, acceleration, of[:, :6], of[:, 6], of[:, 7], of[:, 8:14], of[:, 14], orbital)
+        if not self.contacts:
+            return result
+        now, over_step = (rates[end_of_systems + 3 :].reshape(-1, WIDTH) for rates in (first, done))
+        return *result, np.hstack([now, over_step])
 
     def _advance(
         self,
@@ -212,7 +231,7 @@ class Mujoco:
         state: tuple[Floats, Floats, Floats],
         wrenches: Wrenches,
         welds: Sequence[Weld],
-    ) -> tuple[Floats, Floats, Floats, Floats]:
+    ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         if not self._lock.acquire(blocking=False):
             raise EngineError(
                 "this engine is in use by another simulation; create one Mujoco(model) for each simulation",
@@ -222,13 +241,14 @@ class Mujoco:
             # numpy's warnings in a diverging run are redundant: the run raises an error
             with without_log(self._mujoco), np.errstate(all="ignore"):
                 connect(self._mujoco, self._model, self._data, self._shares, welds)
+                self._contacts.release_held(self._data)
                 return self._step(*interval, *state, wrenches)
         finally:
             self._lock.release()
 
     def _step(
         self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
-    ) -> tuple[Floats, Floats, Floats, Floats]:
+    ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         h, nv = end - start, self._model.nv
         qpos, qvel = self._to_mujoco(q, v)
         self._data.qfrc_applied[self._dofs] = tau
@@ -250,7 +270,7 @@ class Mujoco:
                 rates.append(rate)
             mean = _WEIGHTS @ np.array(rates)
             qpos, qvel = self._moved(qpos, qvel, h, mean)
-        return (*self._from_mujoco(qpos, qvel), acceleration, h * mean[2 * nv :])
+        return (*self._from_mujoco(qpos, qvel), acceleration, h * mean[2 * nv :], first[2 * nv :])
 
     def _moved(self, qpos: Floats, qvel: Floats, h: float, rate: Floats) -> tuple[Floats, Floats]:
         """Return the state advanced by the time `h` at a constant rate, as in MuJoCo's ``RK4`` stages."""
@@ -265,13 +285,16 @@ class Mujoco:
         """
         data = self._data
         if not (np.isfinite(qpos).all() and np.isfinite(qvel).all()):
-            count = 15 * len(self._shares) + 3 if self._is_world else 8
+            count = 15 * len(self._shares) + 3 + WIDTH * len(self.contacts) if self._is_world else 8
             return np.full(2 * self._model.nv + count, np.nan)  # MuJoCo would write a log file
         outer = wrenches(t, *self._from_mujoco(qpos, qvel))
         data.qpos[:], data.qvel[:] = qpos, qvel
         data.xfrc_applied[self._bodies] = outer
         try:
-            self._mujoco.mj_forward(self._model, data)
+            if self.contacts:
+                self._contacts.forward(data)
+            else:
+                self._mujoco.mj_forward(self._model, data)
         except self._mujoco.FatalError as error:
             raise EngineError(
                 f"MuJoCo failed at t = {t:g} s: {error}; use a shorter time_step, or engine: native",
@@ -280,7 +303,8 @@ class Mujoco:
             ) from error
         if self._is_world:
             parts = exchanged(self._mujoco, self._model, data, self._shares, outer)
-            return np.concatenate([qvel, data.qacc, parts])
+            touching = self._contacts.output(data).ravel() if self.contacts else np.empty(0)
+            return np.concatenate([qvel, data.qacc, parts, touching])
         force, arm = outer[:, :3], data.xipos[self._bodies] - data.subtree_com[self._bodies[0]]
         moment = (
             outer[:, 3:] + arm[:, [1, 2, 0]] * force[:, [2, 0, 1]] - arm[:, [2, 0, 1]] * force[:, [1, 2, 0]]
@@ -313,8 +337,9 @@ class Mujoco:
         return a
 
     def _rot_wb(self, qpos: Floats, part: Share) -> Any:
-        flat = np.empty(9)
-        self._mujoco.mju_quat2Mat(flat, qpos[part.quaternion])
+        flat, quat = np.empty(9), qpos[part.quaternion]
+        # MuJoCo accepts norms up to 1e-15 from 1, which would change the momentum in every step
+        self._mujoco.mju_quat2Mat(flat, quat / math.sqrt(quat @ quat))
         return flat.reshape(3, 3)
 
 

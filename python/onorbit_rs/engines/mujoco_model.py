@@ -1,20 +1,21 @@
-"""Converts robots to a MuJoCo model: bodies, joints and rotors, without gravity and contacts."""
+"""Converts robots to a MuJoCo model: bodies, joints, rotors and declared contacts, without gravity."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from onorbit_rs.common.numbers import finite_float
+from onorbit_rs.engines.mujoco_contact import Touch, add_contacts
 from onorbit_rs.exceptions import EngineError, ModelError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from onorbit_rs._core import Body, Joint, Model
+    from onorbit_rs._core import Body, Contact, Joint, Model
 
     Floats = NDArray[np.float64]
 
@@ -57,7 +58,7 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
         If MuJoCo cannot represent a body or joint, such as a body without mass or inertia, or a joint whose
         static friction exceeds its kinetic friction.
     """
-    return world_model({"": model}, time_step=time_step, with_stops=[""] if enforce_limits else [])
+    return world_model({"": model}, time_step=time_step, with_stops=[""] if enforce_limits else [])[0]
 
 
 def _time_constant(given: float | None, time_step: float) -> float:
@@ -81,9 +82,11 @@ def world_model(
     time_step: float,
     with_stops: Collection[str],
     weld_time_constant: float | None = None,
-) -> Any:
-    """Return one ``mujoco.MjModel`` of several systems; the names of their links and joints are paths.
+    contacts: Sequence[Contact] = (),
+) -> tuple[Any, list[Touch]]:
+    """Return one ``mujoco.MjModel`` of several systems, and their contacts.
 
+    The names of links and joints are paths.
     The model has one inactive weld for each possible connection: one fewer than the number of systems,
     because connections may not close loops. ``with_stops`` names the systems with rigid stops. The errors are
     those of :func:`mujoco_model`.
@@ -98,11 +101,18 @@ def world_model(
     spec.option.tolerance, spec.option.iterations = 1e-15, 200
     bit = mujoco.mjtDisableBit
     # without warm start the step depends on the state only, so a resumed run gives the same bits
-    spec.option.disableflags = int(bit.mjDSBL_WARMSTART | bit.mjDSBL_CONTACT | bit.mjDSBL_AUTORESET)
+    spec.option.disableflags = int(bit.mjDSBL_WARMSTART | bit.mjDSBL_AUTORESET)
     moments: dict[str, Floats] = {}
+    built: dict[str, tuple[Model, dict[str, Any]]] = {}
     for name, model in models.items():
-        stops = name in with_stops
-        moments |= _add_robot(mujoco, spec, model, name, time_step=time_step, enforce_limits=stops)
+        bodies, own = _add_robot(
+            mujoco, spec, model, name, time_step=time_step, enforce_limits=name in with_stops
+        )
+        built[name] = model, bodies
+        moments |= own
+    touches = add_contacts(mujoco, spec, built, contacts, time_step)
+    if not touches:
+        spec.option.disableflags |= int(bit.mjDSBL_CONTACT)
     bases = [link_name(path(name, model.body_names[0])) for name, model in models.items()]
     for _ in bases[1:]:
         weld = spec.add_equality()
@@ -120,13 +130,13 @@ def world_model(
     for name, moment in moments.items():
         compiled.body(name).inertia[:] = moment
     mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
-    return compiled
+    return compiled, touches
 
 
 def _add_robot(
     mujoco: ModuleType, spec: Any, model: Model, system: str, *, time_step: float, enforce_limits: bool
-) -> dict[str, Floats]:
-    """Add the bodies and joints of a robot; return the principal moments of inertia of each body."""
+) -> tuple[dict[str, Any], dict[str, Floats]]:
+    """Add the bodies and joints of a robot; return MuJoCo's bodies and their principal moments of inertia."""
     joints = {joint.child: joint for joint in model.joints}
     bodies: dict[str, Any] = {}
     moments: dict[str, Floats] = {}
@@ -142,7 +152,7 @@ def _add_robot(
         else:
             moving = _attach(mujoco, new, joint, time_step=time_step, enforce_limits=enforce_limits)
             moving.name = path(system, joint.name)
-    return moments
+    return bodies, moments
 
 
 def path(system: str, name: str) -> str:

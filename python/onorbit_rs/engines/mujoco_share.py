@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     """Both (system, body); captured origin in both bodies (2, 3), m; rotation from second to first axes."""
 
 
+_YZX, _ZXY = [1, 2, 0], [2, 0, 1]
+
+
 @dataclass(frozen=True)
 class Share:
     """Slices and indices of one system in the arrays of a MuJoCo model and in those of a run."""
@@ -87,12 +90,14 @@ def exchanged(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share],
 
     For each system: the environment's force and its torque about the centre of mass, the power of motors and
     environment minus the power dissipated in the joints, the dissipated power, and the force, torque and
-    power of its welds. Then the moment of the environment's forces, acting at the centres of mass of the
-    systems, about the common centre of mass. Axes of W; N, N m and W.
+    power of its welds and contacts. Then the moment of the environment's forces, acting at the centres of
+    mass of the systems, about the common centre of mass. Axes of W; N, N m and W.
     """
     weld = np.zeros(model.nv)
-    if data.eq_active.any():
-        is_weld = data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
+    if data.eq_active.any() or data.ncon:
+        kinds = mujoco.mjtConstraint
+        between = kinds.mjCNSTR_EQUALITY, kinds.mjCNSTR_CONTACT_FRICTIONLESS, kinds.mjCNSTR_CONTACT_ELLIPTIC
+        is_weld = np.logical_or.reduce([data.efc_type == kind for kind in map(int, between)])
         mujoco.mj_mulJacTVec(model, data, weld, np.where(is_weld, data.efc_force, 0.0))
     inner = data.qfrc_constraint - weld
     motors, joints = data.qfrc_smooth + data.qfrc_bias + inner, data.qfrc_passive + inner
@@ -101,13 +106,19 @@ def exchanged(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share],
         base, velocity = part.bodies[0], data.qvel[part.velocities]
         center, wrench = data.subtree_com[base], outer[part.rows]
         force, own = wrench[:, :3], part.velocities
-        moment = wrench[:, 3:] + np.cross(data.xipos[part.bodies] - center, force)
+        moment = wrench[:, 3:] + cross(data.xipos[part.bodies] - center, force)
         pull, arm = weld[part.linear], data.qpos[part.origin] - center
-        turn = data.xmat[base].reshape(3, 3) @ weld[part.angular] + np.cross(arm, pull)
+        turn = data.xmat[base].reshape(3, 3) @ weld[part.angular] + cross(arm, pull)
         powers = motors[own] @ velocity, -joints[own] @ velocity
         found += [force.sum(axis=0), moment.sum(axis=0), powers, pull, turn, [weld[own] @ velocity]]
         forces.append(force.sum(axis=0))
         centers.append(center)
         masses.append(model.body_subtreemass[base])
-    middle = np.average(centers, axis=0, weights=masses)
-    return np.concatenate([*found, np.cross(np.array(centers) - middle, forces).sum(axis=0)])
+    middle = np.array(masses) @ centers / sum(masses)
+    return np.concatenate([*found, cross(np.array(centers) - middle, np.array(forces)).sum(axis=0)])
+
+
+def cross(a: Floats, b: Floats) -> Floats:
+    """Return `a × b` along the last axis, several times as fast as NumPy."""
+    product: Floats = a[..., _YZX] * b[..., _ZXY] - a[..., _ZXY] * b[..., _YZX]
+    return product

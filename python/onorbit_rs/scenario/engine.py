@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from onorbit_rs import engines
 from onorbit_rs.scenario.errors import inconsistent
 
 if TYPE_CHECKING:
+    from onorbit_rs import _core
     from onorbit_rs._core import Model
     from onorbit_rs.scenario.schema import Scenario
     from onorbit_rs.scenario.world import WorldScenario
@@ -41,9 +43,13 @@ def check_world_engine(scenario: WorldScenario) -> None:
             )
             raise inconsistent(("simulation", "weld_time_constant"), message)
         return
-    if scenario.contacts:
-        message = f"engine {scenario.engine} does not support contacts; omit them, or use engine: native"
-        raise inconsistent(("contacts",), message)
+    for index, contact in enumerate(scenario.contacts):
+        if contact.friction is not None and contact.friction.torsional > 0.0:
+            message = (
+                f"engine {scenario.engine} limits sliding and torsion by one common cone, so it does not "
+                "support 'torsional'; omit it, or use engine: native"
+            )
+            raise inconsistent(("contacts", index, "friction", "torsional"), message)
     for index, event in enumerate(scenario.events):
         for key in ("seat", "impulse"):
             if getattr(event.do, key, None) is not None:
@@ -63,7 +69,11 @@ def build_engine(scenario: Scenario, model: Model) -> engines.Mujoco | None:
 def build_world_engine(scenario: WorldScenario, models: dict[str, Model]) -> engines.Mujoco | None:
     """Return the physics engine of a run of several systems, or None for the native engine."""
     stops = [name for name, one in scenario.systems.items() if one.enforce_limits]
-    return _build(scenario, models, stops, weld_time_constant=scenario.simulation.weld_time_constant)
+    contacts = [contact.build() for contact in scenario.contacts]
+    return _build(
+        scenario, models, stops,
+        weld_time_constant=scenario.simulation.weld_time_constant, contacts=contacts,
+    )  # fmt: skip
 
 
 def _build(
@@ -72,6 +82,7 @@ def _build(
     enforce_limits: bool | list[str],
     *,
     weld_time_constant: float | None = None,
+    contacts: Sequence[_core.Contact] = (),
 ) -> engines.Mujoco | None:
     if scenario.engine == "native":
         return None
@@ -79,5 +90,5 @@ def _build(
     assert settings.integrator != "dormand_prince"  # check_engine rejects it
     return engines.Mujoco(
         model, time_step=settings.time_step, integrator=settings.integrator, enforce_limits=enforce_limits,
-        weld_time_constant=weld_time_constant,
+        weld_time_constant=weld_time_constant, contacts=contacts,
     )  # fmt: skip

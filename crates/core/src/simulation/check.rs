@@ -87,8 +87,17 @@ impl Simulation {
         let cannot = |name: &str, what, remedy| {
             Err(SimulationError::EngineOfWorld { name: name.to_owned(), what, remedy })
         };
-        if let Some(contact) = self.contacts.iter().find(|contact| contact.law.is_some()) {
-            return cannot(&contact.name, "a contact with forces", "remove its law");
+        let computed = self.engine.as_ref().map_or_else(Vec::new, |engine| engine.contacts());
+        let with_forces = self.contacts.iter().filter(|contact| contact.law.is_some());
+        if let Some(contact) = with_forces.clone().find(|contact| !computed.contains(&contact.name)) {
+            let what = "a contact with forces that was not passed to it";
+            return cannot(&contact.name, what, "pass the contacts of the world to the engine");
+        }
+        if let Some(name) =
+            computed.iter().find(|name| with_forces.clone().all(|contact| contact.name != **name))
+        {
+            let what = "a contact that the world does not declare";
+            return cannot(name, what, "pass the contacts of the world to the engine");
         }
         for event in &self.events {
             match event.action {

@@ -17,6 +17,12 @@ pub trait Engine: Send {
     /// # Errors
     /// Any error ends the run and is reported unchanged.
     fn step(&mut self, input: &StepInput<'_>, output: &mut StepOutput) -> Result<(), SimulationError>;
+
+    /// Returns the names of the contacts whose forces the engine computes, in the order of
+    /// [`StepOutput::contacts`].
+    fn contacts(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// Input of a step: interval, initial states, torques and connections. States and torques are those of all
@@ -60,6 +66,22 @@ pub struct StepOutput {
     /// Time integral over the step of the moments of the external forces about the common centre of mass,
     /// with each force acting at the centre of mass of its system, W axes, N m s; zero for a single system.
     pub orbital: [f64; 3],
+    /// Force and work of each contact that the engine computes.
+    pub contacts: Vec<ContactOutput>,
+}
+
+/// Force of a contact at the start of a step, and its impulse and work during the step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactOutput {
+    /// Force on the second side at the start of the step, W axes, N.
+    pub force: [f64; 3],
+    /// Power that the contact takes from the motion at the start of the step, W.
+    pub power: f64,
+    /// Time integrals over the step of the force and of its moment about the origin of W, on the second side,
+    /// N s and N m s.
+    pub impulse: [f64; 6],
+    /// Energy that the contact takes from the motion during the step, J.
+    pub work: f64,
 }
 
 /// Impulse and work that a system receives during a step.
@@ -73,24 +95,30 @@ pub struct Exchange {
     pub work: f64,
     /// Energy that the joints dissipate during the step, J.
     pub dissipated: f64,
-    /// Impulse that the connections to other systems exert on the system; components as in `impulse`.
+    /// Impulse that connections and contacts with other systems exert on the system; components as in
+    /// `impulse`.
     pub weld_impulse: [f64; 6],
-    /// Work that the connections do on the system, J.
+    /// Work that connections and contacts do on the system, J.
     pub weld_work: f64,
 }
 
 impl StepOutput {
-    pub(super) fn new(models: &[&Model]) -> Self {
+    pub(super) fn new(models: &[&Model], contacts: usize) -> Self {
         let sum = |size: fn(&Model) -> usize| models.iter().map(|model| size(model)).sum();
         let (q, v) = (vec![0.0; sum(Model::nq)], vec![0.0; sum(Model::nv)]);
         let systems = vec![Exchange::default(); models.len()];
-        Self { q, acceleration: v.clone(), v, systems, orbital: [0.0; 3] }
+        let contacts = vec![ContactOutput::default(); contacts];
+        Self { q, acceleration: v.clone(), v, systems, orbital: [0.0; 3], contacts }
     }
 
     pub(super) fn is_finite(&self) -> bool {
         let finite = |x: &[f64]| x.iter().all(|x| x.is_finite());
         [&self.q, &self.v, &self.acceleration].iter().all(|x| finite(x))
             && finite(&self.orbital)
+            && self
+                .contacts
+                .iter()
+                .all(|one| finite(&one.force) && finite(&one.impulse) && finite(&[one.power, one.work]))
             && self.systems.iter().all(|done| {
                 finite(&done.impulse)
                     && finite(&done.weld_impulse)

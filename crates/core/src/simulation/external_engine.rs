@@ -1,6 +1,7 @@
 //! External engine of a run, with buffers for its input and output.
 
-use super::engine::{BodyWeld, Engine, StepInput, StepOutput};
+use super::contacts::Contacts;
+use super::engine::{BodyWeld, ContactOutput, Engine, StepInput, StepOutput};
 use super::error::SimulationError;
 use super::recording::Ledger;
 use super::state::State;
@@ -22,14 +23,19 @@ pub(super) struct ExternalEngine<'a> {
     /// Index ranges of each system in the vectors of all configurations and of all velocities.
     ranges: Vec<[Range<usize>; 2]>,
     pub(super) welds: Vec<BodyWeld>,
+    /// Number among the outputs of the engine of each contact that is declared; `None` without forces.
+    contacts: Vec<Option<usize>>,
     output: StepOutput,
     /// True if the engine completed its last step.
     has_output: bool,
 }
 
 impl<'a> ExternalEngine<'a> {
-    pub(super) fn new(engine: &'a mut dyn Engine, models: &[&Model]) -> Self {
-        let output = StepOutput::new(models);
+    /// Wraps an engine of systems with these models, and with contacts of these names.
+    pub(super) fn new(engine: &'a mut dyn Engine, models: &[&Model], contacts: &[String]) -> Self {
+        let computed = engine.contacts();
+        let output = StepOutput::new(models, computed.len());
+        let contacts = contacts.iter().map(|name| computed.iter().position(|own| own == name)).collect();
         let (mut ranges, mut next) = (Vec::new(), [0; 2]);
         for model in models {
             let [nq, nv] = next;
@@ -38,7 +44,7 @@ impl<'a> ExternalEngine<'a> {
         }
         let tau = vec![0.0; models.iter().map(|model| model.joint_count()).sum()];
         let (q, v) = (output.q.clone(), output.v.clone());
-        Self { engine, q, v, tau, ranges, welds: Vec::new(), output, has_output: false }
+        Self { engine, q, v, tau, ranges, welds: Vec::new(), contacts, output, has_output: false }
     }
 
     /// Returns the acceleration of a system at the start of the last step, `(nv,)`; `None` if that step
@@ -55,9 +61,25 @@ impl<'a> ExternalEngine<'a> {
         done.work + done.weld_work
     }
 
-    /// Subtracts from the totals of a group the impulses that the connections exchanged between its systems
-    /// in the last step. The work of the connections remains in the totals; the energy that the connections
-    /// absorb is added to the dissipated energy.
+    /// Returns the output of the last step for a declared contact; `None` if that step failed, or if the
+    /// engine does not compute its force.
+    pub(super) fn contact(&self, number: usize) -> Option<&ContactOutput> {
+        let own = self.contacts[number]?;
+        self.has_output.then(|| &self.output.contacts[own])
+    }
+
+    /// Adds the impulses and the work of the contacts in the last step to their states.
+    pub(super) fn add_exchanged<S>(&self, contacts: &Contacts, state: &mut State<S>) {
+        for (contact, own) in self.contacts.iter().enumerate() {
+            if let Some(own) = own {
+                contacts.add_exchanged(contact, &self.output.contacts[*own], &mut state.contacts);
+            }
+        }
+    }
+
+    /// Subtracts from the totals of a group the impulses that connections and contacts exchanged between its
+    /// systems in the last step. Their work remains in the totals; the energy that they absorb is added to the
+    /// dissipated energy.
     pub(super) fn remove_exchanged(&self, ledger: &mut Ledger) {
         for done in &self.output.systems {
             let impulse = Force::from_slice(&done.weld_impulse);
@@ -74,7 +96,7 @@ impl<'a> ExternalEngine<'a> {
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
-        let Self { engine, q, v, tau, ranges, welds, output, has_output } = self;
+        let Self { engine, q, v, tau, ranges, welds, output, has_output, .. } = self;
         for (state, [q_range, v_range]) in state.trees.iter().zip(ranges) {
             for (to, from) in [(&mut q[q_range.clone()], &state.q), (&mut v[v_range.clone()], &state.v)] {
                 to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());

@@ -12,7 +12,12 @@ use crate::world::Weld;
 impl<S: Scalar> RunState<'_, S> {
     /// Passes the active connections to the external engine.
     pub(super) fn pass_welds(&mut self) {
-        let welds = self.connections.active.welds.iter().map(|weld| self.body_weld(weld)).collect();
+        let welds: Vec<_> = self.connections.active.welds.iter().map(|weld| self.body_weld(weld)).collect();
+        let frames = |system: usize| self.equations.trees[system].model.frames();
+        let bodies = welds.iter().map(|weld| weld.bodies.map(|body| (body.system, body.body))).collect();
+        let held =
+            self.equations.contacts.held_by(bodies, |(system, frame)| (system, frames(system)[frame].body));
+        self.equations.contacts.set_held(&held);
         if let Mover::External(engine) = &mut self.mover {
             engine.welds = welds;
         }

@@ -79,7 +79,7 @@ pub use columns::{
     COLUMNS, CONTACTS, Column, Condition, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns,
 };
 pub use distance::FarSystem;
-pub use engine::{BodyWeld, Engine, Exchange, StepInput, StepOutput};
+pub use engine::{BodyWeld, ContactOutput, Engine, Exchange, StepInput, StepOutput};
 pub use environment_query::EnvironmentQuery;
 pub(crate) use equations::EquationsOfMotion;
 pub use error::{RunFailure, SimulationError};

@@ -68,7 +68,7 @@ impl<S: Scalar> Mover<'_, S> {
     pub(super) fn may_end_early(&self, equations: &Equations<'_, S>) -> bool {
         match self {
             Self::Native(_) => equations.has_modes() || self.is_adaptive(),
-            Self::External(_) => false,
+            Self::External(_) => !equations.contacts.is_empty(),
         }
     }
 
@@ -81,7 +81,11 @@ impl<S: Scalar> Mover<'_, S> {
     ) -> Result<f64, SimulationError> {
         match self {
             Self::Native(method) => method.advance(equations, state, interval),
-            Self::External(engine) => engine.advance(&equations.trees, state, interval).map(|()| interval.1),
+            Self::External(engine) => {
+                engine.advance(&equations.trees, state, interval)?;
+                engine.add_exchanged(&equations.contacts, state);
+                Ok(interval.1)
+            }
         }
     }
 
@@ -105,6 +109,16 @@ impl<S: Scalar> Mover<'_, S> {
                 Some(acceleration) => recorder.record_acceleration(model, acceleration),
                 None => recorder.drop_last_row(),
             },
+        }
+    }
+
+    /// Adds the force and the power at the start of the last step to the row of a contact that the external
+    /// engine computes.
+    pub(super) fn complete_contact(&self, contact: usize, name: &str, recorder: &mut Recorder) {
+        if let Self::External(engine) = self
+            && let Some(done) = engine.contact(contact)
+        {
+            recorder.record_contact_force(name, done);
         }
     }
 

@@ -157,7 +157,11 @@ pub(super) fn complete_rows<S: Scalar>(
     equations: &EquationsOfMotion<'_, S, EnvironmentLoads>,
     row_states: &[TreeState<S>],
 ) {
-    let EquationsOfMotion { trees, members, .. } = equations;
+    let EquationsOfMotion { trees, members, contacts, .. } = equations;
+    for contact in 0..contacts.count() {
+        let recorder = &mut systems[contacts.owner(contact)].recorder;
+        mover.complete_contact(contact, &contacts.names[contact], recorder);
+    }
     for (number, run) in systems.iter_mut().enumerate() {
         match members.places[number] {
             Place::Tree(tree) => mover.complete_row(tree, &mut run.recorder, &trees[tree].model),

@@ -2,6 +2,7 @@
 
 use super::checkpoint_error::CheckpointError;
 use super::columns::{COLUMNS, CONTACTS, Column, Condition, WRENCHES};
+use super::engine::ContactOutput;
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
 use super::local_reference::Shift;
@@ -193,6 +194,18 @@ impl Recorder {
     pub(super) fn record_contact(&mut self, name: &str, row: &[f64]) {
         if let Some(column) = self.trace.contacts.iter_mut().find(|column| column.name == name) {
             column.values.extend_from_slice(row);
+        }
+    }
+
+    /// Replaces the force and the power in the last row of the contact with this name.
+    pub(super) fn record_contact_force(&mut self, name: &str, done: &ContactOutput) {
+        let part = |name: &str| CONTACTS.parts.iter().find(|part| part.name == name).map(|part| part.start);
+        let column = self.trace.contacts.iter_mut().find(|column| column.name == name);
+        if let (Some(column), Some(force), Some(power)) = (column, part("force"), part("power"))
+            && let Some(row) = column.values.len().checked_sub(column.width)
+        {
+            column.values[row + force..row + force + 3].copy_from_slice(&done.force);
+            column.values[row + power] = done.power;
         }
     }
 

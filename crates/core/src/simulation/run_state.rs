@@ -137,10 +137,10 @@ impl<S: Scalar> RunState<'_, S> {
         self.restore_members(world.members)?;
         self.balance = world.balance;
         self.equations.contacts.restore((world.contacts, world.touches));
+        self.ledger = world.ledger;
         if !self.events.list.is_empty() {
             self.events.states = world.events;
             self.events.attached = world.attached;
-            self.ledger = world.ledger;
             self.events_changed();
             self.find_latches();
         }

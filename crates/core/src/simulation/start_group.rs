@@ -118,7 +118,10 @@ impl Shared {
         let accuracy = Accuracy::of(&equations.trees, &state, measures, schedule.grid_steps())?;
         let mover = match engine {
             None => Mover::Native(StepMethod::new(&state, &step_settings)),
-            Some(engine) => Mover::External(ExternalEngine::new(engine, &models)),
+            Some(engine) => {
+                equations.contacts.follow_engine();
+                Mover::External(ExternalEngine::new(engine, &models, &equations.contacts.names))
+            }
         };
         let mut run = RunState {
             layout,

@@ -100,6 +100,11 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// and the integral of the moments of the external forces about the common centre of mass, with each force
 /// acting at the centre of mass of its system, (3,), N m s. With such an engine, captures cause no impact:
 /// the engine removes the relative velocity during the next steps.
+///
+/// An engine that computes the forces of contacts has their names in the attribute ``contacts``. It includes
+/// their impulse and work in those of the connections, and ``step_world`` returns a tenth entry, (contacts,
+/// 14): at ``start`` the force on the second side, N, its moment about the origin of W, N m, and the power taken
+/// from the motion, W; then the integrals of these seven over the step. Steps are shortened while bodies touch.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     run: SharedRun,

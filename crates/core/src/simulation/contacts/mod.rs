@@ -2,6 +2,7 @@
 //! cuts, and the length of steps while bodies touch.
 
 mod begin;
+mod external;
 mod follow;
 mod mobility;
 mod mode;
@@ -46,6 +47,8 @@ pub(crate) struct Contacts {
     samples: Vec<Sample>,
     /// Touch-downs and lift-offs that have not yet been taken, with the systems of the group.
     pub(super) happened: Vec<EventRecord>,
+    /// True if an external engine computes the forces.
+    has_engine: bool,
 }
 
 impl Contacts {
@@ -65,7 +68,17 @@ impl Contacts {
                     let name = name.clone();
                     let (law, may_start_overlapping) = (*law, *may_start_overlapping);
                     let (mode, last) = (Mode::START, None);
-                    list.push(Touching { contact, name, sides, law, may_start_overlapping, mode, last });
+                    let is_held = false;
+                    list.push(Touching {
+                        contact,
+                        name,
+                        sides,
+                        law,
+                        may_start_overlapping,
+                        mode,
+                        is_held,
+                        last,
+                    });
                 }
             }
         }
@@ -80,6 +93,7 @@ impl Contacts {
             touches,
             samples,
             happened: Vec::new(),
+            has_engine: false,
         }
     }
 
@@ -170,7 +184,10 @@ impl Contacts {
             }
             let mobility = |sides: &_, loading: &_| mobility::mobility(sides, trees, &state.trees, loading);
             let Some(loading) = touching.begin((t, end), &motions, own, mobility)? else { continue };
-            longest = longest.min(touching.longest_step(self.steps, &motions, &loading));
+            if self.has_engine {
+                touching.prepare_for_engine(trees, &state.trees, &loading);
+            }
+            longest = longest.min(touching.longest_step(self.steps, &motions, &loading, self.has_engine));
             energy += touching.energy(&loading);
             self.samples[touching.contact].add(touching, &motions, &loading);
         }
@@ -233,11 +250,12 @@ impl Touching {
         [0, 1].map(|i| self.sides[i].motion(trees, &state.trees))
     }
 
-    /// Returns true if both sides are fixed to the same body, as after a capture.
+    /// Returns true if both sides are fixed to the same body, or a connection of an external engine holds them, as
+    /// after a capture.
     fn is_rigid<S: Real>(&self, trees: &[Tree<'_, S>]) -> bool {
         let [a, b] = [0, 1].map(|i| self.sides[i].place);
         let body = |(tree, frame): (usize, usize)| trees[tree].model.frames()[frame].body;
-        a.0 == b.0 && body(a) == body(b)
+        self.is_held || (a.0 == b.0 && body(a) == body(b))
     }
 }
 

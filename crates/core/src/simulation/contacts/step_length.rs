@@ -65,18 +65,29 @@ impl Touching {
     /// `N ∝ a^(1/4)` for a contact that comes to rest. For exponents `1 < n < 4`, derivatives of `xⁿ` are
     /// unbounded at touch-down and lift-off, where the step is therefore shortened to `h √(x/x_max)`. This
     /// restores order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
+    ///
+    /// With an external engine (`has_engine`) the touch-down is not located. A step then ends at most one step
+    /// of the impact after it.
     pub(super) fn longest_step(
         &self,
         steps: ContactSteps,
         motions: &[SideMotion; 2],
         loading: &Loading,
+        has_engine: bool,
     ) -> f64 {
         let Some(law) = &self.law else { return f64::INFINITY };
         match self.mode.phase {
             Phase::Far => f64::INFINITY,
             Phase::Apart | Phase::Separating => {
                 let [a, b] = motions;
-                ((-loading.depth).max(0.0) + OVERLAP * self.smaller_reach()) / self.fastest([a, b])
+                let (gap, speed) = ((-loading.depth).max(0.0), self.fastest([a, b]));
+                if has_engine && speed > 0.0 {
+                    let touching = Loading { depth: 0.0, rate: speed, ..*loading };
+                    let fastest = Rates::of(law, &self.mode, &touching).fastest();
+                    gap / speed + PI / (steps.count as f64 * fastest)
+                } else {
+                    (gap + OVERLAP * self.smaller_reach()) / speed
+                }
             }
             Phase::Pressing => {
                 let rates = Rates::of(law, &self.mode, loading);

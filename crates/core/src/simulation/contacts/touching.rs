@@ -21,6 +21,8 @@ pub(super) struct Touching {
     /// True if the pieces may overlap at the start.
     pub(super) may_start_overlapping: bool,
     pub(super) mode: Mode,
+    /// True if a connection of an external engine holds both links.
+    pub(super) is_held: bool,
     /// Result of the last evaluation; `None` while the pieces are far apart.
     pub(super) last: Option<Loading>,
 }

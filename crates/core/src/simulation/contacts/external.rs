@@ -1,0 +1,73 @@
+//! Contacts whose forces an external engine computes.
+
+use super::Contacts;
+use super::mobility::mobility;
+use super::touching::{Loading, Touching};
+use crate::simulation::contact_state::ContactState;
+use crate::simulation::engine::ContactOutput;
+use crate::simulation::tree::Tree;
+use crate::simulation::tree_state::TreeState;
+use crate::spatial::{Real, Vec3};
+
+impl Contacts {
+    /// Leaves the forces to an external engine. The contacts still limit the length of steps and record
+    /// distances, normals and elastic energies. Touch-down and lift-off are not located, so the steps are not
+    /// graded.
+    pub(in crate::simulation) fn follow_engine(&mut self) {
+        self.has_engine = true;
+        self.steps.is_graded = false;
+        for law in self.list.iter_mut().filter_map(|touching| touching.law.as_mut()) {
+            law.friction = None; // friction is known to the engine alone
+        }
+    }
+
+    /// Returns, for each combination of pieces, whether a connection of `pairs` of bodies, (system, body), holds
+    /// both of its links. `body` returns the body of a frame.
+    pub(in crate::simulation) fn held_by(
+        &self,
+        pairs: Vec<[(usize, usize); 2]>,
+        body: impl Fn((usize, usize)) -> (usize, usize),
+    ) -> Vec<bool> {
+        let is_held = |touching: &Touching| {
+            let [a, b] = [0, 1].map(|side| body(touching.sides[side].place));
+            pairs.iter().any(|pair| *pair == [a, b] || *pair == [b, a])
+        };
+        self.list.iter().map(is_held).collect()
+    }
+
+    /// Sets which combinations of pieces a connection of the external engine holds.
+    pub(in crate::simulation) fn set_held(&mut self, held: &[bool]) {
+        self.list.iter_mut().zip(held).for_each(|(touching, held)| touching.is_held = *held);
+    }
+
+    /// Adds impulse and work of a declared contact in a step of the engine to its state.
+    pub(in crate::simulation) fn add_exchanged(
+        &self,
+        contact: usize,
+        done: &ContactOutput,
+        states: &mut [ContactState],
+    ) {
+        let (linear, angular) = (Vec3::from_slice(&done.impulse), Vec3::from_slice(&done.impulse[3..]));
+        let mut pairs = self.list.iter().zip(states);
+        if let Some((_, state)) = pairs.find(|(touching, _)| touching.contact == contact) {
+            state.normal_work += done.work;
+            state.impulse += linear;
+            state.angular_impulse += angular - self.touches[contact].center.cross(linear);
+        }
+    }
+}
+
+impl Touching {
+    /// Determines the effective masses of pieces that an external engine may bring into contact during the
+    /// next step.
+    pub(super) fn prepare_for_engine<S: Real>(
+        &mut self,
+        trees: &[Tree<'_, S>],
+        states: &[TreeState<S>],
+        loading: &Loading,
+    ) {
+        if self.law.is_some() && self.mode.mobility[0] == 0.0 {
+            self.mode.mobility = mobility(&self.sides, trees, states, loading);
+        }
+    }
+}
