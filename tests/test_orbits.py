@@ -76,7 +76,7 @@ def test_a_message_is_the_same_orbit_as_its_tle(message: Any) -> None:
         ({"EPOCH": "yesterday"}, "EPOCH is"),
         ({"EPOCH": "00-06-27T18:50:19.733568"}, "EPOCH is"),
         ({"MEAN_MOTION": "fast"}, "MEAN_MOTION is"),
-        ({"ECCENTRICITY": 1.2}, "eccentricity is 1.2"),
+        ({"ECCENTRICITY": 1.2}, "eccentricity of the element set is 1.2"),
         ({"MEAN_ELEMENT_THEORY": "DSST"}, "MEAN_ELEMENT_THEORY"),
         ({"REF_FRAME": "EME2000"}, "REF_FRAME"),
         ({"INCLINATION": float("nan")}, "INCLINATION"),
