@@ -200,3 +200,41 @@ def test_a_pushed_box_drifts_away_and_the_pusher_recoils() -> None:
     momentum = trace["box"].momentum[-1, 0]
     assert momentum > 1.5 and trace["pusher"].momentum[-1, 0] == pytest.approx(-momentum, rel=1e-3)
     assert push.gap[-1] > 0.3 and abs(trace["box"].v[-1, 5]) > 0.01
+
+
+def test_five_touches_brake_the_spin_of_debris_and_the_servicer_takes_it() -> None:
+    result = oo.run("tumbling_debris_brake", quiet=True)
+    assert result.summary["certificate_passed"]
+    trace: Any = result.trace
+    touch, time = trace.contacts["brake"], trace["debris"].time
+    presses = np.linalg.norm(touch.force, axis=1) > 0.5  # N
+    begins = time[1:][np.diff(presses.astype(int)) == 1]
+    assert len(begins) == 5 and begins[0] < 2.0
+    spin = np.abs(np.degrees(trace["debris"].v[:, 5]))
+    assert spin[0] == pytest.approx(5.0) and spin[-1] < 2.0
+    for begin in begins:  # each touch takes spin
+        before, after = np.searchsorted(time, [begin - 0.5, begin + 1.5])
+        assert spin[before] - spin[after] > 0.3, begin
+    # what the debris loses, the servicer gains; gravity changes the sum by 1 %
+    about = np.zeros((2, 2))
+    for i, name in enumerate(("servicer", "debris")):
+        system = trace[name]
+        total = system.momentum[:, 3:] + np.cross(system.center_of_mass, system.momentum[:, :3])
+        about[i] = total[[0, -1], 2]
+    exchanged = about[0, 1] - about[0, 0]
+    assert exchanged > 0.5 and abs(about.sum(axis=0) @ [-1.0, 1.0]) < 0.05 * exchanged
+    servicer = trace["servicer"]
+    assert np.linalg.norm(servicer.position_error, axis=1).max() < 0.06
+    assert np.degrees(np.linalg.norm(servicer.v[-1, 3:6])) < 0.15
+    assert (np.abs(trace["debris"].q[:, :3] - [2.3, 0.0, 0.6]) < 0.06).all()  # it stays in its place
+
+
+def test_without_friction_the_touches_take_no_spin() -> None:
+    values = load("tumbling_debris_brake").resolved(
+        Path(str(oo.scenarios.path("tumbling_debris_brake"))).parent
+    )
+    del values["contacts"][0]["friction"]
+    values["simulation"]["duration"] = 5.0
+    trace: Any = oo.run(values, quiet=True).trace
+    assert trace.contacts["brake"].force.any()
+    assert np.degrees(trace["debris"].v[-1, 5]) == pytest.approx(5.0, abs=0.01)

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import contact_alternatives
 import pytest
 
 HERE = Path(__file__).parent / "soak"
@@ -46,6 +47,15 @@ def test_a_long_spin_is_exact_and_passes_its_certificate(soak: Any) -> None:
     found = soak.long_runs.spin(20_000, record_every=100)
     assert found["wrong"] == []
     assert found["attitude_error"] < 1e-12  # 20 rad; rounding is 1e-14
+
+
+def test_a_held_capsule_does_not_drift_and_smooth_friction_is_detected(
+    soak: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = soak.long_runs.grasp(0.4, 12.0)
+    assert found["wrong"] == [] and found["drift"] < 1e-12
+    monkeypatch.setattr(soak.long_runs.contact_grasp, "held", contact_alternatives.smooth)
+    assert soak.long_runs.grasp(0.4, 12.0)["wrong"] != []
 
 
 def test_loops_leak_nothing(soak: Any, tmp_path: Path) -> None:

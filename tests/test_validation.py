@@ -12,6 +12,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import contact_alternatives
 import numpy as np
 import pytest
 
@@ -30,6 +31,9 @@ from onorbit_rs.tools.validation import (
     capture,
     conservation,
     contact,
+    contact_boxes,
+    contact_friction,
+    contact_grasp,
     earth,
     gauss,
     gravity,
@@ -101,6 +105,14 @@ def of_bases_only(first: gauss.Craft, second: gauss.Craft) -> gauss.Impact:
     return gauss.impact(first, second, joints=False)
 
 
+def spin_only(trace: Any) -> Any:
+    return trace.momentum[:, 3:]
+
+
+def beside_each_other(trace: Any, name: str) -> Any:
+    return trace.contacts["touch"].point + (np.array([0.0, 5e-3, 5e-3]) if name == "a" else 0.0)
+
+
 def without_stop(first: gauss.Craft, second: gauss.Craft, *_: Any) -> Any:
     return gauss.impact(first, second).v
 
@@ -152,7 +164,25 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("contact", "elastic impact of two balls", contact, "CLOSING", 0.1 * (1 + 1e-7)),
     ("contact", "Hertz's impact of two balls", contact, "HERTZ", 1e7 * (1 + 1e-5)),
     ("contact", "spring and dashpot, damping ratios to 0.3", contact, "OF_CRITICAL", 2.0001),
+    ("contact", "restitution for d v0 from 0.01 to 10", contact, "impact",
+     contact_alternatives.with_equal_steps),
+    ("contact", "spring and dashpot, damping ratios to 0.3", contact, "DASHPOTS",
+     {0.05: 0.854467893007, 0.1: 0.729247614288, 0.3: 0.372326104927}),  # released at zero depth
+    ("contact", "balls of unequal masses", contact, "LOSS", 0.70001),
+    ("contact", "three balls in a row", contact, "LAST", 2.0 * (1.0 + 1e-6)),
     ("contact", "two arms that tumble hit each other", contact, "momentum", about_own_base),
+    ("contact", "two boxes that tumble hit each other", contact_boxes, "angular", spin_only),
+    ("contact", "recorded forces of two boxes", contact_boxes, "acts_at", beside_each_other),
+    ("contact", "a sphere slides, then rolls", contact_friction, "WEIGHT", 9.8125),
+    ("contact", "oblique impact of a sphere that slips", contact_friction, "RESTITUTION", 0.801),
+    ("contact", "oblique impact of a sphere that sticks", contact_friction, "BRISTLES",
+     oo.Friction(0.3, stiffness=1e8)),
+    ("contact", "torsional friction stops a spin", contact_friction, "TORSIONAL", 0.0020001),
+    ("contact", "a body slides to rest", contact_friction, "WEIGHT", 9.8125),
+    ("contact", "a growing force moves a pressed body", contact_friction, "HOLDS", 0.500001),
+    ("contact", "a body returns after a force inside the cone", contact_friction, "PULSE", 1.01),
+    ("contact", "a capsule held by two pads", contact_grasp, "held", contact_alternatives.smooth),
+    ("contact", "a held capsule under oscillating loads", contact_grasp, "held", contact_alternatives.lugre),
     ("world", "two robots that no event connects, 0.2 s", worlds, "ALONE_STEP", 2e-3),
     ("world", "two robots after a capture and a release", worlds, "RELEASE", 0.501),
     ("world", "three captures connect four robots", worlds, "KEPT", 1),

@@ -18,11 +18,11 @@ from typing import Any
 from exact_motions import earth_pointing, spins, station
 from faults import fault_campaign
 from leaks import leak_campaign
-from long_runs import arm, spin
+from long_runs import arm, grasp, spin
 
 # fractions of the time; the long runs come first and are not limited
 KILLS, FAULTS, LEAKS = 0.5, 0.2, 0.3
-SPIN_STEPS, ARM_S, ORBITS_A_DAY = 10_000_000, 3600.0, 15.56
+SPIN_STEPS, ARM_S, ORBITS_A_DAY, HELD_S = 10_000_000, 3600.0, 15.56, 60.0
 
 
 def arguments() -> argparse.Namespace:
@@ -53,6 +53,8 @@ def main() -> int:
         "an orbit at 1 ms, Earth-pointing": lambda folder: earth_pointing(1.0, 1e-3),
         "a day at 10 ms, Earth-pointing": lambda folder: earth_pointing(ORBITS_A_DAY, 1e-2),
         "a station in the gradient, an orbit at 5 ms": lambda folder: station(1.0, 5e-3),
+        "a capsule held for a minute with 12 N": lambda folder: grasp(HELD_S, 12.0),
+        "a capsule held for a minute with 60 N": lambda folder: grasp(HELD_S, 60.0),
         "kills": lambda folder: kills(folder, given.seed, KILLS * left()),
         "disk faults": lambda folder: fault_campaign(
             folder, seed=given.seed, seconds=FAULTS / (FAULTS + LEAKS) * left()

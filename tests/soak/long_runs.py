@@ -10,6 +10,7 @@ import numpy as np
 import onorbit_rs as oo
 from onorbit_rs.scenario import Scenario, load
 from onorbit_rs.scenario.build import build
+from onorbit_rs.tools.validation import contact_grasp
 
 
 def red(trace: oo.Trace) -> list[str]:
@@ -45,3 +46,17 @@ def arm(duration: float) -> dict[str, Any]:
     started, built = time.monotonic(), build(Scenario(**data))
     trace = built.simulation.run(duration)
     return {"simulated_s": duration, "seconds": round(time.monotonic() - started, 1), "wrong": red(trace)}
+
+
+def grasp(duration: float, normal: float) -> dict[str, Any]:
+    """Returns the drift of a capsule that two pads hold with ``normal``, N, under a constant load."""
+    started = time.monotonic()
+    drift = contact_grasp.held(normal, contact_grasp.LOAD, 0.0, duration)
+    wrong = [] if drift < DRIFT else [f"drift {drift} > {DRIFT} m/s"]
+    return {
+        "simulated_s": duration, "normal": normal, "seconds": round(time.monotonic() - started, 1),
+        "drift": drift, "wrong": wrong,
+    }  # fmt: skip
+
+
+DRIFT = 1e-9  # m/s

@@ -21,6 +21,9 @@ from onorbit_rs.tools.validation import (
     capture,
     conservation,
     contact,
+    contact_boxes,
+    contact_friction,
+    contact_grasp,
     earth,
     gravity,
     kepler,
@@ -42,7 +45,8 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, capture, seating, contact, worlds, order, against_pinocchio, against_mujoco,
+        conservation, capture, seating, contact, contact_boxes,
+        contact_friction, contact_grasp, worlds, order, against_pinocchio, against_mujoco,
         against_sgp4, against_spart,
     )
     for case in module.CASES

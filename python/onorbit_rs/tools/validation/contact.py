@@ -1,7 +1,9 @@
-"""Contacts of two bodies: restitution, Hertz's impact, spring and dashpot, and momentum of tumbling arms."""
+"""Impacts: restitution, Hertz's impact, spring and dashpot, and momentum of tumbling arms."""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +20,13 @@ MASS = 1.0  # effective mass of both balls, kg
 BALLS = 2.0 * MASS  # mass of one ball in the simulation, kg
 
 # d v0 and e, the root of d v0 (1 + e) = ln[(1 + d v0)/(1 - e d v0)], with 12 digits
-RESTITUTIONS = {0.01: 0.993377454399, 0.1: 0.937475579950, 1.0: 0.593624260040, 10.0: 0.099981624753}
+RESTITUTIONS = {
+    0.01: 0.993377454399, 0.03: 0.980391402985, 0.1: 0.937475579950, 0.3: 0.832869792266,
+    1.0: 0.593624260040, 3.0: 0.306896798291, 10.0: 0.099981624753,
+}  # fmt: skip
+LOSS = 0.7  # restitution of unequal balls, used by the simulation
+PAIRS = ((2.0, 2.0), (0.5, 40.0), (40.0, 0.5))  # their masses, kg
+LAST = BALLS  # mass of the last ball of a row, kg
 LAWS = ((1.0, 1e5), (1.5, 1e7))  # n, k in N/m^n
 
 # Hertz, k = 1e7 N/m^1.5: largest depth (5 m v0^2/4 k)^(2/5), force k x^1.5, duration 2.9432 x/v0
@@ -41,19 +49,31 @@ class Impact(NamedTuple):
     contact: oo.ContactTrace
 
 
+def balls(normal: NormalLaw, masses: Sequence[float], speed: float) -> oo.WorldTrace:
+    """Simulate balls in a row, 1 cm apart; the first one moves towards the others, which are at rest."""
+    ball = oo.robots.load("ball")
+    systems = [
+        oo.System(
+            "abc"[i], ball.with_link("body", mass=mass, inertia=0.4 * mass * 0.1**2 * np.eye(3)),
+            [0.21 * i, 0, 0, 0, 0, 0, 1], [speed if i == 0 else 0.0, 0, 0, 0, 0, 0],
+        )
+        for i, mass in enumerate(masses)
+    ]  # fmt: skip
+    contacts = [
+        oo.Contact(f"{a.name}/body", f"{b.name}/body", normal=normal, name=a.name + b.name)
+        for a, b in itertools.pairwise(systems)
+    ]
+    lasts = 0.015 / speed * len(masses)
+    trace = oo.Simulation(oo.World(systems, contacts=contacts), time_step=0.01).run(lasts)
+    assert isinstance(trace, oo.WorldTrace)
+    return trace
+
+
 def impact(normal: NormalLaw) -> Impact:
     """Simulate the central impact of two equal balls, the second of which is at rest."""
-    inertia = 0.4 * BALLS * 0.1**2
-    ball = oo.robots.load("ball").with_link("body", mass=BALLS, inertia=inertia * np.eye(3))
-    systems = [
-        oo.System("a", ball, [0, 0, 0, 0, 0, 0, 1], [CLOSING, 0, 0, 0, 0, 0]),
-        oo.System("b", ball, [0.21, 0, 0, 0, 0, 0, 1], np.zeros(6)),
-    ]
-    world = oo.World(systems, contacts=[oo.Contact("a/body", "b/body", normal=normal, name="touch")])
-    trace = oo.Simulation(world, time_step=0.01).run(0.3)
-    assert isinstance(trace, oo.WorldTrace)
+    trace = balls(normal, (BALLS, BALLS), CLOSING)
     parting = float(trace["b"].v[-1, 0] - trace["a"].v[-1, 0])
-    return Impact(parting / SPEED, trace["a"].time, trace.contacts["touch"])
+    return Impact(parting / SPEED, trace["a"].time, trace.contacts["ab"])
 
 
 def restitution() -> list[float]:
@@ -67,9 +87,32 @@ def restitution() -> list[float]:
     ]
 
 
+def unequal() -> list[float]:
+    """Return the largest errors of both velocities after impacts of unequal balls at 0.1 and 0.2 m/s.
+
+    The velocities are `v (m1 - e m2)/(m1 + m2)` and `v m1 (1 + e)/(m1 + m2)`.
+    """
+    errors = []
+    for first, second in PAIRS:
+        for speed in (SPEED, 2.0 * SPEED):
+            law = oo.HuntCrossley(1e6, restitution=LOSS, speed=speed)
+            trace = balls(law, (first, second), speed)
+            a, b = trace["a"].v[-1, 0] / speed, trace["b"].v[-1, 0] / speed
+            both = first + second
+            errors.append((abs(a - (first - 0.7 * second) / both), abs(b - 1.7 * first / both)))
+    return list(worst(errors))
+
+
+def row() -> list[float]:
+    """Return the errors of the velocities of three equal balls after two elastic impacts."""
+    trace = balls(oo.HuntCrossley(HERTZ), (BALLS, BALLS, LAST), SPEED)
+    return [abs(trace[name].v[-1, 0] / SPEED - end) for name, end in (("a", 0.0), ("b", 0.0), ("c", 1.0))]
+
+
 def elastic() -> list[float]:
-    """Return the error of the restitution without dissipation for each exponent."""
-    return [abs(impact(oo.HuntCrossley(k, n)).restitution - 1.0) for n, k in LAWS]
+    """Return the error of the restitution without dissipation for each exponent, of 2 kg at 0.2 m/s."""
+    traces = (balls(oo.HuntCrossley(k, n), (BALLS, BALLS), 2.0 * CLOSING) for n, k in LAWS)
+    return [abs(float(t["b"].v[-1, 0] - t["a"].v[-1, 0]) / (2.0 * SPEED) - 1.0) for t in traces]
 
 
 def hertz() -> tuple[float, float, float]:
@@ -145,6 +188,15 @@ CASES = (
     Case(
         "contact", "restitution for d v0 from 0.01 to 10", "d v0 (1 + e) = ln[(1 + d v0)/(1 - e d v0)]",
         (Gate("restitution, n = 1", 1e-6), Gate("restitution, n = 1.5", 1e-6)), restitution,
+    ),
+    Case(
+        "contact", "balls of unequal masses", "conservation of momentum, restitution 0.7",
+        (Gate("velocity of the first", 1e-6), Gate("velocity of the second", 1e-6)), unequal,
+    ),
+    Case(
+        "contact", "three balls in a row", "conservation of momentum and energy",
+        (Gate("velocity of the first", 1e-8), Gate("velocity of the second", 1e-8),
+         Gate("velocity of the last", 1e-8)), row,
     ),
     Case(
         "contact", "elastic impact of two balls", "conservation of energy",
