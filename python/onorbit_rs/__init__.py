@@ -75,6 +75,7 @@ from onorbit_rs._core import (
     Sampled,
     Screw,
     Sgp4,
+    Shape,
     Simulation,
     SpringDashpot,
     State,
@@ -99,6 +100,7 @@ from onorbit_rs.simulation.controller import Controller
 
 if TYPE_CHECKING:
     from onorbit_rs import engines, layouts, ros2
+    from onorbit_rs.clearance import Clearance, KeepOut, MinimumDistance, Violation, clearances
     from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.simulation.command_format import read_commands
     from onorbit_rs.simulation.commands import CommandLog
@@ -115,6 +117,7 @@ __all__ = [
     "Capture",
     "Checkpoint",
     "Circle",
+    "Clearance",
     "Column",
     "CommandLog",
     "Comparison",
@@ -149,9 +152,11 @@ __all__ = [
     "JointReference",
     "JointSampled",
     "JointWaypoints",
+    "KeepOut",
     "Kepler",
     "Line",
     "LineParabola",
+    "MinimumDistance",
     "Model",
     "ModelBuilder",
     "Nrlmsise00",
@@ -167,6 +172,7 @@ __all__ = [
     "Scenario",
     "Screw",
     "Sgp4",
+    "Shape",
     "Simulation",
     "SpringDashpot",
     "State",
@@ -177,12 +183,14 @@ __all__ = [
     "Target",
     "ThirdBody",
     "Trace",
+    "Violation",
     "Waypoints",
     "World",
     "WorldScenario",
     "WorldTrace",
     "attach",
     "build_info",
+    "clearances",
     "compare",
     "distance",
     "engines",
@@ -203,8 +211,10 @@ __all__ = [
 __version__: str = build_info()["version"]
 
 _LAZY = {
-    "Comparison": "tools.comparison", "compare": "tools.comparison", "Scenario": "scenario",
-    "WorldScenario": "scenario", "CommandLog": "simulation.commands",
+    "Clearance": "clearance", "KeepOut": "clearance", "MinimumDistance": "clearance",
+    "Violation": "clearance", "clearances": "clearance", "Comparison": "tools.comparison",
+    "compare": "tools.comparison", "Scenario": "scenario", "WorldScenario": "scenario",
+    "CommandLog": "simulation.commands",
     "read_commands": "simulation.command_format", "replay_commands": "simulation.replay",
     "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
 }  # fmt: skip

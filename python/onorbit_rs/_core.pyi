@@ -120,6 +120,7 @@ __all__ = [
     "Sampled",
     "Screw",
     "Sgp4",
+    "Shape",
     "Simulation",
     "SpringDashpot",
     "State",
@@ -142,6 +143,7 @@ __all__ = [
     "from_lvlh",
     "hill_transition",
     "intercept_velocity",
+    "least_distances",
     "propagate",
     "relative_elements",
     "rollout",
@@ -180,6 +182,7 @@ class Model:
         com: ArrayLike | None = None,
         inertia: ArrayLike | None = None,
     ) -> Model: ...
+    def with_collision(self, link: str, shape: Shape, *, pose: ArrayLike | None = None) -> Model: ...
     def rerooted(self, link: str) -> Model: ...
     def transfer_state(self, q: ArrayLike, v: ArrayLike, to: Model) -> tuple[_Array, _Array]: ...
     @property
@@ -372,7 +375,9 @@ class Visual:
     @property
     def pose(self) -> list[list[float]]: ...
     @property
-    def kind(self) -> Literal["box", "cylinder", "capsule", "sphere", "mesh"]: ...
+    def kind(
+        self,
+    ) -> Literal["box", "cylinder", "capsule", "sphere", "cone", "torus", "half_space", "mesh"]: ...
     @property
     def size(self) -> list[float]: ...
     @property
@@ -381,6 +386,30 @@ class Visual:
     def scale(self) -> list[float]: ...
     @property
     def rgba(self) -> list[float] | None: ...
+
+@final
+class Shape:
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @staticmethod
+    def sphere(radius: float) -> Shape: ...
+    @staticmethod
+    def box(x: float, y: float, z: float) -> Shape: ...
+    @staticmethod
+    def cylinder(radius: float, length: float) -> Shape: ...
+    @staticmethod
+    def capsule(radius: float, length: float) -> Shape: ...
+    @staticmethod
+    def cone(radius: float, height: float) -> Shape: ...
+    @staticmethod
+    def torus(major_radius: float, minor_radius: float) -> Shape: ...
+    @staticmethod
+    def half_space() -> Shape: ...
+    @staticmethod
+    def mesh(path: _Path, *, scale: ArrayLike | None = None) -> Shape: ...
+    @property
+    def kind(
+        self,
+    ) -> Literal["sphere", "box", "cylinder", "capsule", "cone", "torus", "half_space", "mesh"]: ...
 
 @final
 class FreeFloating:
@@ -1158,6 +1187,15 @@ class Friction:
         stiffness: float | None = None,
         damping: float | None = None,
     ) -> Friction: ...
+    @staticmethod
+    def of(
+        a: str,
+        b: str,
+        *,
+        torsional: float | None = None,
+        stiffness: float | None = None,
+        damping: float | None = None,
+    ) -> Friction: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def static(self) -> float: ...
@@ -1562,6 +1600,13 @@ class Distance:
     def normal(self) -> _Array: ...
 
 def distance(model_or_world: Model | World, q: ArrayLike | dict[str, Any], a: str, b: str) -> Distance: ...
+def least_distances(
+    shapes_a: Sequence[Shape | tuple[Model, str]],
+    poses_a: _Array,
+    shapes_b: Sequence[Shape | tuple[Model, str]],
+    poses_b: _Array,
+    permitted: Sequence[Sequence[bool]],
+) -> tuple[_Array, _Array, _Array, _Array, _Array]: ...
 def attach(
     model: Model,
     frame: str,

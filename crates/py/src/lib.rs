@@ -15,6 +15,7 @@ mod errors;
 mod geometry;
 mod gravity;
 mod interrupt;
+mod least_distance;
 mod model;
 mod orbit;
 mod output;
@@ -77,6 +78,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     environment::add_classes(m)?;
     m.add_class::<geometry::PyDistance>()?;
     m.add_function(wrap_pyfunction!(geometry::distance, m)?)?;
+    m.add_function(wrap_pyfunction!(least_distance::least_distances, m)?)?;
     gravity::add_classes(m)?;
     reference::add_classes(m)?;
     control::add_classes(m)?;

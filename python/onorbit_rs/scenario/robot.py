@@ -210,6 +210,14 @@ class Robot(PlainRobot):
         OnOrbitError
             A subclass for the kind of error; its message starts with file, line and key.
         """
+        model = self._build_tree(scenario)
+        for index, extra in enumerate(scenario.collision):
+            with located(scenario, "collision", index):
+                model = extra.add_to(model, scenario.folder)
+        return model
+
+    def _build_tree(self, scenario: Scenario) -> _core.Model:
+        """Return the robot with its arms, without the collision shapes of the scenario."""
         if self.bus is None:
             return self.build_plain(scenario, ("robot",))
         model = self.bus.build_plain(scenario, ("robot", "bus"))

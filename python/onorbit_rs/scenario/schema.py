@@ -7,6 +7,7 @@ from typing import Annotated, Any, NamedTuple, get_args
 
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_validator
 
+from onorbit_rs.scenario.collision import CollisionShape
 from onorbit_rs.scenario.control import AnyControl, AnyController, Controller
 from onorbit_rs.scenario.control.check import check_control
 from onorbit_rs.scenario.document import Document
@@ -42,6 +43,8 @@ class RobotKeys(Part):
     surfaces: RobotSurfaces | None = None
     """Surfaces for drag and radiation pressure, if the effect defines no surfaces: one surface for all links,
     or a mapping from link to surface. Default: the visual geometry."""
+    collision: list[CollisionShape] = Field(default_factory=list)
+    """Collision shapes in addition to those of the robot's file. They take part in contacts and distances."""
 
     @property
     def laws(self) -> list[AnyController]:

@@ -16,6 +16,7 @@ import numpy as np
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
 from onorbit_rs.visuals.geometry import GREY, Shape, box_of_inertia, grey_shape, pose_of
 from onorbit_rs.visuals.meshes import Mesh, read_mesh
+from onorbit_rs.visuals.revolved import revolved
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,7 +40,9 @@ def shapes(model: Model) -> list[Shape]:
     links = {visual.link for visual in lost} if model.visuals else set(model.body_names)
     bare = links - {shape.link for shape in found}
     # no warnings about meshes of collision shapes, which are only substitutes
-    solid, _, _ = _drawable([shape for shape in model.collisions if shape.link in bare])
+    solid, _, _ = _drawable(
+        [shape for shape in model.collisions if shape.link in bare and shape.kind != "half_space"]
+    )
     return [*found, *solid, *_stick_figure(model, bare, {shape.link for shape in solid})]
 
 
@@ -111,6 +114,8 @@ def _along(end: Floats) -> Floats:
 
 
 def _of(visual: Visual) -> Shape:
+    if visual.kind in ("cone", "torus"):
+        return revolved(visual)
     return Shape(
         link=visual.link,
         pose=np.asarray(visual.pose, dtype=np.float64),

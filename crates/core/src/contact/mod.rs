@@ -11,6 +11,7 @@ mod declared;
 mod error;
 mod friction;
 mod links;
+mod materials;
 mod normal;
 mod restitution;
 
@@ -18,5 +19,6 @@ pub use declared::{Contact, ContactLaw, ContactSide, ContactSteps};
 pub use error::ContactError;
 pub use friction::{Bristle, Friction, FrictionForce};
 pub use links::{LinkShapes, links_matching};
+pub use materials::{MATERIAL_PAIRS, MaterialPair, material_pair};
 pub use normal::NormalLaw;
 pub use restitution::dissipation_for;

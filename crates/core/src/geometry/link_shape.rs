@@ -32,7 +32,8 @@ pub fn link_shape(model: &Model, frame: usize) -> Result<LinkShape, GeometryErro
     let mut warnings = Vec::new();
     let mut pieces = Vec::new();
     for (_, visual) in model.collisions().iter().filter(|(index, _)| *index == frame) {
-        pieces.push((shape(visual, link, &mut warnings).map_err(invalid)?, pose(visual)));
+        let shape = shape_of(&visual.geometry, &format!("the link '{link}'"), &mut warnings);
+        pieces.push((shape.map_err(invalid)?, pose(visual)));
     }
     if pieces.is_empty() {
         return Err(GeometryError::NoCollision { link: link.clone(), with: links_with_shapes(model) });
@@ -56,19 +57,29 @@ fn pose(visual: &Visual) -> Pose {
     }
 }
 
-fn shape(visual: &Visual, link: &str, warnings: &mut Vec<String>) -> Result<Shape, String> {
-    Ok(match &visual.geometry {
+/// Returns the collision shape for a geometry that belongs to `owner`, such as `the link 'hand'`. Adds the
+/// defect of a mesh to `warnings`.
+///
+/// # Errors
+/// The reason, as text, for which a mesh cannot be used.
+pub fn shape_of(geometry: &Geometry, owner: &str, warnings: &mut Vec<String>) -> Result<Shape, String> {
+    Ok(match geometry {
         Geometry::Box(edges) => Shape::Box { half_edges: edges.map(|edge| 0.5 * edge) },
         Geometry::Cylinder { radius, length } => {
             Shape::Cylinder { radius: *radius, half_length: 0.5 * length }
         }
         Geometry::Capsule { radius, length } => Shape::Capsule { radius: *radius, half_length: 0.5 * length },
         Geometry::Sphere { radius } => Shape::Sphere { radius: *radius },
+        Geometry::Cone { radius, length } => Shape::Cone { radius: *radius, half_length: 0.5 * length },
+        Geometry::Torus { major_radius, minor_radius } => {
+            Shape::Torus { major_radius: *major_radius, minor_radius: *minor_radius }
+        }
+        Geometry::HalfSpace => Shape::HalfSpace,
         Geometry::Mesh { filename, scale: [x, y, z] } => {
             let mesh = read_mesh(Path::new(filename)).map_err(|cause| format!("{filename}: {cause}"))?;
             if let Some(defect) = mesh.defect() {
                 warnings.push(format!(
-                    "the collision mesh {filename} of the link '{link}' {defect}; its convex hull is used"
+                    "the collision mesh {filename} of {owner} {defect}; its convex hull is used"
                 ));
             }
             let points: Vec<_> = mesh.vertices.iter().map(|p| Vec3::new(x * p.x, y * p.y, z * p.z)).collect();

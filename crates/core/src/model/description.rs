@@ -104,6 +104,22 @@ pub enum Geometry {
         /// Radius, m.
         radius: f64,
     },
+    /// Cone along z, with its base at `−length/2` and its apex at `length/2`; a collision shape only.
+    Cone {
+        /// Radius of the base, m.
+        radius: f64,
+        /// Height, m.
+        length: f64,
+    },
+    /// Torus about z; a collision shape only.
+    Torus {
+        /// Radius of the circle in the middle of the tube, m.
+        major_radius: f64,
+        /// Radius of the tube, m.
+        minor_radius: f64,
+    },
+    /// All points with `z ≤ 0`; a collision shape only.
+    HalfSpace,
     /// Mesh file.
     Mesh {
         /// Path, with `package://` resolved if the package was found.

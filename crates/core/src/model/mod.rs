@@ -3,6 +3,7 @@
 mod align;
 mod attach;
 mod builder;
+mod collision;
 mod compile;
 mod configuration;
 mod coordinates;

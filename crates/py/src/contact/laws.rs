@@ -2,7 +2,7 @@
 
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
-use onorbit_core::contact::{Friction, NormalLaw, dissipation_for};
+use onorbit_core::contact::{Friction, NormalLaw, dissipation_for, material_pair};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -233,6 +233,44 @@ impl PyFriction {
         let friction = Self { static_coefficient: r#static, kinetic, torsional, stiffness, damping };
         friction.law(1.0).check().map_err(|error| error.into_python(py))?;
         Ok(friction)
+    }
+
+    /// Return friction with typical coefficients of two materials with clean and dry surfaces.
+    ///
+    /// Parameters
+    /// ----------
+    /// a, b : str
+    ///     Names of the materials, such as ``"aluminium"`` and ``"mild steel"``.
+    /// torsional, stiffness, damping : float, optional
+    ///     As for ``Friction``.
+    ///
+    /// Returns
+    /// -------
+    /// Friction
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     If the table has no coefficients for the pair; the message lists the known pairs.
+    ///
+    /// Notes
+    /// -----
+    /// Coatings, films and vacuum change friction by factors. Source: Marks' Standard Handbook for Mechanical
+    /// Engineers, 10th edition, 1996, table 3.2.1.
+    #[staticmethod]
+    #[pyo3(signature = (a, b, *, torsional=None, stiffness=None, damping=None))]
+    fn of(
+        py: Python<'_>,
+        a: &str,
+        b: &str,
+        torsional: Option<f64>,
+        stiffness: Option<f64>,
+        damping: Option<f64>,
+    ) -> PyResult<Self> {
+        let pair = material_pair(a, b)
+            .map_err(|message| raise(py, "InputError", &message, &fields!(py, "name": "b", "got": b)))?;
+        let (at_rest, sliding) = (pair.static_coefficient, pair.kinetic_coefficient);
+        Self::new(py, at_rest, Some(sliding), torsional, stiffness, damping)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {

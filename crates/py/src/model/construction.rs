@@ -1,7 +1,8 @@
 //! Methods of `Model` that construct robots, and convert states between them.
 
+use super::collision::with_collision;
 use super::file::{self, read_file};
-use super::{Any, Array, PyModel, builder, link_change, reroot};
+use super::{Any, Array, PyModel, PyShape, builder, link_change, reroot};
 use crate::pickling::{ConstructorCall, Reduced};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -141,6 +142,40 @@ impl PyModel {
         inertia: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         link_change::with_link(slf, name, mass, com, inertia)
+    }
+
+    /// Return a copy of the robot with another collision shape on a link.
+    ///
+    /// The shape is added to those that the link has; several shapes are the union of them. It takes part in
+    /// contacts and distances, and does not change masses.
+    ///
+    /// Parameters
+    /// ----------
+    /// link : str
+    ///     Name of the link.
+    /// shape : Shape
+    ///     Shape, such as ``Shape.cone(0.05, 0.08)``.
+    /// pose : (4, 4) array, optional
+    ///     Pose of the shape in link axes, m. Default: the identity.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If no link has this name.
+    /// ModelError
+    ///     If the pose is invalid.
+    #[pyo3(signature = (link, shape, *, pose=None))]
+    fn with_collision(
+        slf: &Bound<'_, Self>,
+        link: &str,
+        shape: &Bound<'_, PyShape>,
+        pose: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
+        with_collision(slf, link, shape, pose)
     }
 
     /// Return the same robot with another link as its floating base.

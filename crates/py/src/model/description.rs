@@ -75,10 +75,11 @@ pub(super) struct PyVisual {
     link: String,
     /// Pose in that frame: (4, 4), m.
     pose: [[f64; 4]; 4],
-    /// Type of the shape: ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``.
+    /// Type of the shape: ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``; collision shapes may also
+    /// be a ``cone``, ``torus`` or ``half_space``.
     kind: &'static str,
-    /// Edge lengths of a box, radius and length of a cylinder or capsule, or radius of a sphere, m; empty for
-    /// a mesh.
+    /// Edge lengths of a box, radius and length of a cylinder, capsule or cone, radii of the circle and of the
+    /// tube of a torus, or radius of a sphere, m; empty for a mesh and a half-space.
     size: Vec<f64>,
     /// Path of a mesh file, or None.
     filename: Option<String>,
@@ -97,6 +98,11 @@ impl PyVisual {
             Geometry::Cylinder { radius, length } => ("cylinder", vec![*radius, *length], None, [1.0; 3]),
             Geometry::Capsule { radius, length } => ("capsule", vec![*radius, *length], None, [1.0; 3]),
             Geometry::Sphere { radius } => ("sphere", vec![*radius], None, [1.0; 3]),
+            Geometry::Cone { radius, length } => ("cone", vec![*radius, *length], None, [1.0; 3]),
+            Geometry::Torus { major_radius, minor_radius } => {
+                ("torus", vec![*major_radius, *minor_radius], None, [1.0; 3])
+            }
+            Geometry::HalfSpace => ("half_space", Vec::new(), None, [1.0; 3]),
             Geometry::Mesh { filename, scale } => ("mesh", Vec::new(), Some(filename.clone()), *scale),
         };
         Self { link: link.to_owned(), pose, kind, size, filename, scale, rgba: visual.rgba }

@@ -3,6 +3,7 @@
 
 pub(crate) mod attach;
 mod builder;
+mod collision;
 mod construction;
 mod description;
 mod dynamics;
@@ -14,6 +15,7 @@ mod momentum;
 mod part;
 mod properties;
 mod reroot;
+mod shape;
 mod xacro;
 
 use crate::arrays::{Threads, type_name, wrong_shape};
@@ -27,6 +29,7 @@ use onorbit_core::geometry::{LinkShape, Shape, link_shape};
 use onorbit_core::model::{Model, ModelWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+pub(crate) use shape::PyShape;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -38,6 +41,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyModel>()?;
     m.add_class::<part::PyRobotPart>()?;
     m.add_class::<PyVisual>()?;
+    m.add_class::<PyShape>()?;
     m.add_class::<PyJoint>()?;
     m.add_class::<PyBody>()?;
     m.add_class::<PyFrame>()?;

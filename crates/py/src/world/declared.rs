@@ -12,6 +12,7 @@ use crate::orbit::PyOrbit;
 use crate::pickling::{ConstructorCall, Reduced};
 use crate::reference::Around;
 use crate::simulation::{gravity_mode_named, set_environment};
+use onorbit_core::contact::Contact;
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::Simulation;
 use onorbit_core::world::{WorldError, idle_knowledge};
@@ -96,6 +97,7 @@ impl PyWorld {
         simulation.check().map_err(|error| error.into_python_with(py, None))?;
         warn_of_distance(py, &simulation)?;
         warn_of_knowledge(py, &simulation)?;
+        warn_of_pairs(py, &simulation)?;
         Ok(world)
     }
 
@@ -212,6 +214,26 @@ fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
     }
     Ok(())
+}
+
+/// Largest number of pairs of convex pieces in a world without a warning.
+const MANY_PAIRS: usize = 2000;
+
+/// Issues a warning about the contact with the most pairs of convex pieces if there are very many pairs.
+fn warn_of_pairs(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
+    let pairs = |contact: &Contact| contact.sides.iter().map(Vec::len).product::<usize>();
+    let total: usize = simulation.contacts.iter().map(pairs).sum();
+    let Some(most) = simulation.contacts.iter().filter(|_| total > MANY_PAIRS).max_by_key(|one| pairs(one))
+    else {
+        return Ok(());
+    };
+    let [a, b] = [0, 1].map(|side| most.sides[side].len());
+    let message = format!(
+        "the contacts have {total} pairs of convex pieces, most of them in '{}' ({a} pieces with {b}), all of which \
+         every step considers; name only the links that can touch",
+        most.name
+    );
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)
 }
 
 /// Issues warnings about systems that start so far from the reference orbit that their positions lose digits.

@@ -83,6 +83,15 @@ pub enum SurfaceError {
         /// Path of the file.
         filename: String,
     },
+    /// The visual geometry of a link is a shape that only collisions use.
+    #[error(
+        "the visual geometry of link '{link}' is a cone, a torus or a half-space, from which no faces are derived; give \
+         the link plates or a cannonball"
+    )]
+    Shape {
+        /// Name of the link.
+        link: String,
+    },
     /// A body has more than one surface.
     #[error("{body} has two surfaces; give each body at most one surface")]
     Twice {

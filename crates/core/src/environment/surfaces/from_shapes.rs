@@ -75,6 +75,9 @@ impl ShapePose {
                 let (link, filename) = (frame.name.clone(), filename.clone());
                 return Err(SurfaceError::Mesh { link, filename });
             }
+            Geometry::Cone { .. } | Geometry::Torus { .. } | Geometry::HalfSpace => {
+                return Err(SurfaceError::Shape { link: frame.name.clone() });
+            }
         }
         Ok(())
     }

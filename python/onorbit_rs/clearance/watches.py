@@ -1,0 +1,97 @@
+"""Declarations of distances to watch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from onorbit_rs.exceptions import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from onorbit_rs._core import Shape
+
+
+def _patterns(links: str | Sequence[str], name: str) -> tuple[str, ...]:
+    """Return one or several patterns as a tuple."""
+    found = (links,) if isinstance(links, str) else tuple(links)
+    if not found or not all(isinstance(link, str) for link in found):
+        message = (
+            f"{name} is {links!r}; expected the name of a link, such as 'chaser/gripper*', or a list of names"
+        )
+        raise InputError(message, name=name, got=links)
+    return found
+
+
+@dataclass(frozen=True)
+class KeepOut:
+    """Zone that links must not enter; no force acts.
+
+    Attributes
+    ----------
+    name : str
+        Name in results.
+    shape : Shape
+        Shape of the zone, such as ``Shape.cone(1.0, 3.0)``.
+    links : str or sequence of str
+        Links that must stay outside: ``SYSTEM/LINK`` in a world, ``LINK`` for one robot; ``*`` stands for any
+        text.
+    fixed_to : str
+        ``world`` (W), ``lvlh`` (L, at the origin of W), or a frame that carries the zone, ``SYSTEM/FRAME`` or
+        ``FRAME``.
+    pose : (4, 4) array or None
+        Pose of the shape in ``fixed_to``, m; None for the identity.
+    """
+
+    name: str
+    shape: Shape
+    links: str | Sequence[str]
+    fixed_to: str = "world"
+    pose: ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        object.__setattr__(self, "links", _patterns(self.links, "links"))
+        pose = np.eye(4) if self.pose is None else np.array(self.pose, dtype=np.float64)
+        if pose.shape != (4, 4) or not np.isfinite(pose).all():
+            message = (
+                f"the pose of the zone {self.name!r} has shape {pose.shape} or is not finite; expected (4, 4)"
+            )
+            raise InputError(message, name="pose", got=pose.shape)
+        if not np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-6):
+            message = f"the pose of the zone {self.name!r} contains no rotation; give an orthogonal matrix"
+            raise InputError(message, name="pose", got=self.name)
+        object.__setattr__(self, "pose", pose)
+
+
+@dataclass(frozen=True)
+class MinimumDistance:
+    """Least distance between two sets of links; an overlap is a violation, but no force acts.
+
+    Links of one body, and links of bodies that a joint connects, are not compared with each other, so both
+    sets may be all links of a robot.
+
+    Attributes
+    ----------
+    name : str
+        Name in results.
+    links_a, links_b : str or sequence of str
+        Links of both sides: ``SYSTEM/LINK`` in a world, ``LINK`` for one robot; ``*`` stands for any text.
+    """
+
+    name: str
+    links_a: str | Sequence[str]
+    links_b: str | Sequence[str]
+
+    def __post_init__(self) -> None:
+        """Check the arguments."""
+        object.__setattr__(self, "links_a", _patterns(self.links_a, "links_a"))
+        object.__setattr__(self, "links_b", _patterns(self.links_b, "links_b"))
+
+
+Watch = KeepOut | MinimumDistance
