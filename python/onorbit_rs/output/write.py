@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.scenario.connections import connections, touching
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Mapping
 
     from onorbit_rs._core import Trace, WorldTrace
     from onorbit_rs.figures import Drawing
@@ -42,8 +43,10 @@ def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> 
         path.write_text(header + text, encoding="utf-8")
 
 
-def write_trace(files: Replacement, trace: Trace | WorldTrace) -> None:
-    """Write ``trace.npz``, which contains every column of the trace by path."""
+def write_trace(
+    files: Replacement, trace: Trace | WorldTrace, more: Mapping[str, Any] = MappingProxyType({})
+) -> None:
+    """Write ``trace.npz``, which contains every column of the trace by path, and the columns ``more``."""
     with files.writing(TRACE) as path, path.open("wb") as stream:
         if isinstance(trace, _core.WorldTrace):
             columns = world_arrays(trace)
@@ -51,7 +54,7 @@ def write_trace(files: Replacement, trace: Trace | WorldTrace) -> None:
             columns = arrays_of(trace)
             if len(trace.rereferenced):
                 columns["rereferenced"] = np.asarray(trace.rereferenced)
-        np.savez(stream, allow_pickle=False, **columns)
+        np.savez(stream, allow_pickle=False, **columns, **more)
 
 
 def write_summary(files: Replacement, summary: dict[str, Any]) -> None:

@@ -22,6 +22,7 @@ from onorbit_rs.scenario.reference.start import Start
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.trial import Flight, about_controllers, about_start, try_effects, try_one_step
 from onorbit_rs.scenario.warnings import warnings_of
+from onorbit_rs.scenario.watches import build_watches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -71,6 +72,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     """
     check_record_every(scenario)
     model = scenario.robot.build(scenario)
+    build_watches(scenario, {"": model})
     around = build_environment(scenario, model)
     with located(scenario, "initial"):
         q, v = scenario.initial.build(model, around.orbit)

@@ -29,6 +29,7 @@ from onorbit_rs.scenario.events import split_path
 from onorbit_rs.scenario.initial import Neighbour
 from onorbit_rs.scenario.locations import located
 from onorbit_rs.scenario.settings import ControlSettings
+from onorbit_rs.scenario.watches import build_watches
 from onorbit_rs.scenario.world import WorldScenario
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def build_world(scenario: WorldScenario, *, runs_code: bool = True) -> BuiltWorl
     single = scenario.scenarios
     check_record_every(next(iter(single.values())))
     models = {name: alone.robot.build(alone) for name, alone in single.items()}
+    build_watches(scenario, models)
     around = build_environment(scenario, None)
     states = _initial_states(scenario, models, around)
     with warnings.catch_warnings():

@@ -13,6 +13,7 @@ from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.orbit import Orbit
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.validation_errors import first_error
+from onorbit_rs.scenario.watches import KeepOutZone, LeastDistance
 from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
 
@@ -34,6 +35,10 @@ class Document(Part):
     """Reference orbit. Without an orbit there is no gravity."""
     environment: list[Effect] = Field(default_factory=list)
     """Effects besides the gravity of a point mass."""
+    keep_out: list[KeepOutZone] = Field(default_factory=list)
+    """Zones that links must not enter. Entries are reported; no force acts."""
+    distances: list[LeastDistance] = Field(default_factory=list)
+    """Least distances between links, which are recorded. Overlaps are reported; no force acts."""
 
     _file: Path | None = PrivateAttr(default=None)
     _lines: Lines = PrivateAttr(default_factory=dict)

@@ -23,6 +23,7 @@ from onorbit_rs.scenario.reference import Reference
 from onorbit_rs.scenario.robot import Robot
 from onorbit_rs.scenario.settings import ControlSettings, SimulationSettings
 from onorbit_rs.scenario.validation_errors import first_error
+from onorbit_rs.scenario.watches import check_names
 from onorbit_rs.scenario.yaml_lines import Lines, Location
 
 
@@ -111,6 +112,7 @@ class Scenario(RobotKeys, Document):
         context = info.context or {}
         check_control(self, context.get("events", []), context.get("systems", []))
         check_engine(self)
+        check_names(self)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
                 if not isinstance(effect, BodyWrenchEffect):

@@ -21,6 +21,7 @@ from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.orbit import StartOrbit
 from onorbit_rs.scenario.schema import InWorld, RobotKeys, Scenario
 from onorbit_rs.scenario.settings import ControlSettings, WorldSettings
+from onorbit_rs.scenario.watches import check_names
 from onorbit_rs.scenario.yaml_lines import Lines, Location
 
 
@@ -128,6 +129,7 @@ class WorldScenario(Document):
             self._check_start(name, system)
             self._check_knows(name, system)
         check_contacts(self.contacts, names)
+        check_names(self)
         check_events(self.events, names)
         check_world_engine(self)
         return self

@@ -19,6 +19,7 @@ from onorbit_rs.output import (
     write_summary,
     write_trace,
 )
+from onorbit_rs.output.clearance import add_clearances, clearance_arrays, found_clearances
 from onorbit_rs.scenario.build import Built
 from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.scenario.divergence import divergence
@@ -39,12 +40,16 @@ def finished(
     """Evaluate the certificate of a completed run, write its folder, and return its summary."""
     tell("certificate")
     if folder is None:
-        return _summary(trace, built)
+        summary = _summary(trace, built)
+        add_clearances(summary, found_clearances(trace, built))
+        return summary
     with _noting(lambda: _not_written(folder)):
         summary = _summary(trace, built)
+        found = found_clearances(trace, built)
+        add_clearances(summary, found)
         tell("writing the trace")
         with folder.replacing() as files:
-            write_trace(files, trace)
+            write_trace(files, trace, clearance_arrays(found))
             write_summary(files, summary)
     with _noting(lambda: f"trace and summary in {folder.path} are complete; {_not_drawn(folder)}"):
         write_pictures(folder, trace, summary, built, tell=tell)
