@@ -170,7 +170,7 @@ def test_a_scenario_mounts_and_changes(files: Path) -> None:
 def test_links_are_changed_before_a_file_is_checked(files: Path) -> None:
     bare = robot("bus", '<link name="hull"/>')
     (files / "bare.urdf").write_text(bare)
-    with pytest.raises(oo.exceptions.ModelError, match=r"bare\.urdf: the robot has no mass.*argument 'links'"):
+    with pytest.raises(oo.exceptions.ModelError, match=r"bare\.urdf: the robot has no mass.*'links'"):
         oo.Model.from_urdf(files / "bare.urdf")
     given = {"mass": 10.0, "inertia": np.diag([1.0, 2.0, 2.5])}
     model = oo.Model.from_urdf(files / "bare.urdf", links={"hull": given})
