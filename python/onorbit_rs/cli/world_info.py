@@ -117,7 +117,7 @@ def _print_contacts(contacts: list[Contact], console: Console) -> None:
     _left(table, 0, 1, 2, 3)
     for contact in contacts:
         sides = (", ".join(side) for side in contact.between)
-        friction = "-" if contact.friction is None else f"{contact.friction.static:g}"
+        friction = "-" if contact.friction is None else f"{contact.friction.build().static:g}"
         table.add_row(*map(text, (contact.label, *sides, _law(contact), friction)))
     print_table(console, table)
 

@@ -102,8 +102,11 @@ NormalLaw = Annotated[
 class Friction(Part):
     """Coulomb friction with elastic bristles: nothing creeps inside the friction cone."""
 
-    static: Annotated[Number, NotNegative]
+    static: Annotated[Number, NotNegative] | None = None
     """Coefficient of static friction, at least the kinetic coefficient."""
+    materials: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
+    """Names of both materials, as an alternative to ``static`` and ``kinetic``: a pair of ``materials``, or
+    one with typical coefficients."""
     kinetic: Annotated[Number, NotNegative] | None = None
     """Coefficient of kinetic friction. Default: the static coefficient."""
     torsional: Annotated[Length, NotNegative] = 0.0
@@ -115,13 +118,19 @@ class Friction(Part):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
-        if self.kinetic is not None and self.kinetic > self.static:
+        if self.materials is not None and (self.static is not None or self.kinetic is not None):
+            message = "'materials' replaces 'static' and 'kinetic'; give the materials or the coefficients"
+            raise inconsistent("materials", message)
+        if self.static is None and self.materials is None:
+            raise invalid("has no coefficients; give 'static', or 'materials', such as [copper, mild steel]")
+        if self.kinetic is not None and self.static is not None and self.kinetic > self.static:
             message = f"{self.kinetic:g} exceeds the static coefficient, {self.static:g}; give at most that"
             raise inconsistent("kinetic", message)
         return self
 
     def build(self) -> _core.Friction:
-        """Return the friction as an object of the engine."""
+        """Return the friction as an object of the engine; materials must have been looked up."""
+        assert self.static is not None
         return _core.Friction(
             self.static, self.kinetic, self.torsional, stiffness=self.stiffness, damping=self.damping
         )

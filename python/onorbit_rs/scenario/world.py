@@ -18,6 +18,7 @@ from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
 from onorbit_rs.scenario.errors import inconsistent
 from onorbit_rs.scenario.events import Event, ItsName, check_events
 from onorbit_rs.scenario.locations import scenario_error
+from onorbit_rs.scenario.materials import MaterialPair, check_materials, look_up
 from onorbit_rs.scenario.orbit import StartOrbit
 from onorbit_rs.scenario.schema import InWorld, RobotKeys, Scenario
 from onorbit_rs.scenario.settings import ControlSettings, WorldSettings
@@ -48,6 +49,8 @@ class WorldScenario(Document):
     systems: Annotated[dict[ItsName, System], Field(min_length=1)]
     contacts: list[Contact] = Field(default_factory=list)
     """Contacts between links. Default: systems pass through each other."""
+    materials: dict[str, MaterialPair] = Field(default_factory=dict)
+    """Coefficients of friction by pair, such as ``rubber-aluminium``, for ``materials`` of contacts."""
     events: list[Event] = Field(default_factory=list)
     simulation: WorldSettings
 
@@ -129,6 +132,8 @@ class WorldScenario(Document):
             self._check_start(name, system)
             self._check_knows(name, system)
         check_contacts(self.contacts, names)
+        check_materials(self.materials)
+        look_up(self.contacts, self.materials)
         check_names(self)
         check_events(self.events, names)
         check_world_engine(self)
