@@ -68,7 +68,7 @@ def test_a_crashed_viewer_is_distinguished_from_an_unwritable_picture(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     viewer_is(monkeypatch, PANICS)
-    with pytest.raises(ViewerError, match=r'display the recording: No glyph for "x"$'):
+    with pytest.raises(ViewerError, match=r'display the recording: No glyph for "x"; repeat the run'):
         save_picture(folder, folder / "run.png", 0.0)
     assert not (folder / "run.png").exists()
 

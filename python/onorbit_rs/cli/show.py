@@ -23,6 +23,9 @@ def show(
     at: Annotated[
         float | None, typer.Option(metavar="SECONDS", help="Time of the picture; default: 0.")
     ] = None,
+    collision: Annotated[
+        bool, typer.Option("--collision", help="Show the collision shapes in the picture.")
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
     as_json: JsonOption = False,
 ) -> None:
@@ -43,6 +46,12 @@ def show(
         )  # fmt: skip
     if at is not None and picture is None:
         raise InputError(f"--at {at:g} sets the time of a picture; add --picture FILE.png", name="at", got=at)
+    if collision and picture is None:
+        raise InputError(
+            "--collision shows the collision shapes in a picture; add --picture FILE.png, or switch on the "
+            "entities 'collision' in the blueprint panel of the viewer",
+            name="collision", got=True,
+        )  # fmt: skip
     saved = SavedRun(folder)
     summary = saved.summary()
     _check_time(at or 0.0, float(summary.get("simulated_s") or 0.0))
@@ -58,7 +67,7 @@ def show(
             if remark is not None:
                 print_line(f"note: {remark}")
     if picture is not None:
-        save_picture(folder, picture, at or 0.0)
+        save_picture(folder, picture, at or 0.0, has_collisions=collision)
         if not as_json:
             print_line(f"picture: {picture}")
     elif viewer and not as_json:
@@ -102,8 +111,8 @@ def _check_time(at_s: float, end_s: float) -> None:
         )  # fmt: skip
 
 
-def save_picture(folder: Path, picture: Path, at_s: float) -> None:
-    """Save a picture of the viewer at a time of a run.
+def save_picture(folder: Path, picture: Path, at_s: float, *, has_collisions: bool = False) -> None:
+    """Save a picture of the viewer at a time of a run, on request with the collision shapes.
 
     Raises
     ------
@@ -114,4 +123,4 @@ def save_picture(folder: Path, picture: Path, at_s: float) -> None:
     """
     from onorbit_rs import viewer
 
-    viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s)
+    viewer.take_screenshot(folder / "run.rrd", picture, at_s=at_s, has_collisions=has_collisions)

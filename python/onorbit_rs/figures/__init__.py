@@ -7,7 +7,9 @@ Only this folder imports matplotlib.
 from __future__ import annotations
 
 from onorbit_rs.figures.captured_motion import captured_motion
+from onorbit_rs.figures.contact_energy import contact_energy
 from onorbit_rs.figures.contact_history import contact_history
+from onorbit_rs.figures.contact_overview import contact_overview
 from onorbit_rs.figures.differences import differences
 from onorbit_rs.figures.drawings import Drawing, drawings
 from onorbit_rs.figures.forces import environment_forces
@@ -40,7 +42,9 @@ __all__ = [
     "base_motion",
     "base_reaction",
     "captured_motion",
+    "contact_energy",
     "contact_history",
+    "contact_overview",
     "control_errors",
     "desired_trajectory",
     "differences",

@@ -11,7 +11,9 @@ import numpy as np
 from onorbit_rs.common.file_parts import file_part
 from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.captured_motion import captured_motion
+from onorbit_rs.figures.contact_energy import contact_energy
 from onorbit_rs.figures.contact_history import contact_history
+from onorbit_rs.figures.contact_overview import contact_overview
 from onorbit_rs.figures.drawings import Drawing
 from onorbit_rs.figures.event_marks import of_systems
 from onorbit_rs.figures.shared_balance import energy_exchange, momentum_exchange
@@ -40,16 +42,7 @@ def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
         )
         draw = partial(captured_motion, trace, models, connection, events)
         yield Drawing(f"{PREFIX}capture_{connection.name}", about, draw)
-    for number, (contact, rows) in enumerate(trace.contacts.items()):
-        if not np.any(np.asarray(rows.force) != 0.0):
-            continue
-        part = file_part(contact) if file_part(contact) == contact else f"{number + 1}_{file_part(contact)}"
-        about = (
-            f"Contact {contact} from the first touch to the last one: gap (negative: depth), normal force "
-            "and friction, sliding speed, and energies."
-        )
-        draw = partial(contact_history, trace, contact)
-        yield Drawing(f"{PREFIX}contact_{part}", about, draw)
+    yield from _of_contacts(subject)
     groups = connected_groups(list(trace.names), subject.connections, subject.touching)
     for group in groups:
         which = "" if len(groups) == 1 else f"_{group[0]}"
@@ -63,9 +56,36 @@ def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
         lost = ", and the energy lost in events" if of_systems(events, group) else ""
         about = f"Kinetic energy of {' and '.join(group)} in W{lost}."
         yield Drawing(f"{PREFIX}energy{which}", about, partial(energy_exchange, trace, group, events))
+        if any(trace[name].contacts for name in group):
+            about = (
+                f"Energy of {' and '.join(group)}: kinetic energy in W, and elastic and dissipated energy of "
+                "the contacts. The sum, less the work of motors and environment, is constant."
+            )
+            yield Drawing(f"{PREFIX}ledger{which}", about, partial(contact_energy, trace, group, events))
     if all(has_local_frame(trace[name]) for name in trace.names) and is_apart(trace, models):
         about = (
             "Paths relative to the reference orbit in L, seen along the orbit normal and from above, and the "
             "distances between the bases."
         )
         yield Drawing(f"{PREFIX}motion", about, partial(formation_motion, trace, events))
+
+
+def _of_contacts(subject: WorldSubject) -> Iterator[Drawing]:
+    """Yield the figures of contacts: all of them over the whole run, and each while its sides touch."""
+    trace = subject.trace
+    if not trace.contacts:
+        return
+    about = (
+        "Contacts over the whole run: a bar for each touch, from touch-down to lift-off, and the gap, the "
+        "smallest distance of both sides (negative: depth). Beside the bars: number and total duration."
+    )
+    yield Drawing(f"{PREFIX}contacts", about, partial(contact_overview, trace, subject.events))
+    for number, (contact, rows) in enumerate(trace.contacts.items()):
+        if not np.any(np.asarray(rows.force) != 0.0):
+            continue
+        part = file_part(contact) if file_part(contact) == contact else f"{number + 1}_{file_part(contact)}"
+        about = (
+            f"Contact {contact} from the first touch to the last one: gap (negative: depth), normal force "
+            "and friction, sliding speed, and energies."
+        )
+        yield Drawing(f"{PREFIX}contact_{part}", about, partial(contact_history, trace, contact))

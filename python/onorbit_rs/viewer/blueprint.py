@@ -13,7 +13,7 @@ from onorbit_rs.viewer.flight import flight_bodies, flight_view, is_apart
 from onorbit_rs.viewer.frames import FOLLOW
 from onorbit_rs.viewer.planet import INERTIAL, shows_sun, to_eye
 from onorbit_rs.viewer.plots import plots_in_groups
-from onorbit_rs.viewer.scene import COLORS, MOVES, UNTIL_NOW, on_path, trail_of
+from onorbit_rs.viewer.scene import COLORS, MOVES, UNTIL_NOW, collisions_of, on_path, trail_of
 from onorbit_rs.viewer.trace_rows import TIMELINE
 
 if TYPE_CHECKING:
@@ -65,9 +65,15 @@ def axes_of_camera(rows: TraceRows) -> str:
 
 
 def scene_view(
-    name: str, contents: list[str], frame: str, viewpoint: Viewpoint, settings: Sequence[Setting]
+    name: str,
+    contents: list[str],
+    frame: str,
+    viewpoint: Viewpoint,
+    settings: Sequence[Setting],
+    *,
+    has_collisions: bool = False,
 ) -> rrb.View:
-    """Return a 3-D view from a camera that is fixed in a frame."""
+    """Return a 3-D view from a camera that is fixed in a frame; collision shapes are hidden by default."""
     return rrb.Spatial3DView(
         origin="world",
         contents=contents,
@@ -76,12 +82,15 @@ def scene_view(
         eye_controls=viewpoint.eye(),
         background=BACKGROUND,
         line_grid=False,
-        overrides=_trails_until_now(settings),
+        overrides=_overrides(settings, has_collisions=has_collisions),
     )
 
 
-def _trails_until_now(settings: Sequence[Setting]) -> dict[Any, Any]:
-    return {trail_of(setting, name): UNTIL_NOW for setting in settings for name in COLORS}
+def _overrides(settings: Sequence[Setting], *, has_collisions: bool = False) -> dict[Any, Any]:
+    """Return the overrides of a 3-D view: trails until now and, unless wanted, hidden collision shapes."""
+    found: dict[Any, Any] = {trail_of(setting, name): UNTIL_NOW for setting in settings for name in COLORS}
+    hidden = [] if has_collisions else [setting for setting in settings if setting.collisions]
+    return found | {collisions_of(setting): rrb.EntityBehavior(visible=False) for setting in hidden}
 
 
 def with_panels(
@@ -95,12 +104,17 @@ def with_panels(
             timeline=TIMELINE,
             play_state="following" if is_live else "playing",
             loop_mode="off" if is_live else "all",
-            playback_speed=max(1.0, duration_s / PLAYS_IN_S),
+            playback_speed=playback_speed(duration_s),
         ),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
         auto_views=False,
     )
+
+
+def playback_speed(duration_s: float) -> float:
+    """Return the ratio of simulated time to wall-clock time with which a run is played."""
+    return max(1.0, duration_s / PLAYS_IN_S)
 
 
 def near_path(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> rrb.View | None:
@@ -124,7 +138,7 @@ def near_path(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> rrb.Vi
         ),
         background=BACKGROUND,
         line_grid=False,
-        overrides=_trails_until_now([setting]),
+        overrides=_overrides([setting]),
     )  # fmt: skip
 
 

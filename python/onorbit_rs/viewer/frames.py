@@ -74,7 +74,10 @@ def send_fixed_frames(recording: rr.RecordingStream, setting: Setting) -> None:
     """Log links that are fixed to another link, the tool, and the frames of captures."""
     model = setting.model
     moving = set(model.body_names)
-    wanted = {shape.link for shape in setting.shapes} | {setting.tool, *setting.grasps}
+    wanted = {shape.link for shape in (*setting.shapes, *setting.collisions)} | {
+        setting.tool,
+        *setting.grasps,
+    }
     for frame in model.frames:
         if frame.name in wanted - moving:
             fix_frame(

@@ -33,6 +33,7 @@ from onorbit_rs.viewer.planet import log_path_flown, log_planet, send_planet, se
 from onorbit_rs.viewer.scene import (
     MOST_TRAIL_PIECES,
     NEAR,
+    log_collisions,
     log_path,
     log_robot,
     path_length,
@@ -155,6 +156,7 @@ def log_craft(recording: rr.RecordingStream, rows: TraceRows, setting: Setting, 
     """Log the shapes and the axes of one robot; the axes are placed according to the first rows."""
     send_fixed_frames(recording, setting)
     log_robot(recording, setting)
+    log_collisions(recording, setting)
     log_all_axes(
         recording, setting, viewpoint.size, (viewpoint.inertial_at, viewpoint.local_at),
         near=NEAR * path_length(rows, setting), in_orbit=rows.quat_wl is not None,

@@ -22,7 +22,7 @@ from onorbit_rs.viewer.frames import (
     put_in,
     send_frame,
 )
-from onorbit_rs.viewer.solids import log_shape
+from onorbit_rs.viewer.solids import log_shape, log_wireframe
 from onorbit_rs.viewer.trace_rows import TIMELINE
 
 if TYPE_CHECKING:
@@ -57,6 +57,20 @@ def log_robot(recording: rr.RecordingStream, setting: Setting) -> None:
         path = rr.new_entity_path([*setting.entity("robot").split("/"), shown(shape.link), f"visual_{index}"])
         for entity in log_shape(recording, path, shape):
             put_in(recording, entity, setting.frame_of(shape.link))
+
+
+def log_collisions(recording: rr.RecordingStream, setting: Setting) -> None:
+    """Log the collision shapes of the robot as wireframes, which the layout hides."""
+    for index, shape in enumerate(setting.collisions):
+        root = collisions_of(setting).split("/")
+        path = rr.new_entity_path([*root, shown(shape.link), f"collision_{index}"])
+        log_wireframe(recording, path, shape)
+        put_in(recording, path, setting.frame_of(shape.link))
+
+
+def collisions_of(setting: Setting) -> str:
+    """Return the path of the entity with the collision shapes of a robot."""
+    return setting.entity("collision")
 
 
 def send_desired(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:

@@ -17,7 +17,7 @@ from rerun.experimental import ViewerClient
 
 from onorbit_rs.common.files import replacing
 from onorbit_rs.exceptions import NotFoundError, ViewerError
-from onorbit_rs.viewer.screen import command_of, environment, free_port, reason, url_of
+from onorbit_rs.viewer.screen import command_of, environment, free_port, reason, show_collisions, url_of
 from onorbit_rs.viewer.trace_rows import TIMELINE
 
 SETTLE_S = 3.0
@@ -25,7 +25,13 @@ SETTLE_S = 3.0
 
 
 def take_screenshot(
-    recording: Path, picture: Path, *, at_s: float = 0.0, width: int = 1920, height: int = 1080
+    recording: Path,
+    picture: Path,
+    *,
+    at_s: float = 0.0,
+    width: int = 1920,
+    height: int = 1080,
+    has_collisions: bool = False,
 ) -> Path:
     """Open a ``.rrd`` file without a window, set the simulation time, and save a picture.
 
@@ -39,6 +45,8 @@ def take_screenshot(
         Simulation time, s.
     width, height : int
         Size of the picture, pixels.
+    has_collisions : bool
+        Show the collision shapes too.
 
     Raises
     ------
@@ -65,7 +73,7 @@ def take_screenshot(
         except OSError as error:
             raise _not_started(str(error)) from error
         try:
-            image = _picture(_connect(port, viewer, said), viewer, said, at_s)
+            image = _picture(_connect(port, viewer, said), viewer, said, at_s, has_collisions=has_collisions)
         finally:
             viewer.kill()
             viewer.wait()
@@ -80,6 +88,8 @@ def _picture(
     said: IO[str],
     at_s: float,
     patience_s: float = 60.0,
+    *,
+    has_collisions: bool = False,
 ) -> bytes:
     """Return the picture at a time as PNG, after the recording was read."""
     time.sleep(SETTLE_S)
@@ -87,6 +97,8 @@ def _picture(
     while True:
         try:
             client.set_time(TIMELINE, duration=at_s, play_state="paused")
+            if has_collisions:
+                show_collisions(client)
             time.sleep(SETTLE_S)
             return client.take_screenshot()
         except OSError as error:  # the recording is not loaded yet

@@ -13,7 +13,7 @@ from onorbit_rs.scenario.targets import Target, targets
 from onorbit_rs.viewer.font import shown
 from onorbit_rs.viewer.targets import PathFrame, path_frame
 from onorbit_rs.visuals.geometry import Shape, extent
-from onorbit_rs.visuals.shapes import shapes
+from onorbit_rs.visuals.shapes import collision_shapes, shapes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -78,6 +78,11 @@ class Setting:
     def shapes(self) -> list[Shape]:
         """Shapes of the robot that are drawn."""
         return shapes(self.model)
+
+    @cached_property
+    def collisions(self) -> list[Shape]:
+        """Collision shapes of the robot, which are drawn on request."""
+        return collision_shapes(self.model)
 
     @property
     def robot(self) -> str:

@@ -62,6 +62,10 @@ def world_layout(
     if is_scene:
         name = f"{', '.join(setting.names)}: camera follows their centre of mass, axes of {axes}"
         scenes.append(scene_view(name, _contents(setting.names), FOLLOW, common, settings))
+        if setting.contacts:
+            contents = [*_contents(setting.names), *(f"- $origin/{name}/robot/**" for name in setting.names)]
+            name = "Contacts: collision shapes, points and forces"
+            scenes.append(scene_view(name, contents, FOLLOW, common, settings, has_collisions=True))
     flight = flight_view(bodies, _flight_contents(setting.names)) if bodies else None
     if flight is not None and not is_scene:
         scenes.append(flight)

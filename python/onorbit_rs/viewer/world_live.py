@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from onorbit_rs.viewer.arrows import Arrows
+from onorbit_rs.viewer.contact_marks import ContactMarks
 from onorbit_rs.viewer.flight import is_apart, send_flight
 from onorbit_rs.viewer.live import MOST_ROWS, View, connected_recording, send_paths_so_far
 from onorbit_rs.viewer.series import send_series
@@ -35,6 +36,7 @@ class WorldLiveView(View):
         self._setting = setting
         self._stage: Stage | None = None
         self._arrows: dict[str, Arrows] = {}
+        self._marks: ContactMarks | None = None
         self._before: dict[str, TraceRows] = {}
         self._counts = dict.fromkeys(setting.names, 0)
         self._has_flight = False
@@ -61,7 +63,7 @@ class WorldLiveView(View):
         self._show(WorldRows(self._setting, rest), trace.events)
 
     def _release(self) -> None:
-        self._arrows = {}
+        self._arrows, self._marks = {}, None
 
     def _show(self, world: WorldRows, events: Sequence[EventRecord]) -> None:
         """Show new rows and events; if a system has no new rows, all systems wait for the next update."""
@@ -90,10 +92,13 @@ class WorldLiveView(View):
             )  # fmt: skip
             self._arrows = {name: Arrows(recording, system, self._stage.alone[name])
                             for name, system in systems.items()}  # fmt: skip
+            self._marks = ContactMarks(recording, self._stage.common, self._stage.alone)
             self._has_flight = is_apart(bodies_of(world), self._stage.size)
         send_world(recording, world, self._stage)
         for rows, series in plots:
             send_series(recording, rows, self._continued(series))
+        if self._marks is not None:
+            self._marks.send(world)
         joined = {}
         for name, system in systems.items():
             if name in self._arrows:

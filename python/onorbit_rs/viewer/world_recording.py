@@ -12,7 +12,9 @@ from onorbit_rs.common.event_kinds import OF_CONTACT
 from onorbit_rs.common.file_parts import file_part
 from onorbit_rs.viewer.arrows import Arrows
 from onorbit_rs.viewer.axes import log_compass
+from onorbit_rs.viewer.blueprint import playback_speed
 from onorbit_rs.viewer.colors import of_systems
+from onorbit_rs.viewer.contact_marks import HELD_FOR, ContactMarks
 from onorbit_rs.viewer.flight import Body, flight_bodies, is_apart, log_flight, log_whole_flight, send_flight
 from onorbit_rs.viewer.frames import COMPASS, FOLLOW, WORLD, put_in, send_follow, send_local_frame
 from onorbit_rs.viewer.notes import about_meshes, about_rows
@@ -118,6 +120,8 @@ def _send_run(
     for name, system in setting.systems.items():
         log_paths(recording, world[name], system, stage.alone[name])
         Arrows(recording, system, stage.alone[name]).send(world[name])
+    held_s = HELD_FOR * playback_speed(duration)
+    ContactMarks(recording, stage.common, stage.alone, held_s).send(world)
     if is_apart(bodies := bodies_of(world), stage.size):
         log_whole_flight(recording, bodies)
         send_flight(recording, bodies, MOST_TRAIL_PIECES)

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError
+from onorbit_rs.visuals.convex_hull import convex_hull
 from onorbit_rs.visuals.geometry import GREY, Shape, box_of_inertia, grey_shape, pose_of
-from onorbit_rs.visuals.meshes import Mesh, read_mesh
+from onorbit_rs.visuals.meshes import Mesh, Part, read_mesh
+from onorbit_rs.visuals.meshes.part import PLAIN
 from onorbit_rs.visuals.revolved import revolved
 
 if TYPE_CHECKING:
@@ -44,6 +47,29 @@ def shapes(model: Model) -> list[Shape]:
         [shape for shape in model.collisions if shape.link in bare and shape.kind != "half_space"]
     )
     return [*found, *solid, *_stick_figure(model, bare, {shape.link for shape in solid})]
+
+
+def collision_shapes(model: Model) -> list[Shape]:
+    """Return the collision shapes of a robot, meshes as their convex hulls.
+
+    Meshes that cannot be read and half-spaces, which have no boundary to draw, are omitted.
+    """
+    bounded = [visual for visual in model.collisions if visual.kind != "half_space"]
+    files, solid = (
+        [visual for visual in bounded if (visual.kind == "mesh") == is_file] for is_file in (1, 0)
+    )
+    hulls = [replace(shape, mesh=_hull_of(shape.mesh)) for shape in _drawable(files)[0] if shape.mesh]
+    return [*_drawable(solid)[0], *hulls]
+
+
+def _hull_of(mesh: Mesh) -> Mesh:
+    """Return the convex hull of all parts of a mesh."""
+    vertices, faces = convex_hull(np.concatenate([part.vertices for part in mesh.parts]).astype(np.float64))
+    normals = vertices - vertices.mean(axis=0)  # rough, and sufficient for a wireframe
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    colors = np.tile(np.array(PLAIN, np.uint8), (len(vertices), 1))
+    part = Part(vertices.astype(np.float32), faces.astype(np.uint32), normals.astype(np.float32), colors)
+    return Mesh((part,))
 
 
 @lru_cache(1024)

@@ -1,0 +1,139 @@
+"""Energy of a group of systems through its contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from onorbit_rs.common.display_units import ROUNDING, with_prefix
+from onorbit_rs.common.event_kinds import OF_CONTACT
+from onorbit_rs.common.group_momentum import shared_rows
+from onorbit_rs.common.touches import touches_of
+from onorbit_rs.figures.event_marks import of_systems
+from onorbit_rs.figures.style import (
+    COLORS,
+    INK,
+    PAGE,
+    hide_rounding,
+    legend_of_figure,
+    new_figure,
+    plot_lines,
+    tidy,
+    time_unit,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs._core import WorldTrace
+    from onorbit_rs.figures.world_subject import EventMark
+
+    Floats = NDArray[np.float64]
+
+MARGIN = 0.3
+"""Time drawn before and after a touch, as a fraction of its duration."""
+SHORT = 0.25
+"""Longest touch, as a fraction of the run, that has an enlarged panel."""
+WORTH_SHOWING = 1e-6
+"""Smallest work that is drawn, as a fraction of the largest energy."""
+SUM = "sum"
+
+
+def contact_energy(trace: WorldTrace, systems: Sequence[str], events: Sequence[EventMark] = ()) -> Figure:
+    """Draw kinetic, elastic and dissipated energy of a group of systems, their work, and the constant sum.
+
+    If the touch with the largest elastic energy is short, a second panel enlarges it.
+
+    Parameters
+    ----------
+    trace : WorldTrace
+        Trace of the run.
+    systems : sequence of str
+        Names of the systems of the group.
+    events : sequence of EventMark
+        Events of the run.
+    """
+    time, lines = ledger_of(trace, systems, events)
+    windows = [(float(time[0]), float(time[-1]))]
+    touch = _largest_touch(time, lines["elastic"], events, list(_contacts(trace, systems)))
+    if touch is not None and touch[1] - touch[0] < SHORT * (time[-1] - time[0]):
+        margin = MARGIN * (touch[1] - touch[0])
+        windows.append((touch[0] - margin, touch[1] + margin))
+    figure = new_figure(PAGE, 2.7)
+    peak = max(float(np.abs(values).max()) for values in lines.values())
+    factor, unit = with_prefix(peak, "J")
+    panels = figure.subplots(1, len(windows), squeeze=False, sharey=True, gridspec_kw={"wspace": 0.06})[0]
+    for axes, (start, end) in zip(panels, windows, strict=True):
+        rows = (time >= start) & (time <= end)
+        _draw(axes, time[rows], {name: factor * values[rows] for name, values in lines.items()})
+        hide_rounding(axes, ROUNDING * max(factor, 1.0))
+        axes.set_ylabel("" if axes is not panels[0] else f"energy [{unit}]")
+    legend_of_figure(figure, panels[0])
+    return figure
+
+
+def ledger_of(
+    trace: WorldTrace, systems: Sequence[str], events: Sequence[EventMark] = ()
+) -> tuple[Floats, dict[str, Floats]]:
+    """Return the times common to the systems, (T,) s, and by name the energies of the group, (T,) J.
+
+    The recorded work of a system is that of motors, environment and contacts, less the losses in joints. What
+    the contacts took is stored as elastic energy or dissipated, so the work of the others is
+    `W - W_0 + Σ (U + D) - Σ (U_0 + D_0)`. The last entry is the sum, with this work subtracted.
+    """
+    times = [np.asarray(trace[name].time) for name in systems]
+    rows = shared_rows(times)
+    time = times[0][rows[0]]
+    kinetic, recorded = (
+        sum((np.asarray(getattr(trace[name], column))[own] for name, own in zip(systems, rows, strict=True)),
+            start=np.zeros(len(time)))
+        for column in ("kinetic_energy", "work")
+    )  # fmt: skip
+    elastic, dissipated = np.zeros(len(time)), np.zeros(len(time))
+    for name, owner in _contacts(trace, systems).items():
+        own = rows[list(systems).index(owner)]
+        elastic += np.asarray(trace.contacts[name].elastic)[own]
+        dissipated += np.asarray(trace.contacts[name].dissipated)[own]
+    taken = elastic + dissipated
+    work = recorded - recorded[0] + taken - taken[0]
+    lines = {"kinetic": kinetic, "elastic": elastic, "dissipated": dissipated}
+    balance = kinetic + taken - work
+    if np.abs(work).max() > WORTH_SHOWING * max(float(np.abs(own).max()) for own in lines.values()):
+        lines["work of motors and environment"] = work
+    jumps = [event for event in of_systems(events, systems) if event.kind not in OF_CONTACT]
+    if jumps:
+        lost = np.zeros(len(time))
+        for event in jumps:  # the second of the two rows at this time is the one after the event
+            lost[np.searchsorted(time, event.time, side="right") - 1 :] += event.energy_lost
+        lines["lost in events"] = lost
+        balance = balance + lost
+    name = f"{SUM} less the work" if "work of motors and environment" in lines else SUM
+    return time, lines | {name: balance}
+
+
+def _contacts(trace: WorldTrace, systems: Sequence[str]) -> dict[str, str]:
+    """Return the system that records each contact of a group, by the name of the contact."""
+    return {name: system for system in systems for name in trace[system].contacts}
+
+
+def _largest_touch(
+    time: Floats, elastic: Floats, events: Sequence[EventMark], contacts: Sequence[str]
+) -> tuple[float, float] | None:
+    """Return the times, s, of the touch that contains the largest elastic energy; None without one."""
+    at = float(time[np.argmax(elastic)])
+    found = touches_of(events, float(time[-1]))
+    within = (touch for name in contacts for touch in found.get(name, ()) if touch[0] <= at <= touch[1])
+    return next(within, None)
+
+
+def _draw(axes: Axes, time: Floats, lines: Mapping[str, Floats]) -> None:
+    """Draw energies over time; the last one, the sum, is dashed."""
+    scale, clock = time_unit(time)
+    plot_lines(axes, time / scale, np.stack(list(lines.values()), axis=1), tuple(lines),
+               (*COLORS[: len(lines) - 1], INK))  # fmt: skip
+    axes.lines[-1].set_linestyle((0, (3, 1.5)))
+    tidy(axes, f"time [{clock}]", "")
