@@ -46,7 +46,7 @@ SUM = "sum"
 def contact_energy(trace: WorldTrace, systems: Sequence[str], events: Sequence[EventMark] = ()) -> Figure:
     """Draw kinetic, elastic and dissipated energy of a group of systems, their work, and the constant sum.
 
-    If the touch with the largest elastic energy is short, a second panel enlarges it.
+    If the touch with the largest elastic energy is short, a second panel shows the changes since it began.
 
     Parameters
     ----------
@@ -58,21 +58,19 @@ def contact_energy(trace: WorldTrace, systems: Sequence[str], events: Sequence[E
         Events of the run.
     """
     time, lines = ledger_of(trace, systems, events)
-    windows = [(float(time[0]), float(time[-1]))]
     touch = _largest_touch(time, lines["elastic"], events, list(_contacts(trace, systems)))
-    if touch is not None and touch[1] - touch[0] < SHORT * (time[-1] - time[0]):
-        margin = MARGIN * (touch[1] - touch[0])
-        windows.append((touch[0] - margin, touch[1] + margin))
+    is_short = touch is not None and touch[1] - touch[0] < SHORT * (time[-1] - time[0])
     figure = new_figure(PAGE, 2.7)
-    peak = max(float(np.abs(values).max()) for values in lines.values())
-    factor, unit = with_prefix(peak, "J")
-    panels = figure.subplots(1, len(windows), squeeze=False, sharey=True, gridspec_kw={"wspace": 0.06})[0]
-    for axes, (start, end) in zip(panels, windows, strict=True):
-        rows = (time >= start) & (time <= end)
-        _draw(axes, time[rows], {name: factor * values[rows] for name, values in lines.items()})
-        hide_rounding(axes, ROUNDING * max(factor, 1.0))
-        axes.set_ylabel("" if axes is not panels[0] else f"energy [{unit}]")
-    legend_of_figure(figure, panels[0])
+    whole, *close = figure.subplots(1, 2 if is_short else 1, squeeze=False)[0]
+    _draw(whole, time, lines, "energy")
+    for axes in close:
+        assert touch is not None
+        margin = MARGIN * (touch[1] - touch[0])
+        rows = (time >= touch[0] - margin) & (time <= touch[1] + margin)
+        at = int(np.argmax(time >= touch[0]))
+        _draw(axes, time[rows], {name: (own - own[at])[rows] for name, own in lines.items()},
+              "change since touch-down")  # fmt: skip
+    legend_of_figure(figure, whole)
     return figure
 
 
@@ -130,10 +128,12 @@ def _largest_touch(
     return next(within, None)
 
 
-def _draw(axes: Axes, time: Floats, lines: Mapping[str, Floats]) -> None:
-    """Draw energies over time; the last one, the sum, is dashed."""
+def _draw(axes: Axes, time: Floats, lines: Mapping[str, Floats], what: str) -> None:
+    """Draw energies, J, over time in a unit that suits them; the last one, the sum, is dashed."""
     scale, clock = time_unit(time)
-    plot_lines(axes, time / scale, np.stack(list(lines.values()), axis=1), tuple(lines),
-               (*COLORS[: len(lines) - 1], INK))  # fmt: skip
+    factor, unit = with_prefix(max(float(np.abs(values).max()) for values in lines.values()), "J")
+    columns = factor * np.stack(list(lines.values()), axis=1)
+    plot_lines(axes, time / scale, columns, tuple(lines), (*COLORS[: len(lines) - 1], INK))
     axes.lines[-1].set_linestyle((0, (3, 1.5)))
-    tidy(axes, f"time [{clock}]", "")
+    hide_rounding(axes, ROUNDING * max(factor, 1.0))
+    tidy(axes, f"time [{clock}]", f"{what} [{unit}]")

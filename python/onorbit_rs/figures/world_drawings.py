@@ -59,7 +59,8 @@ def world_drawings(subject: WorldSubject) -> Iterator[Drawing]:
         if any(trace[name].contacts for name in group):
             about = (
                 f"Energy of {' and '.join(group)}: kinetic energy in W, and elastic and dissipated energy of "
-                "the contacts. The sum, less the work of motors and environment, is constant."
+                "the contacts. The sum, less the work of motors and environment, is constant. A "
+                "second panel, if any, shows the changes during the touch with the largest elastic energy."
             )
             yield Drawing(f"{PREFIX}ledger{which}", about, partial(contact_energy, trace, group, events))
     if all(has_local_frame(trace[name]) for name in trace.names) and is_apart(trace, models):
