@@ -144,8 +144,9 @@ def test_the_saved_results_are_complete_and_on_the_page(versus: Any) -> None:
         for row in run["rows"]:
             ratio = row["ratio"]
             assert 0 < ratio["min"] <= ratio["median"] <= ratio["max"], row
-            # control loops: the other engines' Runge-Kutta methods leave the manifold by 3e-9
-            assert row["difference"] < 1e-8, row
+            # control loops: the other engines' Runge-Kutta methods leave the manifold by 3e-9;
+            # contacts: MuJoCo's smallest impedance changes the force by 1e-4
+            assert row["difference"] < (1e-4 if "contact" in row["what"] else 1e-8), row
     assert versus.page.measured(runs[-1]) in versus.page.PAGE.read_text()
     for row in versus.rows.ROWS:
         assert sum(row.widths(13)) > 0

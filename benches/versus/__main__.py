@@ -13,7 +13,7 @@ import page
 import programs
 import report
 from contestants import Contestants
-from measure import CAPTURE, captures, ceiling, measure
+from measure import CAPTURE, CONTACT, captures, ceiling, contacts, measure
 from rows import ROWS
 
 
@@ -55,6 +55,9 @@ def main() -> None:
             else:
                 run["rows"].append(measured)
                 print(report.line(measured, before), flush=True)
+        if arms == 1 and given.only in CONTACT and "contact" not in contestants.missing:
+            run["contacts"] = contacts(contestants, given.rounds, given.seconds)
+            print(f"{CONTACT}:", *report.contacts(run["contacts"]), sep="\n")
         run["ceiling"].append(ceiling(nv, contestants))
         contestants.close()
     if given.only in CAPTURE:

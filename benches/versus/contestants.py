@@ -6,6 +6,7 @@ import os
 import sys
 from pathlib import Path
 
+import contact
 import inputs
 import numpy as np
 import programs
@@ -32,7 +33,11 @@ COMPILED = {
     "reach": ("controlled", "robot.txt arm.bin reach.txt"),
     "controlled": ("controlled", "robot.txt arms.bin controlled.txt"),
     "mujoco": ("mujoco", f"robot.xml mujoco.bin {inputs.PASSIVE_RUNS} {inputs.PASSIVE_STEPS}"),
+    "contact": ("contact", f"contact.xml contact_soft.bin {contact.SOFT.steps}"),
+    "hard_contact": ("contact", f"contact.xml contact_hard.bin {contact.HARD.steps}"),
 }
+QPOS = ("mujoco", "contact", "hard_contact")  # programs whose states are in the layout of MuJoCo
+
 NEEDS = {"pinocchio_calls": "pin", "mujoco_rollout": "mujoco-core", "mujoco_rollout_all": "mujoco-core"}
 
 
@@ -67,7 +72,7 @@ class Contestants:
     def result(self, name: str, job: str) -> Array:
         """Returns the results of a job in the layout of this package."""
         rows = self[name].result(job, self.folder)
-        if name != "mujoco":
+        if name not in QPOS:
             return rows
         model = oo.Model.from_urdf(self.folder / "robot.urdf")
         rows = rows.reshape(-1, model.nq + model.nv)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import contact
 import numpy as np
 import robots
 from robots import REACH, Array
@@ -29,6 +30,7 @@ def write(folder: Path, arms: int) -> None:
     (folder / "robot.urdf").write_text(robots.urdf(robot))
     (folder / "robot.txt").write_text(robots.table(robot))
     (folder / "robot.xml").write_text(robots.mjcf(robot))
+    contact.write(folder, robot)
     model = oo.Model.from_urdf(folder / "robot.urdf")
     assert model.joint_names == [f"joint{k}" for k in range(1, robot.nv - 5)], (
         "all programs must have the same joint order"

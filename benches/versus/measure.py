@@ -8,9 +8,12 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+import contact
 from contestants import CORE, HERE, Contestants
 from rows import Row
 from timing import Contestant, Entry, alternate, difference, ratios
+
+import onorbit_rs as oo
 
 KERNELS = ("aba", "crba", "rnea", "jacobian", "reduced")
 LANES = {"avx512": ("avx2+fma", "avx512"), "avx2+fma": ("avx2+fma",), "fma": ("fma",)}
@@ -73,6 +76,47 @@ def captures(rounds: int, seconds: float) -> list[dict[str, Any]]:
         }
         for job, name in CAPTURES.items()
     ]
+
+
+CONTACT = "two craft in contact, accuracy"
+CONTACTS = {
+    "ours": "onorbit_rs, RK4, every step recorded",
+    "rk4": "MuJoCo, RK4",
+    "implicitfast": "MuJoCo, implicitfast",
+}
+
+
+def contacts(contestants: Contestants, rounds: int, seconds: float) -> list[dict[str, Any]]:
+    """Returns time and accuracy of two craft in contact, with soft and with hard pads.
+
+    The errors of each engine are relative to its own solution with steps that are shorter by
+    `contact.FINER`, since the forces of MuJoCo differ by 1e-4.
+    """
+    model, found = oo.Model.from_urdf(contestants.folder / "pads.urdf"), []
+    for pads, peer in ((contact.SOFT, "contact"), (contact.HARD, "hard_contact")):
+        sides = {"ours": ("ours", peer), "rk4": (peer, "rk4"), "implicitfast": (peer, "implicitfast")}
+        entries = [Entry(contestants[who], job) for who, job in sides.values()]
+        times = dict(zip(sides, alternate(entries, rounds, seconds), strict=True))
+        exact = {
+            who: contestants.result(who, job)
+            for who, job in (("ours", f"converged_{peer}"), (peer, "converged"))
+        }
+        for engine, (who, job) in sides.items():
+            steps = contestants["ours"].about["steps"][peer] if engine == "ours" else pads.steps
+            ns = statistics.median(times[engine])
+            off = contact.errors(model, pads, contestants.result(who, job), exact[who])
+            found.append(
+                {
+                    "engine": CONTACTS[engine],
+                    "pads": f"{pads.stiffness:.0e} N/m",
+                    "us_per_step": round(ns / 1e3, 2),
+                    "steps": steps,
+                    "ms_per_simulated_second": round(ns * steps / pads.duration / 1e6, 2),
+                    "ratio": {key: round(x, 3) for key, x in ratios(times[engine], times["ours"]).items()},
+                    **{key: float(f"{x:.2g}") for key, x in off.items()},
+                }
+            )
+    return found
 
 
 def ceiling(nv: int, contestants: Contestants) -> dict[str, Any]:

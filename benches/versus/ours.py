@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import contact
 import inputs
 import numpy as np
 from worker import Job, serve
@@ -96,6 +97,13 @@ def reach(**environment: Any) -> Job:
     return Job(inputs.REACH_STEPS, lambda: run.run(duration), end)
 
 
+def touch(pads: contact.Pads, parts: int = 1) -> Job:
+    """Returns the job of two craft in contact with every step recorded."""
+    run = contact.simulation(folder, pads, contact.TIME_STEP / parts)
+    steps = len(run.run(pads.duration)["a"].time) - 1
+    return Job(steps, lambda: run.run(pads.duration), lambda: contact.ends(run.run(pads.duration)))
+
+
 orbit = oo.Kepler(
     semi_major_axis=6778e3, eccentricity=0.0005, inclination=np.radians(51.6), raan=np.radians(30)
 )
@@ -110,7 +118,12 @@ jobs = {
     "controlled_rollout": controlled_rollout(),
     "reach": reach(orbit=orbit, environment=[oo.GravityGradient()]),
     "reach_empty": reach(),
+    "contact": touch(contact.SOFT),
+    "hard_contact": touch(contact.HARD),
+    "converged_contact": touch(contact.SOFT, contact.FINER),
+    "converged_hard_contact": touch(contact.HARD, contact.FINER),
 }
 if hasattr(model, "forward_dynamics_derivatives"):
     jobs["derivatives"] = batch_of(model.forward_dynamics_derivatives, *batch)
-serve(oo.build_info()["instruction_set"], jobs)
+steps = {name: job.units for name, job in jobs.items() if "contact" in name}
+serve(oo.build_info()["instruction_set"], jobs, steps=steps)

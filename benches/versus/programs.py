@@ -53,16 +53,17 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
     """Compiles the C++ programs if their sources changed; returns them, and why others are missing."""
     known = versions()
     if not known["g++"]:
-        return {}, dict.fromkeys(("kernels", "controlled", "mujoco"), "no g++ on this machine")
+        return {}, dict.fromkeys(("kernels", "controlled", "mujoco", "contact"), "no g++ on this machine")
     lib = next(iter(SITE.glob("mujoco/libmujoco.so.*")), None)
     prefix = SITE / "cmeel.prefix" / "include"
     pinocchio = [*BOOST, f"-I{prefix}", f"-I{prefix / 'eigen3'}"]
     links = [f"-I{SITE / 'mujoco' / 'include'}", str(lib), f"-Wl,-rpath,{SITE / 'mujoco'}"]
-    options = {"kernels": pinocchio, "controlled": pinocchio, "mujoco": links}
+    options = {"kernels": pinocchio, "controlled": pinocchio, "mujoco": links, "contact": links}
     needs = {
         "kernels": ("pin", "cmeel-eigen"),
         "controlled": ("pin", "cmeel-eigen"),
         "mujoco": ("mujoco-core",),
+        "contact": ("mujoco-core",),
     }
     headers = "".join(file.read_text() for file in sorted(PEERS.glob("*.hpp")))
     programs, missing, running = {}, {}, {}

@@ -76,6 +76,17 @@ def captures(entries: list[Run]) -> list[str]:
     ]
 
 
+def contacts(entries: list[Run]) -> list[str]:
+    """Returns a line for each engine and stiffness of two craft in contact: time and accuracy."""
+    return [
+        f"{entry['engine']:<38} {entry['pads']}: {entry['us_per_step']:6.2f} µs per step "
+        f"({entry['ratio']['median']:.2f} times), {entry['steps']} steps, "
+        f"{entry['ms_per_simulated_second']:.1f} ms per simulated s; errors: {entry['position_m']:.0e} m, "
+        f"energy {entry['energy']:.0e}, momentum lost {entry['momentum_lost']:.0e}"
+        for entry in entries
+    ]
+
+
 def regressions(run: Run, before: Run | None) -> list[str]:
     """Returns the rows whose ratio fell by more than 10 %, in every round below the previous median."""
     lost = []

@@ -109,18 +109,20 @@ def unit(axis: str) -> str:
     return " ".join("1" if letter == axis else "0" for letter in "xyz")
 
 
-def urdf(robot: Robot) -> str:
-    def link(name: str, body: Body) -> str:
+def urdf(robot: Robot, collision: str = "") -> str:
+    """Returns the URDF text, with the <collision> elements of the base."""
+
+    def link(name: str, body: Body, collision: str = "") -> str:
         names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
         moments = " ".join(f'{name}="{x!r}"' for name, x in zip(names, body.inertia, strict=True))
         inertial = f'<origin xyz="{text(body.com)}"/><mass value="{body.mass!r}"/><inertia {moments}/>'
-        return f'<link name="{name}"><inertial>{inertial}</inertial></link>'
+        return f'<link name="{name}"><inertial>{inertial}</inertial>{collision}</link>'
 
     def ends(parent: int, child: str, xyz: list[float]) -> str:
         return f'<parent link="body0{parent}"/><child link="{child}"/><origin xyz="{text(xyz)}"/>'
 
     limit = '<limit lower="-99" upper="99" effort="999" velocity="99"/>'
-    lines = ['<robot name="humanoid">', link("body00", robot.base)]
+    lines = ['<robot name="humanoid">', link("body00", robot.base, collision)]
     for k, joint in enumerate(robot.joints, 1):
         lines.append(link(f"body0{k}", joint.body))
         lines.append(
@@ -141,20 +143,26 @@ def table(robot: Robot) -> str:
 
 
 def mjcf(robot: Robot) -> str:
-    """Returns MJCF with a free base and hinges, without collision; inertias are xx yy zz xy xz yz."""
+    """Returns MJCF with a free base and hinges, without collision."""
+    settings = '<option timestep="0.001" gravity="0 0 0" integrator="RK4"/>'
+    return f"<mujoco>{ANGLES}{settings}<worldbody>{mjcf_bodies(robot)}</worldbody></mujoco>"
 
-    def body(k: int, xyz: list[float], mass: Body, joint: str) -> str:
+
+ANGLES = '<compiler angle="radian" autolimits="false"/>'
+
+
+def mjcf_bodies(robot: Robot, prefix: str = "", geoms: str = "") -> str:
+    """Returns the bodies in MJCF, with `geoms` on the base; inertias are xx yy zz xy xz yz."""
+
+    def body(k: int, xyz: list[float], mass: Body, inside: str) -> str:
         order = [mass.inertia[i] for i in (0, 3, 5, 1, 2, 4)]
         inertial = f'<inertial pos="{text(mass.com)}" mass="{mass.mass!r}" fullinertia="{text(order)}"/>'
         below = "".join(hinge(i) for i, j in enumerate(robot.joints, 1) if j.parent == k)
-        return f'<body name="body0{k}" pos="{text(xyz)}">{joint}{inertial}{below}</body>'
+        return f'<body name="{prefix}body0{k}" pos="{text(xyz)}">{inside}{inertial}{below}</body>'
 
     def hinge(k: int) -> str:
         joint = robot.joints[k - 1]
-        element = f'<joint name="joint{k}" type="hinge" axis="{unit(joint.axis)}"/>'
+        element = f'<joint name="{prefix}joint{k}" type="hinge" axis="{unit(joint.axis)}"/>'
         return body(k, joint.xyz, joint.body, element)
 
-    base = body(0, [0.0, 0.0, 0.0], robot.base, "<freejoint/>")
-    settings = '<option timestep="0.001" gravity="0 0 0" integrator="RK4"/>'
-    angles = '<compiler angle="radian" autolimits="false"/>'
-    return f"<mujoco>{angles}{settings}<worldbody>{base}</worldbody></mujoco>"
+    return body(0, [0.0, 0.0, 0.0], robot.base, "<freejoint/>" + geoms)

@@ -90,6 +90,15 @@ ROWS = [
         "nq nv",
     ),
     Row(
+        "two craft in contact, step",
+        ("ours", "contact"),
+        "contact",
+        ("rk4",),
+        f"{MUJOCO} C, RK4",
+        {13: 2.0},
+        "nq nv",
+    ),
+    Row(
         "rollout, RK4, one thread",
         ("ours", "rollout"),
         "mujoco_rollout",
