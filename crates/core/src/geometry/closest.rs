@@ -29,6 +29,11 @@ pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Pro
 /// Checks the dimensions of a shape and its pose.
 pub(super) fn check(shape: &Shape, pose: &Pose) -> Result<(), GeometryError> {
     shape.check()?;
+    check_pose(shape, pose)
+}
+
+/// Checks that the pose of a shape is finite.
+pub(super) fn check_pose(shape: &Shape, pose: &Pose) -> Result<(), GeometryError> {
     if pose.is_finite() { Ok(()) } else { Err(GeometryError::Pose { name: shape.name() }) }
 }
 

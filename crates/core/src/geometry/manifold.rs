@@ -16,7 +16,7 @@
 //! neighbour with almost the same normal. Two lines have the ends of their common part as points, with weights that fall with
 //! the angle between the lines and their slope; the witness points, where the lines cross, receive the rest.
 
-use super::closest::{check, nearest_pieces};
+use super::closest::{check, check_pose, nearest_pieces};
 use super::error::GeometryError;
 use super::feature::Feature;
 use super::patch::{ContactPoint, contact_points, witness};
@@ -40,12 +40,47 @@ pub struct Manifold {
 pub fn manifold(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Manifold, GeometryError> {
     check(a, pose_a)?;
     check(b, pose_b)?;
+    let (proximity, points) = touching_points(a, pose_a, b, pose_b)?;
+    Ok(Manifold { proximity, points: points.as_slice().to_vec() })
+}
+
+/// Contact points, of which spheres have one.
+#[derive(Clone, Debug)]
+pub(crate) enum Points {
+    /// Witness points.
+    One([ContactPoint; 1]),
+    /// Corners of the common part of two features.
+    Many(Vec<ContactPoint>),
+}
+
+impl Points {
+    pub(crate) fn as_slice(&self) -> &[ContactPoint] {
+        match self {
+            Self::One(points) => points,
+            Self::Many(points) => points,
+        }
+    }
+}
+
+/// Returns the distance and the contact points of two shapes whose dimensions have been checked, without memory for
+/// the single point of a sphere.
+///
+/// # Errors
+/// As [`closest`](super::closest()), but for the dimensions.
+#[inline]
+pub(crate) fn touching_points(
+    a: &Shape,
+    pose_a: &Pose,
+    b: &Shape,
+    pose_b: &Pose,
+) -> Result<(Proximity, Points), GeometryError> {
+    check_pose(a, pose_a)?;
+    check_pose(b, pose_b)?;
     let (proximity, [(a, pose_a), (b, pose_b)]) = nearest_pieces(a, pose_a, b, pose_b)?;
     if matches!((a, b), (Shape::Sphere { .. }, _) | (_, Shape::Sphere { .. })) {
-        return Ok(Manifold { proximity, points: vec![witness(&proximity, 1.0)] });
+        return Ok((proximity, Points::One([witness(&proximity, 1.0)])));
     }
     let feature_a = Feature::of(a, &pose_a, proximity.point_a, proximity.normal);
     let feature_b = Feature::of(b, &pose_b, proximity.point_b, -proximity.normal);
-    let points = contact_points(&proximity, &feature_a, &feature_b);
-    Ok(Manifold { proximity, points })
+    Ok((proximity, Points::Many(contact_points(&proximity, &feature_a, &feature_b))))
 }

@@ -42,6 +42,7 @@ pub use hull::{Face, Hull};
 pub use least::{LeastDistance, ShapeSet};
 pub use link_shape::{LinkShape, link_shape, shape_of};
 pub use manifold::{Manifold, manifold};
+pub(crate) use manifold::{Points, touching_points};
 pub use mesh::{Mesh, MeshDefect};
 pub use patch::ContactPoint;
 pub use pose::Pose;

@@ -6,8 +6,7 @@ use super::group_sum::{GroupSum, SystemRow};
 use super::recording::Ledger;
 use super::run_state::RunState;
 use super::state::State;
-use crate::dynamics::base_rotation;
-use crate::spatial::{Scalar, Vec3};
+use crate::spatial::Scalar;
 use crate::world::Balance;
 
 impl<S: Scalar> RunState<'_, S> {
@@ -42,10 +41,8 @@ impl<S: Scalar> RunState<'_, S> {
         let mut scales = [0.0; 2];
         for number in 0..self.systems.len() {
             let (state, own) = system(number);
-            let [q, mut v] = state.values();
-            (Vec3::from_slice(&v) - base_rotation::<f64>(&q).transpose_mul(velocity)).write(&mut v);
-            let balance = Balance::of(&own.model, &q, &v, center);
-            scales = [0, 1].map(|i| scales[i] + balance.scales[i]);
+            let parts = Balance::scales_in_frame(velocity, &own.data, &state.q, center);
+            scales = [0, 1].map(|i| scales[i] + parts[i]);
         }
         self.balance.add(&GroupRow { momentum, impulse, kinetic_energy, work, scales });
     }

@@ -2,7 +2,7 @@
 
 use crate::dynamics::{Data, base_rotation, kinematics, kinetic_energy};
 use crate::model::Model;
-use crate::spatial::{Force, Vec3};
+use crate::spatial::{Force, Motion, Scalar, Vec3};
 
 /// Speed below which a body is treated as at rest, m/s. It keeps the scales of momentum above zero.
 const REST: f64 = 1e-9;
@@ -30,13 +30,39 @@ impl Balance {
             let h = body.inertia.momentum(body.velocity);
             let lever = rot_wb * body.pos_b + origin - point;
             let about_point = Force::at(rot_wb * h.linear, rot_wb * h.angular, lever);
-            let linear = h.linear.norm().max(REST * body.inertia.mass);
             all.momentum += about_point;
-            all.scales[0] += linear;
-            all.scales[1] +=
-                about_point.angular.norm().max(LEAST * (lever.norm() * linear + h.angular.norm()));
+            add_scales(&mut all.scales, h, about_point.angular, lever, body.inertia.mass);
         }
         all
+    }
+
+    /// Returns the scales of the momentum about `point` in W, m, relative to a frame that moves with `velocity`
+    /// in W, m/s. Requires the kinematics of the system at `q` in `data`.
+    pub(crate) fn scales_in_frame<S: Scalar>(
+        velocity: Vec3<f64>,
+        data: &Data<S>,
+        q: &[S],
+        point: Vec3<f64>,
+    ) -> [f64; 2] {
+        S::enter(
+            #[inline(always)]
+            || {
+                let rot_wb = base_rotation(q);
+                let frame = Motion::new(rot_wb.transpose_mul(Vec3::of(&velocity)), Vec3::zero());
+                let offset = Vec3::from_slice(q) - Vec3::of(&point);
+                let mut scales = [0.0; 2];
+                for body in &data.bodies {
+                    let h = body.inertia.momentum(body.velocity - frame);
+                    let lever = rot_wb * body.pos_b + offset;
+                    let about_point = Force::at(rot_wb * h.linear, rot_wb * h.angular, lever).angular;
+                    let [linear, angular, about_point, lever] =
+                        [h.linear, h.angular, about_point, lever].map(|v| v.map(|x| x.value()));
+                    let mass = body.inertia.mass.value();
+                    add_scales(&mut scales, Force::new(linear, angular), about_point, lever, mass);
+                }
+                scales
+            },
+        )
     }
 
     /// Adds the momentum of another system about the same point.
@@ -52,6 +78,15 @@ impl Balance {
         let scales = [0, 1].map(|i| self.scales[i].max(before.scales[i]));
         [0, 1].map(|i| if sizes[i] == 0.0 { 0.0 } else { sizes[i] / scales[i] })
     }
+}
+
+/// Adds the magnitudes of the momentum `h` of a body about its origin, and of its angular momentum about a
+/// point, from which the origin is at `lever`.
+#[inline(always)]
+fn add_scales(scales: &mut [f64; 2], h: Force<f64>, about_point: Vec3<f64>, lever: Vec3<f64>, mass: f64) {
+    let linear = h.linear.norm().max(REST * mass);
+    scales[0] += linear;
+    scales[1] += about_point.norm().max(LEAST * (lever.norm() * linear + h.angular.norm()));
 }
 
 /// Returns the kinetic energy, J, that corresponds to the change of a system's velocity from `before` to

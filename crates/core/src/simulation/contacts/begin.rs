@@ -33,13 +33,14 @@ impl Touching {
             (self.mode.phase, self.mode.since) = (Phase::Far, t);
             return Ok(None);
         }
+        let geometry = self.geometry(motions)?;
         let rounding = self.rounding(motions);
-        let mut before = self.evaluate(motions, state)?;
+        let mut before = self.loading(self.mode.phase, &geometry, motions, state);
         let phase = if is_known { self.mode.phase } else { self.next_phase(&before, rounding) };
         if phase == Phase::Pressing && self.mode.mobility[0] == 0.0 {
             // whether the bristles stick depends on their damping, and thus on the mobility
-            self.mode.mobility = mobility(&self.sides, &self.evaluate_in(phase, motions, state)?);
-            before = self.evaluate(motions, state)?;
+            self.mode.mobility = mobility(&self.sides, &self.loading(phase, &geometry, motions, state));
+            before = self.loading(self.mode.phase, &geometry, motions, state);
         }
         if is_known {
             return Ok(Some(before));
@@ -59,7 +60,7 @@ impl Touching {
             slack: [0.0; 3],
             since: t,
         };
-        let loading = self.evaluate(motions, state)?;
+        let loading = self.loading(phase, &geometry, motions, state);
         let slack = |margin: f64| if margin > 0.0 { 0.0 } else { f64::MIN_POSITIVE - 2.0 * margin };
         self.mode.slack = self.margins(&loading).map(slack);
         Ok(Some(loading))

@@ -4,6 +4,7 @@
 mod begin;
 mod external;
 mod follow;
+mod frames;
 mod mobility;
 mod mode;
 mod pressure;
@@ -25,6 +26,7 @@ use crate::contact::{Contact, ContactError, ContactSteps};
 use crate::geometry::{BoundingSphere, Pose, Shape};
 use crate::spatial::Real;
 use crate::world::FrameIndex;
+use frames::Frames;
 use mode::Phase;
 use side::{Side, SideMotion};
 use touches::Sample;
@@ -34,6 +36,10 @@ use touching::{Loading, Touching};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contacts {
     list: Vec<Touching>,
+    frames: Frames,
+    /// States of the contacts for which [`Self::begin`] has computed the loadings; empty after the first use of
+    /// these.
+    begun: Vec<ContactState>,
     /// Names of the declared contacts.
     pub(super) names: Vec<String>,
     steps: ContactSteps,
@@ -61,6 +67,7 @@ impl Contacts {
                     let sides = [a, b].map(|side| Side {
                         declared: side.frame,
                         place: (side.frame.system, side.frame.frame),
+                        number: 0,
                         reach: reach(&side.shape, &side.pose),
                         shape: side.shape.clone(),
                         pose: side.pose,
@@ -84,17 +91,10 @@ impl Contacts {
         }
         let names = declared.iter().map(|contact| contact.name.clone()).collect();
         let (touches, samples) = (vec![Touch::NONE; declared.len()], vec![Sample::FAR; declared.len()]);
-        Self {
-            list,
-            names,
-            steps,
-            energy_error: f64::INFINITY,
-            ignores_slip: false,
-            touches,
-            samples,
-            happened: Vec::new(),
-            has_engine: false,
-        }
+        let energy_error = f64::INFINITY;
+        let mut contacts = Self { list, names, steps, energy_error, touches, samples, ..Self::default() };
+        contacts.number_frames();
+        contacts
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -111,7 +111,15 @@ impl Contacts {
         for side in self.list.iter_mut().flat_map(|touching| &mut touching.sides) {
             side.place = place(side.declared);
         }
+        self.number_frames();
         self.list.iter_mut().for_each(|touching| touching.mode.mobility = [0.0; 3]);
+    }
+
+    fn number_frames(&mut self) {
+        (self.frames, self.begun) = (Frames::default(), Vec::new());
+        for side in self.list.iter_mut().flat_map(|touching| &mut touching.sides) {
+            side.number = self.frames.number(side.place);
+        }
     }
 
     pub(super) fn save(&self) -> (Vec<Mode>, Vec<Touch>) {
@@ -119,6 +127,7 @@ impl Contacts {
     }
 
     pub(super) fn restore(&mut self, (modes, touches): (Vec<Mode>, Vec<Touch>)) {
+        self.begun.clear();
         self.list.iter_mut().zip(modes).for_each(|(touching, mode)| touching.mode = mode);
         self.touches = touches;
     }
@@ -130,6 +139,7 @@ impl Contacts {
 
     /// Restores the loadings that [`Self::loadings`] returned.
     pub(super) fn set_loadings(&mut self, loadings: Vec<Option<Loading>>) {
+        self.begun.clear();
         self.list.iter_mut().zip(loadings).for_each(|(touching, loading)| touching.last = loading);
     }
 
@@ -140,20 +150,28 @@ impl Contacts {
         trees: &mut [Tree<'_, S>],
         state: &State<S>,
     ) -> Result<(), ContactError> {
-        for (touching, own) in self.list.iter_mut().zip(&state.contacts) {
-            touching.last = None;
+        let Self { list, frames, begun, .. } = self;
+        // the first stage of a step begins at the state for which its modes were determined
+        let is_begun = *begun == state.contacts && frames.are_of(trees, state);
+        begun.clear();
+        if !is_begun {
+            frames.forget();
+        }
+        for (touching, own) in list.iter_mut().zip(&state.contacts) {
             if touching.mode.phase == Phase::Far {
+                touching.last = None;
                 continue;
             }
-            let motions = touching.motions(trees, state);
-            let loading = touching.evaluate(&motions, own)?;
+            if !is_begun || touching.last.is_none() {
+                touching.last = Some(touching.evaluate(&touching.motions(frames, trees, state), own)?);
+            }
+            let Some(loading) = &touching.last else { continue };
             if loading.force.norm() > 0.0 {
                 let [a, b] = &touching.sides;
                 let moment = loading.normal * loading.moment();
                 a.add_wrench(trees, &state.trees, [-loading.force, -moment], loading.point);
                 b.add_wrench(trees, &state.trees, [loading.force, moment], loading.point);
             }
-            touching.last = Some(loading);
         }
         Ok(())
     }
@@ -176,20 +194,27 @@ impl Contacts {
     ) -> Result<f64, ContactError> {
         let (mut longest, mut energy) = (f64::INFINITY, 0.0);
         self.samples.fill(Sample::FAR);
-        for (touching, own) in self.list.iter_mut().zip(&state.contacts) {
-            let motions = touching.motions(trees, state);
+        let Self { list, frames, steps, samples, has_engine, .. } = self;
+        frames.forget();
+        for (touching, own) in list.iter_mut().zip(&state.contacts) {
+            touching.last = None;
+            let motions = touching.motions(frames, trees, state);
             if touching.is_rigid(trees) {
                 touching.mode.phase = Phase::Far;
                 continue;
             }
             let mobility = |sides: &_, loading: &_| mobility::mobility(sides, trees, &state.trees, loading);
             let Some(loading) = touching.begin((t, end), &motions, own, mobility)? else { continue };
-            if self.has_engine {
+            if *has_engine {
                 touching.prepare_for_engine(trees, &state.trees, &loading);
             }
-            longest = longest.min(touching.longest_step(self.steps, &motions, &loading, self.has_engine));
+            longest = longest.min(touching.longest_step(*steps, &motions, &loading, *has_engine));
             energy += touching.energy(&loading);
-            self.samples[touching.contact].add(touching, &motions, &loading);
+            samples[touching.contact].add(touching, &motions, &loading);
+            touching.last = Some(loading);
+        }
+        if !self.has_engine {
+            self.begun.clone_from(&state.contacts);
         }
         self.energy_error = if energy > 0.0 { self.steps.energy_error * energy } else { f64::INFINITY };
         self.update_touches(t, &state.contacts);
@@ -207,8 +232,10 @@ impl Contacts {
         trees: &[Tree<'_, S>],
         state: &State<S>,
     ) -> Result<(), ContactError> {
+        let mut frames = self.frames.clone();
+        frames.forget();
         for (touching, own) in self.list.iter().zip(&state.contacts) {
-            let motions = touching.motions(trees, state);
+            let motions = touching.motions(&mut frames, trees, state);
             if touching.may_start_overlapping || touching.law.is_none() || touching.is_far(&motions, 0.0) {
                 continue;
             }
@@ -226,19 +253,21 @@ impl Contacts {
     /// Returns the smallest margin to the next change of mode, negative beyond it. Requires the kinematics of
     /// `state`, relative to W, in the trees.
     pub(super) fn margin<S: Real>(
-        &self,
+        &mut self,
         trees: &[Tree<'_, S>],
         state: &State<S>,
     ) -> Result<f64, ContactError> {
         let mut least = f64::INFINITY;
-        for (touching, own) in self.list.iter().zip(&state.contacts) {
+        let Self { list, frames, ignores_slip, .. } = self;
+        frames.forget();
+        for (touching, own) in list.iter().zip(&state.contacts) {
             if touching.mode.phase == Phase::Far || touching.law.is_none() {
                 continue;
             }
-            let loading = touching.evaluate(&touching.motions(trees, state), own)?;
+            let loading = touching.evaluate(&touching.motions(frames, trees, state), own)?;
             let [depth, normal, friction] = touching.margins(&loading);
             let slack = touching.mode.slack;
-            let friction = if self.ignores_slip { f64::INFINITY } else { friction + slack[2] };
+            let friction = if *ignores_slip { f64::INFINITY } else { friction + slack[2] };
             least = least.min(depth + slack[0]).min(normal + slack[1]).min(friction);
         }
         Ok(least)
@@ -246,8 +275,14 @@ impl Contacts {
 }
 
 impl Touching {
-    fn motions<S: Real>(&self, trees: &[Tree<'_, S>], state: &State<S>) -> [SideMotion; 2] {
-        [0, 1].map(|i| self.sides[i].motion(trees, &state.trees))
+    #[inline]
+    fn motions<S: Real>(
+        &self,
+        frames: &mut Frames,
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+    ) -> [SideMotion; 2] {
+        [0, 1].map(|i| self.sides[i].motion(frames.motion(self.sides[i].number, trees, state)))
     }
 
     /// Returns true if both sides are fixed to the same body, or a connection of an external engine holds them, as

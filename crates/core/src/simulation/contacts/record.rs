@@ -39,7 +39,7 @@ impl Contacts {
     /// [`CONTACTS`](crate::simulation::CONTACTS). Requires the kinematics of `state` in the trees, and the
     /// forces computed last.
     pub(in crate::simulation) fn row<S: Real>(
-        &self,
+        &mut self,
         contact: usize,
         trees: &[Tree<'_, S>],
         state: &State<S>,
@@ -55,11 +55,12 @@ impl Contacts {
             dissipated: 0.0,
             impulse: Vec3::zero(),
         };
-        for (touching, own) in self.list.iter().zip(&state.contacts).filter(|(one, _)| one.contact == contact)
-        {
+        let Self { list, frames, .. } = self;
+        frames.forget();
+        for (touching, own) in list.iter().zip(&state.contacts).filter(|(one, _)| one.contact == contact) {
             let loading = match touching.last {
                 Some(loading) => loading,
-                None => touching.evaluate(&touching.motions(trees, state), own)?,
+                None => touching.evaluate(&touching.motions(frames, trees, state), own)?,
             };
             row.add(touching, &loading, own);
         }

@@ -1,6 +1,7 @@
 //! Motion of one side of a contact.
 
-use crate::dynamics::{base_rotation, frame_pose, frame_velocity};
+use super::frames::FrameMotion;
+use crate::dynamics::base_rotation;
 use crate::geometry::{Pose, Shape};
 use crate::simulation::tree::Tree;
 use crate::simulation::tree_state::TreeState;
@@ -14,6 +15,8 @@ pub(super) struct Side {
     pub(super) declared: FrameIndex,
     /// Tree and index of the frame in its model.
     pub(super) place: (usize, usize),
+    /// Number of the frame among those of the contacts.
+    pub(super) number: usize,
     pub(super) shape: Shape,
     pub(super) pose: Pose,
     /// Distance from the origin of the frame to the farthest point of the shape, m; infinite for a
@@ -35,19 +38,12 @@ pub(super) struct SideMotion {
 }
 
 impl Side {
-    /// Returns the motion of the side. Requires the kinematics of `states` in `trees`.
-    pub(super) fn motion<S: Real>(&self, trees: &[Tree<'_, S>], states: &[TreeState<S>]) -> SideMotion {
-        let (tree, frame) = self.place;
-        let (tree, q) = (&trees[tree], &states[tree].q);
-        let pose = frame_pose(&tree.model, &tree.data, q, frame);
-        let velocity = frame_velocity(&tree.model, &tree.data, q, frame);
-        let frame = Pose { rot: pose.rot_wf.map(|x| x.lane(0)), pos: pose.pos_w.lane(0) };
-        SideMotion {
-            shape: Pose { rot: frame.rot * self.pose.rot, pos: frame.rot * self.pose.pos + frame.pos },
-            frame,
-            velocity: (velocity.linear + tree.frame_velocity()).lane(0),
-            angular_velocity: velocity.angular.lane(0),
-        }
+    /// Returns the motion of the side, which is fixed to its frame.
+    #[inline]
+    pub(super) fn motion(&self, motion: &FrameMotion) -> SideMotion {
+        let FrameMotion { frame, velocity, angular_velocity } = *motion;
+        let shape = Pose { rot: frame.rot * self.pose.rot, pos: frame.rot * self.pose.pos + frame.pos };
+        SideMotion { shape, frame, velocity, angular_velocity }
     }
 
     /// Adds a force, N, at a point in W and a moment, N m, to the wrench on the body of the side.
@@ -61,11 +57,16 @@ impl Side {
         let (tree, frame) = self.place;
         let (tree, q) = (&mut trees[tree], &states[tree].q);
         let body = tree.model.frames()[frame].body;
-        let rot_wb = base_rotation(q);
         let body = &mut tree.data.bodies[body];
-        let [force, moment] = wrench.map(|vector| rot_wb.transpose_mul(Vec3::of(&vector)));
-        let arm = rot_wb.transpose_mul(Vec3::of(&point) - Vec3::from_slice(q)) - body.pos_b;
-        body.external += Force::at(force, moment, arm);
+        S::enter(
+            #[inline(always)]
+            || {
+                let rot_wb = base_rotation(q);
+                let [force, moment] = wrench.map(|vector| rot_wb.transpose_mul(Vec3::of(&vector)));
+                let arm = rot_wb.transpose_mul(Vec3::of(&point) - Vec3::from_slice(q)) - body.pos_b;
+                body.external += Force::at(force, moment, arm);
+            },
+        );
     }
 }
 

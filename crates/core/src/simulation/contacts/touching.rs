@@ -4,7 +4,7 @@ use super::mode::{Mode, Phase};
 use super::pressure::Pressure;
 use super::side::{Side, SideMotion};
 use crate::contact::{Bristle, ContactError, ContactLaw, Friction, FrictionForce};
-use crate::geometry::{Manifold, manifold};
+use crate::geometry::{Points, Proximity, touching_points};
 use crate::simulation::contact_state::{ContactRate, ContactState};
 use crate::spatial::Vec3;
 
@@ -57,29 +57,37 @@ pub(in crate::simulation) struct Loading {
 
 impl Touching {
     /// Returns the distance of the pieces, and the force that the mode gives for their motion.
+    #[inline]
     pub(super) fn evaluate(
         &self,
         motions: &[SideMotion; 2],
         state: &ContactState,
     ) -> Result<Loading, ContactError> {
-        self.evaluate_in(self.mode.phase, motions, state)
+        Ok(self.loading(self.mode.phase, &self.geometry(motions)?, motions, state))
     }
 
-    /// Returns the distance of the pieces, and the force in another phase; see [`Self::evaluate`].
-    pub(super) fn evaluate_in(
+    /// Returns the distance and the contact points of the pieces.
+    #[inline]
+    pub(super) fn geometry(&self, [a, b]: &[SideMotion; 2]) -> Result<(Proximity, Points), ContactError> {
+        let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
+        touching_points(first, &a.shape, second, &b.shape)
+            .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })
+    }
+
+    /// Returns the force in `phase` for pieces with this distance and these contact points.
+    pub(super) fn loading(
         &self,
         phase: Phase,
+        (proximity, points): &(Proximity, Points),
         motions: &[SideMotion; 2],
         state: &ContactState,
-    ) -> Result<Loading, ContactError> {
+    ) -> Loading {
         let [a, b] = motions;
-        let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
-        let Manifold { proximity, points } = manifold(first, &a.shape, second, &b.shape)
-            .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
         let normal = proximity.normal;
         let is_pressing = phase == Phase::Pressing;
         let law = self.law.as_ref().filter(|_| is_pressing || phase == Phase::Separating);
-        let pressure = law.map(|law| Pressure::of(&law.normal, &points, normal, motions, is_pressing));
+        let pressure =
+            law.map(|law| Pressure::of(&law.normal, points.as_slice(), normal, motions, is_pressing));
         let witness = (proximity.point_a + proximity.point_b) * 0.5;
         // both forces act at one point, so that no moment remains
         let point = pressure.map_or(witness, |pressure| pressure.point);
@@ -102,7 +110,7 @@ impl Touching {
             loading.force = normal * pressure.force;
             self.add_friction(law, state, a, &mut loading);
         }
-        Ok(loading)
+        loading
     }
 
     /// Adds the friction of pieces that press on each other.
