@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign fuzz soak test-ros2 test-peers notices clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign fuzz soak test-ros2 test-peers notices clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -87,6 +87,9 @@ bench-spart: $(VENV)/.built $(VENV)/.tested ## compares forward dynamics with SP
 
 certificate-campaign: $(VENV)/.built $(VENV)/.tested ## evaluates the certificates of 10 000 exact and 1000 defective runs; ARGS="--minutes 10"
 	$(BIN)/python tests/certificate_campaign.py $(ARGS)
+
+contact-campaign: ## checks momentum and energy of random trees through 1000 contacts; CONTACTS= sets their number
+	CONTACTS=$(or $(CONTACTS),1000) cargo test --release -p onorbit-core --test contact_campaign -- --ignored --nocapture
 
 # SECONDS= per parser; COUNT= total number of inputs; SEED=; ONLY= selects parsers by name
 fuzz: $(VENV)/.built $(VENV)/.tested ## fuzzes every parser, guided by coverage; fails on findings (docs/reliability.md)
