@@ -79,7 +79,7 @@ EXPECTED = {
     "dynamics_with_foreign_attributes": LOADS,
     "effort_and_velocity_negative": warns("velocity limit is negative"),
     "effort_and_velocity_zero": LOADS,
-    "empty_geometry": warns("a visual shape of link 'base' is skipped"),
+    "empty_geometry": warns("a visual shape is skipped: "),
     "empty_link_between": LOADS,
     "empty_visual": warns("link 'base' has no <geometry>"),
     "entities": LOADS,

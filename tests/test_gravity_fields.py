@@ -79,7 +79,7 @@ def test_a_field_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     with pytest.raises(NotFoundError, match=r"none\.gfc: there is no such file; check the path$") as missing:
         oo.GravityField.from_gfc(tmp_path / "none.gfc")
     assert missing.value.path == str(tmp_path / "none.gfc")
-    with pytest.raises(ReadError, match=r"cannot be read: it is a directory; give the path of a file$"):
+    with pytest.raises(ReadError, match=r"cannot be read: it is a folder; give the path of a file$"):
         oo.GravityField.from_gfc(tmp_path)
     (tmp_path / "latin.gfc").write_bytes(b"modelname T\xfcbingen")
     with pytest.raises(ReadError, match="not UTF-8"):

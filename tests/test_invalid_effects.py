@@ -102,7 +102,7 @@ def test_missing_tables_are_reported_without_the_message_of_the_system(tmp_path:
         with pytest.raises(NotFoundError, match=rf"none\.csv: there is no such {what}; check the path$"):
             read(tmp_path / "none.csv")
         with pytest.raises(
-            ReadError, match=rf"the {what} .* cannot be read: it is a directory; give the path of a file$"
+            ReadError, match=rf"the {what} .* cannot be read: it is a folder; give the path of a file$"
         ):
             read(tmp_path)
 

@@ -11,7 +11,7 @@ use thiserror::Error;
 pub enum TextFileError {
     #[error("there is no such file")]
     NotFound,
-    #[error("it is a directory; give the path of a file")]
+    #[error("it is a folder; give the path of a file")]
     Folder,
     #[error("it is a pipe or a device; save its content as a file")]
     NotRegular,

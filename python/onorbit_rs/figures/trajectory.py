@@ -58,7 +58,10 @@ def desired_trajectory(trace: Trace, model: Model) -> Figure:
 
 
 def obtained_trajectory(trace: Trace) -> Figure:
-    """Draw Fig. 5: the desired and obtained path of the tool in W; a small path relative to its start."""
+    """Draw Fig. 5: the desired and the obtained path of the tool in W.
+
+    A path that is small compared with its distance from the origin of W is drawn relative to its start.
+    """
     desired = np.asarray(trace.reference_pose)[:, :3, 3]
     obtained = np.asarray(trace.tool_pose)[:, :3, 3]
     both = np.vstack([desired, obtained])

@@ -93,7 +93,8 @@ class Node:
         is_paused : bool
             Whether the node waits for a message on ``/pause`` with false before the first step.
         log : str or path, optional
-            File to which each command is written; ``onorbit run --commands`` repeats the run from it.
+            File to which each command is written, which replaces an existing file; ``onorbit run --commands``
+            repeats the run from it. A run with a log cannot be reset.
         record : str or path, optional
             MCAP file of the messages that the node publishes and of the commands that it obeys; :meth:`close`
             completes it and replaces an existing file. A run that is recorded cannot be reset.
@@ -101,8 +102,9 @@ class Node:
             Simulated time, s, after which a wrench on a link ends unless another message for the link comes.
             Default: it holds.
         keep_rows : int, optional
-            Number of rows that the run keeps in memory besides the first, up to twice as many; the trace that
-            :meth:`spin` returns then has the first row and the last ones. Default: all rows.
+            Least number of last rows that the run keeps in memory besides the first row; older rows are dropped
+            once there are more than twice as many. The trace that :meth:`spin` returns then has only the rows
+            kept. Default: all rows.
         has_priority : bool
             Whether the node has real-time priority over other programs (``SCHED_FIFO`` of Linux) in pace
             ``real_time``. A warning is issued where this is not permitted.

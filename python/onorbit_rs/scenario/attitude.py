@@ -48,7 +48,7 @@ class Attitude(Part):
         if self.quaternion_xyzw is not None:
             norm = math.hypot(*self.quaternion_xyzw)
             if abs(norm - 1.0) > 1e-6:
-                raise invalid(f"the quaternion has norm {norm:.9g}; it must be 1 within 1e-6; normalize it")
+                raise invalid(f"the quaternion has norm {norm:.9g}; it must be 1 within 1e-6; normalise it")
         return self
 
 

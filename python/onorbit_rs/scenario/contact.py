@@ -124,7 +124,7 @@ class Friction(Part):
         if self.static is None and self.materials is None:
             raise invalid("has no coefficients; give 'static', or 'materials', such as [copper, mild steel]")
         if self.kinetic is not None and self.static is not None and self.kinetic > self.static:
-            message = f"{self.kinetic:g} exceeds the static coefficient, {self.static:g}; give at most that"
+            message = f"{self.kinetic!r} exceeds the static coefficient; give at most {self.static!r}"
             raise inconsistent("kinetic", message)
         return self
 

@@ -1,4 +1,4 @@
-"""Forces on the bodies, and their resultants about the centre of mass of the robot."""
+"""Forces on the bodies, their resultant, and the resultant torque about the centre of mass of the robot."""
 
 from __future__ import annotations
 

@@ -9,7 +9,6 @@ use super::latch::Latch;
 use super::members::Members;
 use super::state::{Rate, State};
 use super::tree::Tree;
-use super::tree_state::TreeState;
 use crate::dynamics::{Data, kinetic_energy};
 use crate::spatial::Real;
 
@@ -126,9 +125,10 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         }
     }
 
-    /// Checks that no bodies overlap at the start of a run. Requires the kinematics of `state` in the trees.
-    pub(super) fn check_start(&self, state: &State<S>) -> Result<(), SimulationError> {
-        Ok(self.contacts.check_start(&self.trees, state)?)
+    /// Starts the states of the contacts and checks that bodies overlap only where they may. Requires the
+    /// kinematics of `state` in the trees.
+    pub(super) fn start_contacts(&self, state: &mut State<S>) -> Result<(), SimulationError> {
+        Ok(self.contacts.start(&self.trees, state)?)
     }
 
     /// Determines the modes of the contacts for the step from `t` to `end`, s, and returns the end of the
@@ -166,13 +166,16 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     }
 
     /// Returns the kinetic energy less the work done on all trees, J, which is constant but for the error of
-    /// the integrator. Requires the kinematics of `state` relative to W in the trees.
-    pub(super) fn energy_balance(&self, state: &State<S>) -> S {
-        let pairs = self.trees.iter().zip(&state.trees);
-        let balance = |(tree, state): (&Tree<'_, S>, &TreeState<S>)| {
-            kinetic_energy(&tree.model, &tree.data, &state.v) - state.work
-        };
-        pairs.map(balance).fold(S::of(0.0), |sum, one| sum + one)
+    /// the integrator, and the sum of their magnitudes. Requires the kinematics of `state` relative to W in the
+    /// trees.
+    pub(super) fn energy_balance(&self, state: &State<S>) -> [S; 2] {
+        let (mut balance, mut scale) = (S::of(0.0), S::of(0.0));
+        for (tree, state) in self.trees.iter().zip(&state.trees) {
+            let energy = kinetic_energy(&tree.model, &tree.data, &state.v);
+            balance += energy - state.work;
+            scale += energy + state.work.abs();
+        }
+        [balance, scale]
     }
 
     /// Returns true if a joint of any tree is locked.

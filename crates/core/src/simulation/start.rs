@@ -109,7 +109,7 @@ impl Simulation {
             match checkpoints.get_mut(number).and_then(Option::take) {
                 None => {
                     run.mover.kinematics(&mut run.equations, &mut run.state);
-                    run.equations.check_start(&run.state)?;
+                    run.equations.start_contacts(&mut run.state)?;
                 }
                 Some(checkpoint) => {
                     let own = numbers.iter().map(|&system| rows[system].take().unwrap_or_default());

@@ -30,7 +30,7 @@ pub enum When {
     At(f64),
     /// After a delay, s, that begins with another event.
     After {
-        /// Number of the other event.
+        /// Index of the other event.
         event: usize,
         /// Delay, s.
         delay: f64,

@@ -60,7 +60,7 @@ impl UrdfError {
 pub enum UrdfProblem {
     #[error("there is no such file; check the path")]
     NotFound,
-    #[error("the path is a directory; expected a URDF file")]
+    #[error("the path is a folder; expected a URDF file")]
     IsFolder,
     #[error("the file cannot be read: {reason}")]
     Unreadable { reason: String },

@@ -34,7 +34,7 @@ pub(super) fn read_link(
         match read_visual(visual, context) {
             Ok(visual) => result.visuals.push(visual),
             Err(error) => {
-                let note = format!("a visual shape of {} is skipped: {error}", link.owner);
+                let note = format!("a visual shape is skipped: {}", error.problem);
                 context.warnings.push(ModelWarning::Note(note));
             }
         }
@@ -49,7 +49,7 @@ pub(super) fn read_link(
             )),
             None => match read_visual(collision, context) {
                 Ok(shape) => result.collisions.push(shape),
-                Err(error) => result.skipped_collisions.push(error.to_string()),
+                Err(error) => result.skipped_collisions.push(error.problem.to_string()),
             },
         }
     }

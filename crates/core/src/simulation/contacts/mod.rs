@@ -226,26 +226,32 @@ impl Contacts {
         Ok(t + (end - t) / count)
     }
 
-    /// Checks that pieces do not overlap at the start of a run, unless their contact permits it.
-    pub(super) fn check_start<S: Real>(
+    /// Starts the states of the contacts: pieces that overlap begin with the elastic energy of their depth.
+    ///
+    /// # Errors
+    /// [`ContactError::Overlap`] if pieces overlap and their contact does not permit it.
+    pub(super) fn start<S: Real>(
         &self,
         trees: &[Tree<'_, S>],
-        state: &State<S>,
+        state: &mut State<S>,
     ) -> Result<(), ContactError> {
         let mut frames = self.frames.clone();
         frames.forget();
-        for (touching, own) in self.list.iter().zip(&state.contacts) {
+        for (number, touching) in self.list.iter().enumerate() {
             let motions = touching.motions(&mut frames, trees, state);
-            if touching.may_start_overlapping || touching.law.is_none() || touching.is_far(&motions, 0.0) {
+            if touching.law.is_none() || touching.is_far(&motions, 0.0) {
                 continue;
             }
-            let depth = touching.evaluate(&motions, own)?.depth;
-            if depth > touching.rounding(&motions) {
+            let mut pressing = touching.clone();
+            pressing.mode.phase = Phase::Pressing;
+            let Loading { depth, pressure, .. } = pressing.evaluate(&motions, &state.contacts[number])?;
+            if depth > touching.rounding(&motions) && !touching.may_start_overlapping {
                 let frame = |side: &Side| &trees[side.place.0].model.frames()[side.place.1].name;
                 let [a, b] = [&touching.sides[0], &touching.sides[1]].map(frame);
                 let links = format!("'{a}' and '{b}'");
                 return Err(ContactError::Overlap { contact: touching.name.clone(), links, depth });
             }
+            state.contacts[number].normal_work = pressure.map_or(0.0, |pressure| pressure.elastic);
         }
         Ok(())
     }

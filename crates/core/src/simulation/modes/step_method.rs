@@ -18,8 +18,8 @@ const IDLE: f64 = 1e-6;
 /// Displacement, rad or m, below which a step is idle although the joint came to rest or reached its stop.
 const STILL: f64 = 1e-9;
 /// Length of the shortest step that closes the energy balance, relative to that of the first attempt.
-const SHORTEST: f64 = 1e-6;
-/// Rounding error of the energy balance, relative to the energy.
+const SHORTEST: f64 = 1e-4;
+/// Rounding error of the energy balance, relative to the sum of the kinetic energies and of the works.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
@@ -81,7 +81,7 @@ impl<S: Real> StepMethod<S> {
             return self.integration.advance(equations, state, interval);
         }
         let is_balanced = equations.contacts.energy_error.is_finite() && self.integration.is_rk4();
-        let balance = is_balanced.then(|| equations.energy_balance(state));
+        let balance = is_balanced.then(|| equations.energy_balance(state)[0]);
         self.start.copy_from(state);
         let end = self.integration.advance(equations, state, interval)?;
         if !state.is_finite() {
@@ -117,9 +117,9 @@ impl<S: Real> StepMethod<S> {
         loop {
             self.settled.copy_from(state);
             equations.project_momentum(&mut self.settled);
-            let open = (equations.energy_balance(&self.settled) - balance).lane(0).abs();
-            let rounding = ROUNDING * balance.lane(0).abs();
-            if open <= permitted + rounding || end - start <= shortest {
+            let [now, scale] = equations.energy_balance(&self.settled);
+            let open = (now - balance).lane(0).abs();
+            if open <= permitted + ROUNDING * scale.lane(0) || end - start <= shortest {
                 return Ok(end);
             }
             end = 0.5 * (start + end);

@@ -119,8 +119,8 @@ impl SurfaceAssignment {
             }
             Self::All(kind) if targets.len() > 1 && !kind.is_faces() => {
                 let message = format!(
-                    "the world has {} systems; name those with this surface, such as surfaces={{'{}': …}} (in YAML \
-                     as 'surfaces' of the system)",
+                    "surfaces is the surface of a single body, but the world has {} systems; assign it to a system \
+                     by name, such as surfaces={{'{}': …}}",
                     targets.len(),
                     targets[0].name
                 );
