@@ -38,10 +38,10 @@ NEARLY_ROUND = 1e-5
 
 
 def orbit_overview(trace: Trace, *, is_earth: bool = True) -> Figure:
-    """Draw the path around the planet to scale in inertial axes, the distance from its centre, and the attitude in L.
+    """Draw the path around the planet, the distance from its centre, and the attitude in L.
 
-    L is the local orbital frame of the reference orbit. The radius of a planet other than the Earth is
-    unknown; such a planet is drawn as a small sphere.
+    The path is to scale in inertial axes. L is the local orbital frame of the reference orbit. The radius of
+    a planet other than the Earth is unknown; such a planet is drawn as a small sphere.
     """
     position = np.asarray(trace.position_eci)
     quat, reference = np.asarray(trace.q)[:, QUATERNION], trace.reference_position_eci

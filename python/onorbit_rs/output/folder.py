@@ -155,7 +155,7 @@ class OutputFolder:
             self._lock.release()
             raise OutputInUseError(
                 f"{self.path} now contains files of another run: {LOCK} was removed while this process wrote "
-                "to the folder, and another process wrote to the folder too; repeat the run in another folder",
+                "there, and another process wrote there too; repeat the run in another folder",
                 path=str(self.path),
             )
         warnings.warn(

@@ -93,7 +93,9 @@ def read_manifest(folder: Path) -> Manifest | None:
         with open_to_read(file) as stream:
             record = unsealed(read_bounded(stream, _MOST))
         if record["format"] != _FORMAT:
-            raise ValueError(f"its format is {record['format']!r}; this version of onorbit reads format {_FORMAT}")
+            raise ValueError(
+                f"its format is {record['format']!r}; this version of onorbit reads format {_FORMAT}"
+            )
         files = {name: _entry(name, entry) for name, entry in record["files"].items()}
         names = tuple(record["checkpoint"])
         for name in names:

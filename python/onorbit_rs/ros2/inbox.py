@@ -93,7 +93,7 @@ class Inbox:
 
 
 def _target(entry: Entry, topic: str) -> str:
-    """Return what an entry commands: the name of a control or of a link, with its system, or else the topic."""
+    """Return what an entry commands: a control or a link by name, with its system, or else the topic."""
     name = entry.get("control", entry.get("body"))
     return topic if name is None else f"{name} of {entry['system']}"
 

@@ -102,9 +102,9 @@ class Node:
             Simulated time, s, after which a wrench on a link ends unless another message for the link comes.
             Default: it holds.
         keep_rows : int, optional
-            Least number of last rows that the run keeps in memory besides the first row; older rows are dropped
-            once there are more than twice as many. The trace that :meth:`spin` returns then has only the rows
-            kept. Default: all rows.
+            Least number of last rows that the run keeps in memory besides the first row; older rows are
+            dropped once there are more than twice as many. The trace that :meth:`spin` returns then has only
+            the rows kept. Default: all rows.
         has_priority : bool
             Whether the node has real-time priority over other programs (``SCHED_FIFO`` of Linux) in pace
             ``real_time``. A warning is issued where this is not permitted.
