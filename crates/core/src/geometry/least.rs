@@ -88,16 +88,16 @@ mod tests {
 
     #[test]
     fn the_nearest_permitted_pair_is_found() {
-        let set = || ShapeSet::new([Shape::Sphere { radius: 0.1 }, Shape::Box { half_edges: [0.5; 3] }]);
+        let set = || ShapeSet::new([Shape::Sphere { radius: 0.25 }, Shape::Box { half_edges: [0.5; 3] }]);
         let at = |x: f64| Pose::at(Vec3::new(x, 0.0, 0.0));
         let (own, others) = ([at(0.0), at(-3.0)], [at(5.0), at(2.0)]);
         let least = |permitted: fn(usize, usize) -> bool| {
             set().least_distance(&own, &set(), &others, permitted).expect("valid shapes")
         };
         let found = least(|_, _| true).expect("a pair");
-        assert_eq!((found.pair, found.proximity.distance), ([0, 1], 1.4));
+        assert_eq!((found.pair, found.proximity.distance), ([0, 1], 1.25));
         let found = least(|_, j| j == 0).expect("a pair");
-        assert_eq!((found.pair, found.proximity.distance), ([0, 0], 4.8));
+        assert_eq!((found.pair, found.proximity.distance), ([0, 0], 4.5));
         assert_eq!(least(|_, _| false), None);
     }
 }
