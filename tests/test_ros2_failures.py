@@ -36,8 +36,8 @@ def failing(error: BaseException, after: int, real: Any) -> Any:
 
 NO_ROOM = DDSException(DDSException.DDS_RETCODE_OUT_OF_RESOURCES)
 STARTS = [
-    (participant, "BuiltinDataReader", 0, rf"cannot join DDS domain {DOMAIN} .*use another domain"),
-    (participant, "DataWriter", 0, rf"cannot join DDS domain {DOMAIN} .*use another domain"),
+    (participant, "BuiltinDataReader", 0, r"cannot join DDS domain \d+ .*use another domain"),
+    (participant, "DataWriter", 0, r"cannot join DDS domain \d+ .*use another domain"),
     (participant, "DataWriter", 1, "cannot publish /clock .*close other nodes"),
     (participant, "DataWriter", 6, "cannot publish /"),
     (participant, "DataReader", 0, "cannot subscribe to /pause .*close other nodes"),
