@@ -154,7 +154,7 @@ BAD: dict[str, Bad] = {
     "URDF file a folder": Bad(
         lambda: oo.Model.from_urdf(Path(__file__).parent),
         "ReadError",
-        ("tests", "directory"),
+        ("tests", "folder"),
         {"path": str(Path(__file__).parent)},
     ),
     "URDF file this test": Bad(
