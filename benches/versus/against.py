@@ -52,13 +52,19 @@ def selected_rows(given: argparse.Namespace) -> list[Row]:
     return [Row(row, nv) for nv, row in itertools.product(robots, rows)]
 
 
+def has_row(build: revisions.Build, row: Row) -> bool:
+    """Returns False for the row of contacts if the build is older than contacts."""
+    package = (build.python / "onorbit_rs" / "__init__.py").read_text()
+    return row.row.ours[1] != "contact" or '"Contact"' in package
+
+
 def main() -> int:
     given = arguments()
     other, here = revisions.built(*given.built) if given.built else revisions.compared(given.revision)
     same = other.machine_code() == here.machine_code()
     print(f"{here.name} against {other.name} on {programs.processor()}, {given.rounds} rounds")
     print(f"machine code: {'the same bytes' if same else 'different'}\n{HEAD}", flush=True)
-    rows, slower = selected_rows(given), 0
+    rows, slower = [row for row in selected_rows(given) if has_row(other, row) and has_row(here, row)], 0
     for nv in dict.fromkeys(row.nv for row in rows):
         folder = programs.BUILD / f"against{nv}"
         inputs.write(folder, 1 if nv == 13 else 2)

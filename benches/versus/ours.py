@@ -118,11 +118,11 @@ jobs = {
     "controlled_rollout": controlled_rollout(),
     "reach": reach(orbit=orbit, environment=[oo.GravityGradient()]),
     "reach_empty": reach(),
-    "contact": touch(contact.SOFT),
-    "hard_contact": touch(contact.HARD),
-    "converged_contact": touch(contact.SOFT, contact.FINER),
-    "converged_hard_contact": touch(contact.HARD, contact.FINER),
 }
+if hasattr(oo, "Contact"):
+    jobs["contact"], jobs["hard_contact"] = touch(contact.SOFT), touch(contact.HARD)
+    jobs["converged_contact"] = touch(contact.SOFT, contact.FINER)
+    jobs["converged_hard_contact"] = touch(contact.HARD, contact.FINER)
 if hasattr(model, "forward_dynamics_derivatives"):
     jobs["derivatives"] = batch_of(model.forward_dynamics_derivatives, *batch)
 steps = {name: job.units for name, job in jobs.items() if "contact" in name}

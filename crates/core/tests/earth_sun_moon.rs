@@ -187,7 +187,10 @@ fn numbers_of_a_kernel_that_overflow_positions_are_refused() {
     };
     let far = |value: f64| vec![1.4e8, 1e5, 1e6, value, -1e6, 0.0]; // finite, but the Sun was at NaN
     for (segment, said) in [
-        (SpiceSegment { coefficients: far(1e308), ..good() }, "coefficient of a segment of the kernel is 1e308"),
+        (
+            SpiceSegment { coefficients: far(1e308), ..good() },
+            "coefficient of a segment of the kernel is 1e308",
+        ),
         (SpiceSegment { coefficients: far(-2e12), ..good() }, "at most 1e12 km"),
         (SpiceSegment { sign: 1e308, ..good() }, "1 or -1"),
         (SpiceSegment { length: 0.0, ..good() }, "length of an interval of a segment of the kernel is 0"),

@@ -134,8 +134,8 @@ def _pieces(
     if not found:
         raise EngineError(
             f"contact '{contact}': no link with a collision shape matches {', '.join(links)} in the systems "
-            f"of this engine ({', '.join(filter(None, bodies)) or 'one robot'}); give Mujoco all systems of "
-            "the world by their names",
+            f"of this engine ({', '.join(filter(None, bodies)) or 'one robot'}); correct the links, add a "
+            "collision shape to the link, or give Mujoco the system by its name if it is missing here",
             name="contacts", got=contact,
         )  # fmt: skip
     return found

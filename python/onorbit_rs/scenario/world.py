@@ -192,7 +192,7 @@ class WorldScenario(Document):
                 raise inconsistent(("systems", name, "knows", index), f"'knows' contains {what}")
 
     def _check_neighbour(self, name: str, system: System) -> None:
-        """Raise an error if the initial state is relative to an unknown system, or systems form a circle."""
+        """Raise an error if an initial state is relative to an unknown system, or depends on itself."""
         at = ("systems", name, "initial", "frame")
         chain, other = [name], system.initial.neighbour
         while other is not None:

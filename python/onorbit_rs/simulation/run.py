@@ -108,7 +108,13 @@ class Run:
         if isinstance(self._ran, dict):
             return self._ran
         systems = self.summary["systems"]
-        return {name: _loaded(alone, systems[name]) for name, alone in self.scenario.scenarios.items()}
+        found = {}
+        for name, alone in self.scenario.scenarios.items():
+            try:
+                found[name] = _loaded(alone, systems[name])
+            except ModelError as error:
+                raise ModelError(f"system '{name}': {error}") from error
+        return found
 
 
 def _loaded(scenario: Scenario, summary: dict[str, Any]) -> Model:

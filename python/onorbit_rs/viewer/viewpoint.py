@@ -84,7 +84,7 @@ class Viewpoint:
         return np.stack([right, np.cross(to_eye, right), to_eye])
 
     def eye(self) -> rrb.EyeControls3D:
-        """Return a camera that shows the whole robot from its front, with z of the base up at the start."""
+        """Return a camera in direction ``to_eye`` that shows all bodies; z of the base is up at first."""
         return rrb.EyeControls3D(
             position=self.place(0.0, 0.0, -1.18), look_target=self.center, eye_up=self.rot_fb[:, 2]
         )

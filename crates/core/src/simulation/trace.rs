@@ -102,8 +102,8 @@ impl NamedColumn {
     }
 }
 
-/// Difference of one coordinate between steps and half steps, summed over a run; m, or rad for a revolute
-/// joint.
+/// Errors of one coordinate over a run: summed differences between steps and half steps, the largest rate, and
+/// the sum of the jumps of the acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateDrift {
     /// Difference of the position, m or rad.
