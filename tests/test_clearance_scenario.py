@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from world_runs import data
+from world_runs import check_line_of_error, data
 
 import onorbit_rs as oo
 from onorbit_rs.cli import main
-from onorbit_rs.exceptions import OnOrbitError
 
 ONE = """\
 robot: ball
@@ -85,9 +84,4 @@ def test_the_motion_does_not_change() -> None:
     ],
 )
 def test_errors_name_the_line(tmp_path: Path, text: str, old: str, new: str, line: int, words: str) -> None:
-    file = tmp_path / "scenario.yaml"
-    assert old in text
-    file.write_text(text.replace(old, new, 1))
-    with pytest.raises(OnOrbitError, match=words) as caught:
-        oo.run(file, quiet=True)
-    assert f"scenario.yaml:{line}" in str(caught.value)
+    check_line_of_error(lambda file: oo.run(file, quiet=True), (text, old, new), line, words, tmp_path)

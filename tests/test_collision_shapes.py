@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 from contact_worlds import HARD, ball, moving, run
-from world_runs import built
+from world_runs import built, check_line_of_error, data
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import FrameError, InputError, ModelError, OnOrbitError
+from onorbit_rs.exceptions import FrameError, InputError, ModelError
 from onorbit_rs.visuals.shapes import shapes
 
 TEXT = """\
@@ -89,23 +89,16 @@ def test_a_ball_rebounds_from_a_half_space_of_a_heavy_body() -> None:
 
 
 def test_the_shapes_of_a_scenario_touch() -> None:
-    world = built(data_of(TEXT))
+    world = built(data(TEXT))
     model = world.systems["a"].model
     assert [shape.kind for shape in model.collisions] == ["cone", "torus"]
-    found: Any = oo.run(data_of(TEXT), quiet=True)
+    found: Any = oo.run(data(TEXT), quiet=True)
     touch = found.trace.contacts["touch"]
     assert touch.gap[0] == pytest.approx(0.02, abs=1e-12)  # apex at 4 cm, surface of the ball at 6 cm
     assert touch.force.max() > 1.0 and found.summary["certificate_passed"]
     parts = {shape.kind: shape for shape in shapes(model)}
     (low, high) = parts["mesh"].mesh.bounds
     np.testing.assert_allclose(high - low, [0.24, 0.24, 0.04], atol=1e-3)
-
-
-def data_of(text: str) -> dict[str, Any]:
-    from onorbit_rs.scenario.yaml_lines import parse_yaml
-
-    values: dict[str, Any] = parse_yaml(text, None)[0]
-    return values
 
 
 @pytest.mark.parametrize(
@@ -120,12 +113,7 @@ def data_of(text: str) -> dict[str, Any]:
     ],
 )
 def test_errors_name_the_line(tmp_path: Path, old: str, new: str, line: int, words: str) -> None:
-    file = tmp_path / "scenario.yaml"
-    assert old in TEXT
-    file.write_text(TEXT.replace(old, new, 1))
-    with pytest.raises(OnOrbitError, match=words) as caught:
-        built(file)
-    assert f"scenario.yaml:{line}" in str(caught.value)
+    check_line_of_error(built, (TEXT, old, new), line, words, tmp_path)
 
 
 def test_errors_in_python_give_the_value() -> None:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from world_runs import built
+from world_runs import built, check_line_of_error
 
 import onorbit_rs as oo
-from onorbit_rs.exceptions import InputError, OnOrbitError
+from onorbit_rs.exceptions import InputError
 
 TEXT = """\
 systems:
@@ -61,12 +61,7 @@ def test_the_coefficients_are_those_of_the_pair(
     ],
 )
 def test_errors_name_the_line(old: str, new: str, line: int, words: str, tmp_path: Path) -> None:
-    file = tmp_path / "scenario.yaml"
-    assert old in TEXT
-    file.write_text(TEXT.replace(old, new, 1))
-    with pytest.raises(OnOrbitError, match=words) as caught:
-        built(file)
-    assert f"scenario.yaml:{line}" in str(caught.value)
+    check_line_of_error(built, (TEXT, old, new), line, words, tmp_path)
 
 
 def test_python_lists_the_known_pairs() -> None:

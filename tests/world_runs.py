@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 import onorbit_rs as oo
+from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build_world import BuiltWorld, build_world
 from onorbit_rs.scenario.yaml_lines import parse_yaml
@@ -49,6 +53,19 @@ def built(source: dict[str, Any] | str | Path) -> BuiltWorld:
     scenario = load(source)
     assert isinstance(scenario, WorldScenario)
     return build_world(scenario)
+
+
+def check_line_of_error(
+    read: Callable[[Path], object], change: tuple[str, str, str], line: int, words: str, folder: Path
+) -> None:
+    """Asserts that reading a scenario with one text replaced by another names the line of the error."""
+    text, old, new = change
+    file = folder / "scenario.yaml"
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+    with pytest.raises(OnOrbitError, match=words) as caught:
+        read(file)
+    assert f"scenario.yaml:{line}" in str(caught.value)
 
 
 def ran(world: BuiltWorld) -> oo.WorldTrace:

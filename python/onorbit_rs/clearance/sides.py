@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from onorbit_rs.common.link_patterns import link_pattern
 from onorbit_rs.common.rotations import is_local_frame_defined, local_orbital_axes
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import FrameError, InputError
@@ -54,8 +54,7 @@ def links_matching(models: Models, patterns: Sequence[str], watch: str) -> list[
     solid = {(system, shape.link) for system, model in models.items() for shape in model.collisions}
     found: dict[Link, None] = {}
     for pattern in patterns:
-        matcher = re.compile(".*".join(map(re.escape, pattern.split("*"))))
-        matching = [link for link in known if matcher.fullmatch(link.path)]
+        matching = [link for link in known if link_pattern(pattern).fullmatch(link.path)]
         if not matching:
             hint = did_you_mean(pattern, [link.path for link in known])
             raise FrameError(f"{watch!r}: no link matches {pattern!r}{hint}", name=pattern, kind="link")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -10,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs._core import Contact, HuntCrossley, SpringDashpot
+from onorbit_rs.common.link_patterns import link_pattern
 from onorbit_rs.exceptions import EngineError
 
 if TYPE_CHECKING:
@@ -124,7 +124,7 @@ def _pieces(
     bodies: Mapping[str, tuple[Model, Mapping[str, Any]]], contact: str, links: Sequence[str]
 ) -> list[tuple[str, int]]:
     """Return system and index of every collision shape of the links that match the patterns, once each."""
-    patterns = [re.compile(".*".join(map(re.escape, link.split("*"))), re.DOTALL) for link in links]
+    patterns = [link_pattern(link) for link in links]
     found = [
         (system, index)
         for system, (model, _) in bodies.items()

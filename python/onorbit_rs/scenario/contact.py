@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
 from onorbit_rs import _core
+from onorbit_rs.common.link_patterns import link_pattern
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
@@ -213,9 +213,7 @@ def _fault_of_link(link: str, systems: list[str]) -> str:
 
 def touching_systems(contact: Contact, models: Mapping[str, _core.Model]) -> list[str]:
     """Return the systems with links that the patterns of a contact match."""
-    patterns = [
-        re.compile(".*".join(map(re.escape, link.split("*")))) for side in contact.between for link in side
-    ]
+    patterns = [link_pattern(link) for side in contact.between for link in side]
     return [
         name for name, model in models.items()
         if any(pattern.fullmatch(f"{name}/{frame}") for pattern in patterns for frame in model.frame_names)

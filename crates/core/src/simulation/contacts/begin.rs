@@ -29,7 +29,8 @@ impl Touching {
         mobility: impl Fn(&[Side; 2], &Loading) -> [f64; 3],
     ) -> Result<Option<Loading>, ContactError> {
         let is_known = self.mode.since == t;
-        if if is_known { self.mode.phase == Phase::Far } else { self.is_far(motions, end - t) } {
+        let is_far = if is_known { self.mode.phase == Phase::Far } else { self.is_far(motions, end - t) };
+        if is_far {
             (self.mode.phase, self.mode.since) = (Phase::Far, t);
             return Ok(None);
         }
