@@ -69,7 +69,7 @@ pub enum InputError {
 /// Largest deviation of a quaternion from unit norm.
 pub(super) const UNIT_NORM: f64 = 1e-6;
 
-/// Checks the widths and the number of rows of inputs and outputs, and that the robot has the frames.
+/// Checks the widths and the number of rows of inputs and outputs, and that the frames of the call exist.
 pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
     let names = call.kernel.inputs();
     if call.inputs.len() != names.len() {
@@ -135,7 +135,7 @@ pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Re
     Err(InputError::NotFinite { name, state: index / width.max(1), value: data[index] })
 }
 
-/// Checks that the quaternions have unit norm.
+/// Checks that the quaternion of each configuration has unit norm within [`UNIT_NORM`].
 pub(super) fn check_quaternions(q: &[f64], nq: usize) -> Result<(), InputError> {
     for (state, row) in q.chunks_exact(nq).enumerate() {
         let norm = row[QUATERNION].iter().map(|x| x * x).sum::<f64>().sqrt();

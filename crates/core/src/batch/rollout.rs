@@ -33,9 +33,9 @@ pub struct Rollout<'a> {
     pub steps: usize,
     /// Length of a step, s.
     pub time_step: f64,
-    /// Integrator.
+    /// Method by which the equations of motion are integrated.
     pub integrator: Integrator,
-    /// Control of the joints.
+    /// Control law of the joints, or no control.
     pub control: RolloutControl<'a>,
     /// Number of steps between recorded rows, the first of which is the initial state. With `None`, only the
     /// final state is recorded.
@@ -112,7 +112,8 @@ impl Rollout<'_> {
         }
     }
 
-    /// Simulates all states. Returns the first state that becomes non-finite.
+    /// Simulates all runs. Returns the index of the first run whose state becomes non-finite, if there is
+    /// one.
     fn all<S: Real>(
         &self,
         model: &Model,
@@ -221,7 +222,7 @@ impl<'a, S: Real> Lanes<'a, S> {
         }
     }
 
-    /// Computes the torques for a step.
+    /// Computes the motor torques of all runs of the group for step `step`.
     fn drive(&mut self, step: usize) {
         let Self { equations, state, settings, work, first, count, .. } = self;
         let (tree, state) = (only_mut(&mut equations.trees), only(&state.trees));

@@ -9,9 +9,9 @@ use crate::world::FrameIndex;
 /// Law of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
-    /// Normal force.
+    /// Law of the normal force.
     pub normal: NormalLaw,
-    /// Friction; `None` without friction.
+    /// Law of friction; `None` without friction.
     pub friction: Option<Friction>,
 }
 
@@ -24,8 +24,9 @@ pub struct ContactSteps {
     /// True if steps are shortened near touch-down and lift-off for exponents between 1 and 4, where equal
     /// steps reduce the order of the integrator.
     pub is_graded: bool,
-    /// Part of the energy of a contact that a step may gain or lose by the error of the integrator. Steps with
-    /// larger errors are repeated with half of their length, as where the nearest faces or edges change.
+    /// Part of the energy of a contact that a step may gain or lose by the error of the integrator. Steps
+    /// with larger errors, which occur for example where the nearest faces or edges change, are repeated with
+    /// half the length.
     pub energy_error: f64,
 }
 
@@ -42,7 +43,7 @@ impl Default for ContactSteps {
 pub struct ContactSide {
     /// Frame to which the shape is fixed.
     pub frame: FrameIndex,
-    /// Shape.
+    /// Collision shape of the piece.
     pub shape: Shape,
     /// Pose of the shape in the frame.
     pub pose: Pose,
@@ -85,8 +86,8 @@ impl Contact {
         Ok(())
     }
 
-    /// Returns the contact with the numbers that its systems have in a group; `None` if it belongs to another
-    /// group.
+    /// Returns the contact with its systems renumbered by their positions in `numbers`, the systems of a
+    /// group; `None` if a system of the contact is not in the group.
     pub(crate) fn in_group(&self, numbers: &[usize]) -> Option<Self> {
         let mut own = self.clone();
         for side in own.sides.iter_mut().flatten() {

@@ -15,7 +15,7 @@ pub enum ContactError {
         got: f64,
         /// Accepted range, as text without the unit.
         range: String,
-        /// Unit; empty for a number.
+        /// Unit; empty for a dimensionless parameter.
         unit: &'static str,
     },
     /// No link matches a pattern.

@@ -4,13 +4,13 @@ use super::error::{ContactError, at_least, positive};
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Damping ratio of the bristles by default.
+/// Default damping ratio of the bristles.
 const DAMPING_RATIO: f64 = 0.1;
 
 /// Coulomb friction with elastic bristles.
 ///
 /// In contrast to the LuGre model, a contact whose load stays inside the friction cone returns to its place
-/// and does not creep, also under oscillating loads.
+/// and does not creep, even under oscillating loads.
 ///
 /// Source: Dupont, Hayward, Armstrong and Altpeter, Single State Elastoplastic Friction Models, IEEE
 /// Transactions on Automatic Control 47(5), 2002, without a transition between elastic and plastic motion, as
@@ -23,7 +23,7 @@ pub struct Friction {
     pub kinetic_coefficient: f64,
     /// Tangential stiffness `σ`, N/m.
     pub stiffness: f64,
-    /// Tangential damping `c` inside the cone, N s/m; by default that with a damping ratio of 0.1.
+    /// Tangential damping `c` inside the cone, N s/m; `None` selects the damping for a ratio of 0.1.
     pub damping: Option<f64>,
     /// Coefficient of kinetic torsional friction, m: the largest moment about the normal per unit of normal
     /// force; 0 for contact at a point.
@@ -39,12 +39,12 @@ pub struct Bristle {
     pub is_slipping: bool,
 }
 
-/// Friction on the second body after a displacement.
+/// Friction force on the second body, with the state of the bristles, after a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionForce {
-    /// Force, N.
+    /// Tangential force on the second body, N.
     pub force: Vec3<f64>,
-    /// Bristles at this instant.
+    /// Bristles after the displacement.
     pub bristle: Bristle,
     /// Distance from the next change between sticking and slipping, negative beyond it: `1 − |σ z + c v|/(μ
     /// N)` while the contact sticks, and the cosine of the angle between bristles and velocity while it
@@ -57,9 +57,10 @@ impl Friction {
     /// the relative displacement `moved`, m, from the bristles `start`, with the damping `damping`, N s/m.
     /// All vectors are tangential.
     ///
-    /// Inside the cone, `ż = v` and `F = −(σ z + c v)`. On the cone, `|F| = μ N` and the bristles, of length
-    /// `μ N/σ`, turn towards the velocity, `ḋ = (1 − d dᵀ) v/|z|`. For a constant velocity, the angle `φ`
-    /// between both obeys `tan φ/2 = tan φ₀/2 exp(−s/|z|)` with the path `s`.
+    /// Inside the cone, `ż = v` and `F = −(σ z + c v)`. On the cone, `|F| = μ N`, and the direction `d` of
+    /// the bristles, of length `μ N/σ`, turns towards the velocity: `ḋ = (1 − d dᵀ) v/|z|`. For a constant
+    /// velocity, the angle `φ` between `d` and `v` obeys `tan φ/2 = tan φ₀/2 exp(−s/|z|)` with the path
+    /// length `s`.
     pub fn after(
         &self,
         start: &Bristle,
@@ -145,8 +146,8 @@ fn unit(v: Vec3<f64>) -> Vec3<f64> {
     if length > 0.0 { v * (1.0 / length) } else { Vec3::zero() }
 }
 
-/// Returns the direction of slipping bristles of length `length`, m, that pointed along `from`, after the
-/// path `path`, m, at the velocity `rate`.
+/// Returns the direction of slipping bristles of length `length`, m, that pointed along `from`, after sliding
+/// by `path`, m, at the velocity `rate`, m/s.
 fn turned(from: Vec3<f64>, rate: Vec3<f64>, path: f64, length: f64) -> Vec3<f64> {
     let (from, to) = (unit(from), unit(rate));
     if rate.norm() == 0.0 || length <= 0.0 {

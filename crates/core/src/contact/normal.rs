@@ -28,7 +28,8 @@ pub enum NormalLaw {
 }
 
 impl NormalLaw {
-    /// Returns the force `F` if the bodies press on each other; the force would pull if it is negative.
+    /// Returns the value of the law at the depth `x`, m, and the rate `rate`, m/s, in N. Bodies that can
+    /// separate exert no force where the value is negative.
     #[inline]
     pub fn force(&self, x: f64, rate: f64) -> f64 {
         match *self {
@@ -63,7 +64,7 @@ impl NormalLaw {
         }
     }
 
-    /// Returns the elastic energy at the depth `x`, m, in J.
+    /// Returns the elastic energy, J, stored at the depth `x`, m.
     pub fn elastic_energy(&self, x: f64) -> f64 {
         // U = k xⁿ⁺¹/(n + 1)
         if x > 0.0 { self.elastic_force(x) * x / (self.exponent() + 1.0) } else { 0.0 }
@@ -107,7 +108,8 @@ impl NormalLaw {
     }
 
     /// Returns the depth, m, at which two bodies with the effective mass `mass`, kg, that are at the depth
-    /// `x`, m, come to rest if nothing is dissipated: `½ m ẋ² + U(x) = U(x_max)`.
+    /// `x`, m, and approach each other at `rate`, m/s, come to rest if nothing is dissipated: `½ m ẋ² + U(x)
+    /// = U(x_max)`.
     pub fn largest_depth(&self, mass: f64, x: f64, rate: f64) -> f64 {
         let energy = 0.5 * mass * rate * rate + self.elastic_energy(x);
         let n = self.exponent();

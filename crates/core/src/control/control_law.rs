@@ -68,8 +68,8 @@ pub(super) trait ControlLaw {
         None
     }
 
-    /// Returns the acceleration of the tracked frame, for [`JointCommand::Task`], from its pose error, its
-    /// velocity error and the desired acceleration.
+    /// Returns the commanded acceleration of the tracked frame, m/s² and rad/s², for [`JointCommand::Task`],
+    /// from its pose error, its velocity error and the desired acceleration.
     fn task_acceleration(
         &self,
         _error: Motion<f64>,

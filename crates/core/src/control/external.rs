@@ -64,7 +64,8 @@ impl External {
         Self { law, timeout: None, on_timeout: OnTimeout::Hold, memory: ExternalMemory::default() }
     }
 
-    /// Returns the quantity that the gains can track: positions, otherwise rates, otherwise efforts.
+    /// Returns the quantity that the law can track with its gains: positions if `kp` is positive, rates if
+    /// only `kd` is positive, and otherwise efforts.
     pub fn interface(&self) -> Interface {
         match (self.law.kp.is_positive(), self.law.kd.is_positive()) {
             (true, _) => Interface::Position,

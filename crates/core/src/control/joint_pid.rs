@@ -54,8 +54,8 @@ impl JointPid {
         self.effort_limit.check_limit("effort_limit", count)
     }
 
-    /// Computes the effort of the joint at `place` in the group with the position `q` and the rate `rate`,
-    /// `dt` s after the last tick.
+    /// Computes the effort, N m (N), of the joint at `place` in the group with the position `q` and the rate
+    /// `rate`, `dt` s after the last tick.
     pub(super) fn effort(
         &self,
         place: usize,

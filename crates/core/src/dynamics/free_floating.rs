@@ -276,7 +276,8 @@ fn add_body<S: Real>(
     (composite + body.inertia.about_origin(), (bias + net_force(body), external))
 }
 
-/// Computes pose, twist and `Jg` of a frame, and completes `d` from `J̇ v`.
+/// Computes the pose, the twist and `Jg` of a frame, and completes its drift `d`, to which the caller has
+/// assigned `J̇ v`.
 #[inline(always)]
 fn reduce_task<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize, out: &mut FreeFloating<S>) {
     out.pose = frame_pose(model, data, q, frame);

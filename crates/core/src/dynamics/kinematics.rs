@@ -125,7 +125,7 @@ pub(crate) fn frame_rotation_b<S: Real>(data: &Data<S>, frame: &Frame) -> Mat3<S
     data.bodies[frame.body].rot_bk * Mat3::of(&frame.rot_kf)
 }
 
-/// Returns the rotation `R_wb` of the base.
+/// Returns the rotation `R_wb` from base axes to W.
 #[inline(always)]
 pub(crate) fn base_rotation<S: Real>(q: &[S]) -> Mat3<S> {
     Quat::from_xyzw(&q[3..]).matrix()

@@ -89,7 +89,8 @@ pub(crate) fn momentum_energy_com<S: Real>(
     (about_com(h, com, &rot_wb), energy, rot_wb * com + Vec3::from_slice(q))
 }
 
-/// Returns composite inertia, momentum (both in B about the base origin) and kinetic energy of the robot.
+/// Returns the composite inertia and the momentum of the robot, both in B about the base origin, and its
+/// kinetic energy, J.
 #[inline(always)]
 fn inertia_momentum_energy<S: Real>(
     model: &Model,

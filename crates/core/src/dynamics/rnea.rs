@@ -31,7 +31,7 @@ pub fn inverse_dynamics<S: Real>(
 /// Computes the bias forces `c − Σ Jᵀ F`: Coriolis and centrifugal forces `c(q, v)` minus the generalized
 /// forces of the external wrenches.
 ///
-/// The result, `c` (out, `(nv,)`), equals inverse dynamics at `a = 0`.
+/// The result, `(nv,)`, N and N m, is written to the argument `c` and equals inverse dynamics at `a = 0`.
 pub fn bias_forces<S: Real>(
     model: &Model,
     data: &mut Data<S>,

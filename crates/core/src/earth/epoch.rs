@@ -34,7 +34,7 @@ impl Epoch {
     /// Parses a text such as `2024-03-01T12:00:00 UTC`, which consists of date, time and time scale. The time
     /// scale is UTC (or `Z`), TAI, TT or TDB.
     ///
-    /// During a leap second, the seconds are 60.
+    /// An instant in a leap second is written with 60 seconds.
     ///
     /// # Errors
     /// [`EarthError::Epoch`] for any other text and for years outside 1900 to 2099;
@@ -93,7 +93,7 @@ impl Epoch {
         (self.tai as i128 - earlier.tai as i128) as f64 * 1e-9
     }
 
-    /// Returns the time from 2000-01-01T12:00:00 TAI as whole days and a fraction of a day, TAI.
+    /// Returns the time from 2000-01-01T12:00:00 TAI as whole days and a fraction of a day of TAI.
     pub(super) fn tai_days(self) -> (f64, f64) {
         (self.tai.div_euclid(DAY_NS) as f64, self.tai.rem_euclid(DAY_NS) as f64 / DAY_NS as f64)
     }

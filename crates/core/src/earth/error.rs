@@ -12,13 +12,13 @@ pub enum EarthError {
          (or TAI, TT, TDB; Z is UTC)"
     )]
     Epoch {
-        /// Given value.
+        /// Given text.
         text: String,
     },
     /// An epoch in UTC is before 1972, when UTC adopted leap seconds.
     #[error("epoch '{text}' is before 1972, when UTC adopted leap seconds; give the epoch in TAI or TT")]
     BeforeUtc {
-        /// Given value.
+        /// Given text.
         text: String,
     },
     /// A quantity depends on the date, but no epoch is given.

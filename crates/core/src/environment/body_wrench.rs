@@ -121,6 +121,8 @@ impl Effect for BodyWrench {
         false
     }
 
+    /// Adds the wrench if it is active in the step of the scene.
+    ///
     /// # Errors
     /// [`EnvironmentError::UnknownBody`] if the body does not exist.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {

@@ -72,9 +72,12 @@ impl Effect for DifferentialGravity {
         true
     }
 
+    /// Adds the differential gravity of every body.
+    ///
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`]; [`EnvironmentError::InsidePlanet`] if the reference or a body is below
-    /// the lowest possible ground of the planet; [`EnvironmentError::Gravity`].
+    /// [`EnvironmentError::NoPlanet`] without a planet; [`EnvironmentError::InsidePlanet`] if the reference
+    /// or a body is below the lowest possible ground of the planet; [`EnvironmentError::Gravity`] if the
+    /// field cannot be evaluated.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

@@ -86,9 +86,12 @@ impl Effect for Drag {
         true
     }
 
+    /// Adds the drag on every body with a surface.
+    ///
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::InsidePlanet`],
-    /// [`EnvironmentError::Atmosphere`].
+    /// [`EnvironmentError::NoPlanet`] and [`EnvironmentError::NoEarth`] for a scene without a planet or an
+    /// Earth, [`EnvironmentError::InsidePlanet`] if the reference is below ground, and
+    /// [`EnvironmentError::Atmosphere`] if the density cannot be computed.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

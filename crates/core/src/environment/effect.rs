@@ -62,7 +62,8 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
         true
     }
 
-    /// Returns true if at most one effect with this name may act on `body`; a second effect is then rejected.
+    /// Returns true if a second effect with the same name on `body` would count the force twice. A run with
+    /// two such effects on one body is an error.
     fn counts_once_on(&self, _body: BodyIndex) -> bool {
         false
     }

@@ -71,7 +71,7 @@ pub enum EnvironmentError {
     UnknownBody {
         /// Given body.
         body: BodyIndex,
-        /// Number of bodies.
+        /// Number of bodies that exist.
         count: usize,
     },
     /// A wrench acts on a frame that does not exist.
@@ -82,7 +82,7 @@ pub enum EnvironmentError {
     UnknownFrame {
         /// Index of the given frame.
         frame: usize,
-        /// Number of frames.
+        /// Number of frames that exist.
         count: usize,
     },
     /// The density of the atmosphere cannot be evaluated.

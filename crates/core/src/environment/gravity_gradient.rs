@@ -39,8 +39,11 @@ impl Effect for GravityGradient {
         true
     }
 
+    /// Adds the gravity-gradient torque of every body.
+    ///
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::InsidePlanet`] and [`EnvironmentError::Gravity`].
+    /// [`EnvironmentError::NoPlanet`] without a planet, [`EnvironmentError::InsidePlanet`] for a body below
+    /// ground, and [`EnvironmentError::Gravity`] if the field cannot be evaluated.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))
     }

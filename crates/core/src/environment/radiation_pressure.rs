@@ -146,8 +146,11 @@ impl Effect for RadiationPressure {
         false
     }
 
+    /// Adds the radiation pressure on every body with a surface.
+    ///
     /// # Errors
-    /// [`EnvironmentError::NoPlanet`], [`EnvironmentError::NoEarth`], [`EnvironmentError::InsidePlanet`], and
+    /// [`EnvironmentError::NoPlanet`] and [`EnvironmentError::NoEarth`] for a scene without a planet or an
+    /// Earth, [`EnvironmentError::InsidePlanet`] if the reference is below ground, and
     /// [`EnvironmentError::Earth`] without an epoch or outside the span of the Sun's positions.
     fn add_wrenches(&self, scene: &Scene<'_>, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         on_lanes!(scene.bodies.len(), S => self.add::<S>(scene, wrenches))

@@ -11,7 +11,7 @@ pub struct BoundaryPoint {
     pub distance: f64,
     /// Closest point of the boundary, m.
     pub point: Vec3<f64>,
-    /// Unit normal there, away from the inside: the gradient of the distance.
+    /// Unit normal at this point, outward: the gradient of the distance.
     pub normal: Vec3<f64>,
 }
 
@@ -40,7 +40,7 @@ pub fn signed_distance(shape: &Shape, p: Vec3<f64>) -> Option<BoundaryPoint> {
     }
 }
 
-/// Returns the nearest point of a sphere about `center`.
+/// Returns the nearest point to `p` of the sphere with this radius, m, about `center`.
 fn about(center: Vec3<f64>, radius: f64, p: Vec3<f64>) -> BoundaryPoint {
     let apart = p - center;
     let length = apart.norm();
@@ -48,7 +48,8 @@ fn about(center: Vec3<f64>, radius: f64, p: Vec3<f64>) -> BoundaryPoint {
     BoundaryPoint { distance: length - radius, point: normal.scale_add(radius, center), normal }
 }
 
-/// Returns the unit vector from the z axis to a point, x on the axis.
+/// Returns the unit vector that points from the z axis to `p`, perpendicular to the axis; the x direction if
+/// `p` lies on the axis.
 fn radial(p: Vec3<f64>) -> Vec3<f64> {
     let length = p.x.hypot(p.y);
     if length > 0.0 { Vec3::new(p.x / length, p.y / length, 0.0) } else { Vec3::new(1.0, 0.0, 0.0) }
@@ -73,7 +74,7 @@ fn cuboid(half: [f64; 3], p: Vec3<f64>) -> BoundaryPoint {
     BoundaryPoint { distance: beyond[face], point: vector(point), normal: vector(normal) }
 }
 
-/// Returns the nearest point of the solid that a profile sweeps about z.
+/// Returns the nearest boundary point to `p` of the solid that the profile `corners` sweeps about the z axis.
 fn revolved(corners: &[[f64; 2]], p: Vec3<f64>) -> BoundaryPoint {
     let away = radial(p);
     let (distance, [rho, z], [n_rho, n_z]) = profile::nearest(corners, [p.x.hypot(p.y), p.z]);

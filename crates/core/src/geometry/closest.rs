@@ -13,13 +13,14 @@ use crate::spatial::Vec3;
 
 /// Returns the signed distance of two shapes, its witness points and its normal, in common axes.
 ///
-/// Spheres, pairs of capsules, and half-spaces have closed forms; other convex shapes use GJK and EPA. A compound has the
-/// distance of its nearest pieces, or the depth of the deepest. The result depends on the arguments alone: nothing is
-/// kept from earlier calls.
+/// Spheres, pairs of capsules, and half-spaces have closed forms; other convex shapes use GJK and EPA. The
+/// distance of a compound is that of its nearest or most deeply overlapping piece. The result depends only on
+/// the arguments: nothing is stored between calls.
 ///
 /// # Errors
-/// If a length or a pose is invalid, if no method covers the pair, such as two half-spaces, or a shape that overlaps a torus
-/// beyond its middle circle, or if the bounds of the distance did not meet.
+/// [`GeometryError`] if a length or a pose is invalid; if no method covers the pair, such as two half-spaces
+/// or a torus whose middle circle lies inside the other shape; and if the bounds of the distance do not
+/// converge.
 pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
     check(a, pose_a)?;
     check(b, pose_b)?;
@@ -93,7 +94,8 @@ fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximit
     found.map(|proximity| proximity.in_common(pose_a)).ok_or_else(|| GeometryError::Unavailable(pair()))
 }
 
-/// Returns the place of a kind of shape in the order of the arguments of the methods.
+/// Returns the rank of a kind of shape: of a pair, the shape of lower rank is the first argument of every
+/// method.
 fn rank(shape: &Shape) -> usize {
     match shape {
         Shape::Sphere { .. } => 0,
@@ -108,7 +110,8 @@ fn rank(shape: &Shape) -> usize {
     }
 }
 
-/// Returns the distance of a sphere about the origin: that of its centre, less its radius.
+/// Returns the distance between a sphere about the origin and `b`: the distance from the centre of the sphere
+/// to `b`, less the radius.
 fn sphere(radius: f64, b: &Shape, pose: &Pose) -> Option<Proximity> {
     let nearest = signed_distance(b, pose.to_shape(Vec3::zero()))?;
     let normal = pose.rot * -nearest.normal;
@@ -120,7 +123,7 @@ fn sphere(radius: f64, b: &Shape, pose: &Pose) -> Option<Proximity> {
     })
 }
 
-/// Returns the distance of two capsules: that of their axes, less their radii.
+/// Returns the distance of two capsules, which is the distance of their axes less both radii.
 fn capsules(a: &Shape, b: &Shape, pose: &Pose) -> Option<Proximity> {
     let (Shape::Capsule { radius: radius_a, half_length }, Shape::Capsule { radius: radius_b, .. }) = (a, b)
     else {
@@ -138,7 +141,8 @@ fn capsules(a: &Shape, b: &Shape, pose: &Pose) -> Option<Proximity> {
     })
 }
 
-/// Returns the distance from a half-space, at the farthest point towards it.
+/// Returns the distance between `a` and a half-space, attained at the point of `a` that lies farthest towards
+/// the half-space.
 fn half_space(a: &Shape, pose: &Pose) -> Option<Proximity> {
     let normal = -pose.rot.z;
     let lowest = support(a, normal)?;

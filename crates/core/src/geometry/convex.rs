@@ -15,17 +15,17 @@ const MARGIN: f64 = 0.1;
 /// Largest number of corrections of the normal.
 const CORRECTIONS: usize = 30;
 
-/// Change of the normal at which it is final.
+/// Change of the normal, rad, at which the iteration ends.
 const FINAL: f64 = 1e-12;
 
-/// Change of the normal below which it is final if it no longer decreases.
+/// Change of the normal, rad, below which the iteration ends as soon as the change no longer decreases.
 const RESOLUTION: f64 = 1e-7;
 
 /// Largest difference between the distance of the witness points and that of the supporting planes, relative to the size.
 const RESOLVED: f64 = 1e-9;
 
-/// Returns the distance of two convex shapes with the pose of the second in the axes of the first, or the difference of
-/// its bounds, m, if it was not found.
+/// Returns the distance of two convex shapes with the pose of the second in the axes of the first, or, if the
+/// iteration does not converge, the difference of the bounds of the distance, m.
 pub(super) fn closest(a: &Shape, b: &Shape, pose: &Pose) -> Result<Proximity, f64> {
     let cores = Cores { a, b, pose: *pose };
     let (sphere_a, sphere_b) = (a.bounding_sphere(), b.bounding_sphere());

@@ -6,17 +6,19 @@ use crate::spatial::Vec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// Difference of the bounds of the depth at which the iteration ends, relative to the size of the difference set.
+/// Difference between the bounds of the depth at which the iteration ends, relative to the size of the set.
 const CONVERGED: f64 = 1e-10;
 
-/// Height of a point above a triangle below which the triangle is not visible from it, relative to the same size.
+/// Height of a point above a triangle below which the triangle is not visible from the point, relative to the
+/// size of the set.
 const LEVEL: f64 = 1e-14;
 
-/// Steps after which the best direction is returned although the bounds differ: the depth has then nearly the same value
-/// for many directions.
+/// Largest number of steps, after which the best direction so far is returned. This occurs if the depth is
+/// nearly the same in many directions.
 const STEPS: usize = 400;
 
-/// Distance of a triangle from the origin and the index of the triangle; the nearest is the greatest.
+/// Distance of a triangle from the origin, and the index of the triangle. The nearest triangle is the
+/// greatest entry.
 #[derive(PartialEq)]
 struct Entry(f64, usize);
 
@@ -34,11 +36,11 @@ impl PartialOrd for Entry {
     }
 }
 
-/// Returns the unit vector `n` for which the support function `s(n)ᵀ n` of a convex set is least, to the first order in
-/// the error that is left; `None` if the set is flat. `farthest` returns the point `s(d)`.
+/// Returns the unit vector `n` for which the support function `s(n)ᵀ n` of a convex set is least, accurate to
+/// first order in the remaining error; `None` if the set is flat. `farthest` returns the point `s(d)`.
 ///
-/// The polytope inside the set grows at its triangle with the least signed distance from the origin, which is a lower
-/// bound of the result; the support function in the direction of its normal is an upper bound.
+/// The polytope inside the set grows at its triangle with the least signed distance from the origin, which is
+/// a lower bound of the result; the support function in the direction of its normal is an upper bound.
 pub(super) fn least_support(farthest: impl Fn(Vec3<f64>) -> Vec3<f64>) -> Option<Vec3<f64>> {
     let mut polytope = Polytope::default();
     if !polytope.start(spread(&farthest)?) {
@@ -88,7 +90,8 @@ fn spread(farthest: &impl Fn(Vec3<f64>) -> Vec3<f64>) -> Option<[Vec3<f64>; 4]> 
     is_finite.then_some([a, b, c, d])
 }
 
-/// Returns the farther one from `from` of the farthest points along `d` and `−d`, measured along `d`.
+/// Returns the farthest point along `d` or along `−d`: the one that is farther from `from`, measured along
+/// `d`.
 fn farther(farthest: &impl Fn(Vec3<f64>) -> Vec3<f64>, d: Vec3<f64>, from: Vec3<f64>) -> Vec3<f64> {
     let (p, q) = (farthest(d), farthest(-d));
     if (p - from).dot(d) >= (from - q).dot(d) { p } else { q }

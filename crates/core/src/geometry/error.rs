@@ -92,7 +92,7 @@ fn unavailable(pair: &PosedPair) -> &'static str {
     }
 }
 
-/// Returns the origin of a shape as text.
+/// Returns the position of the origin of a shape, m, as text.
 fn position(pose: &Pose) -> String {
     list(&[pose.pos.x, pose.pos.y, pose.pos.z])
 }

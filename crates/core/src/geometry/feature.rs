@@ -6,7 +6,7 @@ use super::shape::Shape;
 use crate::spatial::Vec3;
 use std::f64::consts::TAU;
 
-/// Corners of the polygon in place of a disc.
+/// Number of corners of the polygon that approximates a disc.
 const DISC_CORNERS: u32 = 8;
 
 /// Distance of a point from a face below which it lies on the face, relative to the size of the hull.
@@ -15,23 +15,23 @@ const ON_FACE: f64 = 1e-9;
 /// Part of a surface.
 #[derive(Clone, Debug)]
 pub(super) enum Feature {
-    /// Point.
+    /// Single point, such as the nearest point of a sphere.
     Point,
     /// Line on a round surface.
     Segment {
-        /// Ends.
+        /// End points of the line, m.
         ends: [Vec3<f64>; 2],
-        /// Radius of the surface across the line.
+        /// Radius of curvature of the surface across the line, m.
         radius: f64,
     },
     /// Convex polygon.
     Face {
-        /// Corners in order.
+        /// Corners in order around the polygon, m.
         corners: Vec<Vec3<f64>>,
-        /// Unit normal.
+        /// Outward unit normal.
         normal: Vec3<f64>,
     },
-    /// Surface of a half-space.
+    /// Boundary plane of a half-space.
     Plane,
 }
 
@@ -102,7 +102,8 @@ fn box_face(half_edges: [f64; 3], d: [f64; 3]) -> Feature {
     Feature::Face { corners, normal: Vec3::from_slice(&normal) }
 }
 
-/// Returns a regular polygon in a disc about the z axis, with its first corner along `away`, which is the lowest point.
+/// Returns a regular polygon in a disc about the z axis, whose first corner, in the direction `away`, is the
+/// lowest.
 fn disc(radius: f64, z: f64, away: Vec3<f64>, sign: f64) -> Feature {
     let side = Vec3::new(-away.y, away.x, 0.0);
     let corner = |k: u32| {

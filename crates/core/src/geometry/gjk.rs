@@ -6,10 +6,11 @@ use super::simplex::{Corner, Simplex};
 use super::support::core_support;
 use crate::spatial::Vec3;
 
-/// Steps after which the iteration ends.
+/// Largest number of steps.
 const STEPS: usize = 200;
 
-/// Steps without an improvement after which the iteration ends, and the same for bounds that are `CLOSE`.
+/// Number of steps without an improvement after which the iteration ends: in general, and for bounds whose
+/// difference is below [`CLOSE`].
 const PATIENCE: [usize; 2] = [40, 3];
 
 /// Difference of the bounds from which more steps gain little, relative to the largest coordinate.
@@ -39,7 +40,8 @@ pub(super) struct Nearest {
 }
 
 impl Cores<'_> {
-    /// Returns the farthest point of the first shape along `d`, of the second along `−d`, and their difference.
+    /// Returns the farthest point of the first shape along `d`, the farthest point of the second along `−d`,
+    /// and their difference.
     pub(super) fn corner(&self, d: Vec3<f64>) -> Corner {
         let on_a = core_support(self.a, d).unwrap_or_else(Vec3::zero);
         let local = core_support(self.b, self.pose.rot.transpose_mul(-d)).unwrap_or_else(Vec3::zero);
@@ -57,10 +59,11 @@ impl Cores<'_> {
         Self { pose: Pose { pos: self.pose.pos + by, ..self.pose }, ..*self }
     }
 
-    /// Returns the nearest points of separated shapes, `None` if they touch or overlap.
+    /// Returns the nearest points of separated shapes; `None` if they touch or overlap.
     ///
-    /// The iteration ends when the supporting planes confirm the distance to rounding, or when their separation no longer
-    /// increases. The distance alone is no criterion: it is constant to rounding while the normal still turns by 1e-8.
+    /// The iteration ends when the supporting planes confirm the distance to rounding, or when their
+    /// separation no longer increases. The distance alone is not a sufficient criterion, because it no longer
+    /// changes while the normal still turns by 1e-8 rad.
     pub(super) fn nearest(&self, start: Vec3<f64>) -> Option<Nearest> {
         let first = self.corner(start);
         let mut simplex = Simplex::new(first);

@@ -14,9 +14,9 @@ const COPLANAR: f64 = 1e-12;
 /// Face of a convex hull.
 #[derive(Clone, Debug)]
 pub struct Face {
-    /// Unit normal, away from the inside.
+    /// Outward unit normal.
     pub normal: Vec3<f64>,
-    /// Vertices, counterclockwise as seen from outside.
+    /// Indices of the vertices, counterclockwise as seen from outside.
     pub corners: Vec<usize>,
 }
 
@@ -31,7 +31,7 @@ impl Hull {
     /// Returns the convex hull of points, m.
     ///
     /// # Errors
-    /// If a coordinate is not finite or the points lie in a plane.
+    /// [`GeometryError`] if a coordinate is not finite or the points lie in a plane.
     pub fn new(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
         let failed = |cause| GeometryError::Hull { count: points.len(), cause };
         if points.iter().any(|p| !p.norm().is_finite()) {
@@ -74,7 +74,7 @@ impl Hull {
         BoundingSphere { center, radius }
     }
 
-    /// Merges triangles in common planes to faces and drops points that are not vertices.
+    /// Merges triangles in the same plane into faces and drops points that are not vertices.
     fn from_polytope(polytope: &Polytope, tolerance: f64) -> Self {
         let mut is_taken: Vec<bool> =
             polytope.triangles.iter().map(|triangle| !triangle.is_alive || triangle.is_flat).collect();
@@ -99,7 +99,8 @@ impl Hull {
     }
 }
 
-/// Returns four points that span a tetrahedron and the extent of the points, `None` if they are flat.
+/// Returns the indices of four points that span a tetrahedron, and the extent of the points, m; `None` if the
+/// points lie in a plane.
 fn spread(points: &[Vec3<f64>]) -> Option<([usize; 4], f64)> {
     let farthest = |from: &dyn Fn(Vec3<f64>) -> f64| {
         (0..points.len()).max_by(|i, j| from(points[*i]).total_cmp(&from(points[*j])))
@@ -116,7 +117,7 @@ fn spread(points: &[Vec3<f64>]) -> Option<([usize; 4], f64)> {
     (area > FLAT * extent * extent && thickness > FLAT * extent).then_some(([a, b, c, d], extent))
 }
 
-/// Adds the farthest point outside a face until all points are inside.
+/// Grows the tetrahedron `first` by the farthest point outside a face until all points are inside.
 fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Polytope> {
     let mut polytope = Polytope::default();
     if !polytope.start(first.map(|i| points[i])) {

@@ -18,7 +18,7 @@ pub struct ShapeSet {
 pub struct LeastDistance {
     /// Distance, witness points and normal of the nearest pair.
     pub proximity: Proximity,
-    /// Numbers of the nearest shapes in both sets.
+    /// Index of the nearest shape in each set.
     pub pair: [usize; 2],
 }
 

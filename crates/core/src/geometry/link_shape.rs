@@ -19,10 +19,12 @@ pub struct LinkShape {
     pub warnings: Vec<String>,
 }
 
-/// Returns the collision shape of a link, given the index of its frame. Of a mesh, it is the convex hull.
+/// Returns the collision shape of a link, given the index of its frame. Meshes are replaced by their convex
+/// hulls.
 ///
 /// # Errors
-/// If the link has no collision shape, or if one of them is missing or is not valid.
+/// [`GeometryError`] if the link has no collision shape, or if one of its collision shapes is missing or
+/// invalid.
 pub fn link_shape(model: &Model, frame: usize) -> Result<LinkShape, GeometryError> {
     let link = &model.frames()[frame].name;
     let invalid = |cause: String| GeometryError::Collision { link: link.clone(), cause };
@@ -61,7 +63,7 @@ fn pose(visual: &Visual) -> Pose {
 /// defect of a mesh to `warnings`.
 ///
 /// # Errors
-/// The reason, as text, for which a mesh cannot be used.
+/// The reason, as text, why a mesh cannot be used.
 pub fn shape_of(geometry: &Geometry, owner: &str, warnings: &mut Vec<String>) -> Result<Shape, String> {
     Ok(match geometry {
         Geometry::Box(edges) => Shape::Box { half_edges: edges.map(|edge| 0.5 * edge) },

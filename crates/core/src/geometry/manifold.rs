@@ -1,20 +1,22 @@
 //! Contact points of two shapes.
 //!
-//! The surfaces that face each other along the normal `n` are reduced to features: a face, a line on a round surface, or a
-//! point. Their common part, as seen along `n`, is a polygon or a segment. Its corners are the contact points, each with
-//! the depth `x_i` of the overlap there. With `g(s) = (1 − s²)²` below `s = 1` and 0 above, and slopes relative to `TILT`, the
-//! weights are `w = f a + (1 − f) e`:
+//! The surfaces that face each other along the normal `n` are reduced to features: a face, a line on a round
+//! surface, or a point. Their common part, as seen along `n`, is a polygon or a segment. Its corners are the
+//! contact points, each with the depth `x_i` of the overlap there. With `g(s) = (1 − s²)²` below `s = 1` and
+//! 0 above, and slopes relative to `TILT`, the weights are `w = f a + (1 − f) e`:
 //!
-//! - `a_i` by area: `Σ a_i x_i` is the mean depth of the patch ([`weights`](super::polygon::weights)). They are continuous
-//!   where the patch gains or loses a corner. A box that lies on a plane has `a_i = 1/4`.
+//! - `a_i` by area: `Σ a_i x_i` is the mean depth of the patch ([`weights`](super::polygon::weights)). These
+//!   weights are continuous where the patch gains or loses a corner. A box that lies on a plane has `a_i =
+//!   1/4`.
 //! - `f = g(slope of the patch)`: the face loses its weight to its deepest edges and corner as it tilts.
-//! - `e_i` by edges: an edge of length `l` gives `½ l h` to each of its ends, and the sum is scaled to the largest `h` of all
-//!   edges; the deepest corner has the rest. `h = g(slope of the edge) g(s)`, with the height `s` of the edge above the deepest
-//!   corner, relative to `TILT` times the extent of the patch.
+//! - `e_i` by edges: an edge of length `l` gives `½ l h` to each of its ends, and the sum is scaled to the
+//!   largest `h` of all edges; the deepest corner has the rest. `h = g(slope of the edge) g(s)`, with the
+//!   height `s` of the edge above the deepest corner, relative to `TILT` times the extent of the patch.
 //!
-//! They sum to 1 and are continuous in the pose as long as the normal is, except where a body rolls from a face to a
-//! neighbour with almost the same normal. Two lines have the ends of their common part as points, with weights that fall with
-//! the angle between the lines and their slope; the witness points, where the lines cross, receive the rest.
+//! The weights sum to 1 and are continuous in the pose where the normal is, except where a body rolls from a
+//! face to a neighbour with almost the same normal. The contact points of two lines are the ends of their
+//! common part, with weights that decrease with the angle between the lines and their slope; the witness
+//! points, where the lines cross, receive the rest.
 
 use super::closest::{check, check_pose, nearest_pieces};
 use super::error::GeometryError;
@@ -27,16 +29,17 @@ use super::shape::Shape;
 /// Contact points of two shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Manifold {
-    /// Distance and normal.
+    /// Distance, witness points and normal of the shapes.
     pub proximity: Proximity,
     /// Contact points with positive weights: 1 to 8 for the usual shapes, more between faces with many corners.
     pub points: Vec<ContactPoint>,
 }
 
-/// Returns the contact points of two shapes, in common axes; those of the nearest pieces for a compound.
+/// Returns the contact points of two shapes, in common axes; for a compound, the contact points of its
+/// nearest piece.
 ///
 /// # Errors
-/// As [`closest`](super::closest()).
+/// The errors of [`closest`](super::closest()).
 pub fn manifold(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Manifold, GeometryError> {
     check(a, pose_a)?;
     check(b, pose_b)?;
@@ -44,10 +47,10 @@ pub fn manifold(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Ma
     Ok(Manifold { proximity, points: points.as_slice().to_vec() })
 }
 
-/// Contact points, of which spheres have one.
+/// Contact points of a pair of shapes. A sphere has a single one.
 #[derive(Clone, Debug)]
 pub(crate) enum Points {
-    /// Witness points.
+    /// Single contact point, formed by the witness points.
     One([ContactPoint; 1]),
     /// Corners of the common part of two features.
     Many(Vec<ContactPoint>),
@@ -62,11 +65,11 @@ impl Points {
     }
 }
 
-/// Returns the distance and the contact points of two shapes whose dimensions have been checked, without memory for
-/// the single point of a sphere.
+/// Returns the distance and the contact points of two shapes whose dimensions have been checked, without
+/// allocating memory for the single point of a sphere.
 ///
 /// # Errors
-/// As [`closest`](super::closest()), but for the dimensions.
+/// The errors of [`closest`](super::closest()), except those for dimensions.
 #[inline]
 pub(crate) fn touching_points(
     a: &Shape,

@@ -15,12 +15,12 @@ pub struct Mesh {
 /// Defect of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshDefect {
-    /// Edges that do not belong to exactly two triangles of opposite sense.
+    /// Open surface: some edges do not belong to exactly two triangles of opposite orientation.
     Open {
-        /// Number of edges.
+        /// Number of such edges.
         edges: usize,
     },
-    /// The normals point to the inside.
+    /// The normals point inwards.
     InsideOut,
 }
 
@@ -66,7 +66,7 @@ impl Mesh {
         (self.volume() < 0.0).then_some(MeshDefect::InsideOut)
     }
 
-    /// Returns the signed volume, m³.
+    /// Returns the signed volume, m³, which is negative if the normals point inwards.
     fn volume(&self) -> f64 {
         let origin = self.vertices.first().copied().unwrap_or_else(Vec3::zero);
         let part = |triangle: &[usize; 3]| {

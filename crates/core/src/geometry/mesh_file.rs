@@ -8,11 +8,12 @@ use std::path::Path;
 /// Largest accepted size of a mesh file, bytes.
 const LARGEST: usize = 256_000_000;
 
-/// Length of a binary STL file without triangles, and of one triangle, bytes.
+/// Length of a binary STL file without triangles, bytes, and of one triangle.
 const STL_HEAD: usize = 84;
 const STL_TRIANGLE: usize = 50;
 
-/// Reads the triangles of an STL or OBJ file, by its ending, or returns why it cannot be read.
+/// Reads the triangles of an STL or OBJ file, chosen by the file extension, or returns the reason why the
+/// file cannot be read.
 pub(super) fn read_mesh(path: &Path) -> Result<Mesh, String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !matches!(ending.as_str(), "stl" | "obj") {
@@ -125,7 +126,7 @@ fn obj(text: &str) -> Result<Mesh, String> {
     Ok(mesh)
 }
 
-/// Returns the index of the vertex in a corner such as `7/1/3`; negative ones count from the last vertex.
+/// Returns the index of the vertex in a corner such as `7/1/3`; negative numbers count from the last vertex.
 fn vertex(corner: &str, count: usize) -> Option<usize> {
     let index: i64 = corner.split('/').next()?.parse().ok()?;
     let index = if index < 0 { count as i64 + index } else { index - 1 };

@@ -6,18 +6,19 @@ use super::projection::Projection;
 use super::proximity::Proximity;
 use crate::spatial::Vec3;
 
-/// Slope between two surfaces from which the far side of a patch has no weight. While the weights change, the forces at
-/// the points have no potential: with 0.1, collisions of polyhedra open the energy balance by up to 10 % of the loss.
+/// Slope between two surfaces above which the far side of a patch has no weight. While the weights change,
+/// the forces at the points are not derived from a potential: with a slope of 0.1, the energy balance of
+/// collisions of polyhedra would be wrong by up to 10 % of the loss.
 const TILT: f64 = 0.02;
 
-/// Contact point.
+/// Pair of opposite points at which two shapes touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     /// Point of the first shape, m.
     pub point_a: Vec3<f64>,
     /// Point of the second shape, m: `point_a − depth normal`.
     pub point_b: Vec3<f64>,
-    /// Depth of the overlap at this point, m; negative where the shapes are apart.
+    /// Depth of the overlap at this point, m; negative where the shapes are separated.
     pub depth: f64,
     /// Part of the stiffness of the contact that acts at this point; the weights of a contact sum to 1.
     pub weight: f64,
@@ -38,7 +39,7 @@ pub(super) fn contact_points(proximity: &Proximity, a: &Feature, b: &Feature) ->
     found.unwrap_or_else(|| vec![witness(proximity, 1.0)])
 }
 
-/// Returns the witness points as a contact point.
+/// Returns the contact point that the witness points form.
 pub(super) fn witness(proximity: &Proximity, weight: f64) -> ContactPoint {
     let Proximity { distance, point_a, point_b, .. } = *proximity;
     ContactPoint { point_a, point_b, depth: -distance, weight }
@@ -50,7 +51,8 @@ fn taper(s: f64) -> f64 {
     if s < 1.0 { left * left } else { 0.0 }
 }
 
-/// Returns the contact points of a face and a face, a line or a plane; `None` without a common part.
+/// Returns the contact points of a face with a face, a line or a plane; `None` if the features have no common
+/// part.
 fn overlap(plane: &Projection, proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Vec<ContactPoint>> {
     let corners = match (plane.corners(a), plane.corners(b)) {
         (Some(a), Some(b)) if b.len() > 2 => clip(&a, &b),
@@ -120,7 +122,7 @@ fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     by_area.iter().zip(&by_edge).map(blend).collect()
 }
 
-/// Returns the length of a patch along the steepest descent of a linear depth; 0 if the depth is constant.
+/// Returns the length of a patch along the steepest descent of a linear depth, m; 0 if the depth is constant.
 fn extent(corners: &[Point], depth: impl Fn(usize) -> f64) -> f64 {
     // the gradient from the moments of the corners about their mean
     let count = corners.len() as f64;
@@ -148,8 +150,8 @@ fn extent(corners: &[Point], depth: impl Fn(usize) -> f64) -> f64 {
     high - low
 }
 
-/// Returns the contact points of two lines on round surfaces with the sum `radius` of their radii: the ends of their common
-/// part, in the direction between both, and the witness points.
+/// Returns the contact points of two lines on round surfaces with the sum `radius` of their radii: the ends
+/// of their common part, in the mean direction of both, and the witness points.
 fn lines(
     plane: &Projection,
     proximity: &Proximity,

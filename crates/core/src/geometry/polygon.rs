@@ -1,6 +1,6 @@
 //! Convex polygons in a plane: intersection and weights of the corners.
 
-/// Point of the plane, m.
+/// Point in the plane, as coordinates in m.
 pub(super) type Point = [f64; 2];
 
 fn cross(o: Point, a: Point, b: Point) -> f64 {

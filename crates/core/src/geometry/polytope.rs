@@ -7,13 +7,13 @@ use crate::spatial::Vec3;
 pub(super) struct Triangle {
     /// Indices of the vertices.
     pub(super) corners: [usize; 3],
-    /// Triangle across the edge from corner `i` to corner `i + 1`.
+    /// For each edge, from corner `i` to corner `i + 1`, the index of the triangle on its other side.
     pub(super) neighbors: [usize; 3],
-    /// Unit normal, away from the inside.
+    /// Outward unit normal.
     pub(super) normal: Vec3<f64>,
     /// Distance of the plane from the origin along the normal, m.
     pub(super) offset: f64,
-    /// False after the triangle was replaced.
+    /// False once the triangle has been replaced.
     pub(super) is_alive: bool,
     /// True if the corners are collinear to rounding; the normal is then undefined.
     pub(super) is_flat: bool,
@@ -27,11 +27,11 @@ pub(super) struct Polytope {
     visible: Vec<usize>,
 }
 
-/// Area of a triangle relative to its edges below which its normal is undefined.
+/// Area of a triangle, relative to the squares of its edges, below which its normal is undefined.
 const FLAT: f64 = 1e-14;
 
 impl Polytope {
-    /// Makes the tetrahedron of four points; returns false if they lie in a plane.
+    /// Starts the polytope with the tetrahedron of four points; returns false if they lie in a plane.
     pub(super) fn start(&mut self, points: [Vec3<f64>; 4]) -> bool {
         let [a, b, c, d] = points;
         let volume = (b - a).cross(c - a).dot(d - a);

@@ -17,7 +17,7 @@ impl Pose {
         Self::at(Vec3::zero())
     }
 
-    /// Returns the pose with common axes and the origin at `pos`, m.
+    /// Returns the pose with the axes parallel to common axes and the origin at `pos`, m.
     pub fn at(pos: Vec3<f64>) -> Self {
         Self { rot: Mat3::identity(), pos }
     }
@@ -32,13 +32,13 @@ impl Pose {
         self.rot.transpose_mul(point - self.pos)
     }
 
-    /// Returns the pose of a shape that is fixed to this one, given its pose in the axes of this one.
+    /// Returns the pose in common axes of a shape with the pose `inner` in the axes of this shape.
     #[must_use]
     pub fn compose(&self, inner: &Self) -> Self {
         Self { rot: self.rot * inner.rot, pos: self.to_common(inner.pos) }
     }
 
-    /// Returns the pose of `other` in the axes of this one.
+    /// Returns the pose of `other`, given in common axes, in the axes of this shape.
     #[must_use]
     pub fn relative(&self, other: &Self) -> Self {
         Self { rot: self.rot.transpose() * other.rot, pos: self.to_shape(other.pos) }

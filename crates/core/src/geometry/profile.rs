@@ -3,7 +3,7 @@
 /// Point of the half plane, `(ρ, z)`, m.
 type Point = [f64; 2];
 
-/// Signed distance, closest point of the boundary and unit normal there, away from the inside.
+/// Signed distance, m, closest point of the boundary, and outward unit normal at this point.
 pub(super) type Nearest2 = (f64, Point, Point);
 
 /// Returns the nearest point of a convex profile to `p`. `corners` are the vertices from one end of the axis to the

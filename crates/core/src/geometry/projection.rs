@@ -6,15 +6,15 @@ use super::proximity::Proximity;
 use super::segment::perpendicular;
 use crate::spatial::Vec3;
 
-/// Cosine of the angle between the normals of a contact and of a face below which the face is no part of the contact;
-/// sine of that between the normal and a line.
+/// Smallest cosine of the angle between the normals of a contact and of a face that is part of the contact.
+/// For a line, smallest sine of its angle with the normal.
 const STEEP: f64 = 0.1;
 
 /// Plane through the first witness point and perpendicular to the normal.
 pub(super) struct Projection {
-    /// First witness point.
+    /// First witness point, the origin of the plane's coordinates, m.
     pub(super) origin: Vec3<f64>,
-    /// Distance of the shapes.
+    /// Distance of the shapes, m.
     pub(super) distance: f64,
     x: Vec3<f64>,
     y: Vec3<f64>,
@@ -33,7 +33,7 @@ impl Projection {
         [(p - self.origin).dot(self.x), (p - self.origin).dot(self.y)]
     }
 
-    /// Returns the point at a height along the normal above a point of the plane.
+    /// Returns the point at `height`, m, along the normal above the point `p` of the plane.
     pub(super) fn lift(&self, p: Point, height: f64) -> Vec3<f64> {
         self.normal.scale_add(height, self.x.scale_add(p[0], self.y.scale_add(p[1], self.origin)))
     }
@@ -62,7 +62,8 @@ impl Projection {
         }
     }
 
-    /// Returns the height of a feature along the normal above a point of the plane; `other` for a half-space.
+    /// Returns the height, m, of a feature along the normal above the point `p` of the plane. For a point or
+    /// a half-space, returns `other`.
     pub(super) fn height(&self, feature: &Feature, p: Point, other: f64) -> f64 {
         let foot = self.lift(p, 0.0);
         match feature {

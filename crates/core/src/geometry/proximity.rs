@@ -12,7 +12,8 @@ pub struct Proximity {
     pub point_a: Vec3<f64>,
     /// Point on the surface of the second shape, m: `point_a + distance normal`.
     pub point_b: Vec3<f64>,
-    /// Unit vector from the first shape to the second: the second one moves away along it.
+    /// Unit normal from the first shape to the second. A translation of the second shape along it increases
+    /// the distance.
     pub normal: Vec3<f64>,
 }
 
@@ -23,7 +24,7 @@ impl Proximity {
         Self { point_a: self.point_b, point_b: self.point_a, normal: -self.normal, ..self }
     }
 
-    /// Returns the same distance in common axes, given the pose of the present axes.
+    /// Returns the same distance in common axes, given the pose of its present axes.
     #[must_use]
     pub(super) fn in_common(self, axes: &Pose) -> Self {
         Self {

@@ -21,14 +21,15 @@ impl Segment {
         self.axis.scale_add(s, self.center)
     }
 
-    /// Returns the coordinate of the nearest point to `p`.
+    /// Returns the coordinate `s` of the point of the segment that is nearest to `p`, m.
     pub(super) fn nearest(&self, p: Vec3<f64>) -> f64 {
         (p - self.center).dot(self.axis).clamp(-self.half_length, self.half_length)
     }
 }
 
-/// Returns the nearest points of two segments and the unit normal from the first to the second. For parallel segments
-/// they lie in the middle of the common part; for segments that intersect, the normal is perpendicular to both.
+/// Returns the nearest points of two segments and the unit normal from the first to the second. For parallel
+/// segments, the points lie in the middle of the common part; for segments that intersect, the normal is
+/// perpendicular to both.
 pub(super) fn nearest(a: Segment, b: Segment) -> (Vec3<f64>, Vec3<f64>, Vec3<f64>) {
     let (on_a, on_b) = nearest_points(a, b);
     let (apart, cross) = (on_b - on_a, a.axis.cross(b.axis));

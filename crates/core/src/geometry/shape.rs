@@ -7,7 +7,7 @@ use super::pose::Pose;
 use crate::spatial::Vec3;
 use std::sync::Arc;
 
-/// Shape about the origin of its axes; lengths in m. Shapes of revolution have their axis along z.
+/// Collision shape in its own axes; lengths are in m. Shapes of revolution have their axis along z.
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// Sphere about the origin.
@@ -22,9 +22,9 @@ pub enum Shape {
         /// Half the distance between the centres of the caps; may be zero.
         half_length: f64,
     },
-    /// Box.
+    /// Box with its centre at the origin and its edges along the axes.
     Box {
-        /// Half the edge lengths.
+        /// Half of each edge length, along x, y and z.
         half_edges: [f64; 3],
     },
     /// Cylinder between the planes `z = ±half_length`.
@@ -60,7 +60,7 @@ impl Shape {
     /// Returns the convex hull of points, m.
     ///
     /// # Errors
-    /// If a coordinate is not finite or the points lie in a plane.
+    /// [`GeometryError`] if a coordinate is not finite or the points lie in a plane.
     pub fn hull(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
         Hull::new(points).map(|hull| Self::Hull(Arc::new(hull)))
     }
@@ -83,7 +83,7 @@ impl Shape {
     /// Checks the dimensions of the shape.
     ///
     /// # Errors
-    /// If a length is not finite or not positive, or if a compound has no pieces.
+    /// [`GeometryError`] if a length is not finite or not positive, or if a compound has no pieces.
     pub fn check(&self) -> Result<(), GeometryError> {
         let lengths: &[(&'static str, f64)] = match self {
             Self::Sphere { radius } => &[("radius", *radius)],
@@ -137,7 +137,7 @@ impl Shape {
     }
 }
 
-/// Returns a sphere about the mean of the centres of the pieces.
+/// Returns a sphere that contains all pieces, centred at the mean of the centres of their bounding spheres.
 fn around(pieces: &[(Shape, Pose)]) -> BoundingSphere {
     let spheres: Vec<_> = pieces
         .iter()

@@ -2,7 +2,7 @@
 
 use crate::spatial::Vec3;
 
-/// Difference of a point of the first shape and a point of the second.
+/// Difference of a point of the first shape and a point of the second, with both points.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub(super) on_a: Vec3<f64>,
@@ -31,17 +31,18 @@ impl Simplex {
         self.corners[..self.count].iter().any(|known| known.apart == corner.apart)
     }
 
-    /// Returns the weighted mean of a vector of each corner.
+    /// Returns the mean of a vector of each corner, weighted with the weights of the corners.
     pub(super) fn mean(&self, of: impl Fn(&Corner) -> Vec3<f64>) -> Vec3<f64> {
         let used = self.corners[..self.count].iter().zip(&self.weights);
         used.fold(Vec3::zero(), |sum, (corner, weight)| of(corner).scale_add(*weight, sum))
     }
 
-    /// Returns the nearest point to the origin and keeps only the corners with nonzero weights; `None` if the
-    /// origin lies inside a tetrahedron. The newest corner is part of the result, because it is nearer than the plane of the others.
+    /// Returns the point that is nearest to the origin, and keeps only the corners with nonzero weights.
+    /// Returns `None` if the simplex is a tetrahedron that contains the origin. The newest corner is part of
+    /// the result, because it is nearer than the plane of the others.
     ///
-    /// All subsets with the newest corner are compared. Thresholds on areas, which would end the search early for
-    /// curved shapes, are not needed.
+    /// All subsets with the newest corner are compared. Thresholds on areas, which would end the search early
+    /// for curved shapes, are not needed.
     pub(super) fn reduce(&mut self) -> Option<Vec3<f64>> {
         if self.count == 4 && self.contains_origin() {
             return None;

@@ -5,7 +5,8 @@ use crate::spatial::Vec3;
 
 /// Returns the point of a shape that is farthest in the direction `d`, in the axes of the shape.
 ///
-/// Half-spaces have none; callers replace compounds by their pieces.
+/// Returns `None` for a half-space, which is unbounded, and for a compound, which callers replace by its
+/// pieces.
 pub(super) fn support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     match shape {
         Shape::Sphere { radius } => Some(ball(Vec3::zero(), *radius, d)),
@@ -18,7 +19,8 @@ pub(super) fn support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     }
 }
 
-/// Returns the farthest point of a shape without its rounding: of the centre of a sphere and the axis of a capsule.
+/// Returns the farthest point of the core of a shape in the direction `d`. The core of a sphere is its
+/// centre, that of a capsule its axis, and that of any other shape the shape itself.
 pub(super) fn core_support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     match shape {
         Shape::Sphere { .. } => Some(Vec3::zero()),
@@ -37,7 +39,7 @@ pub(super) fn core_support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     }
 }
 
-/// Returns the radius by which a shape exceeds its core.
+/// Returns the radius of a sphere or a capsule, by which the shape extends beyond its core, m; otherwise 0.
 pub(super) fn rounding(shape: &Shape) -> f64 {
     match shape {
         Shape::Sphere { radius } | Shape::Capsule { radius, .. } => *radius,
@@ -54,7 +56,8 @@ fn ball(center: Vec3<f64>, radius: f64, d: Vec3<f64>) -> Vec3<f64> {
     if length > 0.0 { d.scale_add(radius / length, center) } else { center }
 }
 
-/// Returns the farthest point of the circle about the z axis at the height `z`; its centre if `d` is parallel to z.
+/// Returns the farthest point of the circle about the z axis at the height `z` in the direction `d`; the
+/// centre of the circle if `d` is parallel to z.
 fn rim(radius: f64, z: f64, d: Vec3<f64>) -> Vec3<f64> {
     let across = (d.x * d.x + d.y * d.y).sqrt();
     let scale = if across > 0.0 { radius / across } else { 0.0 };

@@ -1,4 +1,4 @@
-//! Distance of a torus from another shape: that of the circle in its middle, less its minor radius.
+//! Distance of a torus from another shape: the distance of the torus's middle circle less its minor radius.
 
 use super::boundary::{BoundaryPoint, signed_distance};
 use super::convex;
@@ -12,13 +12,15 @@ use std::f64::consts::TAU;
 /// Number of points of the circle from which the search for the nearest one starts.
 const SAMPLES: u32 = 64;
 
-/// Halvings of the interval between two of these points: the angle is then exact to rounding.
+/// Number of bisections of the interval between two of these points, after which the angle is exact to
+/// rounding.
 const HALVINGS: usize = 52;
 
-/// Radius of a sphere in place of a point, relative to the size of a hull.
+/// Radius of a sphere that replaces a point, relative to the size of a hull.
 const POINT: f64 = 1e-3;
 
-/// Point of the circle: the nearest boundary point of the other shape, and the rate of the distance along the circle.
+/// The nearest boundary point of the other shape to a point of the circle, and the rate of the distance along
+/// the circle.
 #[derive(Clone, Copy)]
 struct Sample {
     angle: f64,
@@ -28,12 +30,13 @@ struct Sample {
     on_circle: Vec3<f64>,
 }
 
-/// Returns the distance of shape `a` from a torus with this pose in the axes of `a`; `None` if the circle in the middle of
-/// the torus meets the core of `a` (the axis of a capsule, the circle of a torus, all of other shapes): the shortest
-/// translation is then not that of a single point.
+/// Returns the distance of shape `a` from a torus with this pose in the axes of `a`; `None` if the middle
+/// circle of the torus intersects the core of `a` (the axis of a capsule, the middle circle of a torus, or
+/// the entire shape for other kinds), because the shortest separating translation is then not determined by a
+/// single point.
 ///
-/// The distance along the circle may have several minima. Each pair of neighbouring samples between which it has one is
-/// bisected to the angle where the rate `nᵀ c'` of the distance changes sign.
+/// The distance along the circle may have several minima. Each interval between neighbouring samples that
+/// contains a minimum is bisected to find the angle at which the rate `nᵀ c'` of the distance changes sign.
 pub(super) fn closest(a: &Shape, torus: (f64, f64), pose: &Pose) -> Option<Proximity> {
     let (major_radius, minor_radius) = torus;
     let at = |angle: f64| sample(a, major_radius, pose, angle);

@@ -34,8 +34,8 @@ impl Coefficients {
     /// `c[0]` is treated as 1 regardless of its value; entries with `m > n` and `s` of order 0 must be zero.
     ///
     /// # Errors
-    /// [`GravityError`] for a degree out of range, wrong lengths, non-finite numbers, entries of terms that
-    /// do not exist, `mu` and `radius` that are not positive or have the wrong units, and implausible
+    /// [`GravityError`] for a degree outside its range, wrong lengths, non-finite numbers, entries of terms
+    /// that do not exist, `mu` and `radius` that are not positive or have the wrong units, and implausible
     /// coefficients, such as coefficients without normalisation.
     pub fn new(
         model: &str,

@@ -26,13 +26,13 @@ impl Expansion {
         Ok(Self { at, value: value.into(), gradient: gradient.into() })
     }
 
-    /// Returns `g(x)`.
+    /// Returns the field `g(x)`, m/s².
     #[inline(always)]
     pub(super) fn value_at<S: Real>(&self, x: Vec3<S>) -> Vec3<S> {
         Vec3::of(&self.value) + self.difference(x - Vec3::of(&self.at))
     }
 
-    /// Returns `g(x + d) - g(x)`.
+    /// Returns the difference `g(x + d) - g(x)` of the linear field, m/s².
     #[inline(always)]
     pub(super) fn difference<S: Real>(&self, d: Vec3<S>) -> Vec3<S> {
         Sym3::of(&self.gradient) * d
@@ -55,7 +55,7 @@ impl Expansion {
     }
 }
 
-/// Returns true if the positions are within [`LINEAR_RADIUS`] of each other in all lanes.
+/// Returns true if the two positions of every lane are within [`LINEAR_RADIUS`] of each other.
 #[inline(always)]
 pub(super) fn is_near<S: Real>(a: Vec3<S>, b: Vec3<S>) -> bool {
     let d = a - b;

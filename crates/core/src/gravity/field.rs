@@ -10,7 +10,7 @@ use crate::text_file::{TextFileError, read_text};
 use nalgebra::{Matrix3, Vector3};
 use std::path::Path;
 
-/// Bundled models, to degree and order 70.
+/// Names and contents of the bundled models, which extend to degree and order 70.
 const BUNDLED: [(&str, &str); 2] =
     [("egm2008", include_str!("models/egm2008.gfc")), ("jgm3", include_str!("models/jgm3.gfc"))];
 

@@ -142,7 +142,7 @@ impl LocalField<'_> {
         }
     }
 
-    /// Evaluates the planet's field at one position.
+    /// Returns the planet's field at the position `at`, m/s².
     fn field(&self, at: Vec3<f64>) -> Result<Vec3<f64>, GravityError> {
         if let Some(near) = self.expansion(at) {
             return Ok(near.value_at(at));
@@ -152,7 +152,7 @@ impl LocalField<'_> {
         Ok(rot_fi.transpose_mul(field.acceleration(&(*rot_fi * at).to_nalgebra())?.into()))
     }
 
-    /// Returns the planet's field at one position less the field at the reference.
+    /// Returns the planet's field at one position less the field at the reference, m/s².
     fn field_difference(&self, offset: Vec3<f64>) -> Result<Vec3<f64>, GravityError> {
         let there = self.r_ref + offset;
         match self.expansion(self.r_ref).filter(|near| near.covers(there)) {
@@ -164,14 +164,14 @@ impl LocalField<'_> {
         }
     }
 
-    /// Returns the gradient of the planet's field at one position.
+    /// Returns the gradient of the planet's field at one position, 1/s².
     fn field_gradient(&self, at: Vec3<f64>) -> Result<Sym3<f64>, GravityError> {
         let Some(field) = &self.gravity.field else { return Ok(Sym3::default()) };
         let rot_fi = &self.sky.rot_fi;
         Ok(Expansion::of(field, *rot_fi * at)?.rotated_back(rot_fi).gradient)
     }
 
-    /// Returns the sum of the gradients of the planet's field and of the third bodies at one position.
+    /// Returns the sum of the gradients of the planet's field and of the third bodies at one position, 1/s².
     fn gradient_at(&self, at: Vec3<f64>) -> Result<Sym3<f64>, GravityError> {
         let third = self.gravity.third_bodies_about(self.time, at)?.gradient;
         Ok(match self.expansion(at) {

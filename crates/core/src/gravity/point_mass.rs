@@ -53,16 +53,17 @@ pub(crate) fn is_earth(mu: f64) -> bool {
     (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/visuals/earth_shape.py
 }
 
-/// Smallest accepted distance from a planet's centre, in equatorial radii; the poles of the Earth are at
-/// 0.9966.
+/// Smallest accepted distance from a planet's centre, in equatorial radii. For comparison, the polar radius
+/// of the Earth is 0.9966 equatorial radii.
 pub(crate) const SURFACE: f64 = 0.996;
 
-/// Returns the cube of the smallest possible radius of a planet with this `μ = G m`, m³.
+/// Returns the cube of the smallest possible radius of a planet, m³, from its gravitational parameter `mu`,
+/// m³/s².
 ///
 /// For the Earth, recognised by its `μ`, the radius is 6353 km, which is also the lower limit of gravity
 /// fields. The radii of other planets are unknown, but no planet is denser than osmium, `ρ = 22 600 kg/m³`,
-/// so `R³ = 3 μ/(4π G ρ)`. Below the surface, the field of a point mass grows without bound and differs from
-/// that of the planet.
+/// so `R³ = 3 μ/(4π G ρ)` with `μ = G m`. Below the surface, the field of a point mass grows without bound
+/// and differs from that of the planet.
 pub(crate) fn lowest_ground_cubed(mu: f64) -> f64 {
     const G_RHO: f64 = 6.674e-11 * 22_600.0;
     const EARTH: f64 = SURFACE * 6_378_137.0; // WGS84

@@ -19,7 +19,7 @@ impl Gravity {
         }
     }
 
-    /// Returns the name of the first part in which the two differ; `None` if they are equal.
+    /// Returns the name of the first part in which two gravity models differ; `None` if the models are equal.
     fn differs_from(&self, other: &Self) -> Option<&'static str> {
         let is_same = |(a, b): (&Arc<dyn ThirdBody>, &Arc<dyn ThirdBody>)| {
             a.name() == b.name() && a.mu() == b.mu() && a.position(0.0) == b.position(0.0)

@@ -27,7 +27,7 @@ pub(super) struct Zonal {
 }
 
 impl Zonal {
-    /// Returns `cn = Jn (R/r)ⁿ`, the direction `r̂`, `u = z/r`, and the distance `r`, m.
+    /// Returns the factors `cn = Jn (R/r)ⁿ`, the direction `r̂`, `u = z/r`, and the distance `r`, m.
     #[inline]
     fn at(&self, r: &Vector3<f64>) -> ([f64; 5], Vector3<f64>, f64, f64) {
         let distance = r.norm();

@@ -7,7 +7,7 @@ use super::lookup::find;
 use super::tree::Model;
 
 impl Model {
-    /// Returns this robot with another collision shape on a link, in addition to those that the link has. The
+    /// Returns this robot with a further collision shape on a link, in addition to the existing ones. The
     /// motion of the robot does not change.
     ///
     /// # Errors

@@ -47,7 +47,7 @@ pub struct Link {
     pub name: String,
     /// Mass and inertia, if any.
     pub inertial: Option<Inertial>,
-    /// Visual shapes.
+    /// Visual shapes; if there are none, the collision shapes are drawn.
     pub visuals: Vec<Visual>,
     /// Collision shapes, with only those meshes whose file exists. They are drawn if the link has no visual
     /// shapes.
@@ -99,7 +99,7 @@ pub enum Geometry {
         /// Length of the straight part, m.
         length: f64,
     },
-    /// Sphere.
+    /// Sphere about the origin.
     Sphere {
         /// Radius, m.
         radius: f64,
@@ -111,7 +111,7 @@ pub enum Geometry {
         /// Height, m.
         length: f64,
     },
-    /// Torus about z; a collision shape only.
+    /// Torus about z with its centre at the origin; a collision shape only.
     Torus {
         /// Radius of the circle in the middle of the tube, m.
         major_radius: f64,
@@ -120,7 +120,7 @@ pub enum Geometry {
     },
     /// All points with `z ≤ 0`; a collision shape only.
     HalfSpace,
-    /// Mesh file.
+    /// Triangle mesh in a file.
     Mesh {
         /// Path, with `package://` resolved if the package was found.
         filename: String,

@@ -95,8 +95,8 @@ fn inertia_about_origin(node: &Node) -> Matrix6<f64> {
     blocks(Matrix3::identity() * node.mass, c * -node.mass, c * node.mass, about_origin)
 }
 
-/// Returns the matrix that transforms a motion from the axes and origin of the parent to those of the body:
-/// `[[Rᵀ, −Rᵀ p×], [0, Rᵀ]]`.
+/// Returns the matrix that transforms a motion from the axes and origin of the parent to those of the body,
+/// with the joint at `angle`, rad (m): `[[Rᵀ, −Rᵀ p×], [0, Rᵀ]]`.
 fn motion_transform(node: &Node, angle: f64) -> Matrix6<f64> {
     let (mut rot, mut pos) = (node.rot_pk.to_nalgebra(), node.pos_pk.to_nalgebra());
     match node.axis {

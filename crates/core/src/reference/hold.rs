@@ -1,11 +1,11 @@
-//! Constant pose.
+//! Reference that holds a constant pose.
 
 use super::error::check_numbers;
 use super::{ReferenceError, TaskPath, TaskSample};
 use crate::spatial::{Mat3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-/// Constant pose.
+/// Constant pose in the frame of the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hold {
     pub(super) rot_fd: Mat3<f64>,

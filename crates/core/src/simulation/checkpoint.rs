@@ -56,16 +56,16 @@ pub(super) struct GroupCheckpoint {
 /// Everything that a step changes, except the controllers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Progress {
-    /// Steps taken so far.
+    /// Number of steps taken so far.
     pub(super) steps: usize,
     pub(super) cursor: Cursor,
     pub(super) state: State<f64>,
     pub(super) step_control: Option<StepControl>,
     /// Number of consecutive idle steps.
     pub(super) idle_steps: usize,
-    /// One entry per tree.
+    /// Progress of each tree.
     pub(super) trees: Vec<TreeProgress>,
-    /// One entry per system.
+    /// Progress of each system.
     pub(super) systems: Vec<SystemProgress>,
     pub(super) world: WorldProgress,
 }
@@ -81,7 +81,7 @@ pub(super) struct TreeProgress {
 /// Quantities of a system, other than its state and its controllers, that a step changes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SystemProgress {
-    /// Rows recorded so far.
+    /// Number of rows recorded so far.
     pub(super) rows: usize,
     /// Sum of the magnitudes of the work of each step, J.
     pub(super) work_done: f64,
@@ -111,7 +111,7 @@ pub(super) struct WorldProgress {
 pub(super) struct SavedControllers {
     /// True if the controllers have been updated at the current cut.
     pub(super) controllers_updated: bool,
-    /// One entry per system.
+    /// State of the controllers of each system.
     pub(super) systems: Vec<SystemControllers>,
 }
 

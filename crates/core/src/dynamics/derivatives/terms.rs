@@ -48,7 +48,7 @@ pub(super) struct BodyTerms<S> {
     pub(super) composite_force: Force<S>,
     /// Angular half of `2B_Cᵀ S`; the linear half is zero.
     pub(super) coriolis_moment: Vec3<S>,
-    /// Acceleration of the body for one column of `M⁻¹`.
+    /// Acceleration of the body, m/s² and rad/s², for one column of `M⁻¹`.
     pub(super) acceleration: Motion<S>,
     /// Joint torque `u` for one column of `M⁻¹`.
     pub(super) torque: S,

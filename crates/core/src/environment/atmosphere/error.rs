@@ -48,7 +48,7 @@ pub enum AtmosphereError {
         above_previous(*index, *previous), altitude = unlike(*altitude, &[*previous])
     )]
     LayerOrder {
-        /// Index of the layer.
+        /// Index of the layer, counted from 0.
         index: usize,
         /// Altitude of the base of this layer, m.
         altitude: f64,
@@ -106,7 +106,7 @@ fn above_previous(index: usize, previous: f64) -> String {
     index.checked_sub(1).map_or_else(String::new, lower)
 }
 
-/// Returns `value` if it is finite and positive.
+/// Returns `value`, or an error if it is not finite and positive.
 pub(super) fn positive(name: &'static str, value: f64) -> Result<f64, AtmosphereError> {
     if value.is_finite() && value > 0.0 {
         return Ok(value);

@@ -69,13 +69,13 @@ pub(super) fn assemble(
 
 /// Indices of the parents and children of links and joints.
 struct Tree {
-    /// Parent link of every joint.
+    /// Index of the parent link of every joint.
     parent: Vec<usize>,
-    /// Child link of every joint.
+    /// Index of the child link of every joint.
     child: Vec<usize>,
-    /// Joints below every link.
+    /// Indices of the joints below every link.
     joints_below: Vec<Vec<usize>>,
-    /// Joint above every link.
+    /// Index of the joint above every link; `None` for the root.
     joint_above: Vec<Option<usize>>,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct Writer<'a> {
 pub(super) type Written = Result<(), String>;
 
 impl<'a> Writer<'a> {
-    /// Creates a writer with a capacity of `length` bytes.
+    /// Creates a writer whose text has a capacity of `length` bytes.
     pub(super) fn new(length: usize, has_entities: bool) -> Self {
         let out = String::with_capacity(length);
         Self { out, prefixes: BTreeSet::new(), root_name_ends: 0, has_entities }

@@ -189,7 +189,8 @@ impl Conic {
         Some(ellipse.at(wrap(S::of(phase) + S::of(*n) * period.reduce(dt))))
     }
 
-    /// Returns the state in perifocal axes at a phase.
+    /// Returns the position and velocity in perifocal axes at a phase, which is defined as in
+    /// [`Conic::advance`].
     pub(super) fn perifocal_state(&self, shape: &Shape, phase: f64) -> PerifocalState {
         let (e, q) = (shape.e, shape.periapsis);
         match *self {

@@ -176,7 +176,7 @@ fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
     }
 }
 
-/// Returns the epoch and the phase at the epoch.
+/// Returns the epoch, s, and the phase at the epoch.
 fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64), OrbitError> {
     let epoch = finite("epoch", elements.epoch)?;
     match (elements.phase, conic) {

@@ -1,4 +1,4 @@
-//! Kepler ellipse with the secular rates caused by J₂.
+//! Kepler ellipse with the secular rates caused by the oblateness `J₂`.
 
 use super::Kepler;
 use super::conic::Conic;

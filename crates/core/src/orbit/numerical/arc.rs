@@ -6,7 +6,7 @@ use crate::orbit::{OrbitError, OrbitState};
 use nalgebra::Vector3;
 use std::sync::{PoisonError, RwLock};
 
-/// Tolerance of the position error within a step, relative to the distance from the planet's centre.
+/// Largest estimated position error within a step, relative to the distance from the planet's centre.
 const TOLERANCE: f64 = 1e-14;
 /// Lengths of the first and the smallest step, in units of `√(r³/μ)`.
 const FIRST: f64 = 0.1;
@@ -105,7 +105,7 @@ impl Arcs {
         (last < begin || towards(&self.after, last)) && (first >= begin || towards(&self.before, first))
     }
 
-    /// Adds the next step.
+    /// Adds one step after the last one.
     fn extend(
         &self,
         half: &mut Half,

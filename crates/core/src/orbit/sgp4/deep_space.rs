@@ -15,7 +15,7 @@ const EQUATORIAL: f64 = 5.235_987_7e-2;
 /// Inclination, rad, below which Lyddane's variables are used instead of node and perigee.
 const LYDDANE: f64 = 0.2;
 
-/// Deep-space perturbations.
+/// Perturbations of one deep-space orbit, as constants that depend only on the elements at the epoch.
 #[derive(Clone, Debug)]
 pub(super) struct DeepSpace {
     bodies: [ThirdBody; 2],

@@ -99,7 +99,7 @@ pub enum Sgp4Error {
     MeanEccentricity {
         /// Time since the epoch, s.
         time: f64,
-        /// Computed value.
+        /// Mean eccentricity.
         eccentricity: f64,
     },
     /// Error 2: the mean motion is not positive.
@@ -111,7 +111,7 @@ pub enum Sgp4Error {
     MeanMotion {
         /// Time since the epoch, s.
         time: f64,
-        /// Computed value.
+        /// Mean motion, rev/day.
         mean_motion: f64,
     },
     /// Error 3: the eccentricity with the perturbations by Sun and Moon is out of range.
@@ -123,7 +123,7 @@ pub enum Sgp4Error {
     PerturbedEccentricity {
         /// Time since the epoch, s.
         time: f64,
-        /// Computed value.
+        /// Eccentricity with these perturbations.
         eccentricity: f64,
     },
     /// Error 4: the semi-latus rectum is negative.
@@ -135,7 +135,7 @@ pub enum Sgp4Error {
     SemiLatusRectum {
         /// Time since the epoch, s.
         time: f64,
-        /// Computed value, m.
+        /// Semi-latus rectum, m.
         semi_latus_rectum: f64,
     },
     /// Error 6: the position is below the surface.

@@ -70,7 +70,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Parses a number such as ` 34.2682`.
+    /// Parses the number in these columns, such as ` 34.2682`.
     fn decimal(&self, first: usize, last: usize) -> Result<f64, ElementSetError> {
         let text = self.columns(first, last).trim();
         let is_plain = text
@@ -81,7 +81,7 @@ impl<'a> Line<'a> {
         number.ok_or_else(|| self.wrong(first, last, "a decimal number"))
     }
 
-    /// Parses digits that follow an implied decimal point.
+    /// Parses the digits in these columns, which follow an implied decimal point.
     fn fraction(&self, first: usize, last: usize) -> Result<f64, ElementSetError> {
         let text = self.columns(first, last);
         let number =
