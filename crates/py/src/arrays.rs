@@ -291,14 +291,14 @@ pub(crate) fn fresh<'a>(array: &'a Bound<'_, PyArrayDyn<f64>>) -> &'a mut [f64] 
     unsafe { array.as_slice_mut() }.unwrap_or(&mut [])
 }
 
-/// Creates an array with these numbers.
+/// Creates an array of this shape with these numbers, in row-major order.
 pub(crate) fn array_of<'py>(py: Python<'py>, shape: &[usize], data: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
     let array = PyArray::zeros(py, IxDyn(shape), false); // for small arrays, such as a state
     fresh(&array).copy_from_slice(data);
     array
 }
 
-/// Creates a read-only array with these numbers.
+/// Creates a read-only vector with these numbers.
 pub(crate) fn constant<'py>(py: Python<'py>, values: &[f64]) -> Bound<'py, PyArrayDyn<f64>> {
     let array = array_of(py, &[values.len()], values);
     let _ = array.readwrite().make_nonwriteable();

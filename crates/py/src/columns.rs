@@ -11,7 +11,8 @@ use pyo3::types::{PyDict, PyMappingProxy, PySlice, PyTuple};
 /// name : str
 ///     Attribute of the trace.
 /// path : str
-///     Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control or of an effect.
+///     Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control, of an effect or of
+///     a contact.
 /// shape : tuple of str and int
 ///     Length of each axis: ``T`` rows, ``nq``, ``nv``, ``n`` joints, ``bodies``, ``k`` errors, ``K`` events.
 /// unit : str
@@ -35,13 +36,13 @@ impl PyColumn {
         self.0.name
     }
 
-    /// Name in files; ``*`` stands for the name of a control or of an effect.
+    /// Name in files; ``*`` stands for the name of a control, of an effect or of a contact.
     #[getter]
     fn path(&self) -> &'static str {
         self.0.path
     }
 
-    /// Length of each axis.
+    /// Length of each axis: an integer, or the name of a length, such as ``T`` for the rows.
     #[getter]
     fn shape<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let axis = |length: &Length| match length {

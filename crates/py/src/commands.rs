@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 impl PyStepper {
-    /// Sets the torques of a system.
+    /// Sets the joint torques of a system, N m (N), that the caller commands.
     pub(crate) fn command_system(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<()> {
         let torques = torques(&self.systems.models[system], tau)?;
         self.try_with(tau.py(), |stepper| stepper.command(system, &torques))

@@ -165,9 +165,9 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         Ok(latches.min(contacts))
     }
 
-    /// Returns the kinetic energy less the work done on all trees, J, which is constant but for the error of
-    /// the integrator, and the sum of their magnitudes. Requires the kinematics of `state` relative to W in the
-    /// trees.
+    /// Returns the kinetic energy less the work done on all trees, J, which changes only by the error of the
+    /// integrator, and the sum of the magnitudes of both. Requires the kinematics of `state` relative to W in
+    /// the trees.
     pub(super) fn energy_balance(&self, state: &State<S>) -> [S; 2] {
         let (mut balance, mut scale) = (S::of(0.0), S::of(0.0));
         for (tree, state) in self.trees.iter().zip(&state.trees) {

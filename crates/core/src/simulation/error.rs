@@ -87,7 +87,9 @@ pub enum SimulationError {
          frame for both"
     )]
     OtherTool { controller: String, tool: String },
-    #[error("a reference is given, but no tool that tracks it; set tool to the name of a frame of the robot")]
+    #[error(
+        "a reference of a frame is given, but the system has no tool; set tool to the name of the frame that follows it"
+    )]
     NeedsTool,
     #[error(
         "frame {frame} does not exist, because the robot has {known}; give the index of one of them",

@@ -19,7 +19,7 @@ pub(super) struct Applied<'s> {
     /// Number of the event.
     pub(super) number: usize,
     pub(super) kind: EventKind,
-    /// Time, s.
+    /// Time of the event, s.
     pub(super) time: f64,
     /// Capturing and captured frame.
     pub(super) frames: [FrameIndex; 2],

@@ -23,7 +23,8 @@ pub(super) struct ExternalEngine<'a> {
     /// Index ranges of each system in the vectors of all configurations and of all velocities.
     ranges: Vec<[Range<usize>; 2]>,
     pub(super) welds: Vec<BodyWeld>,
-    /// Number among the outputs of the engine of each contact that is declared; `None` without forces.
+    /// For each declared contact, its index among the outputs of the engine; `None` if the engine does not
+    /// compute its force.
     contacts: Vec<Option<usize>>,
     output: StepOutput,
     /// True if the engine completed its last step.

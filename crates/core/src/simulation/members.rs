@@ -23,7 +23,7 @@ pub(crate) enum Place {
 
 /// Places of all systems of a run, and the systems that share a tree with other systems.
 pub(crate) struct Members<'a, S> {
-    /// One entry per system.
+    /// Place of each system.
     pub(super) places: Vec<Place>,
     pub(super) parts: Vec<Part<'a, S>>,
 }

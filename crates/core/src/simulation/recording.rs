@@ -74,14 +74,14 @@ pub struct EventRecord {
     pub name: String,
     /// Kind of the event.
     pub kind: EventKind,
-    /// Time, s.
+    /// Simulation time of the event, s.
     pub time: f64,
     /// Numbers of the two systems, beginning with the capturing system. For a contact, those of the links that
     /// touched first, in the order of its sides.
     pub systems: [usize; 2],
     /// Impulse on the second system and the systems connected to it, axes of W: linear, N s, then angular
-    /// about `point`, N m s. For a lift-off, that of the contact on the links of its second side since the
-    /// touch-down; for a touch-down zero.
+    /// about `point`, N m s. For a lift-off, the impulse of the contact on the links of its second side since
+    /// the touch-down; for a touch-down, zero.
     pub impulse: [f64; 6],
     /// Point at which the impulse acts, in W, m; for a contact, the point of contact.
     pub point: [f64; 3],
@@ -100,7 +100,7 @@ pub struct EventRecord {
     /// with the work of the spring. Zero while the motion of a seating capture drives joints.
     pub energy_error: f64,
     /// Largest normal force since the touch-down, N; `None` unless the event is a lift-off. It is the largest
-    /// at the ends of steps, or of the parabola through three of them.
+    /// value at the end of a step, or the maximum of the parabola through three such values.
     #[serde(default)]
     pub peak_force: Option<f64>,
 }

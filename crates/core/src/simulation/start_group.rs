@@ -60,7 +60,7 @@ pub(super) struct Shared {
     /// True if wrenches are recorded and a control follows external commands.
     pub(super) takes_commands: bool,
     pub(super) record_every: usize,
-    /// Contacts; in the settings of a group, the systems have the numbers of the group.
+    /// Contacts. In the settings of a group, they specify systems by their number in the group.
     pub(super) contacts: Vec<Contact>,
     pub(super) contact_steps: ContactSteps,
 }

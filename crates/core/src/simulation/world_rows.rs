@@ -7,7 +7,7 @@ use crate::model::Model;
 /// Momentum and kinetic energy of all systems of a world, with one row per time that all traces contain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorldRows {
-    /// Time, s.
+    /// Times of the rows, s.
     pub time: Vec<f64>,
     /// Linear momentum, N s, and angular momentum about the common centre of mass, N m s, axes of W, `(T,
     /// 6)`.

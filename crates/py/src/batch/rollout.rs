@@ -39,7 +39,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// reference : Reference, optional
 ///     Path that the tool of the controller tracks.
 /// integrator : {"rk4", "semi_implicit_euler"}
-///     Integrator.
+///     Integration method.
 /// record_every : int, optional
 ///     If given, the initial state and every ``record_every``-th state are returned.
 /// threads : int, optional

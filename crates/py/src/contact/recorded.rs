@@ -60,7 +60,7 @@ impl PyContactTrace {
         self.part(py, "normal")
     }
 
-    /// Sliding speed at that point, (T,), m/s.
+    /// Sliding speed at ``point``, (T,), m/s.
     #[getter]
     fn slip<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.part(py, "sliding_speed")

@@ -7,14 +7,14 @@ use crate::contact::{Bristle, ContactError, Friction, FrictionForce};
 use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
-/// Fraction of the smaller reach by which pieces must be apart, beyond the distance that they may travel
-/// within the step, to be far apart.
+/// Least distance of pieces that count as far apart, as a fraction of the smaller reach and in addition to
+/// the distance that they may travel within the step.
 const FAR: f64 = 0.1;
-/// Factor of the distance that pieces travel within the step at their present velocities.
+/// Safety factor of the distance that pieces travel within the step at their present velocities.
 const TRAVEL: f64 = 3.0;
 /// Bristles without deflection that stick.
 const AT_REST: Bristle = Bristle { deflection: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, is_slipping: false };
-/// Relative tolerance within which a change of mode has been reached.
+/// Relative tolerance within which a change of mode counts as reached.
 const REACHED: f64 = 1e-9;
 
 impl Touching {
@@ -147,8 +147,8 @@ impl Touching {
     }
 }
 
-/// Returns the bristles that were `before` at the start of the last step. `speed` is the magnitude that the
-/// velocity `rate` had at that time.
+/// Returns the bristles at the end of the last step, which they began in the state `before`. `speed` is the
+/// magnitude that the velocity `rate`, m/s, had at the start of that step.
 fn continued(before: &Bristle, found: &FrictionForce, rate: Vec3<f64>, speed: f64) -> Bristle {
     let is_slipping = if before.is_slipping {
         found.bristle.is_slipping && found.margin > REACHED * speed

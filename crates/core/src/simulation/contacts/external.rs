@@ -40,7 +40,8 @@ impl Contacts {
         self.list.iter_mut().zip(held).for_each(|(touching, held)| touching.is_held = *held);
     }
 
-    /// Adds impulse and work of a declared contact in a step of the engine to its state.
+    /// Adds the impulse and the work of a declared contact in a step of the engine to the state of the
+    /// contact.
     pub(in crate::simulation) fn add_exchanged(
         &self,
         contact: usize,

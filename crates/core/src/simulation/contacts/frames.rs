@@ -21,7 +21,7 @@ pub(super) struct FrameMotion {
 /// Motions of all frames at one instant, each computed on first use.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Frames {
-    /// Tree and index in its model of every frame.
+    /// For each frame, the number of its tree and its index in the model of the tree.
     places: Vec<(usize, usize)>,
     motions: Vec<Option<FrameMotion>>,
 }
@@ -36,7 +36,7 @@ impl Frames {
         })
     }
 
-    /// Forgets the motions, before the motions of another state.
+    /// Discards the motions of the last state, before those of another state are computed.
     pub(super) fn forget(&mut self) {
         self.motions.fill(None);
     }
@@ -51,7 +51,7 @@ impl Frames {
         self.motions[number].get_or_insert_with(|| motion(self.places[number], trees, state))
     }
 
-    /// Returns true if the known motions are those of `state`, whose kinematics are in `trees`.
+    /// Returns true if the stored motions are those of `state`, whose kinematics are in `trees`.
     pub(super) fn are_of<S: Real>(&self, trees: &[Tree<'_, S>], state: &State<S>) -> bool {
         let known = self.places.iter().zip(&self.motions);
         let mut known = known.filter_map(|(place, own)| Some((*place, own.as_ref()?)));

@@ -37,13 +37,13 @@ use touching::{Loading, Touching};
 pub(crate) struct Contacts {
     list: Vec<Touching>,
     frames: Frames,
-    /// States of the contacts for which [`Self::begin`] has computed the loadings; empty after the first use of
-    /// these.
+    /// States of the contacts for which [`Self::begin`] has computed the loadings; empty once the loadings
+    /// have been used.
     begun: Vec<ContactState>,
     /// Names of the declared contacts.
     pub(super) names: Vec<String>,
     steps: ContactSteps,
-    /// Largest error of the energy in the next step, J; infinite without contacts between faces or edges.
+    /// Largest permitted energy error of the next step, J; infinite without contacts between faces or edges.
     pub(super) energy_error: f64,
     /// True if changes between sticking and slipping do not end a step.
     pub(super) ignores_slip: bool,
@@ -106,7 +106,7 @@ impl Contacts {
         vec![ContactState::ZERO; self.list.len()]
     }
 
-    /// Sets the tree and the index in its model of every frame.
+    /// Sets, for every frame, the number of its tree and its index in the model of the tree.
     pub(super) fn place(&mut self, place: impl Fn(FrameIndex) -> (usize, usize)) {
         for side in self.list.iter_mut().flat_map(|touching| &mut touching.sides) {
             side.place = place(side.declared);
@@ -307,7 +307,7 @@ fn reach(shape: &Shape, pose: &Pose) -> f64 {
     if radius.is_finite() { pose.to_common(center).norm() + radius } else { f64::INFINITY }
 }
 
-/// Returns the error of a run for an error of a contact at `t`, s.
+/// Returns a function that converts an error of a contact at `t`, s, to an error of the run.
 pub(super) fn at_time(t: f64) -> impl Fn(ContactError) -> SimulationError {
     move |source| SimulationError::Contact { time: t, source }
 }

@@ -4,12 +4,12 @@ use crate::contact::Bristle;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Whether the bodies touch.
+/// Whether the bodies touch, and whether they may touch during the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Phase {
     /// The bodies are too far apart to touch within the step.
     Far,
-    /// The bodies do not touch.
+    /// The bodies do not touch, but may touch within the step.
     Apart,
     /// The bodies press on each other.
     Pressing,
@@ -25,7 +25,7 @@ pub(in crate::simulation) struct Mode {
     pub(super) bristle: Bristle,
     /// Twist of the bristles about the normal at the start of the step, rad, in the first component.
     pub(super) twist: Bristle,
-    /// Angle about the normal at the start of the step, rad.
+    /// Angle by which the second side has turned about the normal, at the start of the step, rad.
     pub(super) turn: f64,
     /// Sliding displacement at the start of the step, in axes of the first side, m.
     pub(super) slip: Vec3<f64>,

@@ -13,7 +13,7 @@ use crate::world::FrameIndex;
 pub(super) struct Side {
     /// Frame as declared.
     pub(super) declared: FrameIndex,
-    /// Tree and index of the frame in its model.
+    /// Number of the tree, and index of the frame in the model of the tree.
     pub(super) place: (usize, usize),
     /// Number of the frame among those of the contacts.
     pub(super) number: usize,

@@ -15,7 +15,7 @@ const OVERLAP: f64 = 0.25;
 const SMOOTH: f64 = 4.0;
 /// Least number of steps in half a period, with which the motion of a contact at rest is stable.
 const LEAST_STEPS: f64 = 8.0;
-/// Phase, rad, during which an oscillation is remembered.
+/// Phase of an oscillation, rad, during which a previous amplitude still limits the step.
 const MEMORY: f64 = 4.0 * PI;
 
 /// Largest rates of a contact at the largest depth of its present motion.
@@ -66,8 +66,8 @@ impl Touching {
     /// unbounded at touch-down and lift-off, where the step is therefore shortened to `h √(x/x_max)`. This
     /// restores order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
     ///
-    /// With an external engine (`has_engine`) the touch-down is not located. A step then ends at most one step
-    /// of the impact after it.
+    /// With an external engine (`has_engine`) the touch-down is not located. A step then ends after the
+    /// touch-down by at most the length of a step during the impact.
     pub(super) fn longest_step(
         &self,
         steps: ContactSteps,
@@ -119,8 +119,8 @@ impl Touching {
     }
 
     /// Returns the amplitude of the oscillation of the contact relative to its depth and to the length of
-    /// slipping bristles: the present amplitude or, if larger, the previous one, which is forgotten within
-    /// some periods.
+    /// slipping bristles: the present amplitude or, if larger, the previous amplitude, which decays within a
+    /// few periods.
     pub(super) fn activity(&self, t: f64, loading: &Loading) -> f64 {
         let Some(law) = &self.law else { return 1.0 };
         if self.mode.phase != Phase::Pressing || self.mode.mobility[0] == 0.0 {

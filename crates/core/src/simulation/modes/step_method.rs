@@ -17,7 +17,8 @@ const MOST_IDLE_STEPS: usize = 32;
 const IDLE: f64 = 1e-6;
 /// Displacement, rad or m, below which a step is idle although the joint came to rest or reached its stop.
 const STILL: f64 = 1e-9;
-/// Length of the shortest step that closes the energy balance, relative to that of the first attempt.
+/// Length to which a step may be shortened to improve its energy balance, relative to the length of the first
+/// attempt.
 const SHORTEST: f64 = 1e-4;
 /// Rounding error of the energy balance, relative to the sum of the kinetic energies and of the works.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -102,9 +103,10 @@ impl<S: Real> StepMethod<S> {
         Ok(reached)
     }
 
-    /// Shortens the step over `interval` that ended at `state` until the energy `balance` at its start still
-    /// holds at its end, and returns the time reached, s. A force that jumps within a step, as where the nearest
-    /// faces of two bodies change, opens the balance by the square of the length of the step.
+    /// Shortens the step over `interval`, which ended at `state`, until the energy balance at its end agrees
+    /// with `balance`, which holds at its start. Returns the time reached, s. A force that jumps within a
+    /// step, for example where the nearest faces of two bodies change, causes an error of the balance that is
+    /// proportional to the square of the step length.
     fn close_energy_balance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
