@@ -173,7 +173,7 @@ class Sgp4Error(OrbitError):
     """SGP4 has no state at ``time``, s from the epoch; ``code`` is the error code of the SGP4 reference code.
 
     Codes: 1 mean eccentricity, 2 mean motion, 3 perturbed eccentricity, 4 semi-latus rectum, 6 decayed; code
-    5 is no longer used. ``got`` is the offending value.
+    5 does not occur. ``got`` is the offending value.
     """
 
     code: Any = None

@@ -101,7 +101,7 @@ fn no_list(value: &Bound<'_, PyAny>, name: &str, what: &str) -> PyErr {
     raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
 }
 
-/// Returns the error for an entry of a list of `what`.
+/// Returns the error for an entry of the wrong type in a list of `what`.
 pub(crate) fn wrong_entry(entry: &Bound<'_, PyAny>, name: &str, what: &str) -> PyErr {
     let (py, got) = (entry.py(), type_name(entry));
     let message = format!("{name} contains an entry of type {got}; expected a list of {what}");

@@ -130,7 +130,7 @@ fn posed(model: &Bound<'_, PyModel>, q: Any<'_, '_>, link: &str) -> PyResult<(Sh
     Ok((shape, Pose { rot, pos: column(3) }))
 }
 
-/// Returns the same for a link `SYSTEM/LINK` of a world.
+/// Returns the collision shape of the link `SYSTEM/LINK` of a world, and its pose in W.
 fn in_world(world: &PyWorld, q: Any<'_, '_>, path: &str) -> PyResult<(Shape, Pose)> {
     let py = q.py();
     let Some((system, link)) = path.split_once('/') else {

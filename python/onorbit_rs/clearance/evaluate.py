@@ -69,7 +69,7 @@ class Clearance:
 
     @property
     def nearest(self) -> int:
-        """Row with the least distance."""
+        """Index of the row with the least distance."""
         return int(np.argmin(self.gap))
 
     @property

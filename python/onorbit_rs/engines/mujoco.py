@@ -140,7 +140,7 @@ class Mujoco:
         v : (nv,) array
             Velocity at the end.
         acceleration : (nv,) array
-            ``v̇`` at the start, m/s² and rad/s², rad/s² or m/s².
+            ``v̇`` at the start: of the base, m/s² and rad/s², then of the joints, rad/s² or m/s².
         impulse : (6,) array
             Integral of the environment's force and of its torque about the robot's centre of mass, axes of
             W, N s and N m s.

@@ -98,7 +98,7 @@ class Contacts:
         data.qacc[:] = data.qacc_smooth + pushed[0]
 
     def _gain(self, data: Any, rows: Indices) -> Floats:
-        """Return the change of the reference accelerations with the normal forces, `J M⁻¹ Jᵀ + R`."""
+        """Return the derivative of the reference accelerations by the normal forces, `J M⁻¹ Jᵀ + R`, 1/kg."""
         jacobian = data.efc_J.reshape(-1, self._model.nv)[rows]
         response = np.empty_like(jacobian)
         self._mujoco.mj_solveM(self._model, data, response, jacobian)
@@ -116,7 +116,8 @@ class Contacts:
             data.efc_aref[rows.row] += gain @ missing
 
     def _slow_down(self, data: Any, rows: _Rows) -> bool:
-        """Give contacts on the cone of static friction the kinetic coefficient; return True if any are."""
+        """Apply the kinetic coefficient to contacts on the cone of static friction; return True if there are
+        any."""
         found = False
         for number, point, row in zip(rows.number, rows.point, rows.row, strict=True):
             friction = self._touches[number].friction

@@ -70,7 +70,7 @@ def contact_history(trace: WorldTrace, name: str) -> Figure:
 
 
 def rows_of_touch(time: Floats, contact: ContactTrace) -> NDArray[np.int64]:
-    """Return the rows from shortly before the first touch to shortly after the last one.
+    """Return the indices of the rows from shortly before the first touch to shortly after the last one.
 
     If the sides never touch, these are all rows.
     """

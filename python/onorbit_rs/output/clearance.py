@@ -46,7 +46,7 @@ def add_clearances(summary: dict[str, Any], found: Found) -> None:
 
 
 def _message(watch: Watch, violation: Violation) -> str:
-    """Return a sentence about a violation."""
+    """Return the warning about a violation."""
     since = "the start" if violation.entry is None else f"{violation.entry:.6g} s"
     until = "the end" if violation.exit is None else f"{violation.exit:.6g} s"
     when = f"from {since} to {until}, up to {violation.depth:.3g} m deep at {violation.time:.6g} s"

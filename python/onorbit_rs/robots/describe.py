@@ -49,7 +49,7 @@ def describe(model: Model) -> dict[str, Any]:
 
 
 def _moments(inertia: NDArray[np.float64]) -> list[float]:
-    """Return the principal moments in ascending order."""
+    """Return the principal moments of inertia, kg m², in ascending order."""
     return [float(moment) for moment in np.linalg.eigvalsh(inertia)]
 
 

@@ -26,6 +26,7 @@ def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     Parameters
     ----------
     model : Model
+        Robot to be written.
     names : mapping of str to str, optional
         Name in the text of each link and frame; default: their own.
 

@@ -40,7 +40,7 @@ def replace_parts(
     environment: Environment,
     remarks: list[str],
 ) -> None:
-    """Replace the parts of xacro that evaluate text, open files or read the environment; ``undo`` restores.
+    """Replace the parts of xacro that evaluate text, open files or read the environment, until ``undo`` ends.
 
     A version of xacro that lacks one of the replaced functions raises AttributeError, because that version
     would evaluate expressions in another function. ``eval`` and ``exec`` are hidden from xacro.

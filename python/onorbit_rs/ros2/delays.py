@@ -14,7 +14,7 @@ _CLASSES = 2500
 
 
 class Delays:
-    """Histogram of delays with classes of equal ratio, whose size does not grow with the run."""
+    """Histogram of delays in classes of constant relative width; its size does not grow with the run."""
 
     def __init__(self, limit: float) -> None:
         """Create an empty histogram; a delay above ``limit``, s, is a missed tick."""

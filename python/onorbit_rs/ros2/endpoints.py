@@ -35,7 +35,7 @@ class Writer:
         Raises
         ------
         Ros2Error
-            If CycloneDDS does not accept it.
+            If CycloneDDS does not accept the message.
         """
         if code := ddspy_write(self._entity._ref, data):
             raise _error(f"CycloneDDS did not accept a message of {self.topic}", code)

@@ -28,7 +28,7 @@ class LiveRun:
     models : mapping of str to Model
         Robots by the name of the system.
     tick : float
-        Simulated time between two looks at the topics, s: the time between two rows, or about 1 ms if this
+        Simulated time between two readings of the topics, s: the time between two rows, or about 1 ms if this
         is less.
     end : float
         Time beyond which the run is not advanced, s.
@@ -70,7 +70,7 @@ class LiveRun:
         self.restart()
 
     def restart(self) -> None:
-        """Return to the start; controllers in Python are set back if their state can be saved."""
+        """Return to the start; controllers in Python are reset if their initial state could be saved."""
         self._stepper: Stepper = self._simulation.start(duration=self._planned, resume=self._beginning)
         self._rows = LiveRows(self._stepper, self.models)
         self._event_count = 0
@@ -82,10 +82,10 @@ class LiveRun:
         self.log = CommandLog()
 
     def plan(self, end: float) -> bool:
-        """Set the end of the run, s; return False if an adaptive run could not be started anew for it.
+        """Set the end of the run, s; return False if this requires a restart that is not possible.
 
-        The steps of an adaptive run depend on its planned end. Such a run starts anew, which requires that
-        the state of its controllers in Python can be set back.
+        The steps of an adaptive run depend on its planned end. Such a run is restarted, which requires that
+        the initial state of its controllers in Python could be saved.
         """
         self.end = end
         if self._simulation.integrator != "dormand_prince" or not np.isfinite(end):

@@ -16,14 +16,14 @@ def ros_name(name: str) -> str:
 
 
 def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
-    """Return a distinct ROS name for each name; warn where it differs. Valid names keep theirs.
+    """Return a distinct ROS name for each name; warn of names that change. Valid names do not change.
 
     Parameters
     ----------
     names : iterable of str
-        Names of things of one kind.
+        Names of one kind of object.
     kind : str
-        Word for such a thing in the warning, for example ``system``.
+        Kind of the objects in the warning, for example ``system``.
     """
     wanted = {name: ros_name(name) for name in names}
     kept = {name for name, ros in wanted.items() if ros == name}
@@ -35,7 +35,7 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
 
 
 def frame_names(names: Iterable[str], reserved: Collection[str]) -> dict[str, str]:
-    """Return a distinct name for each frame; warn where it differs. Only reserved names get another one.
+    """Return a distinct name for each frame; warn of names that change. Only reserved names change.
 
     Parameters
     ----------

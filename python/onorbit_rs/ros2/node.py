@@ -99,8 +99,8 @@ class Node:
             MCAP file of the messages that the node publishes and of the commands that it obeys; :meth:`close`
             completes it and replaces an existing file. A run that is recorded cannot be reset.
         wrench_timeout : float, optional
-            Simulated time, s, after which a wrench on a link ends unless another message for the link comes.
-            Default: it holds.
+            Simulated time, s, after which a wrench on a link ends unless another message for the link
+            arrives. Default: no timeout.
         keep_rows : int, optional
             Least number of last rows that the run keeps in memory besides the first row; older rows are
             dropped once there are more than twice as many. The trace that :meth:`spin` returns then has only
@@ -114,7 +114,7 @@ class Node:
         Raises
         ------
         DtypeError
-            If ``simulation`` is no :class:`Simulation`.
+            If ``simulation`` is not a :class:`Simulation`.
         InputError
             If another argument or ``ROS_DOMAIN_ID`` is invalid.
         Ros2Error
@@ -200,7 +200,7 @@ class Node:
         return list(self._inbox.topics())
 
     def spin(self, duration: float | None = None) -> Trace | WorldTrace:
-        """Run until a simulated time, s, or until Ctrl-C, and return the trace; None is an open end.
+        """Run until a simulated time, s, or until Ctrl-C, and return the trace; None means an open end.
 
         If the run begins in a pause or in pace ``stepped``, the row at the start is published at once.
 

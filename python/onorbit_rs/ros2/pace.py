@@ -64,7 +64,7 @@ class RealTime:
         self.early = min(max(1.5 * usual, 0.0), _LONGEST_SPIN_S, _SPIN_PER_TICK * self.tick)
 
     def restart(self, t: float) -> None:
-        """Let the current wall-clock time be the simulated time ``t``, s; after a pause or a reset."""
+        """Assign the simulated time ``t``, s, to the current wall-clock time, after a pause or a reset."""
         self._start = self.clock() - t
         self._calm_at = -math.inf
 
@@ -75,9 +75,9 @@ class RealTime:
         return self._start + t - self.clock()
 
     def approach(self, t: float) -> bool:
-        """Sleep until shortly before simulated time ``t``, s, is due; return False if it is still far off.
+        """Sleep until shortly before simulated time ``t``, s, is due; return False if ``t`` is not yet near.
 
-        A call lasts 50 ms at most.
+        A call takes at most 50 ms.
         """
         early = self.early if t >= self._calm_at else 0.0
         while (left := self.ahead(t) - early) > 0.0:
@@ -90,7 +90,8 @@ class RealTime:
     def idle(self, t: float, seconds: float) -> None:
         """Sleep while the run waits at simulated time ``t``, s.
 
-        The time until ``t`` is due is the same afterwards, and at most a tick, since ``/step`` moves ``t``.
+        Afterwards, the time until ``t`` is due is the same, but at most one tick, since ``/step`` changes
+        ``t``.
         """
         left = min(max(self.ahead(t), 0.0), self.tick)
         self.sleep(seconds)

@@ -75,7 +75,7 @@ class Participant:
         Raises
         ------
         Ros2Error
-            If CycloneDDS does not create it.
+            If CycloneDDS does not create the publisher.
         """
         with dds_errors(f"publish {topic}", _FULL):
             entity = DataWriter(self._entity, self._topic(topic, kind), qos=_qos(kind, is_latched))
@@ -88,7 +88,7 @@ class Participant:
         Raises
         ------
         Ros2Error
-            If CycloneDDS does not create it.
+            If CycloneDDS does not create the subscription.
         """
         with dds_errors(f"subscribe to {topic}", _FULL):
             qos = _qos(kind, depth=MOST_COUNTED)
@@ -121,7 +121,7 @@ class Participant:
         return any(each.participant_key != own for each in found)
 
     def wait_for_delivery(self, seconds: float) -> bool:
-        """Wait until reliable subscribers have received all messages; return False if time, s, is up."""
+        """Wait until reliable subscribers have received all messages; return False after ``seconds``, s."""
         end = time.monotonic() + seconds
         for writer in self._writers:
             left = max(0, round(1e9 * (end - time.monotonic())))

@@ -55,7 +55,7 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
     InputError
         If the models of a trace are missing or are not those of its systems.
     DtypeError
-        If ``source`` is none of these.
+        If ``source`` has another type.
     OnOrbitError
         If the folder or its robot cannot be read, or the robot was changed since the run.
     """
@@ -79,7 +79,7 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
 
 
 def _orbit(run: Run) -> Orbit | None:
-    """Return the reference orbit of a run; None, with a warning, if its data cannot be read any more."""
+    """Return the reference orbit of a run; None, with a warning, if its data cannot be read."""
     scenario = run.scenario
     if scenario.orbit is None:
         return None

@@ -213,7 +213,7 @@ def _try_one_step(scenario: WorldScenario, simulation: _core.Simulation) -> None
         try:
             simulation.run(scenario.simulation.time_step)
         except SimulationError as stop:
-            stop.message = f"the run diverged in its first step: {stop.message}"
+            stop.message = f"in the first step: {stop.message}"
             raise
 
 

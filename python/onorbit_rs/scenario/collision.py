@@ -11,7 +11,7 @@ from onorbit_rs.scenario.shape import Shape
 
 
 class CollisionShape(Part):
-    """Collision shape of a link, in addition to those of the robot's file; several are their union."""
+    """Collision shape of a link, in addition to those of the robot's file; several shapes form a union."""
 
     link: str
     """Name of the link."""

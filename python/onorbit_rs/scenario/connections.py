@@ -54,7 +54,7 @@ def connected_groups(
 ) -> list[list[str]]:
     """Return the groups of two or more systems that may interact, in the order of ``systems``.
 
-    Connections join systems, and so do contacts, whose systems are ``touch``.
+    Both connections and contacts join systems; ``touch`` contains the systems of each contact.
     """
     groups = [{name} for name in systems]
     for together in [*(connection.systems for connection in found), *touch]:

@@ -22,6 +22,7 @@ def apply(stepper: Stepper, entry: Mapping[str, Any]) -> None:
     Parameters
     ----------
     stepper : Stepper
+        Run that receives the command.
     entry : mapping
         Command; ``time`` is ignored.
 
@@ -64,7 +65,7 @@ def give(stepper: Stepper, entry: Command, *, check_only: bool = False) -> None:
 
 
 def _check(stepper: Stepper, command: Command) -> None:
-    """Raise an error if a stepper would refuse a constant command to joints, or if it is another command."""
+    """Raise an error unless a command is a constant command to joints that the stepper would accept."""
     if "control" not in command or "trajectory" in command:
         given = f"{dict(command)!r:.80}"
         raise invalid(
@@ -114,6 +115,7 @@ class CommandLog:
         Parameters
         ----------
         stepper : Stepper
+            Run that receives the command.
         *entries : mapping
             Command; its ``time`` is replaced by that of the stepper. If there are several, they must be
             constant commands to joints, that is, with ``control`` and without ``trajectory``.

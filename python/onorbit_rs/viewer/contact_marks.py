@@ -114,7 +114,7 @@ class ContactMarks:
             self._send(name, marks)
 
     def _send(self, name: str, marks: Marks) -> None:
-        """Send the point and the arrow of a contact, which are absent where it is not shown."""
+        """Send the point and the arrow of a contact, which are absent while the contact is not shown."""
         path, visible = rr.new_entity_path([*CONTACTS.split("/"), shown(name)]), marks.is_shown
         time, lengths = [rr.TimeColumn(TIMELINE, duration=marks.times)], visible.astype(int)
         colors = [HELD if held else COLOR for held in marks.is_held[visible]]

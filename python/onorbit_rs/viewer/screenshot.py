@@ -46,7 +46,7 @@ def take_screenshot(
     width, height : int
         Size of the picture, pixels.
     has_collisions : bool
-        Show the collision shapes too.
+        If True, the collision shapes are shown as well.
 
     Raises
     ------

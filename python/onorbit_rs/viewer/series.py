@@ -123,7 +123,7 @@ def _of_tools(rows: TraceRows, setting: Setting) -> Iterator[Series]:
 
 
 def _of_joints(rows: TraceRows, model: Model) -> Iterator[Series]:
-    """Yield the plots of revolute and of prismatic joints."""
+    """Yield the plots of the revolute and of the prismatic joints, which have different units."""
     slides = np.array([joint.kind == "prismatic" for joint in model.joints], bool)
     for who, kind, chosen in (("joint", "revolute", ~slides), ("slide", "prismatic", slides)):
         if not chosen.any():

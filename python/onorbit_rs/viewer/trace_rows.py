@@ -37,7 +37,7 @@ class TraceRows:
     """Rows of a trace: ``columns`` maps the name of each column to its values, (T, ...).
 
     ``wrenches``, (T, bodies, 6), are stored by effect, ``tracking`` errors, (T, k), by control, and
-    ``contacts``, (T, 14), by contact.
+    ``contacts``, (T, 19), by contact.
     """
 
     columns: Mapping[str, Floats]

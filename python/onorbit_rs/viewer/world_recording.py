@@ -198,7 +198,8 @@ def bodies_of(world: WorldRows) -> list[Body]:
 
 
 def _events_of(series: Series, setting: WorldSetting, events: Sequence[EventRecord]) -> list[EventRecord]:
-    """Return the events between the systems that a plot shows; in plots of a contact, its own touches."""
+    """Return the events between the systems that a plot shows; for a plot of a contact, the touches of that
+    contact."""
     systems = set(setting.names)
     for connection in setting.connections:
         if series.path.startswith(f"{SHARED}connections/{connection.name}/"):

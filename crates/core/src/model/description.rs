@@ -47,7 +47,7 @@ pub struct Link {
     pub name: String,
     /// Mass and inertia, if any.
     pub inertial: Option<Inertial>,
-    /// Visual shapes; if there are none, the collision shapes are drawn.
+    /// Visual shapes. Without any, the collision shapes are drawn.
     pub visuals: Vec<Visual>,
     /// Collision shapes, with only those meshes whose file exists. They are drawn if the link has no visual
     /// shapes.

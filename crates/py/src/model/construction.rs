@@ -146,8 +146,8 @@ impl PyModel {
 
     /// Return a copy of the robot with another collision shape on a link.
     ///
-    /// The shape is added to those that the link has; several shapes are the union of them. It takes part in
-    /// contacts and distances, and does not change masses.
+    /// The collision shape of the link becomes the union of its previous shapes and the new one. It is used
+    /// for contacts and distances, and does not change masses.
     ///
     /// Parameters
     /// ----------

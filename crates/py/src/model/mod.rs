@@ -105,7 +105,8 @@ impl PyModel {
         self.model.frame(&text.to_cow()?).map_err(|error| error.into_python(py))
     }
 
-    /// Returns the collision shape of the link with this frame. Meshes are read once, and their defects are warnings.
+    /// Returns the collision shape of the link with this frame. Meshes are read once, and their defects are
+    /// issued as warnings.
     pub(crate) fn collision_shape(&self, py: Python<'_>, frame: usize) -> PyResult<Shape> {
         let known = |shapes: &Mutex<HashMap<usize, Shape>>| {
             shapes.lock().unwrap_or_else(PoisonError::into_inner).get(&frame).cloned()

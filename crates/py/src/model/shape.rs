@@ -150,7 +150,7 @@ impl PyShape {
     /// Raises
     /// ------
     /// InputError
-    ///     If a length is not positive and finite. The tube must also leave a hole.
+    ///     If a length is not positive and finite, or if the tube leaves no hole.
     #[staticmethod]
     fn torus(py: Python<'_>, major_radius: f64, minor_radius: f64) -> PyResult<Self> {
         let keywords =

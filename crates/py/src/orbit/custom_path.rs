@@ -27,8 +27,8 @@ use std::sync::Arc;
 /// mu : float, optional
 ///     Gravitational parameter, m³/s²; None means that there is no planet.
 /// ends : {"error", "coast"}
-///     Behaviour outside the times: ``error`` raises ``PathError``; ``coast`` continues with the velocity and
-///     angular velocity of the nearest end.
+///     Behaviour before the first and after the last time: ``error`` raises ``PathError``; ``coast``
+///     continues with the velocity and angular velocity of the nearest end.
 ///
 /// Raises
 /// ------

@@ -4,7 +4,7 @@ use super::{Any, PyReference, pose};
 use crate::pickling::call_of;
 use pyo3::prelude::*;
 
-/// Constant pose.
+/// Reference that holds a constant pose.
 ///
 /// Parameters
 /// ----------

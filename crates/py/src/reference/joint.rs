@@ -34,7 +34,7 @@ fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> 
     }
 }
 
-/// Constant joint positions.
+/// Reference that holds constant joint positions.
 ///
 /// Parameters
 /// ----------

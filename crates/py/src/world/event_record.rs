@@ -26,7 +26,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 ///     touched first, in the order of its sides.
 /// impulse : (6,) array
 ///     Impulse on the second system and the systems connected to it: N s, then N m s about ``point``, axes of
-///     W. For a lift-off, the impulse of the contact since its touch-down; for a touch-down zero.
+///     W. For a lift-off, the impulse of the contact since its touch-down; for a touch-down, zero.
 /// point : (3,) array
 ///     Point at which the impulse acts, in W, m; for a contact, the point of contact.
 /// energy_lost : float
@@ -37,7 +37,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 ///     of the momenta of its bodies; zero for a contact, whose forces on both sides act at one point.
 /// peak_force : float, optional
 ///     Largest normal force since the touch-down, N; None unless the event is a lift-off. It is the largest
-///     force at the ends of steps, or of the parabola through three of them.
+///     force at the end of a step, or the maximum of the parabola through three such forces.
 #[pyclass(name = "EventRecord", frozen, module = "onorbit_rs")]
 #[derive(PartialEq)]
 pub(crate) struct PyEventRecord {

@@ -29,7 +29,7 @@ class GravityFieldEffect(Part):
 
     @property
     def is_file(self) -> bool:
-        """Whether ``model`` is the path of a ``.gfc`` file."""
+        """True if ``model`` is the path of a ``.gfc`` file."""
         return self.model.endswith(".gfc")
 
     def build(self, _model: _core.Model | None, folder: Path) -> _core.GravityField:

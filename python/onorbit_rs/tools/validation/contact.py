@@ -110,7 +110,7 @@ def row() -> list[float]:
 
 
 def elastic() -> list[float]:
-    """Return the error of the restitution without dissipation for each exponent, of 2 kg at 0.2 m/s."""
+    """Return the error of the restitution without dissipation for each exponent, at 0.2 m/s."""
     traces = (balls(oo.HuntCrossley(k, n), (BALLS, BALLS), 2.0 * CLOSING) for n, k in LAWS)
     return [abs(float(t["b"].v[-1, 0] - t["a"].v[-1, 0]) / (2.0 * SPEED) - 1.0) for t in traces]
 

@@ -21,7 +21,7 @@ ROTOR = (1e-4, 1e-7)
 
 
 def body(shape: str, mass: float, inertia: ArrayLike, *, rotors: str = "") -> oo.Model:
-    """Return a rigid body with one collision shape and its principal moments of inertia, (3,) or one.
+    """Return a rigid body with one collision shape and one or three principal moments of inertia, kg m².
 
     ``rotors`` is an axis such as ``0 0 1``, about which the links ``left`` and ``right`` turn freely.
     """

@@ -66,7 +66,7 @@ def steady() -> list[float]:
 
 
 def shaken() -> list[float]:
-    """Return the drift under oscillating loads, small ones and ones of half the cone, m/s."""
+    """Return the drift under oscillating loads, small ones and ones of half the largest friction, m/s."""
     return [held(12.0, LOAD, SWING, 2.0), held(12.0, LOAD, LARGE_SWING, 2.0)]
 
 

@@ -57,7 +57,7 @@ class Tree:
 
 @dataclass(frozen=True)
 class State:
-    """Arguments of the algorithms; ``external`` contains wrenches by frame, at its origin, in its axes."""
+    """Arguments of the algorithms; ``external`` maps frames to wrenches at their origins in their axes."""
 
     q: Array
     v: Array

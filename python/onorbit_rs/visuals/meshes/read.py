@@ -24,7 +24,7 @@ _KEPT = 128
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
-    """Return the content of a mesh file: Collada, glTF, OBJ, PLY or STL, by its ending.
+    """Return the content of a mesh file: Collada, glTF, OBJ, PLY or STL, according to its file extension.
 
     Materials and textures are searched only near the file; surfaces whose texture is missing have one colour.
 

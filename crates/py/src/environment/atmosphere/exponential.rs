@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, fields, raise};
 use onorbit_core::environment::atmosphere::{ExponentialAtmosphere, Layer};
 use pyo3::prelude::*;
 
-/// Exponential atmosphere.
+/// Atmosphere whose density decreases exponentially with altitude.
 ///
 /// Without arguments, the atmosphere has the 28 layers of Vallado's table 8-4 (2013), from 0 to 1000 km and
 /// above, for moderate solar activity.
