@@ -29,7 +29,7 @@ pub(crate) struct PyStepper {
 
 #[pymethods]
 impl PyStepper {
-    /// Current time, s.
+    /// Current simulation time, s.
     #[getter]
     pub(crate) fn time(&self, py: Python<'_>) -> PyResult<f64> {
         self.with(py, |stepper| stepper.time())

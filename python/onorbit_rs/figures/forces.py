@@ -80,7 +80,7 @@ def environment_forces(trace: Trace, bodies: Sequence[str]) -> Figure:
 
 
 def _size(rows: Floats, part: str) -> Floats:
-    """Return the magnitude (T, bodies) of ``force`` or ``torque`` of wrenches (T, bodies, 6)."""
+    """Return the magnitude (T, bodies), N or N m, of ``force`` or ``torque`` of wrenches (T, bodies, 6)."""
     entries, _ = _PARTS[part]
     size: Floats = np.linalg.norm(rows[:, :, entries], axis=2)
     return size

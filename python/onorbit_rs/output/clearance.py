@@ -57,7 +57,7 @@ def _message(watch: Watch, violation: Violation) -> str:
 
 
 def clearance_arrays(found: Found) -> dict[str, Any]:
-    """Return columns (T, 12) by path: gap, points a and b and normal, and the numbers of the nearest pair."""
+    """Return columns (T, 12) by path: gap and points, m, normal, and indices of the nearest pair."""
     return {
         f"clearance_{values.name}": np.column_stack(
             [values.gap, values.point_a, values.point_b, values.normal, values.pair]

@@ -137,7 +137,7 @@ def _orbit_pose(rows: Rows) -> dict[str, Floats]:
 
 
 def _orbit_twist(rows: Rows, orbit: Orbit | None) -> dict[str, Floats]:
-    """Return the velocity of the origin of L and the rate of L; without the orbit, `r × v / r²`."""
+    """Return the velocity of L's origin, m/s, and the rate of L, rad/s; without the orbit, `r × v / r²`."""
     r, v = rows["reference_position_eci"], rows["reference_velocity_eci"]
     if orbit is not None:
         rot_il, rate_l = orbit.lvlh(np.ascontiguousarray(rows.time))

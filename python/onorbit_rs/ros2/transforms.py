@@ -98,7 +98,7 @@ class SystemFrames:
         return found
 
     def _shift(self, q: Floats) -> Floats:
-        """Return the displacement of the origin of each child link, which turns about its anchor."""
+        """Return the displacement, m, of the origin of each child link, which rotates about its anchor."""
         u, c = self._axis, np.where(self._turns[:, None], self._anchor, 0.0)
         across = np.cross(u, c)
         # c − exp(θ u) c = −sin θ u × c − (1 − cos θ) u × (u × c)

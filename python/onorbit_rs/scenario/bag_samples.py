@@ -24,7 +24,7 @@ SUFFIXES = (".mcap", ".db3", ".bag")
 
 
 class Sample(NamedTuple):
-    """Positions and rates of joints at one time."""
+    """Positions, rad or m, and rates, rad/s or m/s, of joints at one time."""
 
     time: int
     """Time, ns: since the first message, or since the start of a trajectory."""

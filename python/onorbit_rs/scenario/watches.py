@@ -61,7 +61,7 @@ class LeastDistance(Part):
     """Both sides, each a link or a list. Links of one body or of neighbouring bodies are not compared."""
 
     def build(self, folder: Path) -> Watch:
-        """Return the distance."""
+        """Return the declaration of the distance, which is evaluated on the rows of a trace."""
         return MinimumDistance(self.name, *self.between)
 
 

@@ -77,8 +77,8 @@ impl ComputedTorque {
         if least.is_finite() { least } else { 0.0 }
     }
 
-    /// Returns the commanded acceleration `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)` of the frame, where `p`
-    /// denotes its actual and `pd` its desired pose.
+    /// Returns the commanded acceleration `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)` of the frame, m/s² and
+    /// rad/s², where `p` denotes its actual and `pd` its desired pose.
     #[inline(always)]
     pub(super) fn reference_acceleration<S: Real>(
         &self,

@@ -15,7 +15,7 @@ pub struct Control {
     pub joints: Vec<usize>,
     /// Control law with its reference.
     pub law: Law,
-    /// Start condition.
+    /// Condition under which the control starts.
     pub begin: Begin,
     /// End time, s. If it is infinite, the control ends with the run or when a successor stops it.
     pub end: f64,

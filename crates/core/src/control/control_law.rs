@@ -85,8 +85,8 @@ pub(super) trait ControlLaw {
         TaskDamping::default()
     }
 
-    /// Returns the desired acceleration on which the friction compensation of the joint at `place` in the
-    /// group is based. Zero means that the joint may stay at rest.
+    /// Returns the desired acceleration, rad/s² (m/s²), on which the friction compensation of the joint at
+    /// `place` in the group is based. Zero means that the joint may stay at rest.
     fn desired_acceleration(&self, _place: usize, acceleration: f64) -> f64 {
         acceleration
     }

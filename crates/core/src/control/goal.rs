@@ -29,7 +29,7 @@ pub enum Outcome {
     Unfinished,
     /// All errors were within the goal's tolerance at `time`, s.
     Succeeded {
-        /// Simulation time, s.
+        /// Simulation time of the decision, s.
         time: f64,
     },
     /// An error exceeded the tolerance of the path.
@@ -43,7 +43,7 @@ pub enum Outcome {
 pub struct Miss {
     /// Index of the joint in the group; for a task, 0 is the position and 1 the attitude.
     pub component: usize,
-    /// Simulation time, s.
+    /// Simulation time at which the error was evaluated, s.
     pub time: f64,
     /// Error, rad or m (rad/s or m/s where rates are commanded).
     pub error: f64,

@@ -10,7 +10,7 @@ use crate::spatial::{Force, Real};
 pub struct FrameWrench<S> {
     /// Index of the frame in the model.
     pub frame: usize,
-    /// Force and moment in frame axes.
+    /// Force, N, and moment about the frame origin, N m, in frame axes.
     pub wrench: Force<S>,
 }
 

@@ -104,7 +104,7 @@ pub(super) fn classical_acceleration<S: Real>(
     Motion::new(rot_wb * acceleration.linear, rot_wb * acceleration.angular)
 }
 
-/// Returns the classical acceleration `a + α × p + ω × (v + ω × p)` of the point of a body at `p`, and the
+/// Returns the classical acceleration `a + α × p + ω × (v + ω × p)` of the point of a body at `p`, m, and the
 /// angular acceleration `α`, where `spatial = (a, α)` and `velocity = (v, ω)`.
 #[inline(always)]
 pub(super) fn point_acceleration<S: Real>(spatial: Motion<S>, velocity: Motion<S>, p: Vec3<S>) -> Motion<S> {

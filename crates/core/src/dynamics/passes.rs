@@ -64,9 +64,9 @@ pub(super) trait Accumulated<S>: Copy {
     fn zero() -> Self;
     /// Returns the sum of two values.
     fn plus(self, other: Self) -> Self;
-    /// Reads the stored value.
+    /// Returns the value that is stored in `body`.
     fn stored(body: &BodyData<S>) -> Self;
-    /// Stores the value.
+    /// Stores this value in `body`.
     fn store(self, body: &mut BodyData<S>);
 }
 

@@ -83,7 +83,7 @@ pub enum EarthError {
         distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     NearCentre {
-        /// Distance, m.
+        /// Distance from the Earth's centre, m.
         distance: f64,
         /// Smallest accepted distance, m.
         minimum: f64,
@@ -121,7 +121,7 @@ pub enum EarthError {
     /// A table of Earth-orientation parameters has too few rows to be interpolated.
     #[error("the table of Earth-orientation parameters has {got}; give at least 2 rows", got = count(*got, "row"))]
     ShortTable {
-        /// Number of rows.
+        /// Number of rows in the table.
         got: usize,
     },
     /// A segment of a SPICE kernel does not consist of complete intervals.
@@ -131,7 +131,7 @@ pub enum EarthError {
         got = count(*got, "coefficient")
     )]
     SegmentLength {
-        /// Number of coefficients.
+        /// Number of coefficients in the segment.
         got: usize,
         /// Number of coefficients of one component in one interval.
         per_interval: usize,
@@ -141,9 +141,9 @@ pub enum EarthError {
     WrongLength {
         /// Name of the array.
         name: &'static str,
-        /// Required length.
+        /// Required number of elements.
         expected: usize,
-        /// Given length.
+        /// Number of elements of the given array.
         got: usize,
     },
 }

@@ -102,7 +102,7 @@ pub(super) const LONGITUDE: Series = Series {
     ],
 };
 
-/// Latitude, arc seconds.
+/// Latitude above the ecliptic, arc seconds.
 pub(super) const LATITUDE: Series = Series {
     polynomial: &[-0.015],
     terms: &[
@@ -169,7 +169,7 @@ pub(super) const LATITUDE: Series = Series {
     ],
 };
 
-/// Distance, km.
+/// Distance from the Earth's centre, km.
 pub(super) const DISTANCE: Series = Series {
     polynomial: &[385_000.538],
     terms: &[

@@ -25,7 +25,7 @@ pub(super) struct Row {
 /// Earth-orientation parameters supplied by the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EarthParameters {
-    /// Constant parameters.
+    /// Parameters that are constant during the run.
     Constant {
         /// UT1 - UTC at the epoch, s.
         ut1_minus_utc: f64,

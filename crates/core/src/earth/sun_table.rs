@@ -42,7 +42,7 @@ pub(super) const LONGITUDE: Series = Series {
     ],
 };
 
-/// Latitude, arc seconds.
+/// Latitude above the ecliptic, arc seconds.
 pub(super) const LATITUDE: Series = Series {
     polynomial: &[0.002],
     terms: &[
@@ -57,7 +57,7 @@ pub(super) const LATITUDE: Series = Series {
     ],
 };
 
-/// Distance, km.
+/// Distance from the Earth's centre, km.
 pub(super) const DISTANCE: Series = Series {
     polynomial: &[149_618_827.344],
     terms: &[

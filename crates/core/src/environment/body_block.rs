@@ -30,7 +30,7 @@ pub struct BodyState {
 pub(crate) struct BodyMotion<T> {
     pub(crate) com: Vec3<T>,
     pub(crate) rot_wk: Mat3<T>,
-    /// Velocity of the centre of mass, and angular velocity.
+    /// Velocity of the centre of mass, m/s, and angular velocity, rad/s, in `W` axes.
     pub(crate) velocity: [Vec3<T>; 2],
 }
 

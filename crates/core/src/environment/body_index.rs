@@ -42,7 +42,7 @@ pub(super) struct SystemRows {
     pub(super) number: usize,
     /// Row of the base.
     pub(super) first: usize,
-    /// Number of bodies.
+    /// Number of bodies of the system.
     pub(super) count: usize,
 }
 

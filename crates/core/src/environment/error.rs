@@ -58,9 +58,9 @@ pub enum EnvironmentError {
         start = unlike(*start, &[*end]), end = short(*end)
     )]
     EmptyInterval {
-        /// Start, s.
+        /// Start of the interval, s.
         start: f64,
-        /// End, s.
+        /// End of the interval, s.
         end: f64,
     },
     /// A wrench acts on a body that does not exist.
@@ -97,9 +97,9 @@ pub enum EnvironmentError {
     /// The numbers of bodies and wrenches differ.
     #[error("the number of wrenches is {got}; expected {expected}, one for each body")]
     WrongLength {
-        /// Number of bodies.
+        /// Number of bodies in the scene.
         expected: usize,
-        /// Number of wrenches.
+        /// Number of wrenches given for them.
         got: usize,
     },
 }

@@ -41,7 +41,7 @@ pub(super) fn check_pose(shape: &Shape, pose: &Pose) -> Result<(), GeometryError
 /// Shape that is not a compound, with its pose in common axes.
 pub(super) type Piece<'a> = (&'a Shape, Pose);
 
-/// Returns the least distance over the pieces of both shapes, and the two pieces.
+/// Returns the least distance, m, over the pieces of both shapes, and the two pieces.
 pub(super) fn nearest_pieces<'a>(
     a: &'a Shape,
     pose_a: &Pose,

@@ -35,9 +35,9 @@ pub enum GeometryError {
         points = number_text::count(*count, "point")
     )]
     Hull {
-        /// Number of points.
+        /// Number of given points.
         count: usize,
-        /// Reason, as text.
+        /// Reason why there is no hull, as text.
         cause: &'static str,
     },
     /// A compound has no pieces.
@@ -77,7 +77,7 @@ pub enum GeometryError {
         a = pair.a, b = pair.b, at_a = position(&pair.pose_a), at_b = position(&pair.pose_b), gap = short(*gap)
     )]
     NotConverged {
-        /// Shapes and poses.
+        /// Kinds and poses of the two shapes.
         pair: Box<PosedPair>,
         /// Difference between the lower and the upper bound, m.
         gap: f64,

@@ -24,7 +24,7 @@ pub(super) enum Feature {
         /// Radius of curvature of the surface across the line, m.
         radius: f64,
     },
-    /// Convex polygon.
+    /// Face bounded by a convex polygon.
     Face {
         /// Corners in order around the polygon, m.
         corners: Vec<Vec3<f64>>,

@@ -49,7 +49,8 @@ impl Cores<'_> {
         Corner { on_a, on_b, apart: on_a - on_b }
     }
 
-    /// Returns the distance between the supporting planes with the normal `n`: a lower bound of the signed distance.
+    /// Returns the distance, m, between the supporting planes with the normal `n`: a lower bound of the
+    /// signed distance.
     pub(super) fn separation(&self, n: Vec3<f64>) -> f64 {
         -self.corner(n).apart.dot(n)
     }

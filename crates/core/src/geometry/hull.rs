@@ -48,7 +48,7 @@ impl Hull {
         &self.vertices
     }
 
-    /// Returns the faces.
+    /// Returns the faces, with coplanar triangles merged.
     pub fn faces(&self) -> &[Face] {
         &self.faces
     }
@@ -166,7 +166,7 @@ fn assign(
     }
 }
 
-/// Returns the corners of all triangles that are connected to `seed` and lie in its plane.
+/// Returns the indices of the corners of all triangles that are connected to `seed` and lie in its plane.
 fn coplanar(polytope: &Polytope, seed: usize, tolerance: f64, is_taken: &mut [bool]) -> Vec<usize> {
     let mut group = vec![seed];
     let mut corners = polytope.triangles[seed].corners.to_vec();

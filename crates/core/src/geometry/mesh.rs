@@ -3,7 +3,7 @@
 use crate::spatial::Vec3;
 use std::collections::HashMap;
 
-/// Triangle mesh.
+/// Surface that consists of triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Vertices, m.

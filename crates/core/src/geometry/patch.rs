@@ -88,7 +88,7 @@ fn overlap(plane: &Projection, proximity: &Proximity, a: &Feature, b: &Feature) 
     Some(points)
 }
 
-/// Returns the length of the edge of a polygon that starts at corner `i`.
+/// Returns the length, m, of the edge of a polygon from corner `i` to the next corner.
 fn length(corners: &[Point], i: usize) -> f64 {
     let (p, q) = (corners[i], corners[(i + 1) % corners.len()]);
     (q[0] - p[0]).hypot(q[1] - p[1])

@@ -19,7 +19,7 @@ pub(super) struct Triangle {
     pub(super) is_flat: bool,
 }
 
-/// Convex polytope.
+/// Convex polytope with triangular faces, including those that were replaced.
 #[derive(Default)]
 pub(super) struct Polytope {
     pub(super) points: Vec<Vec3<f64>>,

@@ -74,7 +74,7 @@ fn bisect(mut low: Sample, mut high: Sample, at: impl Fn(f64) -> Option<Sample>)
     Some(if low.distance < high.distance { low } else { high })
 }
 
-/// Returns the point of the circle at an angle, in the axes of `a`.
+/// Returns the sample at an angle, rad, along the circle, in the axes of `a`.
 fn sample(a: &Shape, major_radius: f64, pose: &Pose, angle: f64) -> Option<Sample> {
     let (sine, cosine) = angle.sin_cos();
     let on_circle = pose.to_common(Vec3::new(major_radius * cosine, major_radius * sine, 0.0));

@@ -18,7 +18,7 @@ pub enum Luminary {
 }
 
 impl Luminary {
-    /// Sun and Moon.
+    /// All bodies whose positions [`Earth`] provides.
     pub const ALL: [Self; 2] = [Self::Sun, Self::Moon];
 
     /// Returns the lower-case name, `sun` or `moon`.

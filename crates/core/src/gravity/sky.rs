@@ -60,7 +60,7 @@ impl Gravity {
         Ok(expansion)
     }
 
-    /// Returns the expansion of the third-body field about the position `at`.
+    /// Returns the expansion of the third-body field about the position `at`, m, at simulation time `t`, s.
     pub(super) fn third_bodies_about(&self, t: f64, at: Vec3<f64>) -> Result<Expansion, GravityError> {
         let mut about = Expansion { at, value: Vec3::zero(), gradient: Sym3::default() };
         for body in &self.third_bodies {

@@ -85,7 +85,7 @@ pub struct Visual {
 pub enum Geometry {
     /// Box with full edge lengths.
     Box([f64; 3]),
-    /// Cylinder along z.
+    /// Cylinder along z, centred at the origin.
     Cylinder {
         /// Radius, m.
         radius: f64,
@@ -134,7 +134,7 @@ pub enum Geometry {
 pub struct Joint {
     /// Name, unique in the robot.
     pub name: String,
-    /// Kind of motion.
+    /// Kind of motion, with its axis.
     pub kind: JointKind,
     /// Pose of the joint's frame in the axes of the parent link, at joint position zero.
     pub origin: Isometry3<f64>,

@@ -91,7 +91,7 @@ pub(super) fn is_definite(about_com: &Sym3<f64>, mass: f64) -> bool {
     !matches!(sense(&about_com.to_nalgebra(), mass), Sense::Indefinite(_))
 }
 
-/// Returns the principal moments of inertia, ascending.
+/// Returns the principal moments of inertia, kg m², in ascending order.
 pub(super) fn principal_moments(inertia: &Matrix3<f64>) -> [f64; 3] {
     let mut moments: [f64; 3] = inertia.symmetric_eigenvalues().into();
     moments.sort_by(f64::total_cmp);

@@ -59,7 +59,7 @@ pub struct Frame {
 /// Parameters of a joint other than its geometry. The simulation uses them; the dynamics algorithms do not.
 #[derive(Clone, Debug)]
 pub struct JointProperties {
-    /// Name.
+    /// Name of the joint.
     pub name: String,
     /// Viscous friction, N m s/rad (N s/m).
     pub damping: f64,

@@ -219,9 +219,9 @@ pub enum OrbitError {
     WrongLength {
         /// Name of the array.
         name: &'static str,
-        /// Required length.
+        /// Required number of elements.
         expected: usize,
-        /// Given length.
+        /// Number of elements of the given array.
         got: usize,
     },
     /// The orbit lies inside the planet.
@@ -263,7 +263,7 @@ pub enum OrbitError {
         time: f64,
         /// Time of the initial state, s.
         epoch: f64,
-        /// Number of steps.
+        /// Largest permitted number of steps.
         steps: usize,
     },
     /// The integration needs a smaller step than permitted.

@@ -49,7 +49,7 @@ pub fn joint_start_offset(path: &dyn JointPath, q: &[f64]) -> (usize, f64) {
     offsets.fold((0, 0.0), |largest, next| if next.1 > largest.1 { next } else { largest })
 }
 
-/// Constant joint positions.
+/// Reference that holds constant joint positions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointHold {
     q: Vec<f64>,

@@ -88,7 +88,7 @@ impl PoseSpline {
     }
 }
 
-/// Returns the times of the waypoints, starting at zero; `time_for` returns the duration of each piece.
+/// Returns the times of the waypoints, s, starting at zero; `time_for` returns the duration of each piece.
 pub(super) fn rest_times<P>(
     points: &[P],
     time_for: impl Fn(&P, &P) -> f64,

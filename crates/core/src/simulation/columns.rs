@@ -59,7 +59,7 @@ impl fmt::Display for Length {
 /// Condition under which a quantity is recorded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
-    /// In every run.
+    /// The quantity is recorded in every run.
     Always,
     /// A controller compensates Coulomb friction, and the native engine is used.
     FrictionCompensation,

@@ -61,12 +61,12 @@ pub struct StepOutput {
     pub v: Vec<f64>,
     /// Accelerations at the start of the step, `(nv,)` of each system, m/s² and rad/s².
     pub acceleration: Vec<f64>,
-    /// Impulse and work of each system.
+    /// Impulse and work that each system receives during the step.
     pub systems: Vec<Exchange>,
     /// Time integral over the step of the moments of the external forces about the common centre of mass,
     /// with each force acting at the centre of mass of its system, W axes, N m s; zero for a single system.
     pub orbital: [f64; 3],
-    /// Force and work of each contact that the engine computes.
+    /// Force and exchange of each contact that the engine computes.
     pub contacts: Vec<ContactOutput>,
 }
 

@@ -37,7 +37,7 @@ pub(super) struct Applied<'s> {
 #[derive(Default)]
 struct Sums {
     balances: [Balance; 2],
-    /// Kinetic energies, J.
+    /// Kinetic energies before and after the event, J.
     energies: [f64; 2],
     /// Kinetic energy `½ Δvᵀ M Δv` of the changes `Δv` of the velocities, J.
     energy_of_change: f64,

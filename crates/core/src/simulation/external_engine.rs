@@ -48,8 +48,8 @@ impl<'a> ExternalEngine<'a> {
         Self { engine, q, v, tau, ranges, welds: Vec::new(), contacts, output, has_output: false }
     }
 
-    /// Returns the acceleration of a system at the start of the last step, `(nv,)`; `None` if that step
-    /// failed.
+    /// Returns the acceleration of a system at the start of the last step, `(nv,)`, m/s² and rad/s²; `None`
+    /// if that step failed.
     pub(super) fn first_acceleration(&self, system: usize) -> Option<&[f64]> {
         let [_, range] = &self.ranges[system];
         self.has_output.then(|| &self.output.acceleration[range.clone()])

@@ -35,9 +35,10 @@ pub struct GroupBalance {
 pub(super) struct GroupRow {
     /// Momentum; its angular part is about the centre of mass of the group.
     pub(super) momentum: Momentum<f64>,
-    /// Time integral of the external forces, and of their moments about the centre of mass of the group.
+    /// Time integral of the external forces, N s, and of their moments about the centre of mass of the group,
+    /// N m s.
     pub(super) impulse: Momentum<f64>,
-    /// Kinetic energy, J.
+    /// Kinetic energy of the group in W, J.
     pub(super) kinetic_energy: f64,
     /// Work done on the group by motors, external wrenches and springs, less the energy lost in joints and
     /// captures, J.

@@ -30,7 +30,7 @@ impl SystemRow<'_> {
 pub(super) struct GroupSum {
     /// Momentum; its angular part is about the common centre of mass.
     pub(super) momentum: Momentum<f64>,
-    /// Kinetic energy, J.
+    /// Sum of the kinetic energies in W, J.
     pub(super) kinetic_energy: f64,
     /// Common centre of mass in W, m.
     pub(super) center: Vec3<f64>,

@@ -92,7 +92,8 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns the torques and requested accelerations of the joints of every system.
+    /// Returns the torques, N m (N), and the requested accelerations, rad/s² (m/s²), of the joints of every
+    /// system.
     fn commands(&self) -> Vec<(Vec<S>, Vec<Option<f64>>)> {
         let EquationsOfMotion { trees, members, .. } = &self.equations;
         let system = |number| members.system(number, trees, &self.state.trees).1;

@@ -89,8 +89,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`; `None` with an external
-    /// engine.
+    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`, m/s² and rad/s²; `None`
+    /// with an external engine.
     pub(super) fn first_acceleration(&self, number: usize) -> Option<&[S]> {
         match self {
             Self::Native(method) => Some(&method.integration.stages.first[number].acceleration),

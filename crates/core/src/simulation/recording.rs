@@ -48,7 +48,7 @@ pub enum EventKind {
 }
 
 impl EventKind {
-    /// All kinds.
+    /// All kinds of events.
     pub const ALL: [Self; 4] = [Self::Capture, Self::Release, Self::TouchDown, Self::LiftOff];
 
     /// Returns the name that results and messages use for the kind.
@@ -165,7 +165,8 @@ impl Recording {
 /// they are assembled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Ledger {
-    /// Time integral of the external forces and of their moments about the centres of mass of the trees.
+    /// Time integral of the external forces, N s, and of their moments about the centres of mass of the
+    /// trees, N m s.
     pub(super) impulse: Momentum<f64>,
     pub(super) work: f64,
     pub(super) dissipated: f64,

@@ -18,8 +18,8 @@ use crate::world::Member;
 pub(super) struct RunSystem<'a, S> {
     pub(super) controllers: Controllers<'a, S>,
     pub(super) recorder: Recorder,
-    /// Torques, `(n,)`, and requested accelerations before a trial step updated the controllers at the cut of
-    /// that step.
+    /// Torques, `(n,)`, N m (N), and requested accelerations before a trial step updated the controllers at
+    /// the cut of that step.
     pub(super) held: Option<(Vec<S>, Vec<Option<f64>>)>,
     /// True if an update of the controllers is due at the current cut.
     pub(super) is_due: bool,

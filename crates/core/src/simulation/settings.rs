@@ -20,7 +20,7 @@ pub struct Simulation {
     pub systems: Vec<System>,
     /// Events that connect and separate systems.
     pub events: Vec<Event>,
-    /// Contacts between links.
+    /// Contacts between the collision shapes of links.
     pub contacts: Vec<Contact>,
     /// Length of steps while bodies touch.
     pub contact_steps: ContactSteps,

@@ -65,7 +65,7 @@ pub(super) struct Drift {
     last: [f64; 2],
     /// Sums of the differences over the steps before the last probe.
     sum: [f64; 2],
-    /// Largest magnitude of the rate at any probe.
+    /// Largest magnitude of the rate at any probe, m/s or rad/s.
     fastest: f64,
 }
 

@@ -7,12 +7,12 @@ use crate::model::Model;
 /// Momentum and kinetic energy of all systems of a world, with one row per time that all traces contain.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorldRows {
-    /// Times of the rows, s.
+    /// Times of the rows, s, `(T,)`.
     pub time: Vec<f64>,
     /// Linear momentum, N s, and angular momentum about the common centre of mass, N m s, axes of W, `(T,
     /// 6)`.
     pub momentum: Vec<f64>,
-    /// Kinetic energy, J.
+    /// Kinetic energy of all systems in W, J, `(T,)`.
     pub kinetic_energy: Vec<f64>,
 }
 

@@ -14,7 +14,7 @@ pub(super) const WRENCH_COMMAND: &str = "wrench_command";
 pub struct WrenchCommand {
     /// Force at the origin of the frame, N.
     pub force: Vector3<f64>,
-    /// Torque, N m.
+    /// Torque in addition to the moment of the force, N m.
     pub torque: Vector3<f64>,
     /// Axes of the force and of the torque.
     pub axes: WrenchAxes,

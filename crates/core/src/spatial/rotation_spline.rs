@@ -23,9 +23,9 @@ pub struct RotationSpline {
 #[derive(Clone, Debug, PartialEq)]
 struct Piece {
     start: Quat<f64>,
-    /// `φ` and its first two derivatives at the start of the piece.
+    /// `φ`, rad, and its first two time derivatives at the start of the piece.
     from: [Vec3<f64>; 3],
-    /// `φ` and its first two derivatives at the end of the piece.
+    /// `φ`, rad, and its first two time derivatives at the end of the piece.
     to: [Vec3<f64>; 3],
 }
 

@@ -32,7 +32,7 @@ pub enum When {
     After {
         /// Index of the other event.
         event: usize,
-        /// Delay, s.
+        /// Delay after the other event, s.
         delay: f64,
     },
     /// When the caller of the stepper triggers the event.
@@ -107,9 +107,9 @@ pub struct RigidPose {
 /// Motion of a captured frame to its nominal pose, after the capture has happened.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seating {
-    /// Start, s.
+    /// Start of the motion, s.
     pub start: f64,
-    /// Duration, s.
+    /// Duration of the motion, s.
     pub duration: f64,
     /// Nominal pose of the captured frame in the capturing frame.
     pub pose: RigidPose,

@@ -38,13 +38,13 @@ use pyo3::types::PyDict;
 /// Source: Hunt and Crossley, Journal of Applied Mechanics 42, 1975.
 #[pyclass(name = "HuntCrossley", frozen, module = "onorbit_rs")]
 pub(crate) struct PyHuntCrossley {
-    /// Stiffness, N/m**n.
+    /// Stiffness ``k``, N/m**n.
     #[pyo3(get)]
     stiffness: f64,
-    /// Exponent.
+    /// Exponent ``n`` of the depth.
     #[pyo3(get)]
     exponent: f64,
-    /// Dissipation, s/m.
+    /// Dissipation ``d``, s/m.
     #[pyo3(get)]
     dissipation: f64,
 }
@@ -122,10 +122,10 @@ impl PyHuntCrossley {
 ///     If a parameter is outside its range.
 #[pyclass(name = "SpringDashpot", frozen, module = "onorbit_rs")]
 pub(crate) struct PySpringDashpot {
-    /// Stiffness, N/m.
+    /// Stiffness ``k``, N/m.
     #[pyo3(get)]
     stiffness: f64,
-    /// Damping, N s/m.
+    /// Damping ``c``, N s/m.
     #[pyo3(get)]
     damping: f64,
 }

@@ -226,13 +226,13 @@ impl PyGravityField {
         self.field.radius()
     }
 
-    /// Highest degree.
+    /// Highest degree of the field.
     #[getter]
     fn degree(&self) -> usize {
         self.field.degree()
     }
 
-    /// Highest order.
+    /// Highest order of the field.
     #[getter]
     fn order(&self) -> usize {
         self.field.order()

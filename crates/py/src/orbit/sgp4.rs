@@ -208,7 +208,7 @@ impl PySgp4 {
         Bound::new(py, wrap(sgp4, satrec, call)?)
     }
 
-    /// Catalogue number.
+    /// Catalogue number of the satellite.
     #[getter]
     fn satellite(&self) -> u32 {
         self.sgp4.elements().satellite

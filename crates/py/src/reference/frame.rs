@@ -70,7 +70,7 @@ pub(super) enum Frame {
     Lvlh,
     Base,
     Target(Target),
-    /// Path ``SYSTEM/FRAME``.
+    /// Frame of another system, as the path ``SYSTEM/FRAME``.
     System(String),
 }
 

@@ -245,7 +245,7 @@ fn poses(value: Any<'_, '_>) -> PyResult<Vec<Hold>> {
     Hold::from_rows(input.data().as_chunks().0).map_err(|error| error.into_python(value.py()))
 }
 
-/// Reads (K,) numbers.
+/// Reads an array (K,) of numbers.
 fn row(value: Any<'_, '_>, name: &str) -> PyResult<Vec<f64>> {
     let input = Input::new(value, name)?;
     match input.shape() {

@@ -145,10 +145,10 @@ pub(crate) struct PyCapture {
     /// Name of the event.
     #[pyo3(get)]
     pub(super) name: String,
-    /// Capturing frame.
+    /// Capturing frame, ``SYSTEM/FRAME``.
     #[pyo3(get)]
     frame_a: String,
-    /// Captured frame.
+    /// Captured frame, ``SYSTEM/FRAME``.
     #[pyo3(get)]
     frame_b: String,
     condition: Condition,

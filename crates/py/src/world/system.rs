@@ -50,7 +50,7 @@ pub(crate) struct PySystem {
     /// Name of the system.
     #[pyo3(get)]
     pub(super) name: String,
-    /// Robot.
+    /// Model of the robot.
     #[pyo3(get)]
     pub(super) model: Py<PyModel>,
     q: Vec<f64>,

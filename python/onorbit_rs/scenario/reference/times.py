@@ -22,5 +22,5 @@ def check_times(times: list[float] | None, what: str, points: int) -> None:
 
 
 def with_start(times: list[float] | None) -> NDArray[np.float64] | None:
-    """Return the times preceded by zero, the time of the start."""
+    """Return the times, s, preceded by zero, the time of the start."""
     return None if times is None else np.array([0.0, *times])

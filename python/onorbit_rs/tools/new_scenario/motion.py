@@ -67,13 +67,17 @@ def start_positions(model: Model, arm: Arm | None, weight: Weight | None = None)
 
 
 def within(joint: Joint, value: float) -> float:
-    """Return the position nearest to ``value`` that keeps 5 % of the range, at most 0.05, from the limits."""
+    """Return the position nearest to ``value``, rad or m, that keeps a distance from the limits.
+
+    The distance is 5 % of the range, and at most 0.05 rad or m.
+    """
     low, high = _limits(joint)
     return float(np.clip(value, low + 0.05 * min(high - low, 1.0), high - 0.05 * min(high - low, 1.0)))
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the position of a held joint: zero, or the nearest allowed position if zero is not allowed.
+    """Return the position of a held joint, rad or m: zero, or the nearest allowed position if zero is not
+    allowed.
 
     For a prismatic joint that cannot be at zero, the middle of its range is returned.
     """

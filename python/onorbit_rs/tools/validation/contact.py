@@ -104,7 +104,7 @@ def unequal() -> list[float]:
 
 
 def row() -> list[float]:
-    """Return the errors of the velocities of three equal balls after two elastic impacts."""
+    """Return the relative errors of the velocities of three equal balls after two elastic impacts."""
     trace = balls(oo.HuntCrossley(HERTZ), (BALLS, BALLS, LAST), SPEED)
     return [abs(trace[name].v[-1, 0] / SPEED - end) for name, end in (("a", 0.0), ("b", 0.0), ("c", 1.0))]
 
@@ -116,7 +116,7 @@ def elastic() -> list[float]:
 
 
 def hertz() -> tuple[float, float, float]:
-    """Return the errors of largest depth, largest force and duration of an elastic impact of spheres."""
+    """Return the relative errors of depth, force and duration of an elastic impact of spheres."""
     _, time, contact = impact(oo.HuntCrossley(HERTZ))
     depth, force = -contact.gap, np.linalg.norm(contact.force, axis=1)
     during = np.flatnonzero(force > 0.0)

@@ -69,10 +69,7 @@ def block() -> oo.Model:
 
 
 def rolling() -> tuple[float, float, float]:
-    """Return the errors of time, path and speed at which a sliding sphere begins to roll.
-
-    The floor accelerates upwards: this is the weight of a sphere whose axes turn.
-    """
+    """Return the relative errors of time, path and speed at which a sliding sphere begins to roll."""
     lift = oo.BodyWrench("floor/body", force=[0.0, 0.0, (IMMOVABLE + 1.0) * WEIGHT])
     trace = pressed(resting(solid_sphere(), (1.0, 0, 0, 0, 0, 0)), FRICTION, lift, lasts=0.5)
     time, sphere, slip = trace["sphere"].time, trace["sphere"], trace.contacts["touch"].slip

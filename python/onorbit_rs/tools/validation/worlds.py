@@ -109,7 +109,7 @@ KEPT = 3  # number of captures whose constraints are taken into account
 
 
 def joined(crafts: Sequence[Craft]) -> Array:
-    """Return the velocities of all crafts in one array."""
+    """Return the velocities of all crafts, (nv,) each, in one array."""
     return np.concatenate([craft.v for craft in crafts])
 
 

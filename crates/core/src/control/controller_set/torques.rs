@@ -151,7 +151,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
 }
 
 impl ControlState {
-    /// Returns the velocity error, desired less actual, of the frame to which the reduced model belongs.
+    /// Returns the velocity error, desired less actual, m/s and rad/s, of the frame to which the reduced
+    /// model belongs.
     fn velocity_error<S: Scalar>(&self, reduced: &FreeFloating<S>) -> Motion<f64> {
         let desired = self.desired_pose.map_or(Motion::zero(), |desired| desired.velocity);
         desired - motion(reduced.velocity)

@@ -79,7 +79,7 @@ pub enum AtmosphereError {
     OutsideTable {
         /// Name of the table.
         table: String,
-        /// Required day.
+        /// Day that the run requires.
         date: String,
         /// First day of the table.
         first: String,

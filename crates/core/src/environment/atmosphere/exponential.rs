@@ -11,7 +11,7 @@ pub struct Layer {
     pub base: f64,
     /// Density at the base, kg/m³.
     pub density: f64,
-    /// Scale height, m.
+    /// Altitude difference over which the density decreases by the factor e, m.
     pub scale_height: f64,
 }
 

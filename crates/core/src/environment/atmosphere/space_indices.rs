@@ -2,7 +2,7 @@
 
 use super::error::AtmosphereError;
 
-/// Geomagnetic activity.
+/// Geomagnetic activity, as a daily mean or as a recent history.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MagneticActivity {
     /// Mean of the index `Ap` over the day.
@@ -19,7 +19,7 @@ pub struct SpaceIndices {
     pub f107: f64,
     /// Mean of the flux over 81 days centred on the day, 1e-22 W/(m² Hz).
     pub f107a: f64,
-    /// Geomagnetic activity.
+    /// Geomagnetic activity at the instant.
     pub activity: MagneticActivity,
 }
 

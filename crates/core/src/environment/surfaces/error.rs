@@ -46,7 +46,7 @@ pub enum SurfaceError {
     Normal {
         /// Index of the plate.
         plate: usize,
-        /// Given normal.
+        /// Given normal, in the axes of the frame.
         normal: [f64; 3],
     },
     /// The numbers of areas, normals and centroids differ.
@@ -95,7 +95,7 @@ pub enum SurfaceError {
     /// A body has more than one surface.
     #[error("{body} has two surfaces; give each body at most one surface")]
     Twice {
-        /// The body.
+        /// Body with several surfaces.
         body: BodyIndex,
     },
     /// A surface is assigned to a body that does not exist.
@@ -106,7 +106,7 @@ pub enum SurfaceError {
     UnknownBody {
         /// Given body.
         body: BodyIndex,
-        /// Number of bodies.
+        /// Number of bodies that exist.
         count: usize,
     },
 }

@@ -93,7 +93,7 @@ impl Period {
         Self { seconds: period.hi, per_second: 1.0 / period.hi, pieces: [first, second, third] }
     }
 
-    /// Returns `dt` less the nearest whole number of periods.
+    /// Returns the time `dt`, s, less the nearest whole number of periods.
     #[inline(always)]
     fn reduce<S: Real>(&self, dt: S) -> S {
         // adding 1.5 × 2⁵² rounds to an integer without a library call
@@ -119,7 +119,7 @@ pub(super) enum Conic {
     },
     /// Parabola, `e = 1`; the phase is the time since periapsis.
     Parabola {
-        /// `√(μ/(2 q³))`, rad/s.
+        /// Rate of `B` in Barker's equation, `√(μ/(2 q³))`, rad/s.
         n: f64,
         /// Half the speed at periapsis, `√(μ/(2 q))`, m/s.
         speed: f64,

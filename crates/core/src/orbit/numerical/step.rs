@@ -87,7 +87,7 @@ impl Step {
         weighted(&Legendre::at(self.place(t)).value, &self.spectrum)
     }
 
-    /// Returns position, velocity and acceleration at `t`.
+    /// Returns position, velocity and acceleration at `t`, s, which lies within the step.
     pub(super) fn state(&self, t: f64) -> OrbitState {
         let (p, half, dt) = (Legendre::at(self.place(t)), 0.5 * self.length, t - self.start.time);
         let ([r, r_lost], [v, v_lost]) = (self.start.position, self.start.velocity);

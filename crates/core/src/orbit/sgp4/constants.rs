@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 pub enum EarthModel {
     /// WGS-72 with the rounded constants of Spacetrack Report #3.
     Wgs72Old,
-    /// WGS-72.
+    /// WGS-72 with `kₑ` computed from the gravitational parameter.
     #[default]
     Wgs72,
-    /// WGS-84.
+    /// WGS-84 with `kₑ` computed from the gravitational parameter.
     Wgs84,
 }
 

@@ -12,7 +12,7 @@ pub(super) const REV_DAY: f64 = 1440.0 / TAU;
 /// The elements are valid only with SGP4 and must not be used with another theory.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeanElements {
-    /// Catalogue number.
+    /// Catalogue number of the satellite.
     pub satellite: u32,
     /// Epoch of the elements.
     pub epoch: Epoch,

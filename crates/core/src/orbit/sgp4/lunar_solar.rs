@@ -134,7 +134,7 @@ impl ThirdBody {
         Self { rates, waves, eccentricity: eb, motion: n, anomaly: body.anomaly }
     }
 
-    /// Returns the periodic perturbations `t` minutes after the epoch.
+    /// Returns the periodic perturbations of the five quantities of [`Five`], `t` minutes after the epoch.
     pub(super) fn waves(&self, t: f64) -> Five {
         // f = M + 2 e sin M,  F₂ = ½ sin²f - ¼,  F₃ = -½ sin f cos f
         let anomaly = self.anomaly + self.motion * t;

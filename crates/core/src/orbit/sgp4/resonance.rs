@@ -89,7 +89,7 @@ impl Resonance {
         };
     }
 
-    /// Returns `λ̇`, `ṅ` and `n̈` at `time` minutes after the epoch.
+    /// Returns `λ̇`, rad/min, `ṅ`, rad/min², and `n̈`, rad/min³, at `time` minutes after the epoch.
     fn slopes(&self, time: f64, longitude: f64, n: f64) -> [f64; 3] {
         let (perigee, rate) = (self.perigee + self.perigee_rate * time, n + self.drift);
         // d sin(p ω + q λ - φ) and its derivative in λ are Im and q Re of d e⁻ⁱᵠ (eⁱʷ)ᵖ (eⁱˡ)ᵠ

@@ -134,7 +134,7 @@ impl<'a> RowReader<'a> {
         self.trace.rows().min(self.trace.acceleration.len() / self.model.nv())
     }
 
-    /// Returns row `k`.
+    /// Returns row `k` with the forces and scales computed from it.
     pub(super) fn row(&mut self, k: usize) -> TraceRow<'a> {
         let (trace, nq, nv) = (self.trace, self.model.nq(), self.model.nv());
         let q = Trace::row(&trace.q, k, nq);
@@ -165,9 +165,9 @@ impl<'a> RowReader<'a> {
         now
     }
 
-    /// Returns the jump of the angular acceleration of the base, `ω̇⁻ − ω̇⁺`, for efforts `τ` that jump at
-    /// row `k`: the base part of `M⁻¹ (τ⁻ − τ⁺)`. Joints that friction or a stop holds at rest before and
-    /// after the row are locked.
+    /// Returns the jump of the angular acceleration of the base, rad/s², `ω̇⁻ − ω̇⁺`, for efforts `τ` that
+    /// jump at row `k`: the base part of `M⁻¹ (τ⁻ − τ⁺)`. Joints that friction or a stop holds at rest before
+    /// and after the row are locked.
     fn angular_jump(&mut self, k: usize, q: &[f64]) -> Vec3<f64> {
         let n = self.model.joint_count();
         if k == 0 || n == 0 {

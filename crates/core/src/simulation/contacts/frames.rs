@@ -10,7 +10,7 @@ use crate::spatial::{Real, Vec3};
 /// Pose and velocity of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FrameMotion {
-    /// Pose in W.
+    /// Pose of the frame in W.
     pub(super) frame: Pose,
     /// Velocity of the origin, W axes, m/s.
     pub(super) velocity: Vec3<f64>,

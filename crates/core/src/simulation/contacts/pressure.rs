@@ -14,7 +14,7 @@ pub(super) struct Pressure {
     pub(super) force: f64,
     /// Power taken from the motion, W.
     pub(super) power: f64,
-    /// Elastic energy, J.
+    /// Elastic energy of all points, J.
     pub(super) elastic: f64,
 }
 

@@ -11,7 +11,7 @@ use crate::world::FrameIndex;
 /// Convex piece of one side, fixed to a frame of a tree.
 #[derive(Clone, Debug)]
 pub(super) struct Side {
-    /// Frame as declared.
+    /// Frame to which the piece is declared to be fixed.
     pub(super) declared: FrameIndex,
     /// Number of the tree, and index of the frame in the model of the tree.
     pub(super) place: (usize, usize),

@@ -20,7 +20,7 @@ const MEMORY: f64 = 4.0 * PI;
 
 /// Largest rates of a contact at the largest depth of its present motion.
 struct Rates {
-    /// Largest depth, m.
+    /// Largest depth of the present motion, m.
     depth: f64,
     /// Angular frequencies of the oscillations along and across the normal, rad/s.
     frequencies: [f64; 2],

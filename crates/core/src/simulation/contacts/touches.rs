@@ -60,9 +60,9 @@ pub(super) struct Sample {
     pub(super) pieces: usize,
     /// Largest depth of their present motion, relative to the rounding error of the distance.
     depth: f64,
-    /// Normal force, N.
+    /// Sum of the normal forces, N.
     force: f64,
-    /// Elastic energy, J.
+    /// Sum of the elastic energies, J.
     pub(super) elastic: f64,
     /// Smallest gap, m, with its point and the systems of its pieces.
     gap: f64,
