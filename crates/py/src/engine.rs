@@ -130,7 +130,7 @@ impl PythonEngine {
     }
 
     /// Splits the tuple that ``step_world`` returned. Its last entry belongs to the contacts and is absent
-    /// without them.
+    /// without contacts.
     fn returned<'py>(&self, result: &Bound<'py, PyAny>) -> PyResult<Returned<'py>> {
         if self.contacts.is_empty() {
             return Ok((result.extract()?, None));

@@ -45,7 +45,7 @@ def check_bag_file(option: str, file: Path | None, suffix: str, *, force: bool) 
     Raises
     ------
     InputError
-        If it has another suffix.
+        If the file has another suffix.
     OutputNotEmptyError, OutputFolderError
         As for :func:`check_output_file`.
     """

@@ -52,7 +52,7 @@ class Contacts:
 
     MuJoCo's contacts are springs with damping whose force is ``(a_ref − a)/R``. With a large ``R``, the
     reference acceleration ``a_ref = R F`` gives a chosen normal force ``F`` for every exponent, and friction
-    obeys MuJoCo's cone about it. The points of one pair of geoms share the stiffness.
+    obeys MuJoCo's cone for this force. The points of one pair of geoms share the stiffness.
     """
 
     def __init__(self, mujoco: ModuleType, model: Any, touches: Sequence[Touch]) -> None:

@@ -46,7 +46,8 @@ SUM = "sum"
 def contact_energy(trace: WorldTrace, systems: Sequence[str], events: Sequence[EventMark] = ()) -> Figure:
     """Draw kinetic, elastic and dissipated energy of a group of systems, their work, and the constant sum.
 
-    If the touch with the largest elastic energy is short, a second panel shows the changes since it began.
+    If the touch with the largest elastic energy is short, a second panel shows the changes since the touch
+    began.
 
     Parameters
     ----------

@@ -46,7 +46,7 @@ DETAIL = 0.02
 def contact_overview(trace: WorldTrace, events: Sequence[EventMark] = ()) -> Figure:
     """Draw a bar from touch-down to lift-off for each touch of each contact, and the gaps over time.
 
-    The scale of the gaps is linear. If the closest approach or the depth would not be visible, it is
+    The scale of the gaps is linear. If the closest approach or the depth would not be visible, the scale is
     logarithmic in both directions, except for a linear part around zero.
 
     Parameters

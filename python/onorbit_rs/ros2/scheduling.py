@@ -21,8 +21,8 @@ def collected_in_slack() -> Iterator[Callable[[float], None]]:
     """Disable automatic garbage collection in the block, since it may pause the program for 30 ms.
 
     Yields a function to be called with the time, s, until the next tick: if there are many new objects and
-    the time suffices, it collects those that are garbage. Garbage that has survived such a collection is
-    collected after the block.
+    the time suffices, the function collects those that are garbage. Garbage that has survived such a
+    collection is collected after the block.
     """
 
     def tidy(slack: float) -> None:

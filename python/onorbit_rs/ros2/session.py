@@ -59,7 +59,7 @@ class Session:
         self.publisher.events(self.run.events())
 
     def publish_present(self) -> None:
-        """Publish the row at the current time if the run waits, since its commands are computed from it."""
+        """Publish the row at the current time if the run waits, since commands are computed from this row."""
         if self.is_waiting:
             self.publisher.rows(self.run.take_present())
 

@@ -82,7 +82,7 @@ def topics(models: Mapping[str, Model], first: Mapping[str, Rows], orbit: Orbit 
         One or more rows of each system; topics are created for the columns that they have.
     orbit : Orbit, optional
         Reference orbit, from which the exact rate of ``lvlh`` is computed. Without it, the rate does not
-        contain the turn of the orbital plane.
+        include the rotation of the orbital plane.
     """
     names = ros_names(models, "system")
     prefixes = {name: f"{ros}/" if len(models) > 1 else "" for name, ros in names.items()}

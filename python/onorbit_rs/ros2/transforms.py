@@ -110,7 +110,7 @@ class SystemFrames:
 def fixed_frames(prefix: str, model: Model, names: Mapping[str, str]) -> tuple[list[Link], Floats]:
     """Return the frames that are fixed to links, with their poses (k, 7).
 
-    The first is the root link in ``base``, unless it has this name itself.
+    The first frame is the root link in ``base``, unless the root link itself has this name.
     """
     bodies = set(model.body_names)
     root = model.body_names[0]

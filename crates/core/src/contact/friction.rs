@@ -46,8 +46,8 @@ pub struct FrictionForce {
     pub force: Vec3<f64>,
     /// Bristles after the displacement.
     pub bristle: Bristle,
-    /// Distance from the next change between sticking and slipping, negative beyond it: `1 − |σ z + c v|/(μ
-    /// N)` while the contact sticks, and the cosine of the angle between bristles and velocity while it
+    /// Distance from the next change between sticking and slipping, negative beyond the change: `1 − |σ z + c
+    /// v|/(μ N)` while the contact sticks, and the cosine of the angle between bristles and velocity while it
     /// slips.
     pub margin: f64,
 }

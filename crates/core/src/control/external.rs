@@ -48,7 +48,8 @@ pub(super) struct ExternalMemory {
     /// Command that has not yet taken effect, and the time at which it was sent, s.
     pending: Option<(f64, ExternalCommand)>,
     current: ExternalCommand,
-    /// Time at which the current command times out, s; that of a pending command is set when it begins.
+    /// Time at which the current command times out, s. The deadline of a pending command is set when the
+    /// command begins.
     deadline: Option<f64>,
 }
 

@@ -99,7 +99,7 @@ pub enum EnvironmentError {
     WrongLength {
         /// Number of bodies in the scene.
         expected: usize,
-        /// Number of wrenches given for them.
+        /// Number of given wrenches.
         got: usize,
     },
 }

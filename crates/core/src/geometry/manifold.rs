@@ -8,7 +8,8 @@
 //! - `a_i` by area: `Σ a_i x_i` is the mean depth of the patch ([`weights`](super::polygon::weights)). These
 //!   weights are continuous where the patch gains or loses a corner. A box that lies on a plane has `a_i =
 //!   1/4`.
-//! - `f = g(slope of the patch)`: the face loses its weight to its deepest edges and corner as it tilts.
+//! - `f = g(slope of the patch)`: the face loses its weight to its deepest edges and corner as the face
+//!   tilts.
 //! - `e_i` by edges: an edge of length `l` gives `½ l h` to each of its ends, and the sum is scaled to the
 //!   largest `h` of all edges; the deepest corner has the rest. `h = g(slope of the edge) g(s)`, with the
 //!   height `s` of the edge above the deepest corner, relative to `TILT` times the extent of the patch.

@@ -1,4 +1,4 @@
-//! Distance of two shapes and where it is attained.
+//! Distance of two shapes, and the points at which it is attained.
 
 use super::pose::Pose;
 use crate::spatial::Vec3;
@@ -12,8 +12,8 @@ pub struct Proximity {
     pub point_a: Vec3<f64>,
     /// Point on the surface of the second shape, m: `point_a + distance normal`.
     pub point_b: Vec3<f64>,
-    /// Unit normal from the first shape to the second. A translation of the second shape along it increases
-    /// the distance.
+    /// Unit normal from the first shape to the second. A translation of the second shape along the normal
+    /// increases the distance.
     pub normal: Vec3<f64>,
 }
 

@@ -39,7 +39,7 @@ impl Simplex {
 
     /// Returns the point that is nearest to the origin, and keeps only the corners with nonzero weights.
     /// Returns `None` if the simplex is a tetrahedron that contains the origin. The newest corner is part of
-    /// the result, because it is nearer than the plane of the others.
+    /// the result, because this corner is nearer to the origin than the plane of the other corners.
     ///
     /// All subsets with the newest corner are compared. Thresholds on areas, which would end the search early
     /// for curved shapes, are not needed.

@@ -19,8 +19,8 @@ const HALVINGS: usize = 52;
 /// Radius of a sphere that replaces a point, relative to the size of a hull.
 const POINT: f64 = 1e-3;
 
-/// The nearest boundary point of the other shape to a point of the circle, and the rate of the distance along
-/// the circle.
+/// Point of the circle at an angle, rad, with the nearest boundary point of the other shape and the rate of
+/// their distance along the circle, m/rad.
 #[derive(Clone, Copy)]
 struct Sample {
     angle: f64,

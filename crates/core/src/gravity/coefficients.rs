@@ -160,8 +160,9 @@ fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     })
 }
 
-/// Detects unnormalised coefficients by their decay, which it describes, or returns `None`. Unnormalised
-/// sectoral coefficients (order equal to degree) decay with the factorial of the degree.
+/// Returns a description of the decay of the coefficients if the decay shows that they are not normalised,
+/// otherwise `None`. Unnormalised sectoral coefficients (order equal to degree) decay with the factorial of
+/// the degree.
 ///
 /// The normalisation factor `Nnn = √(2 (2n + 1)/(2n)!)` is 1e-7 times as large at n = 10 as at n = 4, and is
 /// smaller than `Nn0` by a similar factor. Normalised coefficients of planets decay approximately as `n⁻²`

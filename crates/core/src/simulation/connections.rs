@@ -82,8 +82,8 @@ impl Connections {
     }
 
     /// Returns the model and the members of the tree whose root is `system`. Its other members are those
-    /// systems in `knows` that are connected to it through each other. Returns `None` if it has no other
-    /// members.
+    /// systems in `knows` that are connected to `system`, directly or through each other. Returns `None` if
+    /// there are no other members.
     pub(super) fn known_tree(
         &self,
         system: usize,

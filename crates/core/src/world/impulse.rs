@@ -28,8 +28,8 @@ pub struct Moving<'a> {
 /// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
 /// of the tree equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By
 /// Gauss's principle, `v⁺` is the motion of the tree that is closest to the previous motion in the metric of
-/// the kinetic energy. With `Λ = (J M⁻¹ Jᵀ)⁻¹` of the relative twist `J v` at the connection it equals `v⁻ −
-/// M⁻¹ Jᵀ Λ J v⁻`.
+/// the kinetic energy. With `Λ = (J M⁻¹ Jᵀ)⁻¹` of the relative twist `J v` at the connection, the result
+/// equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻`.
 pub fn connected_velocity(
     tree: &Model,
     q: &[f64],

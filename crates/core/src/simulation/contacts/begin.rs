@@ -126,8 +126,8 @@ impl Touching {
         [sliding, twisting]
     }
 
-    /// Returns the bristles of a contact that has just begun. They slip if the force in them grows faster
-    /// than the friction cone.
+    /// Returns the bristles of a contact that has just begun. The bristles slip if their force grows faster
+    /// than the limit of friction.
     fn begun(
         &self,
         friction: &Friction,

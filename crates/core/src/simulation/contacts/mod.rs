@@ -256,8 +256,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// Returns the smallest margin to the next change of mode, negative beyond it. Requires the kinematics of
-    /// `state`, relative to W, in the trees.
+    /// Returns the smallest margin to the next change of mode, negative beyond the change. Requires the
+    /// kinematics of `state`, relative to W, in the trees.
     pub(super) fn margin<S: Real>(
         &mut self,
         trees: &[Tree<'_, S>],
@@ -291,8 +291,8 @@ impl Touching {
         [0, 1].map(|i| self.sides[i].motion(frames.motion(self.sides[i].number, trees, state)))
     }
 
-    /// Returns true if both sides are fixed to the same body, or a connection of an external engine holds them, as
-    /// after a capture.
+    /// Returns true if both sides are fixed to the same body, or if a connection of an external engine holds
+    /// both sides together, as after a capture.
     fn is_rigid<S: Real>(&self, trees: &[Tree<'_, S>]) -> bool {
         let [a, b] = [0, 1].map(|i| self.sides[i].place);
         let body = |(tree, frame): (usize, usize)| trees[tree].model.frames()[frame].body;

@@ -60,11 +60,11 @@ impl Rates {
 impl Touching {
     /// Returns the longest permitted step, s, from a motion with this loading.
     ///
-    /// While the bodies press on each other, it is `h = π/(N ω)` with the largest rate `ω` of the contact and
-    /// `N` steps. The local error is proportional to the amplitude `a` of the oscillation and to `N⁻⁵`, so
-    /// `N ∝ a^(1/4)` for a contact that comes to rest. For exponents `1 < n < 4`, derivatives of `xⁿ` are
-    /// unbounded at touch-down and lift-off, where the step is therefore shortened to `h √(x/x_max)`. This
-    /// restores order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
+    /// While the bodies press on each other, the step is `h = π/(N ω)` with the largest rate `ω` of the
+    /// contact and `N` steps. The local error is proportional to the amplitude `a` of the oscillation and to
+    /// `N⁻⁵`, so `N ∝ a^(1/4)` for a contact that comes to rest. For exponents `1 < n < 4`, derivatives of
+    /// `xⁿ` are unbounded at touch-down and lift-off, where the step is therefore shortened to `h
+    /// √(x/x_max)`. This restores order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
     ///
     /// With an external engine (`has_engine`) the touch-down is not located. A step then ends after the
     /// touch-down by at most the length of a step during the impact.
