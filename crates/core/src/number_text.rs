@@ -41,7 +41,7 @@ pub fn count(number: usize, one: &str) -> String {
     if number == 1 { format!("1 {one}") } else { format!("{number} {}", plural(one)) }
 }
 
-/// Formats the accepted indices of `count` things: `joints 0 to 5`, `only joint 0` or `no joints`.
+/// Formats the accepted indices of `count` objects: `joints 0 to 5`, `only joint 0` or `no joints`.
 #[must_use]
 pub fn indices(count: usize, one: &str) -> String {
     match count {

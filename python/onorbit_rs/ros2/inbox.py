@@ -99,7 +99,7 @@ def _target(entry: Entry, topic: str) -> str:
 
 
 def _overflow(route: Route, count: int) -> Arrived:
-    """Return the refusal of the oldest of ``count`` messages that have arrived since they were last read."""
+    """Return the refusal of the oldest of ``count`` messages that arrived since the topic was last read."""
     least = "at least " if count >= MOST_COUNTED else ""
     refusal = (
         f"{least}{count - MOST} messages, the oldest of {least}{count} since the last look at the topic; the "

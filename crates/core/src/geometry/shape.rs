@@ -12,40 +12,40 @@ use std::sync::Arc;
 pub enum Shape {
     /// Sphere about the origin.
     Sphere {
-        /// Radius.
+        /// Radius, m.
         radius: f64,
     },
     /// Points within `radius` of the segment from `(0, 0, −half_length)` to `(0, 0, half_length)`.
     Capsule {
-        /// Radius.
+        /// Radius, m.
         radius: f64,
-        /// Half the distance between the centres of the caps; may be zero.
+        /// Half the distance between the centres of the caps, m; may be zero.
         half_length: f64,
     },
     /// Box with its centre at the origin and its edges along the axes.
     Box {
-        /// Half of each edge length, along x, y and z.
+        /// Half of each edge length, along x, y and z, m.
         half_edges: [f64; 3],
     },
     /// Cylinder between the planes `z = ±half_length`.
     Cylinder {
-        /// Radius.
+        /// Radius, m.
         radius: f64,
-        /// Half the length.
+        /// Half the length, m.
         half_length: f64,
     },
     /// Cone with its base in the plane `z = −half_length` and its apex at `z = half_length`.
     Cone {
-        /// Radius of the base.
+        /// Radius of the base, m.
         radius: f64,
-        /// Half the height.
+        /// Half the height, m.
         half_length: f64,
     },
     /// Points within `minor_radius` of the circle of radius `major_radius` in the plane `z = 0`; not convex.
     Torus {
-        /// Radius of the circle.
+        /// Radius of the circle, m.
         major_radius: f64,
-        /// Radius of the cross section, less than `major_radius`.
+        /// Radius of the cross section, m, less than `major_radius`.
         minor_radius: f64,
     },
     /// All points with `z ≤ 0`.

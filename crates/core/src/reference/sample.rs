@@ -10,7 +10,7 @@ pub struct TaskSample<S> {
     pub rot_wd: Mat3<S>,
     /// Position of the origin, m.
     pub pos_w: Vec3<S>,
-    /// Velocity, m/s and rad/s.
+    /// Velocity of the origin, m/s, and angular velocity, rad/s.
     pub velocity: Motion<S>,
     /// Acceleration of the origin, m/s², and angular acceleration, rad/s².
     pub acceleration: Motion<S>,

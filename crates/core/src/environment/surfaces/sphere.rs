@@ -9,7 +9,7 @@ use crate::spatial::{Real, Vec3};
 pub(super) struct Sphere<T> {
     /// Area of the cross-section, m².
     pub(super) area: T,
-    /// Centre, m.
+    /// Centre relative to the centre of mass, m.
     pub(super) centre: Vec3<T>,
     /// Reflectivity `C_R`: 1 for complete absorption or specular reflection, 13/9 for diffuse reflection.
     pub(super) reflectivity: T,
