@@ -186,6 +186,7 @@ ELSEWHERE = {
     [
         ("rerun", "viewer"), ("matplotlib", "figures"), ("mujoco", "engines"),
         ("trimesh", "visuals/meshes"), ("collada", "visuals/meshes"), ("PIL", "visuals/meshes"),
+        ("coacd", "convex_pieces"),
     ],
 )  # fmt: skip
 def test_only_one_folder_imports_the_module(module: str, home: str) -> None:

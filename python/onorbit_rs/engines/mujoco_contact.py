@@ -168,9 +168,13 @@ def _geom(
 
 def _set_shape(mujoco: ModuleType, spec: Any, geom: Any, shape: Visual) -> None:
     kinds = mujoco.mjtGeom
-    if shape.kind == "mesh":
+    if shape.kind in ("mesh", "hull"):
         mesh = spec.add_mesh()
-        mesh.name, mesh.file, mesh.scale = geom.name, shape.filename, shape.scale
+        mesh.name, mesh.scale = geom.name, shape.scale
+        if shape.kind == "mesh":
+            mesh.file = shape.filename
+        else:
+            mesh.uservert = np.ravel(shape.points)
         mesh.inertia = mujoco.mjtMeshInertia.mjMESH_INERTIA_CONVEX
         geom.type, geom.meshname = kinds.mjGEOM_MESH, mesh.name
         return

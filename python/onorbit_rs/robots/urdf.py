@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     """Return a robot as URDF, with shapes, limits and losses; named frames become links without mass.
 
-    Lengths and angles are written in full precision. Paths of meshes are absolute.
+    Lengths and angles are written in full precision. Paths of meshes are absolute. Half-spaces and convex
+    pieces of meshes, which URDF does not have, are omitted.
 
     Parameters
     ----------
@@ -39,7 +40,7 @@ def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     named = {name: name for name in _all_names(model)} | dict(names or {})
     robot = xml.Element("robot", name=model.name)
     shapes = [("visual", shape) for shape in model.visuals] + [
-        ("collision", shape) for shape in model.collisions
+        ("collision", shape) for shape in model.collisions if shape.kind not in ("half_space", "hull")
     ]
     for body in model.bodies:
         link = _link(robot, named, body.name, shapes)

@@ -1,13 +1,17 @@
-"""Collision shapes that a scenario adds to the links of a robot."""
+"""Collision shapes that a scenario adds to the links of a robot, or divides into convex pieces."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Self
+
+from pydantic import model_validator
 
 from onorbit_rs import _core
+from onorbit_rs.scenario.errors import inconsistent, invalid
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.pose import Pose
-from onorbit_rs.scenario.shape import Shape
+from onorbit_rs.scenario.shape import MostPieces, Shape
 
 
 class CollisionShape(Part):
@@ -15,11 +19,27 @@ class CollisionShape(Part):
 
     link: str
     """Name of the link."""
-    shape: Shape
+    shape: Shape | None = None
     pose: Pose | None = None
     """Pose of the shape in link axes. Default: the axes coincide."""
+    pieces: MostPieces | None = None
+    """Instead of ``shape``: largest number of convex pieces of each collision mesh of the robot's file."""
+
+    @model_validator(mode="after")
+    def _has_a_shape_or_pieces(self) -> Self:
+        if self.shape is None and self.pieces is None:
+            raise invalid("adds nothing; give 'shape', or 'pieces' to divide the meshes of the link")
+        if self.shape is not None and self.pieces is not None:
+            message = "divides the meshes of the robot's file; for an added mesh, write 'pieces' in 'shape'"
+            raise inconsistent("pieces", message)
+        if self.pose is not None and self.shape is None:
+            raise inconsistent("pose", "is the pose of 'shape'; add 'shape' or omit 'pose'")
+        return self
 
     def add_to(self, model: _core.Model, folder: Path) -> _core.Model:
         """Return the robot with this shape; relative paths start at ``folder``."""
+        if self.shape is None:
+            assert self.pieces is not None
+            return model.with_convex_pieces(self.link, self.pieces)
         pose = None if self.pose is None else self.pose.transform()
         return model.with_collision(self.link, self.shape.build(folder), pose=pose)

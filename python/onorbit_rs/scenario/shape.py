@@ -107,18 +107,24 @@ class HalfSpace(Part):
         return _core.Shape.half_space()
 
 
+MostPieces = Annotated[int, Field(ge=1, le=1000)]
+"""Largest number of convex pieces of a mesh."""
+
+
 class MeshHull(Part):
-    """Convex hull of a mesh."""
+    """Convex hull of a mesh, or its convex pieces."""
 
     kind: Literal["mesh"]
     file: FilePath
     """STL or OBJ file."""
     scale: Number3 = Field(default_factory=lambda: [1.0, 1.0, 1.0])
     """Factors along the axes of the mesh."""
+    pieces: MostPieces | None = None
+    """Largest number of convex pieces, which follow notches and holes. Default: the convex hull."""
 
     def build(self, folder: Path) -> _core.Shape:
         """Return the shape; a relative path starts at ``folder``."""
-        return _core.Shape.mesh(folder / self.file, scale=self.scale)
+        return _core.Shape.mesh(folder / self.file, scale=self.scale, pieces=self.pieces)
 
 
 AnyShape = Sphere | Box | Cylinder | Capsule | Cone | Torus | HalfSpace | MeshHull

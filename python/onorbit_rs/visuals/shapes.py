@@ -22,7 +22,7 @@ from onorbit_rs.visuals.meshes.part import PLAIN
 from onorbit_rs.visuals.revolved import revolved
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from onorbit_rs._core import Body, Model, Visual
 
@@ -58,13 +58,16 @@ def collision_shapes(model: Model) -> list[Shape]:
     files, solid = (
         [visual for visual in bounded if (visual.kind == "mesh") == is_file] for is_file in (1, 0)
     )
-    hulls = [replace(shape, mesh=_hull_of(shape.mesh)) for shape in _drawable(files)[0] if shape.mesh]
+    hulls = [
+        replace(shape, mesh=_hull_of(np.concatenate([part.vertices for part in shape.mesh.parts])))
+        for shape in _drawable(files)[0] if shape.mesh
+    ]  # fmt: skip
     return [*_drawable(solid)[0], *hulls]
 
 
-def _hull_of(mesh: Mesh) -> Mesh:
-    """Return the convex hull of all parts of a mesh."""
-    vertices, faces = convex_hull(np.concatenate([part.vertices for part in mesh.parts]).astype(np.float64))
+def _hull_of(points: ArrayLike) -> Mesh:
+    """Return the convex hull of points (k, 3), m."""
+    vertices, faces = convex_hull(np.asarray(points, dtype=np.float64))
     normals = vertices - vertices.mean(axis=0)  # rough, and sufficient for a wireframe
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     colors = np.tile(np.array(PLAIN, np.uint8), (len(vertices), 1))
@@ -142,6 +145,8 @@ def _along(end: Floats) -> Floats:
 def _of(visual: Visual) -> Shape:
     if visual.kind in ("cone", "torus"):
         return revolved(visual)
+    if visual.kind == "hull":
+        return _of_hull(visual)
     return Shape(
         link=visual.link,
         pose=np.asarray(visual.pose, dtype=np.float64),
@@ -150,6 +155,11 @@ def _of(visual: Visual) -> Shape:
         rgba=_color(visual.rgba),
         mesh=_mesh(visual) if visual.kind == "mesh" else None,
     )
+
+
+def _of_hull(visual: Visual) -> Shape:
+    pose = np.asarray(visual.pose, dtype=np.float64)
+    return Shape(visual.link, pose, "mesh", (), _color(visual.rgba), _hull_of(visual.points))
 
 
 def _mesh(visual: Visual) -> Mesh:

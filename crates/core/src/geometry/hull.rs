@@ -53,6 +53,20 @@ impl Hull {
         &self.faces
     }
 
+    /// Returns the volume, m³.
+    pub fn volume(&self) -> f64 {
+        let origin = self.vertices[0];
+        let cone = |face: &Face| {
+            let [first, rest @ ..] = &face.corners[..] else { return 0.0 };
+            let part = |pair: &[usize]| {
+                let [a, b, c] = [*first, pair[0], pair[1]].map(|corner| self.vertices[corner] - origin);
+                a.dot(b.cross(c)) / 6.0
+            };
+            rest.windows(2).map(part).sum::<f64>()
+        };
+        self.faces.iter().map(cone).sum()
+    }
+
     /// Returns the farthest vertex in the direction `d`.
     pub(super) fn farthest(&self, d: Vec3<f64>) -> Vec3<f64> {
         let mut best = self.vertices[0];

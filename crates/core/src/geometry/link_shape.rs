@@ -77,6 +77,10 @@ pub fn shape_of(geometry: &Geometry, owner: &str, warnings: &mut Vec<String>) ->
             Shape::Torus { major_radius: *major_radius, minor_radius: *minor_radius }
         }
         Geometry::HalfSpace => Shape::HalfSpace,
+        Geometry::Hull { points } => {
+            let points: Vec<_> = points.iter().map(|p| Vec3::from_slice(p)).collect();
+            Shape::hull(&points).map_err(|error| error.to_string())?
+        }
         Geometry::Mesh { filename, scale: [x, y, z] } => {
             let mesh = read_mesh(Path::new(filename)).map_err(|cause| format!("{filename}: {cause}"))?;
             if let Some(defect) = mesh.defect() {

@@ -35,23 +35,36 @@ impl std::fmt::Display for MeshDefect {
 }
 
 impl Mesh {
+    /// Returns the mesh with vertices of equal coordinates joined, without the triangles that thereby lose a corner.
+    #[must_use]
+    pub fn joined(&self) -> Self {
+        let (index, vertices) = self.joined_vertices();
+        let triangles = self.triangles.iter().map(|triangle| triangle.map(|corner| index[corner]));
+        let triangles = triangles.filter(|[a, b, c]| a != b && b != c && c != a).collect();
+        Self { vertices, triangles }
+    }
+
+    /// Returns the vertices without repetition, and for each vertex of the mesh its index among them.
+    fn joined_vertices(&self) -> (Vec<usize>, Vec<Vec3<f64>>) {
+        let (mut known, mut vertices) = (HashMap::new(), Vec::new());
+        let key = |p: &Vec3<f64>| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits()); // −0 is 0
+        let number = |p: &Vec3<f64>| {
+            *known.entry(key(p)).or_insert_with(|| {
+                vertices.push(*p);
+                vertices.len() - 1
+            })
+        };
+        (self.vertices.iter().map(number).collect(), vertices)
+    }
+
     /// Returns the defect of the mesh, if it has one. Vertices with equal coordinates are one vertex.
     pub fn defect(&self) -> Option<MeshDefect> {
-        let mut index = HashMap::new();
-        let key = |p: &Vec3<f64>| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits()); // −0 is 0
-        let merged: Vec<usize> = self
-            .vertices
-            .iter()
-            .map(|p| {
-                let next = index.len();
-                *index.entry(key(p)).or_insert(next)
-            })
-            .collect();
+        let (index, _) = self.joined_vertices();
         // each edge counted in the sense from its lower to its higher vertex, and in total
         let mut edges: HashMap<(usize, usize), (i64, usize)> = HashMap::new();
         for triangle in &self.triangles {
             for k in 0..3 {
-                let (from, to) = (merged[triangle[k]], merged[triangle[(k + 1) % 3]]);
+                let (from, to) = (index[triangle[k]], index[triangle[(k + 1) % 3]]);
                 if from != to {
                     let (sense, count) = edges.entry((from.min(to), from.max(to))).or_default();
                     *sense += if from < to { 1 } else { -1 };
@@ -67,7 +80,7 @@ impl Mesh {
     }
 
     /// Returns the signed volume, m³, which is negative if the normals point inwards.
-    fn volume(&self) -> f64 {
+    pub fn volume(&self) -> f64 {
         let origin = self.vertices.first().copied().unwrap_or_else(Vec3::zero);
         let part = |triangle: &[usize; 3]| {
             let [a, b, c] = triangle.map(|i| self.vertices[i] - origin);

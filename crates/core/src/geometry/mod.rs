@@ -31,6 +31,7 @@ mod proximity;
 mod segment;
 mod shape;
 mod simplex;
+mod solid;
 mod support;
 mod torus;
 
@@ -48,3 +49,4 @@ pub use patch::ContactPoint;
 pub use pose::Pose;
 pub use proximity::Proximity;
 pub use shape::Shape;
+pub use solid::Solid;

@@ -7,15 +7,24 @@ use super::lookup::find;
 use super::tree::Model;
 
 impl Model {
-    /// Returns this robot with a further collision shape on a link, in addition to the existing ones. The
-    /// motion of the robot does not change.
+    /// Returns the collision shapes of a link.
     ///
     /// # Errors
     /// [`ModelError::UnknownName`] if no link has this name.
-    pub fn with_collision(&self, link: &str, shape: Visual) -> Result<Self, ModelError> {
+    pub fn collisions_of(&self, link: &str) -> Result<&[Visual], ModelError> {
+        let links = &self.description().links;
+        find("link", link, links.iter().map(|link| link.name.as_str())).map(|at| &links[at].collisions[..])
+    }
+
+    /// Returns this robot with these collision shapes of a link instead of those that the link has. The motion of the
+    /// robot does not change.
+    ///
+    /// # Errors
+    /// [`ModelError::UnknownName`] if no link has this name.
+    pub fn with_collisions(&self, link: &str, shapes: Vec<Visual>) -> Result<Self, ModelError> {
         let mut description = self.description().clone();
         let at = find("link", link, description.links.iter().map(|link| link.name.as_str()))?;
-        description.links[at].collisions.push(shape);
+        description.links[at].collisions = shapes;
         let mut builder = ModelBuilder::from_description(description)?;
         builder.keep_notes(self);
         builder.build()

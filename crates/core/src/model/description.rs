@@ -1,6 +1,7 @@
 //! Description of a robot by links, joints, frames and shapes.
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
+use std::sync::Arc;
 
 /// Description of a robot: links, joints and frames from which a [`Model`](super::Model) is compiled.
 #[derive(Clone, Debug, Default)]
@@ -120,6 +121,11 @@ pub enum Geometry {
     },
     /// All points with `z ≤ 0`; a collision shape only.
     HalfSpace,
+    /// Convex hull of points, such as a convex piece of a mesh; a collision shape only.
+    Hull {
+        /// Points, m.
+        points: Arc<[[f64; 3]]>,
+    },
     /// Triangle mesh in a file.
     Mesh {
         /// Path, with `package://` resolved if the package was found.

@@ -1,6 +1,6 @@
 //! Methods of `Model` that construct robots, and convert states between them.
 
-use super::collision::with_collision;
+use super::collision::{with_collision, with_convex_pieces};
 use super::file::{self, read_file};
 use super::{Any, Array, PyModel, PyShape, builder, link_change, reroot};
 use crate::pickling::{ConstructorCall, Reduced};
@@ -176,6 +176,35 @@ impl PyModel {
         pose: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         with_collision(slf, link, shape, pose)
+    }
+
+    /// Return the same robot with the collision meshes of a link divided into convex pieces.
+    ///
+    /// Without this, the shape of a mesh is its convex hull, which fills notches and holes. CoACD divides the meshes,
+    /// which takes seconds to minutes; the result is kept in the user's folder for caches. A convex mesh is one piece.
+    ///
+    /// Parameters
+    /// ----------
+    /// link : str
+    ///     Name of the link.
+    /// pieces : int
+    ///     Largest number of convex pieces of each mesh.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If no link has this name.
+    /// InputError
+    ///     If ``pieces`` is below 1 or above 1000.
+    /// ModelError
+    ///     If the link has no collision mesh, or a mesh is missing or open or has no volume, or CoACD is not
+    ///     installed (``pip install 'onorbit-rs[meshes]'``) or fails.
+    fn with_convex_pieces(slf: &Bound<'_, Self>, link: &str, pieces: Any<'_, '_>) -> PyResult<Self> {
+        with_convex_pieces(slf, link, pieces)
     }
 
     /// Return the same robot with another link as its floating base.

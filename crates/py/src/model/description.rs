@@ -76,11 +76,13 @@ pub(super) struct PyVisual {
     /// Pose in that frame: (4, 4), m.
     pose: [[f64; 4]; 4],
     /// Type of the shape: ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``; collision shapes may also
-    /// be a ``cone``, ``torus`` or ``half_space``.
+    /// be a ``cone``, ``torus``, ``half_space`` or ``hull`` (a convex piece of a mesh).
     kind: &'static str,
     /// Edge lengths of a box, radius and length of a cylinder, capsule or cone, radii of the circle and of the
-    /// tube of a torus, or radius of a sphere, m; empty for a mesh and a half-space.
+    /// tube of a torus, or radius of a sphere, m; empty for a mesh, a hull and a half-space.
     size: Vec<f64>,
+    /// Corners of a hull: (k, 3), m; empty for other shapes.
+    points: Vec<[f64; 3]>,
     /// Path of a mesh file, or None.
     filename: Option<String>,
     /// Scale of a mesh along its axes: (3,), dimensionless.
@@ -103,9 +105,14 @@ impl PyVisual {
                 ("torus", vec![*major_radius, *minor_radius], None, [1.0; 3])
             }
             Geometry::HalfSpace => ("half_space", Vec::new(), None, [1.0; 3]),
+            Geometry::Hull { .. } => ("hull", Vec::new(), None, [1.0; 3]),
             Geometry::Mesh { filename, scale } => ("mesh", Vec::new(), Some(filename.clone()), *scale),
         };
-        Self { link: link.to_owned(), pose, kind, size, filename, scale, rgba: visual.rgba }
+        let points = match &visual.geometry {
+            Geometry::Hull { points } => points.to_vec(),
+            _ => Vec::new(),
+        };
+        Self { link: link.to_owned(), pose, kind, size, points, filename, scale, rgba: visual.rgba }
     }
 }
 

@@ -5,6 +5,7 @@ pub(crate) mod attach;
 mod builder;
 mod collision;
 mod construction;
+mod convex_pieces;
 mod description;
 mod dynamics;
 mod file;

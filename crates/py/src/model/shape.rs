@@ -1,16 +1,14 @@
 //! Shapes for contacts, distances and keep-out zones.
 
-use super::Any;
+use super::{Any, convex_pieces};
 use crate::arrays::fixed;
 use crate::errors::{fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
-use onorbit_core::geometry::{Shape, shape_of};
+use onorbit_core::geometry::{Pose, Shape, shape_of};
 use onorbit_core::model::Geometry;
 use onorbit_core::number_text::short;
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::ffi::CString;
 use std::path::PathBuf;
 
 /// Shape for contacts, distances and keep-out zones, about the origin of its axes.
@@ -18,7 +16,8 @@ use std::path::PathBuf;
 /// Shapes of revolution have their axis along z. There is one constructor per kind: ``Shape.sphere(0.1)``.
 #[pyclass(name = "Shape", frozen, module = "onorbit_rs")]
 pub(crate) struct PyShape {
-    pub(super) geometry: Geometry,
+    /// One geometry, or those of the convex pieces of a mesh.
+    pub(super) geometries: Vec<Geometry>,
     pub(crate) shape: Shape,
     call: ConstructorCall,
 }
@@ -176,7 +175,10 @@ impl PyShape {
         Self::new(py, "half_space", PyDict::new(py), Geometry::HalfSpace)
     }
 
-    /// Return the convex hull of a mesh.
+    /// Return the convex hull of a mesh, or its convex pieces.
+    ///
+    /// Convex pieces follow notches and holes. They are computed by CoACD, which takes seconds to minutes, and kept in
+    /// the user's folder for caches. A convex mesh is one piece.
     ///
     /// Parameters
     /// ----------
@@ -184,6 +186,8 @@ impl PyShape {
     ///     STL or OBJ file.
     /// scale : (3,) array, optional
     ///     Factors along the axes of the mesh; default: 1.
+    /// pieces : int, optional
+    ///     Largest number of convex pieces; default: the convex hull. The mesh must be closed.
     ///
     /// Returns
     /// -------
@@ -191,23 +195,37 @@ impl PyShape {
     ///
     /// Raises
     /// ------
+    /// InputError
+    ///     If ``pieces`` is below 1 or above 1000.
     /// ModelError
-    ///     If the file does not exist or is not a mesh with a volume.
+    ///     If the file does not exist or is not a mesh with a volume. With ``pieces``, also if the mesh is open, or
+    ///     CoACD is not installed (``pip install 'onorbit-rs[meshes]'``) or fails.
     #[staticmethod]
-    #[pyo3(signature = (path, *, scale=None))]
-    fn mesh(py: Python<'_>, path: PathBuf, scale: Option<Any<'_, '_>>) -> PyResult<Self> {
+    #[pyo3(signature = (path, *, scale=None, pieces=None))]
+    fn mesh(
+        py: Python<'_>,
+        path: PathBuf,
+        scale: Option<Any<'_, '_>>,
+        pieces: Option<Any<'_, '_>>,
+    ) -> PyResult<Self> {
         let scale = scale.map(|scale| fixed::<3>(scale, "scale", &[3])).transpose()?.unwrap_or([1.0; 3]);
         let filename = crate::pickling::absolute(&path).to_string_lossy().into_owned();
         let keywords = PyDict::new(py);
         keywords.set_item("path", &filename)?;
         keywords.set_item("scale", scale)?;
-        Self::new(py, "mesh", keywords, Geometry::Mesh { filename, scale })
+        let Some(pieces) = pieces else {
+            return Self::new(py, "mesh", keywords, Geometry::Mesh { filename, scale });
+        };
+        let count = convex_pieces::count(pieces)?;
+        keywords.set_item("pieces", count)?;
+        let geometries = convex_pieces::of_mesh(py, &filename, scale, count)?;
+        Self::of_all(py, "mesh", &keywords, geometries)
     }
 
     /// Type of the shape, such as ``cone``.
     #[getter]
     fn kind(&self) -> &'static str {
-        match &self.geometry {
+        match &self.geometries[0] {
             Geometry::Box(_) => "box",
             Geometry::Cylinder { .. } => "cylinder",
             Geometry::Capsule { .. } => "capsule",
@@ -215,7 +233,7 @@ impl PyShape {
             Geometry::Cone { .. } => "cone",
             Geometry::Torus { .. } => "torus",
             Geometry::HalfSpace => "half_space",
-            Geometry::Mesh { .. } => "mesh",
+            Geometry::Mesh { .. } | Geometry::Hull { .. } => "mesh",
         }
     }
 
@@ -230,14 +248,29 @@ impl PyShape {
 
 impl PyShape {
     fn new(py: Python<'_>, kind: &str, keywords: Bound<'_, PyDict>, geometry: Geometry) -> PyResult<Self> {
+        Self::of_all(py, kind, &keywords, vec![geometry])
+    }
+
+    /// Creates the union of several geometries.
+    fn of_all(
+        py: Python<'_>,
+        kind: &str,
+        keywords: &Bound<'_, PyDict>,
+        geometries: Vec<Geometry>,
+    ) -> PyResult<Self> {
         let mut warnings = Vec::new();
-        let shape = shape_of(&geometry, "a shape", &mut warnings)
-            .map_err(|cause| raise(py, "ModelError", &cause, &fields!(py,)))?;
+        let shapes = geometries.iter().map(|geometry| shape_of(geometry, "a shape", &mut warnings));
+        let shapes: Result<Vec<Shape>, String> = shapes.collect();
+        let shapes = shapes.map_err(|cause| raise(py, "ModelError", &cause, &fields!(py,)))?;
         for warning in warnings {
-            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(warning)?, 1)?;
+            convex_pieces::warn(py, warning)?;
         }
-        let call = ConstructorCall::with_keywords(&format!("Shape.{kind}"), &keywords)?;
-        Ok(Self { geometry, shape, call })
+        let shape = match &shapes[..] {
+            [shape] => shape.clone(),
+            _ => Shape::Compound(shapes.into_iter().map(|shape| (shape, Pose::identity())).collect()),
+        };
+        let call = ConstructorCall::with_keywords(&format!("Shape.{kind}"), keywords)?;
+        Ok(Self { geometries, shape, call })
     }
 }
 

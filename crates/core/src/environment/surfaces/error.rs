@@ -85,8 +85,8 @@ pub enum SurfaceError {
     },
     /// The visual geometry of a link is a shape that only collisions use.
     #[error(
-        "the visual geometry of link '{link}' is a cone, a torus or a half-space, from which no faces are derived; give \
-         the link plates or a cannonball"
+        "the visual geometry of link '{link}' is a cone, a torus, a half-space or a hull, from which no faces are derived; \
+         give the link plates or a cannonball"
     )]
     Shape {
         /// Name of the link.

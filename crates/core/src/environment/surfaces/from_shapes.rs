@@ -75,7 +75,7 @@ impl ShapePose {
                 let (link, filename) = (frame.name.clone(), filename.clone());
                 return Err(SurfaceError::Mesh { link, filename });
             }
-            Geometry::Cone { .. } | Geometry::Torus { .. } | Geometry::HalfSpace => {
+            Geometry::Cone { .. } | Geometry::Torus { .. } | Geometry::HalfSpace | Geometry::Hull { .. } => {
                 return Err(SurfaceError::Shape { link: frame.name.clone() });
             }
         }

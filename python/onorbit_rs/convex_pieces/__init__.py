@@ -1,0 +1,1 @@
+"""Division of closed meshes into convex pieces, with a cache on disk."""
