@@ -55,7 +55,7 @@ class KeepOut:
     pose: ArrayLike | None = None
 
     def __post_init__(self) -> None:
-        """Check the arguments."""
+        """Check the arguments, and store the links as a tuple and the pose as an array."""
         object.__setattr__(self, "links", _patterns(self.links, "links"))
         pose = np.eye(4) if self.pose is None else np.array(self.pose, dtype=np.float64)
         if pose.shape != (4, 4) or not np.isfinite(pose).all():
@@ -89,7 +89,7 @@ class MinimumDistance:
     links_b: str | Sequence[str]
 
     def __post_init__(self) -> None:
-        """Check the arguments."""
+        """Check the patterns and store each side as a tuple."""
         object.__setattr__(self, "links_a", _patterns(self.links_a, "links_a"))
         object.__setattr__(self, "links_b", _patterns(self.links_b, "links_b"))
 

@@ -75,8 +75,8 @@ class OutputFolder:
         Raises
         ------
         OutputNotEmptyError
-            If the folder contains files and ``force`` is False, files that have names of results but were not
-            written by a run, or edited figures.
+            If ``force`` is False and the folder contains files, or if it contains edited figures, or files
+            that have names of results but were not written by a run.
         OutputNotWritableError
             If the path is a file, or the folder cannot be created or written.
         OutputInUseError

@@ -174,6 +174,6 @@ pub(super) struct EffortWork<'a> {
 pub(super) struct PidMemory {
     /// Effort of the integral term, N m (N).
     pub(super) integral: Vec<f64>,
-    /// Error at the last tick; `None` before the first tick.
+    /// Position error, rad (m), or rate error, rad/s (m/s), at the last tick; `None` before the first tick.
     pub(super) previous: Vec<Option<f64>>,
 }

@@ -29,7 +29,7 @@ pub struct KnownTree {
     /// Factor of `M_PP`, and `M_PP⁻¹ M_PO` with one row per joint of the robot.
     factor: Vec<f64>,
     gain: Vec<f64>,
-    /// `M_PP⁻¹ c_P` and `M_PP⁻¹ Q_P`.
+    /// `M_PP⁻¹ c_P` and `M_PP⁻¹ Q_P`, rad/s² (m/s²).
     bias: Vec<f64>,
     external: Vec<f64>,
 }

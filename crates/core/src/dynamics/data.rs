@@ -21,10 +21,10 @@ pub struct BodyData<S> {
     /// Mass, centre of mass and inertia about the centre of mass. [`Data::new`] sets the masses and all
     /// values of the base; [`positions`](super::positions) sets the rest.
     pub inertia: RigidInertia<S>,
-    /// Twist of the body. Set by [`kinematics`](super::kinematics).
+    /// Twist of the body, m/s and rad/s. Set by [`kinematics`](super::kinematics).
     pub velocity: Motion<S>,
-    /// External wrench on the body. Set by [`apply_external`](super::apply_external) or by the simulation;
-    /// every algorithm that computes forces or accelerations reads it.
+    /// External wrench on the body, N and N m. Set by [`apply_external`](super::apply_external) or by the
+    /// simulation; every algorithm that computes forces or accelerations reads this wrench.
     pub external: Force<S>,
     /// Sum of the external wrenches on the subtrees of those children that do not follow this body directly
     /// in the numbering. Used by [`free_floating`](super::free_floating) at forks, which are bodies with such
@@ -95,7 +95,7 @@ pub struct Data<S> {
     /// Factors of `M = L D Lᵀ`, `(nv, nv)`: `L` below the diagonal, `D⁻¹` on the diagonal. Allocated only for
     /// robots whose forward dynamics use the mass matrix (`dense.rs`).
     pub(super) factors: Vec<S>,
-    /// Generalized forces, `(nv,)`. Allocated for the same robots as `factors`.
+    /// Generalized forces, `(nv,)`, N and N m. Allocated for the same robots as `factors`.
     pub(super) forces: Vec<S>,
 }
 

@@ -41,7 +41,7 @@ pub struct FreeFloating<S> {
     /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal
     /// with the blocks `m 1` and `I_c`.
     com_b: Vec3<S>,
-    /// `Mbb⁻¹ (c_b − Qb)`, about `r_c`.
+    /// `Mbb⁻¹ (c_b − Qb)`, about `r_c`, m/s² and rad/s².
     base_bias: Motion<S>,
     /// Columns of `Mbm`, about `r_c`.
     coupling: Vec<Force<S>>,

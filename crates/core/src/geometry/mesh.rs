@@ -17,7 +17,7 @@ pub struct Mesh {
 pub enum MeshDefect {
     /// Open surface: some edges do not belong to exactly two triangles of opposite orientation.
     Open {
-        /// Number of such edges.
+        /// Number of edges that do not join two triangles.
         edges: usize,
     },
     /// The normals point inwards.

@@ -16,7 +16,7 @@ pub struct Mount {
     /// of the same name; empty by default.
     pub joints: Vec<Joint>,
     /// Pose of the mounting frame in the frame that the robot is attached to, or, if there are `joints`, in
-    /// the link after the last of them.
+    /// the link after the last joint.
     pub pose: Isometry3<f64>,
     /// Prefix for the names of the attached robot's links, joints and frames.
     pub prefix: String,

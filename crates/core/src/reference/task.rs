@@ -22,9 +22,9 @@ impl<P: TaskPath + 'static> From<P> for TaskReference {
 }
 
 impl TaskReference {
-    /// Returns the desired motion at simulation time `t`, s, on a path that starts at `start`, s. It is in W
-    /// axes, or in base axes if [`TaskReference::is_relative_to_base`]. For a frame of another system, the
-    /// present motion of that frame is used.
+    /// Returns the desired motion at simulation time `t`, s, on a path that starts at `start`, s. The motion
+    /// is in W axes, or in base axes if [`TaskReference::is_relative_to_base`]. For a frame of another
+    /// system, the present motion of that frame is used.
     ///
     /// # Errors
     /// [`ReferenceError::Orbit`] if the local orbital frame L is not defined at `t`.

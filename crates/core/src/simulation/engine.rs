@@ -95,10 +95,10 @@ pub struct Exchange {
     pub work: f64,
     /// Energy that the joints dissipate during the step, J.
     pub dissipated: f64,
-    /// Impulse that connections and contacts with other systems exert on the system; components as in
-    /// `impulse`.
+    /// Impulse that connections and contacts with other systems exert on the system, N s and N m s;
+    /// components as in `impulse`.
     pub weld_impulse: [f64; 6],
-    /// Work that connections and contacts do on the system, J.
+    /// Work that connections and contacts do on the system during the step, J.
     pub weld_work: f64,
 }
 

@@ -41,7 +41,7 @@ struct Sums {
     energies: [f64; 2],
     /// Kinetic energy `½ Δvᵀ M Δv` of the changes `Δv` of the velocities, J.
     energy_of_change: f64,
-    /// Change of the momentum of the systems `pushed`.
+    /// Change of the momentum of the systems `pushed`, N s and N m s.
     impulse: Force<f64>,
 }
 

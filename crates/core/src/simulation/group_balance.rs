@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 pub struct GroupBalance {
     /// Numbers of the systems in the world.
     pub systems: Vec<usize>,
-    /// Values of `P − ∫F dt`, `L − ∫T dt` and `T − W` in the first row; `None` before that row.
+    /// Values of `P − ∫F dt`, N s, `L − ∫T dt`, N m s, and `T − W`, J, in the first row; `None` before that
+    /// row.
     first: Option<(Momentum<f64>, f64)>,
     /// Work `W` in the last row, J.
     work: f64,
@@ -33,7 +34,7 @@ pub struct GroupBalance {
 
 /// Row of the balance of a group.
 pub(super) struct GroupRow {
-    /// Momentum; its angular part is about the centre of mass of the group.
+    /// Momentum, N s and N m s; the angular part is about the centre of mass of the group.
     pub(super) momentum: Momentum<f64>,
     /// Time integral of the external forces, N s, and of their moments about the centre of mass of the group,
     /// N m s.

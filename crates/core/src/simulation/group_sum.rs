@@ -28,7 +28,7 @@ impl SystemRow<'_> {
 
 /// Momentum and kinetic energy of several systems.
 pub(super) struct GroupSum {
-    /// Momentum; its angular part is about the common centre of mass.
+    /// Momentum, N s and N m s; the angular part is about the common centre of mass.
     pub(super) momentum: Momentum<f64>,
     /// Sum of the kinetic energies in W, J.
     pub(super) kinetic_energy: f64,

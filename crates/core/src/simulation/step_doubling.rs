@@ -61,9 +61,9 @@ pub(super) struct Errors {
 /// rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Drift {
-    /// Differences at the last probe.
+    /// Differences at the last probe, m and m/s or rad and rad/s.
     last: [f64; 2],
-    /// Sums of the differences over the steps before the last probe.
+    /// Sums of the differences over the steps before the last probe, m and m/s or rad and rad/s.
     sum: [f64; 2],
     /// Largest magnitude of the rate at any probe, m/s or rad/s.
     fastest: f64,

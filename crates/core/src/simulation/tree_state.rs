@@ -12,8 +12,8 @@ pub(crate) struct TreeState<S> {
     pub(crate) q: Vec<S>,
     /// Velocity, `(nv,)`, m/s and rad/s.
     pub(crate) v: Vec<S>,
-    /// Momentum at the start of the run or, in a tree with several members, at its assembly, W axes. It
-    /// changes only with a change of the reference orbit.
+    /// Momentum at the start of the run or, in a tree with several members, at the assembly of the tree, W
+    /// axes, N s and N m s. The value changes only with a change of the reference orbit.
     pub(crate) initial_momentum: Momentum<S>,
     /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N
     /// m s.
@@ -43,7 +43,8 @@ pub(crate) struct TreeRate<S> {
     pub(crate) base_acceleration: Vec3<S>,
     /// Rate of the rotation vector since the start of the step, base axes, rad/s.
     pub(crate) rotation_rate: Vec3<S>,
-    /// Velocity at the stage, `(nv,)`, of which only the joint rates, `[BASE_NV..]`, are integrated.
+    /// Velocity at the stage, `(nv,)`, m/s and rad/s, of which only the joint rates, `[BASE_NV..]`, are
+    /// integrated.
     pub(crate) v: Vec<S>,
     /// Acceleration, `(nv,)`, m/s² and rad/s².
     pub(crate) a: Vec<S>,

@@ -67,7 +67,7 @@ struct GrowingTree<'m> {
     model: Option<Model>,
     /// Systems of the tree, the root first.
     order: Vec<usize>,
-    /// For each joint that a seating motion moves: its name, its travel, and the seating motion.
+    /// For each joint that a seating motion moves: its name, its travel, rad (m), and the seating motion.
     moving: Vec<(String, f64, Seating)>,
 }
 

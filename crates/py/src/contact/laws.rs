@@ -41,7 +41,7 @@ pub(crate) struct PyHuntCrossley {
     /// Stiffness ``k``, N/m**n.
     #[pyo3(get)]
     stiffness: f64,
-    /// Exponent ``n`` of the depth.
+    /// Exponent ``n`` of the depth, dimensionless.
     #[pyo3(get)]
     exponent: f64,
     /// Dissipation ``d``, s/m.

@@ -34,7 +34,7 @@ pub struct ControllerSet<'a, S> {
     /// True if a control needs `q` and `v`. A task law on all joints needs them only if its error is
     /// evaluated.
     reads_state: bool,
-    /// Workspace of a task law on all joints.
+    /// Workspace of a task law on all joints; `None` without such a law.
     whole_robot: Option<Box<ComputedTorqueWork<S>>>,
     reduced: FreeFloating<S>,
     dynamics: HybridDynamics,
@@ -56,7 +56,7 @@ pub struct ControllerSet<'a, S> {
     jacobian: Vec<f64>,
     /// Numbers of the events that have happened.
     events: Vec<usize>,
-    /// Efforts of a group, rates of a group, and workspace of its law.
+    /// Efforts of a group, N m (N), its rates, rad/s (m/s), and the workspace of its law.
     group: [Vec<f64>; 3],
     /// Tree of connected robots whose model the laws use.
     known: Option<Box<KnownTree>>,

@@ -78,7 +78,7 @@ pub enum ElementSetError {
         name: &'static str,
         /// Value given, in the unit of the element set.
         got: f64,
-        /// Accepted range.
+        /// Accepted range, in the unit of the element set.
         range: RangeInclusive<f64>,
     },
 }

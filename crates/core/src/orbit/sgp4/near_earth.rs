@@ -47,7 +47,7 @@ pub(super) struct SecularElements<S = f64> {
     pub(super) mean: Mean<S>,
     /// Factor by which drag changes `√a`.
     pub(super) axis_factor: S,
-    /// Decrease of the eccentricity.
+    /// Decrease of the eccentricity by drag.
     pub(super) eccentricity_loss: S,
     /// Increase of the mean longitude caused by drag, divided by `n″₀`, min.
     pub(super) longitude_gain: S,

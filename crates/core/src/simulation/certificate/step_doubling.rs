@@ -14,7 +14,7 @@ pub(super) struct StepDoubling<'a> {
     pub(super) trace: &'a Trace,
     /// Radius of gyration of the robot, m.
     pub(super) size: f64,
-    /// Largest joint error that passes.
+    /// Largest relative error of a joint that passes the check.
     pub(super) gate: f64,
 }
 

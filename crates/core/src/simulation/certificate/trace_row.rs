@@ -15,9 +15,9 @@ pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) time: f64,
     pub(in crate::simulation) attitude: Quat<f64>,
     pub(in crate::simulation) rate: Vec3<f64>,
-    /// Angular acceleration just before this instant.
+    /// Angular acceleration just before `time`.
     pub(in crate::simulation) change_before: Vec3<f64>,
-    /// Angular acceleration just after this instant.
+    /// Angular acceleration just after `time`.
     pub(in crate::simulation) change_after: Vec3<f64>,
     /// Sum of the magnitudes of the rates of base and joints, which is the scale of their rounding errors.
     pub(in crate::simulation) rates: f64,

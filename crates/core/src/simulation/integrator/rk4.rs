@@ -23,11 +23,11 @@ const NYSTROM_END: [f64; 3] = [1.0 / 6.0; 3];
 
 /// Motion of the base of one tree over the stages of a step.
 pub(super) struct BaseStages<S> {
-    /// Velocity of the origin at the start of the step, W axes.
+    /// Velocity of the origin at the start of the step, W axes, m/s.
     velocity: Vec3<S>,
-    /// Accelerations of the origin in the first three stages, W axes.
+    /// Accelerations of the origin in the first three stages, W axes, m/s².
     accelerations: [Vec3<S>; 3],
-    /// Rotation vector since the start of the step, base axes.
+    /// Rotation vector since the start of the step, base axes, rad.
     theta: Vec3<S>,
 }
 

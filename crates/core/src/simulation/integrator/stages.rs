@@ -13,9 +13,9 @@ pub(crate) struct Stages<S> {
     pub(crate) start: State<S>,
     /// State at which the last stage was evaluated.
     pub(super) trial: State<S>,
-    /// Rates of the last stage.
+    /// Time derivatives at the last stage.
     pub(crate) rate: Rate<S>,
-    /// Weighted sum of rates.
+    /// Weighted sum of the time derivatives at the stages.
     pub(super) sum: Rate<S>,
     /// First stage of each tree.
     pub(crate) first: Vec<FirstStage<S>>,
@@ -32,12 +32,12 @@ pub(crate) struct FirstStage<S> {
     pub(super) frame_velocity_b: Vec3<S>,
 }
 
-/// State at the start, and rates at the end, of the last step of one tree.
+/// State at the start of the last step of one tree, and time derivatives at the last stage of that step.
 pub(crate) struct StepEnds<'a, S> {
     /// State at the start, with its velocity relative to the frame of the step.
     pub(crate) start: &'a TreeState<S>,
     pub(crate) first: &'a FirstStage<S>,
-    /// Rates of the last stage.
+    /// Time derivatives at the last stage.
     pub(crate) last: &'a TreeRate<S>,
 }
 

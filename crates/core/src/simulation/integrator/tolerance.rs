@@ -119,7 +119,7 @@ impl Tolerance {
         if is_folded { f64::NAN } else { largest }
     }
 
-    /// Returns the error of one tree in a step.
+    /// Returns the error of one tree in a step, relative to the tolerance.
     fn system_error<S: Real>(&self, step: &SystemStep<'_, '_, S>) -> f64 {
         let SystemStep { start, trial, sum, size, spin, speed, h, fastest: [fastest, highest], .. } = *step;
         // rounding errors of a robot at rest must not stop the run, so a drift of ε/1000 by the end of the
