@@ -30,7 +30,7 @@ pub(crate) struct PyColumn(&'static Column);
 
 #[pymethods]
 impl PyColumn {
-    /// Attribute of the trace.
+    /// Name of the attribute of the trace.
     #[getter]
     fn name(&self) -> &'static str {
         self.0.name

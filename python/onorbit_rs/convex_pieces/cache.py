@@ -53,7 +53,7 @@ def read(key: str) -> list[Floats] | None:
 
 
 def write(key: str, pieces: list[Floats]) -> None:
-    """Keep pieces under this key, if the folder can be written."""
+    """Write pieces to the cache under this key; without write access, do nothing."""
     home = folder()
     if home is None:
         return

@@ -28,15 +28,15 @@ OPTIONS = {"threshold": 0.02, "seed": 0}
 """Options of CoACD. The threshold is the accepted concavity relative to half the size of the mesh."""
 
 VERSION = 1
-"""Version of the method, which changes with the numbers that it returns."""
+"""Version of the method; to be increased when the results of the method change."""
 
 PROGRAM = Path(__file__).with_name("program.py")
 
 MANY = 3000
-"""Number of triangles from which on the division may take a minute."""
+"""Smallest number of triangles of a mesh whose division may take minutes."""
 
 _known: dict[str, list[Floats]] = {}
-"""Results of this process by key, in case that the cache cannot be written."""
+"""Results of this process by key, in case the cache cannot be written."""
 
 
 def pieces_of(
@@ -73,7 +73,7 @@ def pieces_of(
 
 
 def _key(library: str, options: dict[str, float], points: Floats, corners: NDArray[np.int32]) -> str:
-    """Return the name under which the pieces are cached."""
+    """Return the key of the pieces in the cache, which depends on all arguments."""
     settings = json.dumps([VERSION, library, options, points.shape, corners.shape], sort_keys=True)
     return hashlib.sha256(settings.encode() + points.tobytes() + corners.tobytes()).hexdigest()
 
@@ -91,7 +91,7 @@ def _announce(filename: str, triangles: int) -> None:
 def _divided(
     points: Floats, corners: NDArray[np.int32], options: dict[str, float], filename: str
 ) -> list[Floats]:
-    """Return the pieces of CoACD. In a separate process, a crash is an error, and Ctrl-C ends it."""
+    """Return CoACD's pieces, computed in a separate process, so that a crash of CoACD is only an error."""
     given = io.BytesIO()
     np.savez(given, vertices=points, triangles=corners)
     command = [sys.executable, "-P", str(PROGRAM), json.dumps(options)]

@@ -1,6 +1,6 @@
-"""Moves the corners of convex pieces onto the mesh where they nearly coincide with it.
+"""Moves those corners of convex pieces that nearly lie on a mesh onto the mesh.
 
-CoACD cuts at planes that miss edges by up to a thousandth of the size, and shrinks its pieces slightly.
+CoACD cuts at planes that miss edges by up to a thousandth of the mesh's size, and shrinks pieces slightly.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 NEAR = 2e-3
-"""Largest displacement relative to the diagonal of the mesh."""
+"""Largest displacement of a corner, relative to the diagonal of the mesh's bounding box."""
 
 
 def fitted(pieces: list[Floats], vertices: Floats, triangles: NDArray[np.int32]) -> list[Floats]:
-    """Return pieces whose corners near a vertex, an edge or a face of the mesh lie on it, in this order."""
+    """Return the pieces with each corner moved to a near vertex, else edge, else face of the mesh."""
     near = NEAR * float(np.linalg.norm(np.ptp(vertices, axis=0)))
     corners = vertices[triangles]  # (t, 3, 3)
     low, high = corners.min(axis=1) - near, corners.max(axis=1) + near
@@ -39,7 +39,7 @@ def fitted(pieces: list[Floats], vertices: Floats, triangles: NDArray[np.int32])
 
 
 def _on_edges(triangles: Floats, point: Floats) -> Floats:
-    """Return the nearest point of each edge of triangles (k, 3, 3)."""
+    """Return the point of each edge of triangles (k, 3, 3) that is nearest to ``point``."""
     start = triangles.reshape(-1, 3)
     along = np.roll(triangles, -1, axis=1).reshape(-1, 3) - start
     length = np.maximum(np.einsum("ij,ij->i", along, along), np.finfo(float).tiny)

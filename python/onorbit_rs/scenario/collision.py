@@ -37,7 +37,7 @@ class CollisionShape(Part):
         return self
 
     def add_to(self, model: _core.Model, folder: Path) -> _core.Model:
-        """Return the robot with this shape; relative paths start at ``folder``."""
+        """Return the robot with this shape or with divided meshes; relative paths start at ``folder``."""
         if self.shape is None:
             assert self.pieces is not None
             return model.with_convex_pieces(self.link, self.pieces)

@@ -35,7 +35,8 @@ impl std::fmt::Display for MeshDefect {
 }
 
 impl Mesh {
-    /// Returns the mesh with vertices of equal coordinates joined, without the triangles that thereby lose a corner.
+    /// Returns the mesh with vertices of equal coordinates joined, without the triangles that thereby lose a
+    /// corner.
     #[must_use]
     pub fn joined(&self) -> Self {
         let (index, vertices) = self.joined_vertices();
@@ -57,7 +58,8 @@ impl Mesh {
         (self.vertices.iter().map(number).collect(), vertices)
     }
 
-    /// Returns the defect of the mesh, if it has one. Vertices with equal coordinates are one vertex.
+    /// Returns the defect of the mesh, if it has one. Vertices with equal coordinates count as one
+    /// vertex.
     pub fn defect(&self) -> Option<MeshDefect> {
         let (index, _) = self.joined_vertices();
         // each edge counted in the sense from its lower to its higher vertex, and in total

@@ -7,7 +7,8 @@ use crate::model::Geometry;
 use crate::spatial::Vec3;
 use std::path::Path;
 
-/// Part of its volume by which a mesh may be smaller than its convex hull and still count as convex.
+/// Largest difference between the volumes of the convex hull and of a mesh that counts as convex, relative to
+/// the volume of the hull.
 const CONVEX: f64 = 1e-6;
 
 /// Solid bounded by a closed mesh.
@@ -17,12 +18,12 @@ pub struct Solid {
     pub mesh: Mesh,
     /// Convex hull of the mesh.
     pub hull: Hull,
-    /// Defect of the file that does not matter for the solid.
+    /// Warning about normals that point inwards in the file, as text; `None` for a file without defect.
     pub warning: Option<String>,
 }
 
 impl Solid {
-    /// Reads a mesh file; `scale` are factors along its axes.
+    /// Reads a mesh file and scales the mesh by `x`, `y` and `z` along its axes.
     ///
     /// # Errors
     /// The reason, as text, for which the file has no inside: it cannot be read, is open or has no volume.
@@ -54,7 +55,7 @@ impl Solid {
         self.mesh.volume() >= (1.0 - CONVEX) * self.hull.volume()
     }
 
-    /// Returns the volume by which convex pieces exceed the solid, relative to its volume.
+    /// Returns the total volume of convex pieces less the volume of the solid, relative to the latter.
     pub fn excess(&self, pieces: &[Hull]) -> f64 {
         pieces.iter().map(Hull::volume).sum::<f64>() / self.mesh.volume() - 1.0
     }

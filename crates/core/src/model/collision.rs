@@ -16,8 +16,8 @@ impl Model {
         find("link", link, links.iter().map(|link| link.name.as_str())).map(|at| &links[at].collisions[..])
     }
 
-    /// Returns this robot with these collision shapes of a link instead of those that the link has. The motion of the
-    /// robot does not change.
+    /// Returns this robot with `shapes` as the collision shapes of a link, instead of the existing ones. The
+    /// motion of the robot does not change.
     ///
     /// # Errors
     /// [`ModelError::UnknownName`] if no link has this name.

@@ -76,8 +76,8 @@ pub struct EventRecord {
     pub kind: EventKind,
     /// Simulation time of the event, s.
     pub time: f64,
-    /// Numbers of the two systems, beginning with the capturing system. For a contact, those of the links that
-    /// touched first, in the order of its sides.
+    /// Numbers of the two systems, beginning with the capturing system. For a contact, the numbers of the
+    /// systems whose links touched first, in the order of the sides.
     pub systems: [usize; 2],
     /// Impulse on the second system and the systems connected to it, axes of W: linear, N s, then angular
     /// about `point`, N m s. For a lift-off, the impulse of the contact on the links of its second side since

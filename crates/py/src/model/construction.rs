@@ -180,8 +180,9 @@ impl PyModel {
 
     /// Return the same robot with the collision meshes of a link divided into convex pieces.
     ///
-    /// Without this, the shape of a mesh is its convex hull, which fills notches and holes. CoACD divides the meshes,
-    /// which takes seconds to minutes; the result is kept in the user's folder for caches. A convex mesh is one piece.
+    /// Undivided, the shape of a mesh is its convex hull, which fills notches and holes. CoACD divides the
+    /// meshes, which takes seconds to minutes; the result is kept in the user's folder for caches. A convex
+    /// mesh is one piece.
     ///
     /// Parameters
     /// ----------

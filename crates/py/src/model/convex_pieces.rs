@@ -15,10 +15,11 @@ use std::path::Path;
 
 /// Largest number of pieces of a mesh.
 const MOST: i64 = 1000;
-/// Part of the volume of a mesh by which its pieces may exceed it without a warning.
+/// Largest excess of the volume of the pieces over the volume of the mesh, relative to the latter, without a
+/// warning.
 const EXCESS: f64 = 0.1;
 
-/// Reads the argument `pieces`.
+/// Reads the argument `pieces`: the largest number of convex pieces, 1 to [`MOST`].
 pub(super) fn count(value: Any<'_, '_>) -> PyResult<i64> {
     let count = whole(value, "pieces")?;
     if (1..=MOST).contains(&count) {
@@ -62,7 +63,7 @@ pub(super) fn of_mesh(
     Ok(hulls.iter().map(Hull::geometry).collect())
 }
 
-/// Divides a solid that is not convex.
+/// Divides a solid that is not convex into at most `count` pieces, and returns their convex hulls.
 fn divided(py: Python<'_>, solid: &Solid, count: i64, filename: &str) -> PyResult<Vec<Hull>> {
     let mesh = &solid.mesh;
     let vertices: Vec<f64> = mesh.vertices.iter().flat_map(|p| [p.x, p.y, p.z]).collect();

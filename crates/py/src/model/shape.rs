@@ -177,8 +177,8 @@ impl PyShape {
 
     /// Return the convex hull of a mesh, or its convex pieces.
     ///
-    /// Convex pieces follow notches and holes. They are computed by CoACD, which takes seconds to minutes, and kept in
-    /// the user's folder for caches. A convex mesh is one piece.
+    /// Convex pieces follow notches and holes. CoACD computes the pieces, which takes seconds to minutes; the
+    /// result is kept in the user's folder for caches. A convex mesh is one piece.
     ///
     /// Parameters
     /// ----------
@@ -251,7 +251,7 @@ impl PyShape {
         Self::of_all(py, kind, &keywords, vec![geometry])
     }
 
-    /// Creates the union of several geometries.
+    /// Creates the shape that is the union of `geometries`.
     fn of_all(
         py: Python<'_>,
         kind: &str,

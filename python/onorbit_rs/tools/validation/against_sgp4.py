@@ -58,7 +58,7 @@ def every_row() -> Any:
 
 
 def all_sets() -> Any:
-    """Return the largest difference and the number of disagreements over all valid sets."""
+    """Return the largest difference, km and km/s, and the number of differing codes over all valid sets."""
     found = [compare(elements) for elements in sets() if elements.rows]
     return worst(difference for difference, _ in found), sum(number for _, number in found)
 
