@@ -27,7 +27,7 @@ impl<S: Real> RigidInertia<S> {
         SpatialInertia::at_com(self.mass, self.com, self.about_com)
     }
 
-    /// Returns the momentum `I v` for the twist `v = (v, ω)`: `p = m (v + ω × c)`, `L = I_c ω + c × p`.
+    /// Returns the momentum `(p, L)` for the twist `(v, ω)`: `p = m (v + ω × c)`, `L = I_c ω + c × p`.
     #[inline(always)]
     pub fn momentum(&self, v: Motion<S>) -> Force<S> {
         Force::at(v.at(self.com) * self.mass, self.about_com * v.angular, self.com)
@@ -72,7 +72,7 @@ impl<S: Real> SpatialInertia<S> {
         Self { mass, moment, about_origin: about_com.shift(moment, c) }
     }
 
-    /// Returns the momentum `I v` for the twist `v = (v, ω)`: `p = m v + ω × h`, `L = I_o ω + h × v`.
+    /// Returns the momentum `(p, L)` for the twist `(v, ω)`: `p = m v + ω × h`, `L = I_o ω + h × v`.
     #[inline(always)]
     pub fn momentum(&self, v: Motion<S>) -> Force<S> {
         Force::new(

@@ -53,8 +53,8 @@ impl<S: Real> Tree<'_, S> {
         kinetic_energy(&self.model, &self.data, &state.v)
     }
 
-    /// Writes the change of velocity caused by a unit impulse at joint `j` to `scratch`. Returns `(M⁻¹)_jj`,
-    /// the change of that joint's rate per unit impulse.
+    /// Writes the change of velocity caused by a unit impulse with this sign at joint `j` to `scratch`. Returns
+    /// `(M⁻¹)_jj`, the change of that joint's rate per unit impulse.
     fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> f64 {
         let n = self.model.joint_count();
         for body in &mut self.data.bodies {
