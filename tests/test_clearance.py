@@ -119,10 +119,10 @@ def test_bad_watches_say_what_is_wrong() -> None:
         (
             [oo.KeepOut("z", oo.Shape.sphere(1), "body", fixed_to="bdy")],
             FrameError,
-            "no frame; did you mean 'body'",
+            r"it must be .* or a frame .*; did you mean 'body'",
         ),
         ([oo.MinimumDistance("d", "body", "body")], InputError, "compares no two links"),
-        ([oo.KeepOut("z", oo.Shape.sphere(1), "body")] * 2, InputError, "two watches are named 'z'"),
+        ([oo.KeepOut("z", oo.Shape.sphere(1), "body")] * 2, InputError, "entries of 'watches' are named 'z'"),
     ):
         with pytest.raises(error, match=words):
             oo.clearances(ball(), trace, watches)

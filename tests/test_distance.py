@@ -146,7 +146,7 @@ def test_a_mesh_with_a_defect_is_a_hull_with_one_warning(
         ("b.obj", "v 0 0 0\nf 1 2 3\n", "line 2 is 'f 1 2 3'; expected a face with at least three"),
         ("c.obj", "", "the file has no triangles"),
         ("d.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a coordinate of a vertex is infinite or NaN"),
-        ("e.dae", "<x/>", "the ending '.dae' is not supported; convert the mesh to .stl or .obj"),
+        ("e.dae", "<x/>", "the file name must end in .stl or .obj; convert the mesh to one of them"),
         (
             "f.stl",
             "solid x\nvertex 0 0 0\nendloop\n",

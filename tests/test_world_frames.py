@@ -87,7 +87,7 @@ def test_the_world_frame_is_the_control_of_this_test():
 @pytest.mark.parametrize(
     ("frame", "error", "message"),
     [
-        ("targt/handle", ControlError, "not in a system of the world.*servicer, target"),
+        ("targt/handle", ControlError, "no system of the world is named 'targt'.*servicer, target"),
         ("target/handel", FrameError, "handle"),
         ("servicer/tool", oo.exceptions.WorldError, "frame of the same system"),
         ("handle", ControlError, "SYSTEM/FRAME"),

@@ -141,7 +141,8 @@ def clearances(models: _core.Model | Models, trace: Any, watches: Sequence[Watch
     named: Models = {"": models} if isinstance(models, _core.Model) else models
     names = [watch.name for watch in watches]
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise InputError(f"two watches are named {twice!r}; give each its own name", name="name", got=twice)
+        message = f"two entries of 'watches' are named {twice!r}; give each its own name"
+        raise InputError(message, name="name", got=twice)
     time, rows, orbit = _rows(named, trace)
     return {watch.name: _evaluated(prepare(named, watch), named, time, rows, orbit) for watch in watches}
 

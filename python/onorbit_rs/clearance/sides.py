@@ -102,7 +102,10 @@ def check_carrier(zone: KeepOut, models: Models) -> None:
     ]
     if zone.fixed_to not in known:
         hint = did_you_mean(zone.fixed_to, ["world", "lvlh", *known])
-        message = f"{zone.name!r}: fixed_to is {zone.fixed_to!r}, which is no frame{hint}"
+        message = (
+            f"{zone.name!r}: fixed_to is {zone.fixed_to!r}; it must be 'world', 'lvlh' or a frame (in "
+            f"a world, SYSTEM/FRAME){hint}"
+        )
         raise FrameError(message, name=zone.fixed_to, kind="frame")
 
 

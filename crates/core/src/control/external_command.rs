@@ -33,7 +33,7 @@ pub struct Setpoint {
 /// Motion through points, like the `JointTrajectory` message of ROS.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointTrajectory {
-    /// Start time, s of simulation.
+    /// Simulation time of the start, s.
     pub start: f64,
     /// Times of the points relative to the start, `(K,)`, s.
     pub times: Vec<f64>,
@@ -158,7 +158,7 @@ impl Setpoint {
 }
 
 impl JointTrajectory {
-    /// Returns the time of the last point, s of simulation.
+    /// Returns the simulation time of the last point, s.
     fn end(&self) -> f64 {
         self.start + self.times.last().copied().unwrap_or(0.0)
     }

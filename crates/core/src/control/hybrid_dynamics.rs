@@ -7,13 +7,15 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// Solver for the torques with which the joints `A` have their commanded accelerations while the efforts of
 /// the joints `E` are given.
 ///
-/// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`. The joints `E` react like a second base,
-/// `q̈_E = y − G q̈_A` with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d`
-/// depends only on `A`: `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. The set `A` consists of the joints `J`, whose
-/// accelerations are commanded by joint laws, and the joints `T`, which the tasks drive. A single damped
-/// pseudo-inverse of all task rows gives `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so
-/// that each task accounts for the reactions to all others. Joints held by friction belong to neither set;
-/// their acceleration is zero. For a single task on all joints the solution equals that of
+/// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`, where `f` is the sum of the damping and
+/// friction torques and of the feedforward of joint laws; other symbols are those of
+/// [`ComputedTorque`](super::ComputedTorque). The joints `E` react like a second base, `q̈_E = y − G q̈_A`
+/// with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d` depends only on `A`:
+/// `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. The set `A` consists of the joints `J`, whose accelerations are
+/// commanded by joint laws, and the joints `T`, which the tasks drive. A single damped pseudo-inverse of all
+/// task rows gives `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each task accounts
+/// for the reactions to all others. Joints held by friction belong to neither set; their acceleration is
+/// zero. For a single task on all joints the solution equals that of
 /// [`computed_torque`](super::computed_torque).
 ///
 /// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
@@ -25,7 +27,7 @@ pub(super) struct HybridDynamics {
     pub(super) load: Vec<f64>,
     /// Joint accelerations `q̈`, `(n,)`, rad/s² (m/s²); the caller sets the accelerations of the joints `J`.
     pub(super) acceleration: Vec<f64>,
-    /// Damping `k` and `κ` of each joint of `T`, 1/s.
+    /// Damping `k` in the null space and damping `κ` of suppressed rates, for each joint of `T`, 1/s.
     pub(super) null_damping: Vec<[f64; 2]>,
     tasks: Vec<usize>,
     fixed: Vec<usize>,

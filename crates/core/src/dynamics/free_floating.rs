@@ -38,14 +38,14 @@ pub struct FreeFloating<S> {
     pub pose: FramePose<S>,
     /// Twist at the origin of the frame in W axes, m/s and rad/s.
     pub velocity: Motion<S>,
-    /// Centre of mass `r_c` of the robot relative to the base origin, m. About `r_c`, `Mbb` is block diagonal
-    /// with the blocks `m 1` and `I_c`.
+    /// Centre of mass `r_c` of the robot relative to the base origin, base axes, m. About `r_c`, `Mbb` is
+    /// block diagonal with the blocks `m 1` and `I_c`.
     com_b: Vec3<S>,
-    /// `Mbb⁻¹ (c_b − Qb)`, about `r_c`, m/s² and rad/s².
+    /// `Mbb⁻¹ (c_b − Qb)` at `r_c`, base axes, m/s² and rad/s².
     base_bias: Motion<S>,
-    /// Columns of `Mbm`, about `r_c`.
+    /// Columns of `Mbm`, about `r_c`, base axes.
     coupling: Vec<Force<S>>,
-    /// `−Mbb⁻¹ Mbm`, base twist per unit joint rate, about `r_c`.
+    /// Columns of `−Mbb⁻¹ Mbm`: base twist at `r_c` per unit joint rate, base axes.
     base_response: Vec<Motion<S>>,
 }
 

@@ -24,7 +24,7 @@ fn fill_rows<const N: usize>(
 }
 
 impl Earth {
-    /// Computes the rotations `rot_fi` (T, 3, 3), row-major, at `times` (T,), s of simulation.
+    /// Computes the rotations `rot_fi` (T, 3, 3), row-major, at the simulation times `times` (T,), s.
     ///
     /// # Errors
     /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.

@@ -36,7 +36,7 @@ pub enum EarthError {
     OutsideSpan {
         /// Name of the quantity.
         what: &'static str,
-        /// Requested time, s of simulation.
+        /// Requested simulation time, s.
         time: f64,
         /// Epoch of the run.
         epoch: String,

@@ -230,7 +230,8 @@ impl Earth {
     }
 }
 
-/// Returns an error unless `t` is between `from` and `to`, s of simulation, between which `what` is known.
+/// Returns an error unless the simulation time `t`, s, is between `from` and `to`, between which `what` is
+/// known.
 fn check_span(what: &'static str, t: f64, epoch: Epoch, (from, to): (f64, f64)) -> Result<(), EarthError> {
     if (from..=to).contains(&t) {
         return Ok(());

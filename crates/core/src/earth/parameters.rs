@@ -14,7 +14,7 @@ pub(super) enum Parameters {
     Table(Box<[Row]>),
 }
 
-/// Row of a table for the instant `time`, s of simulation.
+/// Row of a table for the simulation time `time`, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     pub(super) time: f64,
@@ -103,7 +103,7 @@ impl Parameters {
         }
     }
 
-    /// Returns the span of the table, s of simulation; `None` for constant parameters.
+    /// Returns the first and the last simulation time of the table, s; `None` for constant parameters.
     pub(super) fn span(&self) -> Option<(f64, f64)> {
         match self {
             Self::Constant { .. } => None,

@@ -17,7 +17,7 @@ const INTERVAL: f64 = 8.0 * DAY;
 #[derive(Clone, Debug)]
 pub(super) struct SunMoon {
     pub(super) epoch: Epoch,
-    /// Span in which the positions are known, s of simulation.
+    /// First and last simulation time at which the positions are known, s.
     pub(super) span: (f64, f64),
     kernel: Option<Arc<SpiceKernel>>,
     /// Epoch as the modified Julian date of UTC and the seconds since midnight.

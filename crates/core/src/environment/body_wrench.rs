@@ -71,8 +71,7 @@ impl BodyWrench {
         Ok(Self { point, ..self })
     }
 
-    /// Returns the same wrench, active from `start` until `end`, s of simulation; either time may be
-    /// infinite.
+    /// Returns the same wrench, active from simulation time `start` until `end`, s; either may be infinite.
     ///
     /// # Errors
     /// [`EnvironmentError::EmptyInterval`] unless `start < end`.

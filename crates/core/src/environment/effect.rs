@@ -32,7 +32,7 @@ pub trait Effect: Send + Sync + std::fmt::Debug {
     /// Returns the short name used in messages and for recorded columns.
     fn name(&self) -> &str;
 
-    /// Returns the times, s of simulation, at which the effect is discontinuous. The integrator ends a step
+    /// Returns the simulation times, s, at which the effect is discontinuous. The integrator ends a step
     /// at each of them.
     fn event_times(&self) -> Vec<f64> {
         Vec::new()

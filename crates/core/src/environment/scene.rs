@@ -46,7 +46,7 @@ impl Ephemeris {
 pub struct Scene<'a> {
     /// Start and end of the step being integrated, s; its middle determines which wrenches are active.
     pub interval: (f64, f64),
-    /// Instant of this evaluation, s of simulation.
+    /// Simulation time of this evaluation, s.
     pub time: f64,
     /// The reference orbit at this instant, if the run has one.
     pub reference: Option<Reference<'a>>,

@@ -36,7 +36,8 @@ pub(super) enum Feature {
 }
 
 impl Feature {
-    /// Returns the feature of a shape that contains its witness point and faces the unit vector `d`, in common axes.
+    /// Returns the feature of a shape, in common axes, that faces the direction `d` (unit vector) and, for a
+    /// hull, contains the point `witness`; both arguments are in common axes.
     pub(super) fn of(shape: &Shape, pose: &Pose, witness: Vec3<f64>, d: Vec3<f64>) -> Self {
         match local(shape, pose.to_shape(witness), pose.rot.transpose_mul(d)) {
             Self::Segment { ends, radius } => Self::Segment { ends: ends.map(|p| pose.to_common(p)), radius },

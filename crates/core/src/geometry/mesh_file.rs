@@ -17,7 +17,7 @@ const STL_TRIANGLE: usize = 50;
 pub(super) fn read_mesh(path: &Path) -> Result<Mesh, String> {
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !matches!(ending.as_str(), "stl" | "obj") {
-        return Err(format!("the ending '.{ending}' is not supported; convert the mesh to .stl or .obj"));
+        return Err("the file name must end in .stl or .obj; convert the mesh to one of them".to_owned());
     }
     let bytes = read_bytes(path, LARGEST).map_err(|error| error.to_string())?;
     let mesh = match ending.as_str() {

@@ -104,8 +104,8 @@ pub enum GravityError {
     )]
     OtherPlanet { field: f64, orbit: f64 },
     #[error(
-        "the run and its reference orbit differ in {what}; give both the same gravity, or remove gravity from \
-         the run's environment, which then uses that of the orbit"
+        "the gravity of the run and that of its reference orbit differ in {what}; give both the same gravity, \
+         or remove gravity from the run's environment, so that the run uses that of the orbit"
     )]
     OtherGravity { what: &'static str },
     #[error("the {name} is given twice as a third body; name it only once")]

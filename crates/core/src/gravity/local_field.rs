@@ -8,7 +8,7 @@ use crate::spatial::{Real, Sym3, Vec3};
 /// Instant and positions for which the field is expanded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FieldPoint {
-    /// Instant, s of simulation.
+    /// Simulation time, s.
     pub(crate) time: f64,
     /// Position of the reference from the planet's centre, axes of `I`, m.
     pub(crate) r_ref: Vec3<f64>,

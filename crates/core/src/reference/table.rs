@@ -4,7 +4,7 @@ use super::{Hold, JointPath, JointSample, ReferenceError, TaskReference};
 use nalgebra::{Matrix4, Vector4};
 
 impl Hold {
-    /// Converts row-major homogeneous `(4, 4)` matrices to poses.
+    /// Creates a constant pose from each row-major homogeneous `(4, 4)` matrix, with the position in m.
     ///
     /// # Errors
     /// [`ReferenceError::LastRow`] for a last row that differs from 0, 0, 0, 1, and the errors of

@@ -9,8 +9,8 @@ use crate::model::{BASE_NQ, BASE_NV};
 use crate::spatial::Scalar;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Assembles, for every system that knows other systems, the tree of the systems to which it is
-    /// connected.
+    /// Assembles, for every system whose controllers know the models of other systems, the tree of that
+    /// system and of the known systems that are connected to it.
     pub(super) fn find_known(&mut self) -> Result<(), SimulationError> {
         let Self { systems, connections, .. } = self;
         for (number, run) in systems.iter_mut().enumerate().filter(|(_, run)| !run.knows.is_empty()) {

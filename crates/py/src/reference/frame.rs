@@ -122,12 +122,12 @@ fn moving_frame(py: Python<'_>, path: &str, systems: &[(String, Arc<Model>)]) ->
     let (name, frame) = path.split_once('/').unwrap_or((path, ""));
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
-        let known = if known.is_empty() {
-            "a run of one robot has the frames 'world', 'lvlh' and 'base'".to_owned()
+        let reason = if known.is_empty() {
+            "the run has only one robot; give 'world', 'lvlh', 'base' or a Target".to_owned()
         } else {
-            format!("the systems are: {}", known.join(", "))
+            format!("no system of the world is named '{name}'; the systems are: {}", known.join(", "))
         };
-        let message = format!("the frame '{path}' of the reference is not in a system of the world; {known}");
+        let message = format!("the reference is given in the frame '{path}' of another system, but {reason}");
         return Err(raise(py, "ControlError", &message, &fields!(py, "name": "frame", "got": path)));
     };
     let frame = systems[system].1.frame(frame).map_err(|error| error.into_python(py))?;

@@ -60,7 +60,9 @@ class EarthPart(Part):
 def build_earth(
     earth: EarthPart | None, epoch: str | None, orbit: _core.Orbit | None, folder: Path
 ) -> _core.Earth | None:
-    """Return the Earth of a run in the axes of its orbit; the default epoch is that of the element set.
+    """Return the Earth of a run in the axes of its orbit; None if neither ``earth`` nor an epoch is given.
+
+    Without ``epoch``, an orbit of an element set gives the epoch.
 
     SGP4's positions are in TEME, which in 2024 differs from GCRF by a rotation of 0.33 deg (37 km on the
     Earth's surface).

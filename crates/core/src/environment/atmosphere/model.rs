@@ -18,7 +18,7 @@ pub trait Atmosphere: Send + Sync + std::fmt::Debug {
     fn density(&self, point: &AtmospherePoint<'_>) -> Result<f64, AtmosphereError>;
 }
 
-/// Computes the densities, kg/m³, at altitudes, m, latitudes and longitudes, rad, and times, s of simulation.
+/// Computes the densities, kg/m³, at altitudes, m, latitudes and longitudes, rad, and simulation times, s.
 ///
 /// # Errors
 /// The error of the first point at which the model is not defined.

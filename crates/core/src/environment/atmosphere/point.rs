@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_PI_2;
 pub struct AtmospherePoint<'a> {
     /// Rotation of the Earth.
     pub earth: &'a Earth,
-    /// Instant, s of simulation.
+    /// Simulation time, s.
     pub time: f64,
     /// Latitude, longitude (rad) and altitude (m) on WGS84.
     pub geodetic: Geodetic,

@@ -79,7 +79,10 @@ impl<'a> Meshes<'a> {
         let files = mesh_files(self.missing.len());
         let hint = match MeshName::of(first) {
             Some(MeshName::InPackage { package, .. }) => {
-                format!("; specify the folder that contains the package '{package}'")
+                format!(
+                    "; give the folder that contains the package '{package}' in package_paths (on the \
+                     command line: --package-path)"
+                )
             }
             _ => "; copy the missing files into a folder 'meshes' beside the robot's file".to_owned(),
         };

@@ -188,7 +188,8 @@ impl Loading {
     }
 }
 
-/// Returns `v` after the smallest rotation that takes the unit vector `from` to the unit vector `to`.
+/// Returns `v` after the smallest rotation that takes the unit vector `from` to the unit vector `to`, or `v`
+/// unchanged if that rotation is 120° or more.
 fn transported(v: Vec3<f64>, from: Vec3<f64>, to: Vec3<f64>) -> Vec3<f64> {
     // R v = v + w × v + w × (w × v)/(1 + cos),  w = from × to
     let (w, cosine) = (from.cross(to), from.dot(to));
