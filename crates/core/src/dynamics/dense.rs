@@ -52,6 +52,12 @@ pub(super) fn solve<S: Real>(
     (data.factors, data.forces) = (factors, forces);
 }
 
+/// Computes `x ← M⁻¹ x` with the factors stored by [`solve`].
+#[inline(always)]
+pub(super) fn solve_factored<S: Real>(data: &Data<S>, nv: usize, x: &mut [S]) {
+    substitute(&data.factors, nv, x);
+}
+
 /// Computes `M⁻¹`, row major `(nv, nv)`, from the factors stored by [`solve`].
 #[inline(always)]
 pub(super) fn inverse_mass<S: Real>(data: &Data<S>, nv: usize, out: &mut [S]) {

@@ -1,5 +1,6 @@
 //! Builder of robots, link by link.
 
+use super::closed_loop::Mimic;
 use super::compile::{check_parts, compile};
 use super::description::{Description, Inertial, Joint, JointKind, Link};
 use super::error::{ModelError, ModelWarning};
@@ -16,10 +17,10 @@ const MOST_JOINTS: usize = 2000;
 /// Builder of a model from links and joints.
 ///
 /// The first link is the floating base. Each further link is connected by a joint to a link that was added
-/// before, so that closed loops cannot occur. [`build`](ModelBuilder::build) returns the model.
+/// before. Closed loops are added as constraints by [`close`](ModelBuilder::close). [`build`](ModelBuilder::build) returns the model.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
-    description: Description,
+    pub(super) description: Description,
     warnings: Vec<ModelWarning>,
     /// Index of each link by name.
     link_index: HashMap<String, usize>,
@@ -102,6 +103,9 @@ impl ModelBuilder {
         }
         for (name, link, pose) in robot.frames {
             self.add_frame(&name, &names[link], pose)?;
+        }
+        for closing in robot.loops {
+            self.close(closing)?;
         }
         Ok(self)
     }
@@ -248,6 +252,13 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         if !axis.norm().is_finite() {
             let (value, expected) = (axis.amax(), "numbers up to 1e150");
             return Err(ModelError::OutOfRange { what: "the axis", name: name(), value, expected });
+        }
+    }
+    if let Some(Mimic { ratio, offset, .. }) = &joint.mimic {
+        for (what, value) in [("the ratio of the mimic", *ratio), ("the offset of the mimic", *offset)] {
+            if !value.is_finite() {
+                return Err(ModelError::NotFinite { what, name: name() });
+            }
         }
     }
     let amounts = [

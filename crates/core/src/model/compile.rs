@@ -41,6 +41,7 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
         collisions: Vec::new(),
         warnings,
         is_heavy_on_light: false,
+        closures: Vec::new(),
         description: Arc::default(),
     };
     let mut placed: Vec<Option<Placed>> = vec![None; description.links.len()];
@@ -71,6 +72,7 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     }
     model.description = Arc::new(description);
     model.is_heavy_on_light = is_heavy_on_light(&model.nodes);
+    model.closures = model.compile_closures()?;
     Ok(model)
 }
 

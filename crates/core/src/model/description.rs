@@ -1,5 +1,6 @@
 //! Description of a robot by links, joints, frames and shapes.
 
+use super::closed_loop::{Loop, Mimic};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -15,16 +16,28 @@ pub struct Description {
     pub(super) joints: Vec<(usize, Joint)>,
     /// Additional frames, each with its name, the index of its link and its pose in link axes.
     pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
+    /// Loops that are closed by constraints.
+    pub(super) loops: Vec<Loop>,
 }
 
 impl Description {
+    /// Returns the loops that are closed by constraints.
+    pub fn loops(&self) -> &[Loop] {
+        &self.loops
+    }
+
     /// Returns the description with the names of all links, joints and frames preceded by `prefix`.
     #[must_use]
     pub fn prefixed(mut self, prefix: &str) -> Self {
         let links = self.links.iter_mut().map(|link| &mut link.name);
-        let joints = self.joints.iter_mut().map(|(_, joint)| &mut joint.name);
+        let (joints, leaders): (Vec<_>, Vec<_>) =
+            self.joints.iter_mut().map(|(_, joint)| (&mut joint.name, &mut joint.mimic)).unzip();
         let frames = self.frames.iter_mut().map(|(name, ..)| name);
-        links.chain(joints).chain(frames).for_each(|name| name.insert_str(0, prefix));
+        let leaders = leaders.into_iter().flatten().map(|mimic| &mut mimic.leader);
+        let loops =
+            self.loops.iter_mut().flat_map(|closing| closing.frames.iter_mut().chain([&mut closing.name]));
+        let names = links.chain(joints).chain(leaders).chain(frames).chain(loops);
+        names.for_each(|name| name.insert_str(0, prefix));
         self
     }
 }
@@ -158,6 +171,8 @@ pub struct Joint {
     pub static_friction: Option<f64>,
     /// Rotor inertia reflected to the joint (multiplied by the gear ratio squared), kg m² (kg).
     pub rotor_inertia: f64,
+    /// Coupling to another joint, if any.
+    pub mimic: Option<Mimic>,
 }
 
 impl Joint {
@@ -173,6 +188,7 @@ impl Joint {
             friction: 0.0,
             static_friction: None,
             rotor_inertia: 0.0,
+            mimic: None,
         }
     }
 }

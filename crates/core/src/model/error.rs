@@ -54,6 +54,15 @@ pub enum ModelError {
     EmptyName { what: &'static str },
     #[error("there is no {what} '{name}'{}", nearest(.candidates, .name))]
     UnknownName { what: &'static str, name: String, candidates: Vec<String> },
+    #[error("loop '{name}' connects frame '{frame}' with itself; give the frames of two different bodies")]
+    LoopWithItself { name: String, frame: String },
+    #[error(
+        "loop '{name}' connects the frames '{a}' and '{b}', which belong to the same body, so they cannot move \
+         relative to each other; give frames of two different bodies", a = frames[0], b = frames[1]
+    )]
+    LoopWithinBody { name: String, frames: [String; 2] },
+    #[error("the joints {} mimic each other in a circle; remove the mimic of one of them", names(joints))]
+    MimicCircle { joints: Vec<String> },
     #[error("joint '{joint}' has an axis of length zero; specify a nonzero vector")]
     ZeroAxis { joint: String },
     #[error("joint '{joint}': {what} is {value}; it must not be negative", value = short(*value))]
@@ -156,6 +165,12 @@ impl ModelError {
             other => other,
         }
     }
+}
+
+/// Returns names in quotation marks, separated by commas.
+fn names(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|name| format!("'{name}'")).collect();
+    quoted.join(", ")
 }
 
 /// Returns advice for a base whose motion no inertia resists; `joints` are the joints between the base and

@@ -3,6 +3,8 @@
 mod align;
 mod attach;
 mod builder;
+mod closed_loop;
+mod closure;
 mod collision;
 mod compile;
 mod configuration;
@@ -22,6 +24,8 @@ use align::rotation_to_axis;
 
 pub use attach::Mount;
 pub use builder::ModelBuilder;
+pub use closed_loop::{Loop, LoopKind, Mimic};
+pub use closure::{Closure, Constraint};
 pub use configuration::{difference, integrate, neutral};
 pub use coordinates::{ANGULAR, BASE_NQ, BASE_NV, QUATERNION};
 pub use description::{Description, Geometry, Inertial, Joint, JointKind, Limits, Link, Visual};

@@ -52,6 +52,7 @@ impl Description {
                 .map(|(name, link, pose)| (name.clone(), place(*link), *pose))
                 .collect(),
             joints,
+            loops: self.loops.clone(),
         })
     }
 

@@ -1,5 +1,6 @@
 //! Compiled tree of bodies.
 
+use super::closure::Closure;
 use super::description::{Description, Limits, Visual};
 use super::error::ModelWarning;
 use crate::spatial::{Mat3, Sym3, Vec3};
@@ -91,6 +92,7 @@ pub struct Model {
     pub(super) collisions: Vec<(usize, Visual)>,
     pub(super) warnings: Vec<ModelWarning>,
     pub(super) is_heavy_on_light: bool,
+    pub(super) closures: Vec<Closure>,
     pub(super) description: Arc<Description>,
 }
 

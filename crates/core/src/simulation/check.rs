@@ -61,6 +61,7 @@ impl Simulation {
         check_events(&self.systems, &self.events)?;
         check_seats(&self.events, self.time_step)?;
         check_contacts(&self.contacts)?;
+        self.check_each(|system| system.closed_start().map(|_| ()))?;
         if self.engine.is_some() {
             self.check_engine()?;
         }

@@ -18,6 +18,25 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SimulationError {
+    #[error(
+        "the initial {state} opens the loop '{name}'{by}; correct {it}, or set 'project: true' on the loop to start at \
+         the nearest {state} that closes it",
+        state = if *is_moving { "velocity" } else { "configuration" },
+        by = format_args!(" by {by}"),
+        it = if *is_moving { "the initial joint rates" } else { "the initial joint positions or the poses of the loop" }
+    )]
+    OpenLoop { name: String, by: String, is_moving: bool },
+    #[error(
+        "the initial {state} of the mimic joint '{joint}' differs by {by} from the one that its leader prescribes; correct \
+         it, or leave it out so that the joint follows its leader",
+        state = if *is_moving { "rate" } else { "position" }
+    )]
+    OpenMimic { joint: String, by: String, is_moving: bool },
+    #[error(
+        "the loops cannot all be closed near the initial configuration: {loops}; check the poses and lengths of these \
+         loops, or start closer to a configuration that closes them"
+    )]
+    CannotClose { loops: String },
     #[error("{name} has {got}; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("system '{system}': {source}")]

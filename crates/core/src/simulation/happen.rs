@@ -126,12 +126,13 @@ impl<S: Scalar> RunState<'_, S> {
         t: f64,
     ) -> Result<EventRecord, SimulationError> {
         let [by, of] = frames;
-        if self.connections.connected_to(by.system).contains(&of.system) {
+        let captured = self.connections.connected_to(of.system);
+        let closes_loop = captured.contains(&by.system);
+        if closes_loop && seat.is_some() {
             let name = |place: FrameIndex| self.layout.systems()[place.system].name.clone();
             let (event, first, second) = (self.events.list[number].name.clone(), name(by), name(of));
-            return Err(WorldError::AlreadyConnected { event, time: t, first, second }.into());
+            return Err(WorldError::SeatInLoop { event, time: t, first, second }.into());
         }
-        let captured = self.connections.connected_to(of.system);
         let before = self.snapshots();
         let [pose_by, pose_of] = frames.map(|place| self.pose_and_twist(place, &before).0);
         let rot_by_of = pose_by.rot_wf.transpose() * pose_of.rot_wf;

@@ -10,6 +10,7 @@ mod check_references;
 mod checkpoint;
 mod checkpoint_error;
 mod checkpoint_world;
+mod closed_start;
 mod columns;
 mod common_center;
 mod connections;

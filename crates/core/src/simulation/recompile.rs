@@ -53,14 +53,14 @@ impl<'a, S: Scalar> RunState<'a, S> {
         let mut new = Members::alone(old.places.len());
         for Assembly { model, members, given } in assemblies {
             let tree = self.equations.trees.len();
-            let (moved, state) = match (model, old.unchanged(&members, &given)) {
+            let (moved, state) = match (&model, old.unchanged(model.as_ref(), &members, &given)) {
                 (None, _) => {
                     let Loose { own, state, .. } = old.take(members[0].system);
                     new.places[members[0].system] = Place::Tree(tree);
                     (own, state)
                 }
                 (Some(_), Some(number)) => old.take_tree(number, tree, &mut new),
-                (Some(model), None) => join((model, members, given), (tree, t), &mut old, &mut new),
+                (Some(model), None) => join((model.clone(), members, given), (tree, t), &mut old, &mut new),
             };
             self.equations.trees.push(moved);
             self.state.trees.push(state);
@@ -154,17 +154,20 @@ struct Old<'a, S> {
 }
 
 impl<'a, S: Scalar> Old<'a, S> {
-    /// Returns the number of the tree that has exactly these members and these joints with prescribed motion;
-    /// `None` if no tree does.
-    fn unchanged(&self, members: &[Member], given: &[GivenJoint]) -> Option<usize> {
+    /// Returns the number of the tree that has exactly these members, these joints with prescribed motion and the
+    /// closed loops of `model`; `None` if no tree does.
+    fn unchanged(&self, model: Option<&Model>, members: &[Member], given: &[GivenJoint]) -> Option<usize> {
         let tree = |system: usize| match self.places[system] {
             Place::Part(part) => self.parts[part].as_ref().map(|part| part.tree),
             Place::Tree(_) => None,
         };
         let first = tree(members[0].system)?;
         let is_same = members.iter().all(|member| tree(member.system) == Some(first));
-        let has_given = self.trees[first].as_ref().is_some_and(|tree| tree.modes.given() == given);
-        (is_same && has_given && self.sizes[first] == members.len()).then_some(first)
+        let before = self.trees[first].as_ref()?;
+        let has_given = before.modes.given() == given;
+        let has_loops =
+            model.is_some_and(|model| model.description().loops() == before.model.description().loops());
+        (is_same && has_given && has_loops && self.sizes[first] == members.len()).then_some(first)
     }
 
     /// Returns a tree with several members, which receives the number `to`, and removes it from the old

@@ -97,7 +97,8 @@ impl Shared {
         let layout = Layout::new(systems.iter().map(|system| (&*system.name, &*system.model)));
         let named = systems.iter().map(|system| (&*system.name, &*system.model));
         let connections = Connections::new(named, !events.list.is_empty())?;
-        let starts: Vec<_> = systems.iter().map(|system| [&system.q, &system.v].map(|x| lift(x))).collect();
+        let start = |system: &&mut System| Ok::<_, SimulationError>(system.closed_start()?.map(|x| lift(&x)));
+        let starts = systems.iter().map(start).collect::<Result<Vec<_>, _>>()?;
         let moving_frames = moving_frames_of(numbers, &systems);
         let (mut trees, mut members, mut models) = (Vec::new(), Vec::new(), Vec::new());
         for (number, system) in systems.into_iter().enumerate() {

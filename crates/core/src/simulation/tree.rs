@@ -5,8 +5,8 @@ use super::body_states::LoadedSystem;
 use super::modes::JointModes;
 use super::tree_state::{TreeRate, TreeState};
 use crate::dynamics::{
-    Data, Momentum, base_rotation, center_of_mass, center_of_mass_b, forward_dynamics_recursion, kinematics,
-    kinetic_energy, locked_dynamics_recursion, momentum, projected_base_twist,
+    ClosedLoops, Data, Momentum, base_rotation, center_of_mass, center_of_mass_b, constrained_recursion,
+    kinematics, kinetic_energy, momentum, project_configuration, project_velocity, projected_base_twist,
 };
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Motion, Real, Vec3};
@@ -28,6 +28,8 @@ pub(crate) struct Tree<'a, S> {
     mass: S,
     /// Modes of the joints: whether each of them moves, sticks or rests at a stop.
     pub(crate) modes: JointModes,
+    /// Constraints of the tree; empty without closed loops and mimic joints.
+    pub(super) loops: ClosedLoops<S>,
     /// True if any joint has damping or friction.
     is_lossy: bool,
     /// Joints of each member; empty if the tree has a single member.
@@ -53,6 +55,7 @@ impl<'a, S: Real> Tree<'a, S> {
             frame_velocity: Vec3::zero(),
             mass: S::of(model.mass()),
             modes,
+            loops: ClosedLoops::new(&model, model.closures()),
             shares: Vec::new(),
             is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0),
             model,
@@ -66,8 +69,19 @@ impl<'a, S: Real> Tree<'a, S> {
     /// conserved to rounding, whereas the integrated base twist has a truncation error. In a run with several
     /// trees, the base is also shifted so that the centre of mass is the integral of its velocity `P/m`.
     /// Stages within a step are not projected.
+    ///
+    /// Closed loops are projected first in position and, after the base twist, in velocity.
     pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
+        if !self.loops.is_empty() {
+            self.move_given(state);
+            let Self { model, data, loops, modes, .. } = self;
+            let locked = modes.locked().map(|locked| (locked, &[][..]));
+            project_configuration(model, data, loops, &mut state.q, locked);
+        }
         self.project_twist(state);
+        if !self.loops.is_empty() {
+            self.close_velocity(state);
+        }
         if let Some(center) = state.center {
             let shift = center - center_of_mass(&self.data, &state.q);
             (Vec3::from_slice(&state.q) + shift).write(&mut state.q);
@@ -92,6 +106,28 @@ impl<'a, S: Real> Tree<'a, S> {
                 data.bodies.iter_mut().for_each(|body| body.velocity += correction.referred_to(body.pos_b));
             },
         );
+    }
+
+    /// Projects the velocity of `state` onto the closed loops, which does not change the momentum. Computes the
+    /// kinematics. Requires the articulated-body inertias of [`project_configuration`].
+    fn close_velocity(&mut self, state: &mut TreeState<S>) {
+        // relative to the base's origin, as in `project_twist`
+        let frame_velocity = Vec3::from_slice(&state.v);
+        Vec3::zero().write(&mut state.v);
+        self.update_kinematics(state);
+        let Self { model, data, loops, modes, .. } = self;
+        let locked = modes.locked().map(|locked| (locked, &[][..]));
+        project_velocity(model, data, loops, &mut state.v, locked);
+        (Vec3::from_slice(&state.v) + frame_velocity).write(&mut state.v);
+        self.update_kinematics(state);
+    }
+
+    /// Computes the accelerations `a`, `(nv,)`, at the velocity `v` under the generalized forces in `forces`, with
+    /// the present modes of the joints and the constraints of closed loops.
+    pub(super) fn accelerate(&mut self, v: &[S], a: &mut [S]) {
+        let Self { model, data, loops, forces, modes, .. } = self;
+        let locked = modes.locked().map(|locked| (locked, modes.accelerations()));
+        constrained_recursion(model, data, loops, (v, forces), locked, a);
     }
 
     /// Writes the positions and rates of the joints with prescribed motion to `state`.
@@ -178,16 +214,11 @@ impl<'a, S: Real> Tree<'a, S> {
             self.modes.accelerate_given(clock.lane(0));
         }
         self.update_joint_forces(v);
+        self.accelerate(v, &mut rate.a);
         let Self { model, data, forces, modes, frame_velocity, is_lossy, shares, mass, .. } = self;
         let loaded = if is_loaded { model.nodes().len() } else { 0 };
-        match modes.locked() {
-            Some(locked) => {
-                locked_dynamics_recursion(model, data, v, forces, locked, modes.accelerations(), &mut rate.a);
-                for joint in modes.given().iter().map(|given| given.joint) {
-                    forces[BASE_NV + joint] = data.bodies[joint + 1].holding_torque; // its power is work
-                }
-            }
-            None => forward_dynamics_recursion(model, data, v, forces, &mut rate.a),
+        for joint in modes.given().iter().map(|given| given.joint) {
+            forces[BASE_NV + joint] = data.bodies[joint + 1].holding_torque; // its power is work
         }
         rate.v.copy_from_slice(v);
         if state.center.is_some() {

@@ -122,6 +122,18 @@ pub struct InverseArticulated<S> {
     angular: Sym3<S>,
 }
 
+impl<S> InverseArticulated<S> {
+    /// Returns the factors with `f` applied to each entry.
+    #[inline(always)]
+    pub fn map<T>(&self, f: impl Fn(&S) -> T) -> InverseArticulated<T> {
+        InverseArticulated {
+            linear: self.linear.map(&f),
+            a_inv_h: self.a_inv_h.map(&f),
+            angular: self.angular.map(&f),
+        }
+    }
+}
+
 impl<S: Real> InverseArticulated<S> {
     /// Returns `IA⁻¹ f`: `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − (A⁻¹ H)ᵀ f)`, `v = A⁻¹ f − A⁻¹ H ω`.
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::cpu_features::has_fma;
 use super::lanes::Lanes4;
-use super::scalar::{Real, Scalar};
+use super::scalar::{ColumnKernel, Real, Scalar};
 use super::sine::{FAST_SINE_LIMIT, sin_cos};
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -131,6 +131,13 @@ impl Real for Fused {
     #[inline(always)]
     fn any(mask: bool) -> bool {
         mask
+    }
+    #[inline(always)]
+    fn solve_columns(kernel: impl ColumnKernel<Self>) {
+        kernel.run(
+            #[inline(always)]
+            |x: Self| Lanes4::of(x.0),
+        );
     }
     #[inline(always)]
     fn enter<R>(kernel: impl FnOnce() -> R) -> R {

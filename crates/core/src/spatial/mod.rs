@@ -34,7 +34,7 @@ pub use mat3::{Mat3, pose_rows};
 pub use motion::{Force, Motion};
 pub use rotation::{Quat, dexp_inv, dexp_inv_exact, exp_so3, log_rotation, log_so3};
 pub use rotation_spline::RotationSpline;
-pub use scalar::{Real, Scalar};
+pub use scalar::{ColumnKernel, Real, Scalar};
 pub use solve::{cholesky_factor, cholesky_solve, dot};
 pub(crate) use spline::KnotInterval;
 pub use spline::{Ends, Spline, SplineError};

@@ -26,6 +26,14 @@ pub struct Force<S> {
 
 macro_rules! pair {
     ($name:ident) => {
+        impl<S> $name<S> {
+            /// Returns the vector with `f` applied to each component.
+            #[inline(always)]
+            pub fn map<T>(&self, f: impl Fn(&S) -> T) -> $name<T> {
+                $name { linear: self.linear.map(&f), angular: self.angular.map(&f) }
+            }
+        }
+
         impl<S: Real> $name<S> {
             /// Creates the vector from its linear and angular parts.
             #[inline(always)]

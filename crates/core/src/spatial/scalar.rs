@@ -96,11 +96,27 @@ pub trait Real:
     /// Returns true if the mask is true in any lane; used to skip computations that no lane needs.
     fn any(mask: Self::Mask) -> bool;
 
+    /// Runs `kernel` with the scalar in which several right-hand sides of the same equations are computed at
+    /// once: lanes for a single state, and the scalar itself, with one right-hand side at a time, otherwise.
+    #[inline(always)]
+    fn solve_columns(kernel: impl ColumnKernel<Self>) {
+        kernel.run(
+            #[inline(always)]
+            |x| x,
+        );
+    }
+
     /// Runs `kernel`, compiled for the instruction set of this scalar.
     ///
     /// The closure and all functions that it calls must be `#[inline(always)]`: code that is not inlined is
     /// compiled for the baseline instruction set and is slow.
     fn enter<R>(kernel: impl FnOnce() -> R) -> R;
+}
+
+/// Computation with several right-hand sides, one in each lane of `R`, for equations with coefficients in `S`.
+pub trait ColumnKernel<S> {
+    /// Runs the computation; `lift` returns a coefficient in every lane.
+    fn run<R: Real>(self, lift: impl Fn(S) -> R + Copy);
 }
 
 /// Implements [`Real::gather`] for any number of lanes and any row length.

@@ -3,9 +3,10 @@
 
 use super::event::{FrameIndex, Seating, Weld};
 use super::seating::{Chain, GivenJoint};
-use crate::model::{Model, ModelError, Mount};
+use crate::model::{Loop, LoopKind, Model, ModelError, Mount};
 use crate::reference::TimeLaw;
 use crate::spatial::{Mat3, Quat, Vec3};
+use nalgebra::Isometry3;
 
 /// Tree built from one system, or from several systems that welds connect.
 #[derive(Clone, Debug)]
@@ -52,7 +53,8 @@ pub fn assemble(models: &[Model], welds: &[Weld], roots: &[usize]) -> Result<Vec
     let mut assemblies = Vec::new();
     for root in roots.iter().copied().chain(0..models.len()) {
         if !is_placed[root] {
-            let tree = GrowingTree::from_root(root, models, welds)?;
+            let mut tree = GrowingTree::from_root(root, models, welds)?;
+            tree.close_loops(welds)?;
             tree.order.iter().for_each(|&system| is_placed[system] = true);
             assemblies.push(tree.finish()?);
         }
@@ -67,6 +69,8 @@ struct GrowingTree<'m> {
     model: Option<Model>,
     /// Systems of the tree, the root first.
     order: Vec<usize>,
+    /// Numbers of the captures whose welds connect the systems of the tree; the other welds close loops.
+    joined_by: Vec<usize>,
     /// For each joint that a seating motion moves: its name, its travel, rad (m), and the seating motion.
     moving: Vec<(String, f64, Seating)>,
 }
@@ -74,7 +78,8 @@ struct GrowingTree<'m> {
 impl<'m> GrowingTree<'m> {
     /// Creates the tree of all systems that `welds` connect to a root, in breadth-first order.
     fn from_root(root: usize, models: &'m [Model], welds: &[Weld]) -> Result<Self, ModelError> {
-        let mut tree = Self { models, model: None, order: vec![root], moving: Vec::new() };
+        let mut tree =
+            Self { models, model: None, order: vec![root], joined_by: Vec::new(), moving: Vec::new() };
         let mut next = 0;
         while let Some(&system) = tree.order.get(next) {
             next += 1;
@@ -103,6 +108,37 @@ impl<'m> GrowingTree<'m> {
         let model = self.tree().attach(name(near), &self.models[far.system], &mount)?;
         self.model = Some(model);
         self.order.push(far.system);
+        self.joined_by.push(weld.capture);
+        Ok(())
+    }
+
+    /// Closes the loops of those welds that connect two systems of the tree a second time.
+    fn close_loops(&mut self, welds: &[Weld]) -> Result<(), ModelError> {
+        let is_closing = |weld: &&Weld| {
+            let are_here = [weld.by, weld.of].iter().all(|place| self.order.contains(&place.system));
+            are_here && !self.joined_by.contains(&weld.capture)
+        };
+        let name = |place: FrameIndex| self.models[place.system].frames()[place.frame].name.clone();
+        let closing = welds.iter().filter(is_closing).map(|weld| Loop {
+            name: weld.loop_name(),
+            kind: LoopKind::Weld,
+            frames: [name(weld.by), name(weld.of)],
+            poses: [weld.pose.isometry(), Isometry3::identity()],
+            length: None,
+            project: false,
+        });
+        let tree = self.tree();
+        let body = |frame: &String| Ok(tree.frames()[tree.frame(frame)?].body);
+        let mut loops = Vec::new();
+        for closing in closing {
+            // frames of one body are already connected rigidly
+            if body(&closing.frames[0])? != body(&closing.frames[1])? {
+                loops.push(closing);
+            }
+        }
+        if !loops.is_empty() {
+            self.model = Some(tree.closed(&loops)?);
+        }
         Ok(())
     }
 

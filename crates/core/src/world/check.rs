@@ -2,7 +2,6 @@
 
 use super::error::WorldError;
 use super::event::{Action, Event, FrameIndex, RigidPose, Seat, When};
-use super::groups::Union;
 use super::system::System;
 use crate::model::{Model, Mount};
 use crate::reference::TimeLaw;
@@ -49,8 +48,8 @@ pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
 ///
 /// # Errors
 /// [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a
-/// capture within one system, captures that would close a loop or produce an invalid tree, numbers outside
-/// their range, or events that wait for each other.
+/// capture within one system or one that would produce an invalid tree, numbers outside their range, or events that
+/// wait for each other.
 pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldError> {
     for (i, event) in events.iter().enumerate() {
         if events[..i].iter().any(|before| before.name == event.name) {
@@ -60,8 +59,6 @@ pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldErr
         check_when(events, event)?;
     }
     check_circles(events)?;
-    check_loops(systems.len(), events)?;
-    check_timed_loops(systems.len(), events)?;
     events.iter().try_for_each(|event| check_merged(systems, event))
 }
 
@@ -193,68 +190,4 @@ fn check_circles(events: &[Event]) -> Result<(), WorldError> {
         }
     }
     Ok(())
-}
-
-/// Checks that captures that are never released do not connect the same systems twice.
-fn check_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
-    let (mut union, mut names) = (Union::new(systems), Vec::new());
-    for (number, event) in events.iter().enumerate() {
-        let Action::Capture { by, of, .. } = event.action else { continue };
-        if releases_of(events, number).next().is_some() {
-            continue;
-        }
-        names.push(event.name.as_str());
-        if !union.join(by.system, of.system) {
-            return Err(WorldError::Loop { names: names.join(", ") });
-        }
-    }
-    Ok(())
-}
-
-/// Checks that captures whose times are known before the run do not connect systems that are already
-/// connected at that time. Captures that may be released by an event at an unknown time are not considered.
-fn check_timed_loops(systems: usize, events: &[Event]) -> Result<(), WorldError> {
-    let mut due: Vec<Option<f64>> = events.iter().map(|event| event.when.time()).collect();
-    let mut order = Vec::new();
-    let first = |due: &[Option<f64>]| {
-        let known = due.iter().enumerate().filter_map(|(number, t)| Some((number, (*t)?)));
-        known.min_by(|(_, a), (_, b)| a.total_cmp(b))
-    };
-    while let Some((number, t)) = first(&due) {
-        due[number] = None;
-        order.push(number);
-        for (other, event) in events.iter().enumerate() {
-            if let When::After { event, delay } = event.when
-                && event == number
-            {
-                due[other] = Some(t + delay);
-            }
-        }
-    }
-    let is_certain = |capture| releases_of(events, capture).all(|number| order.contains(&number));
-    let mut active: Vec<usize> = Vec::new();
-    for &number in &order {
-        match events[number].action {
-            Action::Release { capture, .. } => active.retain(|other| *other != capture),
-            Action::Capture { .. } => {
-                active.push(number);
-                let (mut union, mut names) = (Union::new(systems), Vec::new());
-                for &capture in active.iter().filter(|&&capture| capture == number || is_certain(capture)) {
-                    let Action::Capture { by, of, .. } = events[capture].action else { continue };
-                    names.push(events[capture].name.as_str());
-                    if !union.join(by.system, of.system) {
-                        return Err(WorldError::Loop { names: names.join(", ") });
-                    }
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Returns the numbers of the events that release a capture.
-fn releases_of(events: &[Event], capture: usize) -> impl Iterator<Item = usize> {
-    let releases =
-        move |event: &Event| matches!(event.action, Action::Release { capture: of, .. } if of == capture);
-    events.iter().enumerate().filter(move |(_, event)| releases(event)).map(|(number, _)| number)
 }

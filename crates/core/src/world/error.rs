@@ -60,16 +60,11 @@ pub enum WorldError {
     #[error("the event '{event}' has a latch, but only a capture can have one; use at, after or on_command")]
     LatchWithoutCapture { event: String },
     #[error(
-        "the captures {names} would connect the same systems twice, but closed loops are not supported yet; release one of \
-         the captures first"
-    )]
-    Loop { names: String },
-    #[error(
-        "at t = {time} s the event '{event}' would connect '{first}' and '{second}', which are already connected, but \
-         closed loops are not supported yet; release the earlier capture first",
+        "at t = {time} s the event '{event}' connects '{first}' and '{second}', which are already connected; such a \
+         capture closes a loop and cannot seat its frames; remove its 'seat', or release the earlier capture first",
         time = short(*time)
     )]
-    AlreadyConnected { event: String, time: f64, first: String, second: String },
+    SeatInLoop { event: String, time: f64, first: String, second: String },
     #[error("the world has no event '{name}'; {known}")]
     NoSuchEvent { name: String, known: String },
     #[error("the event '{name}' cannot be triggered, because {reason}")]

@@ -3,8 +3,8 @@
 
 use super::assembly::Member;
 use crate::dynamics::{
-    Data, FrameWrench, apply_external, base_rotation, forward_dynamics_recursion, kinematics,
-    locked_dynamics_recursion, positions,
+    ClosedLoops, Data, FrameWrench, apply_external, base_rotation, constrained_recursion, kinematics,
+    positions,
 };
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Vec3};
@@ -27,9 +27,9 @@ pub struct Moving<'a> {
 ///
 /// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
 /// of the tree equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By
-/// Gauss's principle, `v⁺` is the motion of the tree that is closest to the previous motion in the metric of
-/// the kinetic energy. With `Λ = (J M⁻¹ Jᵀ)⁻¹` of the relative twist `J v` at the connection, the result
-/// equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻`.
+/// Gauss's principle, `v⁺` is the motion that the tree and its closed loops permit and that is closest to the
+/// previous motion in the metric of the kinetic energy. Without closed loops, with `Λ = (J M⁻¹ Jᵀ)⁻¹` of the
+/// relative twist `J v` at the connection, the result equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻`.
 pub fn connected_velocity(
     tree: &Model,
     q: &[f64],
@@ -62,10 +62,9 @@ pub fn connected_velocity(
     let (at_rest, mut v) = (vec![0.0; tree.nv()], vec![0.0; tree.nv()]);
     let (mut locked, mut rates) = (vec![false; tree.joint_count()], vec![0.0; tree.joint_count()]);
     given.iter().for_each(|&(joint, rate)| (locked[joint], rates[joint]) = (true, rate));
-    match given {
-        [] => forward_dynamics_recursion(tree, &mut data, &at_rest, &momentum, &mut v),
-        _ => locked_dynamics_recursion(tree, &mut data, &at_rest, &momentum, &locked, &rates, &mut v),
-    }
+    let locked = (!given.is_empty()).then_some((&locked[..], &rates[..]));
+    let mut loops = ClosedLoops::new(tree, tree.closures());
+    constrained_recursion(tree, &mut data, &mut loops, (&at_rest, &momentum), locked, &mut v);
     (Vec3::from_slice(&v) + rot_bw * common).write(&mut v);
     v
 }
@@ -86,9 +85,8 @@ pub fn impulse_response(
     apply_external(model, &mut data, &[FrameWrench { frame, wrench: impulse }]);
     let mut locked = vec![false; model.joint_count()];
     given.iter().for_each(|&joint| locked[joint] = true);
-    match given {
-        [] => forward_dynamics_recursion(model, &mut data, &at_rest, &at_rest, &mut change),
-        _ => locked_dynamics_recursion(model, &mut data, &at_rest, &at_rest, &locked, &[], &mut change),
-    }
+    let locked = (!given.is_empty()).then_some((&locked[..], &[][..]));
+    let mut loops = ClosedLoops::new(model, model.closures());
+    constrained_recursion(model, &mut data, &mut loops, (&at_rest, &at_rest), locked, &mut change);
     change
 }

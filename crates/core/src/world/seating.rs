@@ -54,6 +54,11 @@ pub(super) struct Chain {
 }
 
 impl Weld {
+    /// Returns the name of the loop that the weld closes if other welds already connect its systems.
+    pub fn loop_name(&self) -> String {
+        format!("capture {}", self.capture)
+    }
+
     /// Returns the time at which the captured frame will reach its nominal pose, s; `None` if the frame has
     /// no seating motion.
     pub fn seated_at(&self) -> Option<f64> {

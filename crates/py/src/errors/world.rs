@@ -13,7 +13,7 @@ impl IntoPython for WorldError {
                 name.clone()
             }
             Self::NoSuchEvent { name, .. } | Self::NotTriggered { name, .. } => name.clone(),
-            Self::Circle { names } | Self::Loop { names } => names.clone(),
+            Self::Circle { names } => names.clone(),
             Self::OwnSystem { event, .. }
             | Self::AfterItself { event }
             | Self::UnknownSystem { event, .. }
@@ -22,7 +22,7 @@ impl IntoPython for WorldError {
             | Self::Merged { event, .. }
             | Self::Number { event, .. }
             | Self::LatchWithoutCapture { event }
-            | Self::AlreadyConnected { event, .. } => event.clone(),
+            | Self::SeatInLoop { event, .. } => event.clone(),
             Self::OwnReferenceFrame { system } | Self::ReferenceFrame { system, .. } => system.clone(),
         };
         raise(py, "WorldError", &message, &fields!(py, "name": name))

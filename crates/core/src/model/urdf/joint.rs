@@ -5,10 +5,10 @@ use super::error::UrdfError;
 use super::joint_element::JointElement;
 use super::multi_dof::{MultiDof, split};
 use super::pose::pose;
-use crate::model::{Joint, JointKind, Limits, ModelWarning};
+use crate::model::{Joint, JointKind, Limits, Mimic, ModelWarning};
 use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
-use urdf_rs::{JointLimit, JointType};
+use urdf_rs::{JointLimit, JointType, Mimic as MimicOf};
 
 /// Reads the axis, limits and friction of a joint. A joint with several degrees of freedom becomes a chain of
 /// joints with one degree of freedom each. `is_taken` returns true for names that already occur in the file.
@@ -45,9 +45,11 @@ pub(super) fn read_joints(
             None => dynamics.number("rotor_inertia")?.unwrap_or(0.0),
         };
     }
-    if let Some(mimic) = element.child("mimic") {
-        warnings.push(ModelWarning::Note(mimic_note(joint.name, mimic)));
-    }
+    result.mimic = read.mimic.map(|MimicOf { joint: leader, multiplier, offset }| Mimic {
+        leader,
+        ratio: multiplier.unwrap_or(1.0),
+        offset: offset.unwrap_or(0.0),
+    });
     Ok(vec![result])
 }
 
@@ -59,17 +61,6 @@ fn unread(kind: &str) -> &'static [&'static str] {
         "fixed" | "ball" | "spherical" | "floating" => &["axis", "limit", "dynamics"],
         _ => &[],
     }
-}
-
-/// Returns the warning for a mimic joint.
-fn mimic_note(name: &str, mimic: Element<'_>) -> String {
-    let leader = mimic.text("joint").unwrap_or("?");
-    let factor = mimic.text("multiplier").unwrap_or("1");
-    let offset = mimic.text("offset").unwrap_or("0");
-    format!(
-        "joint '{name}' mimics joint '{leader}' ({name} = {factor} {leader} + {offset}): mimic joints are \
-         not supported, so '{name}' is loaded as an independent joint; give both consistent initial positions and control both, or make '{name}' fixed"
-    )
 }
 
 /// Converts limits of urdf-rs, in which infinity means no limit. `bounds` is the element with the position

@@ -1,6 +1,6 @@
 //! Impacts of joints on the stops at their position limits.
 
-use crate::dynamics::{kinetic_energy, locked_dynamics_recursion};
+use crate::dynamics::{constrained_recursion, kinetic_energy};
 use crate::model::{BASE_NQ, BASE_NV};
 use crate::simulation::tree::Tree;
 use crate::simulation::tree_state::TreeState;
@@ -64,15 +64,16 @@ impl<S: Real> Tree<'_, S> {
         let at_rest = vec![S::of(0.0); BASE_NV + n]; // impacts are rare, so an allocation is acceptable
         let mut impulse = at_rest.clone();
         impulse[BASE_NV + j] = S::of(sign);
-        let stop = |i: usize| self.modes.stop(i, state.q[BASE_NQ + i].lane(0));
+        let Self { model, data, loops, modes, .. } = self;
+        let stop = |i: usize| modes.stop(i, state.q[BASE_NQ + i].lane(0));
         let rests_at_stop = |i: usize| stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0;
         let mut locked: Vec<bool> =
-            (0..n).map(|i| i != j && (self.modes.is_given(i) || rests_at_stop(i))).collect();
+            (0..n).map(|i| i != j && (modes.is_given(i) || rests_at_stop(i))).collect();
         for _ in 0..=n {
-            locked_dynamics_recursion(&self.model, &mut self.data, &at_rest, &impulse, &locked, &[], &mut a);
+            let held = Some((&locked[..], &[][..]));
+            constrained_recursion(model, data, loops, (&at_rest, &impulse), held, &mut a);
             // a stop can only push, so a joint on which the stop would have to pull is released
-            let pulls =
-                |i: &usize| locked[*i] && self.data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;
+            let pulls = |i: &usize| locked[*i] && data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;
             let Some(i) = (0..n).find(pulls) else { break };
             locked[i] = false;
         }

@@ -1,6 +1,6 @@
 //! Determination of the joints with static friction that slip and of those that stick.
 
-use crate::dynamics::locked_dynamics_recursion;
+use crate::dynamics::constrained_recursion;
 use crate::model::{Axis, BASE_NQ, BASE_NV};
 use crate::simulation::tree::Tree;
 use crate::spatial::{Force, Motion, Real};
@@ -31,16 +31,9 @@ impl<S: Real> Tree<'_, S> {
         let (n, mut a) = (self.model.joint_count(), std::mem::take(&mut self.scratch));
         for pass in 0..4 * n + 8 {
             self.update_joint_forces(v);
-            let Self { model, data, modes, forces, .. } = self;
-            locked_dynamics_recursion(
-                model,
-                data,
-                v,
-                forces,
-                modes.is_locked_each(),
-                modes.accelerations(),
-                &mut a,
-            );
+            let Self { model, data, loops, modes, forces, .. } = self;
+            let locked = Some((modes.is_locked_each(), modes.accelerations()));
+            constrained_recursion(model, data, loops, (v, forces), locked, &mut a);
             let mut has_changed = false;
             for j in 0..n {
                 let change = self.mode_change(j, q, v, &a);
@@ -99,9 +92,8 @@ impl<S: Real> Tree<'_, S> {
     pub(super) fn least_stick_margin(&mut self, q: &[S], v: &[S]) -> f64 {
         self.update_joint_forces(v);
         let mut a = std::mem::take(&mut self.scratch);
-        let Self { model, data, modes, forces, .. } = self;
-        if let Some(locked) = modes.locked() {
-            locked_dynamics_recursion(model, data, v, forces, locked, modes.accelerations(), &mut a);
+        if self.modes.locked().is_some() {
+            self.accelerate(v, &mut a);
         }
         self.scratch = a;
         let locked = (0..self.model.joint_count()).filter(|&j| self.modes.is_locked(j));

@@ -1,0 +1,136 @@
+//! Forward dynamics with closed loops.
+
+use super::{ClosedLoops, constraint_force, dense_response, response, rows};
+use crate::dynamics::aba::{forward_dynamics_recursion, locked_dynamics_recursion};
+use crate::dynamics::data::Data;
+use crate::dynamics::external::{FrameWrench, apply_external};
+use crate::dynamics::kinematics::kinematics;
+use crate::dynamics::momentum::composite_momentum;
+use crate::model::Model;
+use crate::spatial::{Motion, Real};
+
+/// Joints that are locked, `(n,)`, and their given accelerations, `(n,)`, or an empty slice if these are zero.
+pub(crate) type Locked<'a> = Option<(&'a [bool], &'a [f64])>;
+
+/// Computes the acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F + Jᵀ λ)` under the constraints `J a + J̇ v = 0` of `loops`.
+/// The constraint forces are then [`ClosedLoops::forces`]. Returns the rank of `J`, the number of independent
+/// constraints.
+///
+/// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes, N and N m. The
+/// velocity must satisfy the constraints.
+///
+/// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 8.3.
+pub fn constrained_forward_dynamics<S: Real>(
+    (model, data, loops): (&Model, &mut Data<S>, &mut ClosedLoops<S>),
+    q: &[S],
+    v: &[S],
+    tau: &[S],
+    external: &[FrameWrench<S>],
+    a: &mut [S],
+) -> S {
+    kinematics(model, data, q, v);
+    apply_external(model, data, external);
+    constrained_recursion(model, data, loops, (v, tau), None, a)
+}
+
+/// Computes [`constrained_forward_dynamics`] with the external wrenches stored in `data` and with locked joints.
+/// Requires up-to-date [`kinematics`] in `data`. The holding torques of locked joints are stored in `data`.
+pub(crate) fn constrained_recursion<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    loops: &mut ClosedLoops<S>,
+    (v, tau): (&[S], &[S]),
+    locked: Locked<'_>,
+    a: &mut [S],
+) -> S {
+    match locked {
+        Some((locked, given)) => locked_dynamics_recursion(model, data, v, tau, locked, given, a),
+        None => forward_dynamics_recursion(model, data, v, tau, a),
+    }
+    if loops.is_empty() {
+        return S::of(0.0);
+    }
+    let locked = locked.map(|(locked, _)| locked);
+    let rank = S::enter(
+        #[inline(always)]
+        || {
+            loops.update_rows(data);
+            loops.constraint_accelerations(data, a);
+            loops.solve(model, data, locked)
+        },
+    );
+    loops.respond(model, data, (v, tau, locked), a);
+    rank
+}
+
+impl<S: Real> ClosedLoops<S> {
+    /// Computes the right-hand sides `−(J a + J̇ v)` from the accelerations in `data` and `a`.
+    #[inline(always)]
+    fn constraint_accelerations(&mut self, data: &Data<S>, a: &[S]) {
+        for (right, row) in self.force.iter_mut().zip(&self.rows) {
+            *right = row.acceleration(data, a);
+        }
+        let mut start = 0;
+        for closure in &self.closures {
+            let range = start..start + closure.rows();
+            start = range.end;
+            rows::add_drift(closure, data, &self.rows[range.clone()], &mut self.force[range]);
+        }
+        for right in &mut self.force {
+            *right = -*right;
+        }
+    }
+
+    /// Solves `A λ = b`, where `force` holds `b` and then `λ`, and returns the rank of `A`. Requires the
+    /// articulated-body inertias, or the factors of `M`, of forward dynamics with the same locked joints in
+    /// `data`.
+    #[inline(always)]
+    pub(super) fn solve(&mut self, model: &Model, data: &Data<S>, locked: Option<&[bool]>) -> S {
+        let Self { rows, force, matrix, supported, scratch, compliance, scale, .. } = self;
+        let base = if model.is_heavy_on_light() {
+            dense_response::jacobian(model, data, rows, &mut scratch.dense);
+            dense_response::inverse_apparent_mass(data, &scratch.dense, locked, model.nv(), matrix);
+            None
+        } else {
+            let base = data.bodies[0].articulated.inverse();
+            let tree = (model.nodes(), &data.bodies[..]);
+            response::inverse_apparent_mass(tree, &base, rows, supported, scratch, matrix);
+            Some(base)
+        };
+        for (compliance, row) in compliance.iter_mut().zip(&*rows) {
+            // Fᵀ I_0⁻¹ F with the force on the second body, about the base origin
+            let force = row.forces[1].from_point(data.bodies[row.bodies[1]].pos_b);
+            let acceleration: Motion<S> = match &base {
+                Some(base) => base.apply(force),
+                None => composite_momentum(data).0.inverse().apply(force),
+            };
+            *compliance = acceleration.dot(force);
+        }
+        constraint_force::solve(matrix, compliance, scale, force)
+    }
+
+    /// Adds the response to the constraint forces to `a` and to the accelerations in `data`.
+    #[inline(always)]
+    pub(super) fn respond(
+        &mut self,
+        model: &Model,
+        data: &mut Data<S>,
+        (v, tau, locked): (&[S], &[S], Option<&[bool]>),
+        a: &mut [S],
+    ) {
+        let Self { rows, force, supported, scratch, .. } = self;
+        if model.is_heavy_on_light() {
+            let jacobian = std::mem::take(&mut scratch.dense);
+            dense_response::add_response(model, data, (&jacobian, force), (v, tau, locked), a);
+            scratch.dense = jacobian;
+            return;
+        }
+        S::enter(
+            #[inline(always)]
+            || {
+                let tree = (model.nodes(), &mut data.bodies[..]);
+                response::add_response(tree, (rows, force), supported, scratch, a);
+            },
+        );
+    }
+}

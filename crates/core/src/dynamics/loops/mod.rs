@@ -1,0 +1,128 @@
+//! Closed kinematic loops and mimic joints as constraints on the motion of a tree.
+//!
+//! The constraints `φ(q) = 0` have the Jacobian `J`. With the constraint forces `λ`, the equations of motion are
+//! `M a + c = τ + Σ Jᵀ F + Jᵀ λ` and `J a + J̇ v = 0`. Hence `A λ = −(J a_free + J̇ v)` with `A = J M⁻¹ Jᵀ`, and `a =
+//! a_free + M⁻¹ Jᵀ λ`. Products with `M⁻¹` use the articulated-body inertias of the preceding forward dynamics.
+
+mod constrained;
+mod constraint_force;
+mod dense_response;
+mod projection;
+mod response;
+mod rows;
+
+pub use constrained::constrained_forward_dynamics;
+pub(crate) use constrained::constrained_recursion;
+pub use projection::{close_loops, closure_errors};
+pub(crate) use projection::{project_configuration, project_velocity};
+
+use crate::dynamics::Data;
+use crate::model::{Closure, Model, Node};
+use crate::spatial::Real;
+use response::Scratch;
+use rows::Row;
+
+/// Constraints of a model with their workspace.
+#[derive(Debug)]
+pub struct ClosedLoops<S> {
+    closures: Vec<Closure>,
+    /// Rows of `J`; those of one closure follow each other.
+    rows: Vec<Row<S>>,
+    /// Right-hand sides, `(m,)`, and then the constraint forces `λ`.
+    force: Vec<S>,
+    /// Constraint error `φ`, `(m,)`, m and rad.
+    error: Vec<S>,
+    /// `A = J M⁻¹ Jᵀ` and then its factors, `(m, m)`.
+    matrix: Vec<S>,
+    /// Compliances of the base under the forces of the rows, and scales of the rows, `(m,)` each.
+    compliance: Vec<S>,
+    scale: Vec<S>,
+    /// Bodies between the base and the bodies of the constraints, without the base, in ascending order.
+    supported: Vec<usize>,
+    scratch: Scratch<S>,
+}
+
+impl<S: Real> ClosedLoops<S> {
+    /// Allocates the workspace for `closures` of `model`.
+    pub fn new(model: &Model, closures: &[Closure]) -> Self {
+        let (m, zero) = (closures.iter().map(Closure::rows).sum::<usize>(), S::of(0.0));
+        let rows: Vec<Row<S>> = closures.iter().flat_map(Row::of).collect();
+        let supported = support(model.nodes(), rows.iter().flat_map(|row| row.bodies));
+        let dense = if model.is_heavy_on_light() { m * model.nv() } else { 0 };
+        Self {
+            closures: closures.to_vec(),
+            force: vec![zero; m],
+            error: vec![zero; m],
+            matrix: vec![zero; m * m],
+            compliance: vec![zero; m],
+            scale: vec![zero; m],
+            scratch: Scratch::new(model.nodes().len(), dense),
+            rows,
+            supported,
+        }
+    }
+
+    /// Returns true if there are no constraints.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    /// Returns the constraints.
+    pub fn closures(&self) -> &[Closure] {
+        &self.closures
+    }
+
+    /// Returns the constraint forces `λ` computed last, `(m,)`, N and N m: for each closure, the force and the
+    /// moment on its second body along the constrained directions of the first frame, or the torque on a mimic
+    /// joint.
+    pub fn forces(&self) -> &[S] {
+        &self.force
+    }
+
+    /// Returns the magnitudes, m and rad (or N and N m for forces), of that part of `x`, `(m,)`, that belongs to a
+    /// closure.
+    pub fn magnitudes(&self, closure: usize, x: &[f64]) -> [f64; 2] {
+        let own = &x[self.range_of(closure)];
+        let mut squares = [0.0; 2];
+        for (x, is_angular) in own.iter().zip(rows::angular_rows(&self.closures[closure])) {
+            squares[usize::from(is_angular)] += x * x;
+        }
+        squares.map(f64::sqrt)
+    }
+
+    /// Returns the rates `J v`, `(m,)`, at a velocity `v`, `(nv,)`, whose kinematics are in `data`.
+    pub fn rates(&mut self, data: &Data<S>, v: &[S]) -> Vec<S> {
+        self.update_rows(data);
+        self.rows.iter().map(|row| row.rate(data, v)).collect()
+    }
+
+    /// Returns the range of the rows of a closure.
+    pub fn range_of(&self, closure: usize) -> std::ops::Range<usize> {
+        let start = self.closures[..closure].iter().map(Closure::rows).sum::<usize>();
+        start..start + self.closures[closure].rows()
+    }
+
+    /// Updates the rows of `J`. Requires up-to-date [`positions`](super::positions) in `data`.
+    #[inline(always)]
+    fn update_rows(&mut self, data: &Data<S>) {
+        let mut start = 0;
+        for closure in &self.closures {
+            let end = start + closure.rows();
+            rows::update(closure, data, &mut self.rows[start..end]);
+            start = end;
+        }
+    }
+}
+
+/// Returns all bodies between the base and `bodies`, without the base, in ascending order.
+fn support(nodes: &[Node], bodies: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut is_supported = vec![false; nodes.len()];
+    for mut body in bodies {
+        while body > 0 {
+            is_supported[body] = true;
+            body = nodes[body].parent;
+        }
+    }
+    (1..nodes.len()).filter(|&body| is_supported[body]).collect()
+}

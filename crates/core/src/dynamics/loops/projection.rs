@@ -1,0 +1,165 @@
+//! Projection of configurations and velocities onto the constraints of closed loops.
+
+use super::constrained::Locked;
+use super::{ClosedLoops, rows};
+use crate::dynamics::aba::{forward_dynamics_recursion, locked_dynamics_recursion};
+use crate::dynamics::data::Data;
+use crate::dynamics::kinematics::{kinematics, positions};
+use crate::model::{Model, integrate};
+use crate::spatial::Real;
+
+/// Constraint error, relative to the distance of the closure from the base plus 1 m, that is treated as rounding
+/// error.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Largest number of Newton steps within a run, where the error is that of one step of the integrator.
+const CORRECTIONS: usize = 3;
+/// Largest number of Newton steps from a configuration given by the user.
+const ATTEMPTS: usize = 50;
+/// Longest Newton step, m and rad, from a configuration given by the user.
+const LONGEST: f64 = 0.5;
+
+impl<S: Real> ClosedLoops<S> {
+    /// Computes the constraint errors `φ(q)`, `(m,)`, m and rad. Requires up-to-date poses in `data`.
+    #[inline(always)]
+    pub(super) fn update_errors(&mut self, data: &Data<S>, q: &[S]) {
+        let mut start = 0;
+        for closure in &self.closures {
+            let end = start + closure.rows();
+            rows::errors(closure, data, q, &mut self.error[start..end]);
+            start = end;
+        }
+    }
+
+    /// Returns the constraint errors `φ` computed last, `(m,)`, m and rad.
+    pub fn errors(&self) -> &[S] {
+        &self.error
+    }
+
+    /// Returns true for each lane in which an error exceeds the rounding errors of the poses in `data`.
+    #[inline(always)]
+    fn is_open(&self, data: &Data<S>) -> S::Mask {
+        let (mut largest, mut reach) = (S::of(0.0), S::of(0.0));
+        for (error, row) in self.error.iter().zip(&self.rows) {
+            largest = S::select(largest.less(error.abs()), error.abs(), largest);
+            for body in row.bodies {
+                let distance = data.bodies[body].pos_b.norm();
+                reach = S::select(reach.less(distance), distance, reach);
+            }
+        }
+        let rounding = (reach + S::of(1.0)) * S::of(ROUNDING);
+        rounding.less(largest)
+    }
+
+    /// Computes the response `δ = −M⁻¹ Jᵀ A⁻¹ x`, `(nv,)`, to the residuals `x`, `(m,)`, with the inertias of
+    /// the last forward dynamics in `data`. Requires up-to-date poses in `data`, whose accelerations change.
+    fn correction(
+        &mut self,
+        model: &Model,
+        data: &mut Data<S>,
+        locked: Locked<'_>,
+        residual: impl Fn(&Self, usize) -> S,
+        delta: &mut [S],
+    ) {
+        delta.fill(S::of(0.0));
+        let locked = locked.map(|(locked, _)| locked);
+        S::enter(
+            #[inline(always)]
+            || {
+                self.update_rows(data);
+                for i in 0..self.force.len() {
+                    self.force[i] = -residual(self, i);
+                }
+                self.solve(model, data, locked)
+            },
+        );
+        let zeros = vec![S::of(0.0); if model.is_heavy_on_light() { model.nv() } else { 0 }];
+        self.respond(model, data, (&zeros, &zeros, locked), delta);
+    }
+}
+
+/// Moves the configuration `q` to the constraints by `δ = −M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ φ` over all coordinates, repeated
+/// until the error is a rounding error. Locked joints do not move. To first order in `φ`, the centre of mass does
+/// not move. Afterwards `data` holds the poses at `q` and the articulated-body inertias near `q`.
+pub(crate) fn project_configuration<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    loops: &mut ClosedLoops<S>,
+    q: &mut [S],
+    locked: Locked<'_>,
+) {
+    let mut delta = vec![S::of(0.0); model.nv()];
+    let mut moved = q.to_vec();
+    factorize(model, data, q, locked, &mut delta);
+    for _ in 0..CORRECTIONS {
+        loops.update_errors(data, q);
+        let is_open = loops.is_open(data);
+        if !S::any(is_open) {
+            break;
+        }
+        loops.correction(model, data, locked, |loops, i| loops.error[i], &mut delta);
+        S::enter(
+            #[inline(always)]
+            || {
+                integrate(q, &delta, &mut moved);
+                // lanes without errors keep their bits
+                for (q, moved) in q.iter_mut().zip(&moved) {
+                    *q = S::select(is_open, *moved, *q);
+                }
+            },
+        );
+        positions(model, data, q);
+    }
+}
+
+/// Changes the velocity `v` by `−M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J v`, which changes no momentum, so that it satisfies the
+/// constraints. Requires the kinematics of `v`, and the results of [`project_configuration`] with the same locked
+/// joints, in `data`.
+pub(crate) fn project_velocity<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    loops: &mut ClosedLoops<S>,
+    v: &mut [S],
+    locked: Locked<'_>,
+) {
+    let mut change = vec![S::of(0.0); v.len()];
+    let rates = loops.rates(data, v);
+    loops.correction(model, data, locked, |_, i| rates[i], &mut change);
+    v.iter_mut().zip(&change).for_each(|(v, change)| *v += *change);
+}
+
+/// Computes the articulated-body inertias, or the factors of `M`, at `q`.
+fn factorize<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], locked: Locked<'_>, scratch: &mut [S]) {
+    let zeros = vec![S::of(0.0); model.nv()];
+    kinematics(model, data, q, &zeros);
+    match locked {
+        Some((locked, _)) => locked_dynamics_recursion(model, data, &zeros, &zeros, locked, &[], scratch),
+        None => forward_dynamics_recursion(model, data, &zeros, &zeros, scratch),
+    }
+}
+
+/// Computes the constraint errors of `loops` at `q`, which are then [`ClosedLoops::errors`].
+pub fn closure_errors<S: Real>(model: &Model, data: &mut Data<S>, loops: &mut ClosedLoops<S>, q: &[S]) {
+    positions(model, data, q);
+    loops.update_errors(data, q);
+}
+
+/// Moves the configuration `q`, `(nq,)`, to the nearest one that satisfies the constraints of `loops`, by Newton's
+/// method in the metric of the kinetic energy. If there is none nearby, [`ClosedLoops::errors`] are not small
+/// afterwards.
+pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) {
+    let (mut delta, mut moved) = (vec![0.0; model.nv()], q.to_vec());
+    for _ in 0..ATTEMPTS {
+        factorize(model, data, q, None, &mut delta);
+        loops.update_errors(data, q);
+        if !loops.is_open(data) {
+            return;
+        }
+        loops.correction(model, data, None, |loops, i| loops.error[i], &mut delta);
+        let longest = delta.iter().fold(0.0_f64, |longest, x| longest.max(x.abs()));
+        let share = if longest > LONGEST { LONGEST / longest } else { 1.0 };
+        delta.iter_mut().for_each(|x| *x *= share);
+        integrate(q, &delta, &mut moved);
+        q.copy_from_slice(&moved);
+    }
+    closure_errors(model, data, loops, q);
+}

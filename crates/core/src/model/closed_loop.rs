@@ -1,0 +1,119 @@
+//! Closed loops of a robot: joints that close kinematic loops, and joints that mimic other joints.
+
+use super::builder::ModelBuilder;
+use super::error::ModelError;
+use super::lookup::find;
+use super::tree::Model;
+use nalgebra::Isometry3;
+
+/// Shortest accepted length of a loop of kind [`LoopKind::Distance`], m; the direction between two origins
+/// that coincide is undefined.
+pub(super) const SHORTEST: f64 = 1e-6;
+
+/// Joint between two frames of a robot that closes a kinematic loop. The joint is a constraint; the tree of
+/// the robot does not contain it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loop {
+    /// Name, unique among the loops of the robot.
+    pub name: String,
+    /// Kind of the joint.
+    pub kind: LoopKind,
+    /// Names of the two frames that the joint connects.
+    pub frames: [String; 2],
+    /// Poses of the joint in these frames. The axis of the joint is z.
+    pub poses: [Isometry3<f64>; 2],
+    /// Distance of the two origins for [`LoopKind::Distance`], m; `None` means the distance at which all
+    /// joint positions are zero. Other kinds ignore it.
+    pub length: Option<f64>,
+    /// True if the start of a simulation is moved to the nearest configuration that closes the loop. If false,
+    /// a start that does not close the loop is an error.
+    pub project: bool,
+}
+
+/// Kind of a joint that closes a loop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopKind {
+    /// No relative motion: six constraints.
+    Weld,
+    /// Rotation about the common z axis: five constraints.
+    Revolute,
+    /// Rotation about the common origin: three constraints.
+    Spherical,
+    /// Translation along the common z axis: five constraints.
+    Prismatic,
+    /// Constant distance of the two origins: one constraint.
+    Distance,
+}
+
+/// Coupling of a joint to another joint, its leader: `q = ratio · q_leader + offset`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mimic {
+    /// Name of the leader.
+    pub leader: String,
+    /// Ratio of the two rates.
+    pub ratio: f64,
+    /// Position of the joint while its leader is at zero, rad (m).
+    pub offset: f64,
+}
+
+impl LoopKind {
+    /// Returns the number of scalar constraints.
+    pub fn rows(self) -> usize {
+        match self {
+            Self::Weld => 6,
+            Self::Revolute | Self::Prismatic => 5,
+            Self::Spherical => 3,
+            Self::Distance => 1,
+        }
+    }
+}
+
+impl ModelBuilder {
+    /// Closes a loop between two frames that were added before.
+    ///
+    /// # Errors
+    /// [`ModelError`] for an unknown frame, a loop of a frame with itself, a name that another loop has, or
+    /// numbers that are not finite.
+    pub fn close(&mut self, closing: Loop) -> Result<&mut Self, ModelError> {
+        let names = self.description.links.iter().map(|link| link.name.as_str());
+        let names = names.chain(self.description.frames.iter().map(|(name, ..)| name.as_str()));
+        for frame in &closing.frames {
+            find("frame", frame, names.clone())?;
+        }
+        let name = || closing.name.clone();
+        if closing.name.is_empty() {
+            return Err(ModelError::EmptyName { what: "loop" });
+        }
+        if self.description.loops.iter().any(|other| other.name == closing.name) {
+            return Err(ModelError::DuplicateName { what: "loop", name: name() });
+        }
+        if closing.frames[0] == closing.frames[1] {
+            return Err(ModelError::LoopWithItself { name: name(), frame: closing.frames[0].clone() });
+        }
+        let are_finite = |pose: &Isometry3<f64>| pose.to_homogeneous().iter().all(|x| x.is_finite());
+        if !closing.poses.iter().all(are_finite) {
+            return Err(ModelError::NotFinite { what: "a pose", name: name() });
+        }
+        if let Some(length) = closing.length.filter(|length| !(SHORTEST..1e12).contains(length)) {
+            let expected = "1e-6 m to 1e12 m; use the kind 'spherical' for a distance of zero";
+            return Err(ModelError::OutOfRange { what: "the length", name: name(), value: length, expected });
+        }
+        self.description.loops.push(closing);
+        Ok(self)
+    }
+}
+
+impl Model {
+    /// Returns this robot with further closed loops.
+    ///
+    /// # Errors
+    /// The errors of [`ModelBuilder::close`] and [`ModelBuilder::build`].
+    pub fn closed(&self, loops: &[Loop]) -> Result<Self, ModelError> {
+        let mut builder = ModelBuilder::from_description(self.description().clone())?;
+        builder.keep_notes(self);
+        for closing in loops {
+            builder.close(closing.clone())?;
+        }
+        builder.build()
+    }
+}

@@ -1,0 +1,92 @@
+//! Start of a system with closed loops and mimic joints.
+
+use super::error::SimulationError;
+use crate::dynamics::{
+    ClosedLoops, Data, close_loops, closure_errors, kinematics, project_configuration, project_velocity,
+};
+use crate::model::{BASE_NQ, BASE_NV, Constraint, Model};
+use crate::number_text::short;
+use crate::world::System;
+
+/// Largest opening of a loop at the start, m and rad, or m/s and rad/s, that is closed without `project`.
+const ACCEPTED: f64 = 1e-6;
+/// Largest opening of a loop, m and rad, that counts as closed.
+const CLOSED: f64 = 1e-11;
+
+impl System {
+    /// Returns the initial configuration and velocity with all loops closed, in the metric of the kinetic energy
+    /// the nearest ones to the given state. Mimic joints that start at zero follow their leaders.
+    ///
+    /// # Errors
+    /// [`SimulationError::OpenLoop`] for a loop without `project`, or a mimic joint, that is open or opens by more
+    /// than 1e-6 m or rad (per second), and [`SimulationError::CannotClose`] for loops that cannot be closed
+    /// together.
+    pub(super) fn closed_start(&self) -> Result<[Vec<f64>; 2], SimulationError> {
+        let (model, mut q, mut v) = (&*self.model, self.q.clone(), self.v.clone());
+        if model.closures().is_empty() {
+            return Ok([q, v]);
+        }
+        follow_leaders(model, &mut q, &mut v);
+        let (mut data, mut loops) = (Data::new(model), ClosedLoops::new(model, model.closures()));
+        closure_errors(model, &mut data, &mut loops, &q);
+        check_open(&loops, loops.errors(), ["m", "rad"])?;
+        close_loops(model, &mut data, &mut loops, &mut q);
+        let is_open = |i: &usize| loops.magnitudes(*i, loops.errors()).iter().any(|error| *error > CLOSED);
+        let open: Vec<usize> = (0..loops.closures().len()).filter(is_open).collect();
+        if !open.is_empty() {
+            let describe = |i: usize| {
+                let open = opening(loops.magnitudes(i, loops.errors()), ["m", "rad"]);
+                format!("'{}' stays open by {open}", loops.closures()[i].name)
+            };
+            let open: Vec<String> = open.into_iter().map(describe).collect();
+            return Err(SimulationError::CannotClose { loops: open.join(", ") });
+        }
+        kinematics(model, &mut data, &q, &v);
+        let rates = loops.rates(&data, &v);
+        check_open(&loops, &rates, ["m/s", "rad/s"])?;
+        project_configuration(model, &mut data, &mut loops, &mut q, None);
+        kinematics(model, &mut data, &q, &v);
+        project_velocity(model, &mut data, &mut loops, &mut v, None);
+        Ok([q, v])
+    }
+}
+
+/// Sets the positions and rates of mimic joints at zero from those of their leaders. A chain of mimic joints needs
+/// several passes.
+fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
+    let [given_q, given_v] = [q.to_vec(), v.to_vec()];
+    for _ in model.closures() {
+        for closure in model.closures() {
+            let Constraint::Mimic { joint, leader, ratio, offset } = closure.constraint else { continue };
+            if given_q[BASE_NQ + joint] == 0.0 {
+                q[BASE_NQ + joint] = ratio * q[BASE_NQ + leader] + offset;
+            }
+            if given_v[BASE_NV + joint] == 0.0 {
+                v[BASE_NV + joint] = ratio * v[BASE_NV + leader];
+            }
+        }
+    }
+}
+
+/// Checks that no closure without `project` is open, or opens, by more than [`ACCEPTED`] in `x`, `(m,)`.
+fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> Result<(), SimulationError> {
+    for (i, closure) in loops.closures().iter().enumerate().filter(|(_, closure)| !closure.project) {
+        let sizes = loops.magnitudes(i, x);
+        if sizes.iter().any(|size| *size > ACCEPTED) {
+            let (name, by) = (closure.name.clone(), opening(sizes, units));
+            let is_moving = units[0] != "m";
+            return Err(match closure.constraint {
+                Constraint::Frames { .. } => SimulationError::OpenLoop { name, by, is_moving },
+                Constraint::Mimic { .. } => SimulationError::OpenMimic { joint: name, by, is_moving },
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Returns a distance and an angle with their units; zeros are left out.
+fn opening(sizes: [f64; 2], units: [&str; 2]) -> String {
+    let parts = sizes.iter().zip(units).filter(|(size, _)| **size > 0.0);
+    let parts: Vec<String> = parts.map(|(size, unit)| format!("{} {unit}", short(*size))).collect();
+    parts.join(" and ")
+}
