@@ -116,7 +116,13 @@ impl Model {
     }
 
     fn compile_mimic(&self, name: &str, mimic: &Mimic) -> Result<Closure, ModelError> {
-        let (joint, leader) = (self.joint(name)?, self.joint(&mimic.leader)?);
+        let joint = self.joint(name)?;
+        let leader = self.joint(&mimic.leader).map_err(|_| ModelError::UnknownLeader {
+            joint: name.to_owned(),
+            leader: mimic.leader.clone(),
+            is_fixed: self.description.joints.iter().any(|(_, joint)| joint.name == mimic.leader),
+            candidates: self.joint_names().map(str::to_owned).collect(),
+        })?;
         let (mut at, mut names) = (mimic, vec![name.to_owned()]);
         while let Some(next) = self.mimic_of(&at.leader) {
             names.push(at.leader.clone());

@@ -61,6 +61,11 @@ pub enum ModelError {
          relative to each other; give frames of two different bodies", a = frames[0], b = frames[1]
     )]
     LoopWithinBody { name: String, frames: [String; 2] },
+    #[error(
+        "joint '{joint}' mimics joint '{leader}', which {reason}",
+        reason = leader_fault(*is_fixed, candidates, leader)
+    )]
+    UnknownLeader { joint: String, leader: String, is_fixed: bool, candidates: Vec<String> },
     #[error("the joints {} mimic each other in a circle; remove the mimic of one of them", names(joints))]
     MimicCircle { joints: Vec<String> },
     #[error("joint '{joint}' has an axis of length zero; specify a nonzero vector")]
@@ -164,6 +169,14 @@ impl ModelError {
             Self::DuplicateName { what, name } => Self::PrefixTaken { what, name, prefix: prefix.to_owned() },
             other => other,
         }
+    }
+}
+
+/// Returns why a joint cannot be mimicked, with advice.
+fn leader_fault(is_fixed: bool, candidates: &[String], leader: &str) -> String {
+    match is_fixed {
+        true => "is fixed; make the mimic joint fixed too, or remove its mimic".to_owned(),
+        false => format!("does not exist{}", nearest(candidates, leader)),
     }
 }
 

@@ -49,6 +49,10 @@ impl SimulationErrorExt for SimulationError {
                 &message,
                 &fields!(py, "name": joint, "got": value, "expected": (lower, upper)),
             ),
+            Self::OpenLoop { name, .. } | Self::OpenMimic { joint: name, .. } => {
+                raise(py, "InputError", &message, &fields!(py, "name": name))
+            }
+            Self::CannotClose { .. } => plain(py, "InputError", &message),
             Self::StepTooSmall { time, step } | Self::StepsTooShort { time, step, .. } => raise(
                 py,
                 "SimulationError",

@@ -38,6 +38,7 @@ pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
             ("effort", Limit, Some("inf")),
         ],
         "dynamics" => &[("damping", Numbers(1), None), ("friction", Numbers(1), None)],
+        "mimic" => &[("joint", Name, None), ("multiplier", Numbers(1), None), ("offset", Numbers(1), None)],
         "mass" => &[("value", Numbers(1), None)],
         "inertia" => &[
             ("ixx", Numbers(1), None),
@@ -60,7 +61,7 @@ pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
 /// Returns the names of the child elements that are read; only the first child of each name is used.
 pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     match tag {
-        "joint" => &["parent", "child", "origin", "axis", "limit", "dynamics"],
+        "joint" => &["parent", "child", "origin", "axis", "limit", "dynamics", "mimic"],
         "inertial" => &["origin", "mass", "inertia"],
         // in some files, collisions have a material
         "visual" | "collision" => &["origin", "geometry", "material"],
