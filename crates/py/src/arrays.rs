@@ -211,7 +211,7 @@ impl<'py> Input<'py> {
     }
 }
 
-/// Reads a vector or matrix of fixed shape with finite entries.
+/// Reads an array of real numbers; another shape than `shape`, or an entry that is not finite, is an error.
 pub(crate) fn fixed<const N: usize>(
     value: &Bound<'_, PyAny>,
     name: &str,
@@ -228,7 +228,7 @@ pub(crate) fn fixed<const N: usize>(
     }
 }
 
-/// Returns an error if any of the numbers is not finite.
+/// Returns an error that quotes the first number that is not finite, if there is one.
 pub(crate) fn finite(py: Python<'_>, name: &str, numbers: &[f64]) -> PyResult<()> {
     let Some(x) = numbers.iter().find(|x| !x.is_finite()) else { return Ok(()) };
     let message = format!("{name} holds {x}; all values must be finite");
@@ -264,7 +264,7 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
 /// Number of elements (8 MiB) up to which an allocation is assumed to succeed.
 const SMALL: usize = 1 << 20;
 
-/// Creates an array of zeros for results of the core.
+/// Creates an array of zeros for results of the core; fails if it does not fit in memory.
 pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let count = shape.iter().try_fold(1_usize, |count, n| count.checked_mul(*n));
     if count.is_some_and(|count| count <= SMALL) {

@@ -15,8 +15,8 @@ use std::time::{Duration, Instant};
 
 /// State of a run from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
 ///
-/// The callback of a run receives checkpoints with the rows since the previous checkpoint. To resume a run,
-/// all rows are needed.
+/// The callback of a run receives checkpoints with the rows since the last one that it accepted. To resume a
+/// run, all rows are needed.
 ///
 /// Parameters
 /// ----------
@@ -143,8 +143,8 @@ pub(crate) fn row_counts(stepper: &Stepper<'_>, systems: usize) -> Vec<usize> {
     (0..systems).map(|system| stepper.rows(system).rows()).collect()
 }
 
-/// Returns the rows of the systems with these names as a dict of columns, starting for each system at its row
-/// in `since`.
+/// Returns the rows of the systems with these names as a dict of columns. The rows of each system start at
+/// its index in `since`, which must be at most its number of rows.
 pub(crate) fn columns_since<'py>(
     py: Python<'py>,
     stepper: &Stepper<'_>,
@@ -183,7 +183,8 @@ pub(crate) fn add_columns(
     Ok(())
 }
 
-/// Creates a checkpoint of a run with its rows; `since` is the index of the first row for each system.
+/// Creates a checkpoint of a run with its rows; `since` contains the index of the first row of each system.
+/// Fails if a controller cannot be saved.
 pub(crate) fn checkpoint_of(
     py: Python<'_>,
     stepper: &Stepper<'_>,

@@ -19,8 +19,9 @@ impl PyStepper {
         self.try_with(tau.py(), |stepper| stepper.command(system, &torques))
     }
 
-    /// Sends a constant command to a control of a system: positions, velocities, accelerations and efforts.
-    /// If `check_only`, the command is checked and not sent.
+    /// Sends a constant command to a control of a system. `values` are the positions (rad or m), their first
+    /// and second derivatives, and the efforts (N m or N), each `None` if it is not commanded. If
+    /// `check_only`, the command is checked and not sent.
     pub(crate) fn send_to(
         &self,
         py: Python<'_>,
@@ -36,8 +37,8 @@ impl PyStepper {
         })
     }
 
-    /// Sends a trajectory to a control: its start, times and positions, and optional velocities and
-    /// accelerations.
+    /// Sends a trajectory to a control: the simulation time of its start (default: the present time), times
+    /// after the start, s, and positions, rad or m, with optional velocities and accelerations.
     pub(crate) fn send_trajectory_to(
         &self,
         py: Python<'_>,
@@ -51,7 +52,8 @@ impl PyStepper {
         self.try_with(py, |stepper| stepper.send(system, control, command))
     }
 
-    /// Applies a wrench at the origin of a frame of a system; the arguments are force, torque and axes.
+    /// Applies a wrench at the origin of a frame of a system: force, N, torque, N m, and their axes,
+    /// `"world"` or `"body"`.
     pub(crate) fn wrench_on(
         &self,
         py: Python<'_>,
@@ -73,7 +75,8 @@ impl PyStepper {
         Ok(names.unbind())
     }
 
-    /// Returns, for each external control of a system, the quantity that its gains can track.
+    /// Returns, for each external control of a system, the quantity that its gains can track: "position",
+    /// "velocity" or, without gains, "effort".
     pub(crate) fn interfaces_of(&self, py: Python<'_>, system: usize) -> PyResult<Py<PyDict>> {
         let interfaces = PyDict::new(py);
         for control in self.with(py, |stepper| stepper.external(system))? {
@@ -88,7 +91,7 @@ impl PyStepper {
     }
 }
 
-/// Reads a constant command to joints: positions, velocities, accelerations and efforts.
+/// Reads a constant command to joints: positions, velocities, accelerations and efforts, each (k,) or `None`.
 fn setpoint(values: [Optional<'_, '_>; 4]) -> PyResult<Setpoint> {
     let read = |value: Optional<'_, '_>, name| value.map(|value| array(value, name, 1)).transpose();
     let [position, velocity, acceleration, effort] = values;
@@ -100,7 +103,8 @@ fn setpoint(values: [Optional<'_, '_>; 4]) -> PyResult<Setpoint> {
     })
 }
 
-/// Reads a motion of joints through points: times, positions, velocities and accelerations.
+/// Reads a motion of joints through points. It starts at simulation time `start`, s; `times`, (K,), are
+/// relative to it, and positions and derivatives are (K, k).
 fn trajectory(
     start: f64,
     times: &Bound<'_, PyAny>,
@@ -139,7 +143,7 @@ fn wrench(
     Ok(WrenchCommand { force: vector(force, "force")?, torque: vector(torque, "torque")?, axes })
 }
 
-/// Reads an array with the given number of axes.
+/// Reads the numbers of an array with one axis (joints, or times) or two (times and joints).
 fn array(value: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<f64>> {
     let input = Input::new(value, name)?;
     if input.shape().len() != axes {

@@ -9,8 +9,9 @@ use onorbit_core::spatial::Vec3;
 use pyo3::prelude::*;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Environment of a run. ``wrenches(t, q, v)`` returns the wrench on each body at a state within the current
-/// step.
+/// Environment of a run. ``wrenches(t, q, v)`` returns an array (bodies, 6) for time ``t``, s, within the
+/// current step: the force through the centre of mass of each body, N, and the torque about it, N m, axes of
+/// W.
 #[pyclass(name = "Wrenches", frozen, module = "onorbit_rs")]
 struct PyWrenches {
     query: Mutex<(EnvironmentQuery, (f64, f64))>,
@@ -60,7 +61,7 @@ fn state<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input
 }
 
 /// Engine of a run that is a Python object with the method `step(start, end, q, v, tau, wrenches)`, or
-/// `step_world` for several systems.
+/// `step_world` for several systems or contacts.
 pub(crate) struct PythonEngine {
     object: Py<PyAny>,
     wrenches: Py<PyWrenches>,
@@ -70,7 +71,8 @@ pub(crate) struct PythonEngine {
 }
 
 impl PythonEngine {
-    /// Wraps the engine of a simulation. All effects of the simulation must have been added before.
+    /// Wraps the engine of a simulation, to which all effects must have been added before. Fails if the
+    /// engine lacks `step_world` but needs it.
     pub(crate) fn new(engine: &Bound<'_, PyAny>, simulation: &Simulation) -> PyResult<Self> {
         let py = engine.py();
         let models = || simulation.systems.iter().map(|system| &system.model);
@@ -141,7 +143,8 @@ impl PythonEngine {
     }
 }
 
-/// Result of ``step_world``: nine arrays, and that of the contacts.
+/// Result of ``step_world``: nine arrays, and that of the contacts, which is `None` if the engine computes
+/// none.
 type Returned<'py> = ([Bound<'py, PyAny>; 9], Option<Bound<'py, PyAny>>);
 
 const IMPULSE: &str = "the impulse that the engine returned";
@@ -157,7 +160,8 @@ fn described<'py>(py: Python<'py>, weld: &BodyWeld) -> Described<'py> {
     (by, of, array_of(py, &[2, 3], &points).into_any(), array_of(py, &[3, 3], &rotation).into_any())
 }
 
-/// Reads force, moment and power of each contact at the start of the step, and their integrals.
+/// Reads an array (contacts, 14): force, moment and power of each contact at the start of the step, and their
+/// integrals over the step. The moment at the start is not used.
 fn read_contacts(output: &mut StepOutput, value: &Bound<'_, PyAny>) -> PyResult<()> {
     let name = "the contacts that the engine returned";
     let (rows, n) = (Input::new(value, name)?, output.contacts.len());
@@ -175,7 +179,7 @@ fn read_contacts(output: &mut StepOutput, value: &Bound<'_, PyAny>) -> PyResult<
 }
 
 /// Reads the exchange of each system in a step of a world: impulse, work and loss; impulse and work of the
-/// connections; and the moment about the common centre of mass.
+/// connections; and the time integral of the moment about the common centre of mass, N m s.
 fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyResult<()> {
     let [impulse, work, loss, weld_impulse, weld_work, orbital] = values;
     let n = output.systems.len();

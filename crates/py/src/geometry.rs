@@ -83,6 +83,10 @@ fn vector(py: Python<'_>, v: Vec3<f64>) -> Bound<'_, PyArrayDyn<f64>> {
 ///     If a link has no collision shape, or an invalid one, such as a mesh file that does not exist.
 /// InputError
 ///     If ``a`` and ``b`` are the same link, or the configuration of a system is missing or invalid.
+/// ShapeError, DtypeError
+///     If a configuration has the wrong shape, or an argument the wrong type.
+/// ConvergenceError
+///     If the iterations for the distance do not converge.
 #[pyfunction]
 pub(crate) fn distance(
     model_or_world: Any<'_, '_>,

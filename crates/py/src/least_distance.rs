@@ -29,8 +29,9 @@ type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
 /// Returns
 /// -------
 /// gap, point_a, point_b, normal, pair : (T,), (T, 3), (T, 3), (T, 3) and (T, 2) arrays
-///     Signed distance, m, witness points, m, normal from the first side to the second, and numbers of the
-///     nearest shapes.
+///     Signed distance, m, nearest points of both sides, m, unit normal from the first side to the second,
+///     and indices (as floats) of the nearest shapes in ``shapes_a`` and ``shapes_b``; all in the common
+///     axes.
 ///
 /// Raises
 /// ------
@@ -38,6 +39,10 @@ type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
 ///     If no pair is permitted, or the distance of a pair is not available.
 /// ModelError
 ///     If a link has no collision shape, or an invalid one.
+/// FrameError
+///     If there is no such link.
+/// ConvergenceError
+///     If the iterations for a distance do not converge.
 #[pyfunction]
 pub(crate) fn least_distances<'py>(
     py: Python<'py>,

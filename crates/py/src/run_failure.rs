@@ -34,7 +34,8 @@ pub(crate) fn run_failure(
     interrupted
 }
 
-/// Returns the exception for an error raised between two steps. Ctrl-C becomes `RunInterrupted`.
+/// Returns the exception for an error raised between two steps, at `time`, s. Ctrl-C becomes
+/// `RunInterrupted`; other errors are unchanged.
 pub(crate) fn interrupted(py: Python<'_>, error: PyErr, time: f64, trace: Option<Py<PyAny>>) -> PyErr {
     if error.is_instance_of::<PyKeyboardInterrupt>(py) {
         run_interrupted(py, error, time, trace)

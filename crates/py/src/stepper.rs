@@ -19,7 +19,8 @@ type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 ///
 /// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. If
 /// the current time is within a step, the state is computed by dense output (adaptive steps) or by a shorter
-/// trial step. The whole step is computed later.
+/// trial step. The whole step is computed later. Once the run has ended, all methods raise
+/// ``SimulationError``.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
     pub(crate) run: SharedRun,
@@ -83,7 +84,7 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// t : float
-    ///     Time, s, not before the current time.
+    ///     Simulation time, s, not before the current time.
     /// wall_s : float, optional
     ///     Wall-clock time after which the call returns early, at the end of a step, s. Default: no limit.
     ///
@@ -322,6 +323,7 @@ impl PyStepper {
     /// ----------
     /// since : int or dict of int, optional
     ///     First row to return (default: 0); in a world, optionally a dict with the first row of each system.
+    ///     An index above the number of rows raises ``InputError``.
     ///
     /// Returns
     /// -------

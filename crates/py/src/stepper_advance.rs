@@ -44,7 +44,8 @@ impl PyStepper {
         result.ok_or_else(|| ended(py))?
     }
 
-    /// Runs to the end and returns the whole trace; `pause` is called at regular intervals.
+    /// Runs to the end and returns the whole trace; `pause` is called at regular intervals. An error ends the
+    /// run.
     pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<Py<PyAny>> {
         let mut runs = self.run.lock(py)?;
         if let Err(error) = self.advance_locked(py, &mut runs, duration, None, pause) {
@@ -70,7 +71,8 @@ impl PyStepper {
         }
     }
 
-    /// Advances the run in slices of wall-clock time, without the GIL.
+    /// Advances the run to simulation time `t`, s, or until the wall-clock time `limit` has passed, without
+    /// the GIL. Calls `pause` at regular intervals; an error of `pause` stops the run.
     pub(crate) fn advance_locked(
         &self,
         py: Python<'_>,

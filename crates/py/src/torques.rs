@@ -6,7 +6,8 @@ use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Reads the torques commanded to a system.
+/// Reads the torques commanded to a system, N m (N for a prismatic joint), one per joint; `None` for joints
+/// that a dict does not name.
 pub(crate) fn torques(model: &Model, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
     let py = tau.py();
     let n = model.joint_count();

@@ -115,7 +115,8 @@ macro_rules! getters {
             }
 
             /// Tracking errors, desired minus actual, by the name of the control: (T, 6) for a task, m and
-            /// rad, or (T, k) for k joints; zero while the control is inactive.
+            /// rad, or (T, k) for k joints, in the unit of the commanded quantity; zero while the control is
+            /// inactive.
             #[getter]
             fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let all = PyDict::new(this.py());
@@ -156,7 +157,7 @@ macro_rules! getters {
                 PyArray1::from_slice(py, &self.trace.rereferenced)
             }
 
-            /// Outcomes of the goals, as dicts: ``name``, ``outcome`` (``succeeded``,
+            /// Outcomes of the goals, as dicts: ``name`` (of the control), ``outcome`` (``succeeded``,
             /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``), ``time``, s,
             /// ``component``, the joint (or ``position`` or ``attitude``) whose error was too large, and
             /// ``error``, that error, m or rad.

@@ -33,7 +33,7 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// Returns
 /// -------
 /// r : (N, T, 3) array
-///     Positions, m, in the axes of the respective orbit.
+///     Positions from the centre of the planet, m, in the axes of the respective orbit.
 /// v : (N, T, 3) array
 ///     Velocities, m/s, in the same axes.
 ///
@@ -41,7 +41,9 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// ------
 /// OrbitError
 ///     If a state cannot be computed; ``index`` is the index of the orbit. ``Sgp4Error`` and ``PathError``
-///     are subclasses. Errors of an orbit's gravity or Earth are raised unchanged.
+///     are subclasses. Errors of an orbit's gravity or Earth have the same attribute.
+/// ShapeError, InputError, DtypeError
+///     If an array has the wrong shape, ``threads`` is less than 1, or an argument has the wrong type.
 #[pyfunction]
 #[pyo3(signature = (orbits, times, *, threads=None, out=None))]
 pub(super) fn propagate<'py>(
@@ -87,7 +89,8 @@ fn written<'py>(
     Ok((r.into_array().into_any(), v.into_array().into_any()))
 }
 
-/// Computes the states of many elliptic orbits. Each element, and the time, is a number or an (N,) array.
+/// Returns positions, m, and velocities, m/s, of many elliptic orbits, each (N, 3). Each of the six elements,
+/// and the time, is a number or an (N,) array; `mu` is in m³/s².
 pub(crate) fn kepler_states<'py>(
     py: Python<'py>,
     given: [(&str, Any<'_, 'py>); 7],

@@ -45,7 +45,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// threads : int, optional
 ///     Number of threads; default: all cores.
 /// out : tuple of two arrays, optional
-///     Arrays in which the results are stored and which are returned.
+///     Arrays of the shapes of ``q`` and ``v`` in which the results are stored and which are returned.
 ///
 /// Returns
 /// -------

@@ -29,6 +29,12 @@ use std::sync::Arc;
 ///     Name of the contact; default: ``"links_a|links_b"``.
 /// start_overlapping : bool
 ///     If True, the links may overlap at the start of a run.
+///
+/// Raises
+/// ------
+/// WorldError, DtypeError
+///     If a side has no links, if there is friction without a normal force, or if an argument has the wrong
+///     type.
 #[pyclass(name = "Contact", frozen, module = "onorbit_rs")]
 pub(crate) struct PyContact {
     /// Name of the contact.

@@ -14,8 +14,8 @@ use pyo3::types::PyDict;
 /// Parameters
 /// ----------
 /// stiffness : float
-///     Stiffness ``k``, N/m**n. For two spheres of radius R, Young's modulus E and Poisson's ratio nu,
-///     Hertz's theory gives ``k = E sqrt(2 R)/(3 (1 - nu**2))`` with ``n = 1.5``.
+///     Stiffness ``k``, N/m**n. For two spheres of the same radius R, Young's modulus E and Poisson's ratio
+///     nu, Hertz's theory gives ``k = E sqrt(2 R)/(3 (1 - nu**2))`` with ``n = 1.5``.
 /// exponent : float
 ///     Exponent ``n``, at least 1: 1.5 for curved surfaces, 1 for flat pads.
 /// dissipation : float, optional
@@ -28,12 +28,13 @@ use pyo3::types::PyDict;
 /// Raises
 /// ------
 /// WorldError
-///     If a parameter is outside its range.
+///     If a parameter is outside its range, if only one of ``restitution`` and ``speed`` is given, or if
+///     ``dissipation`` is given as well.
 ///
 /// Notes
 /// -----
-/// With ``p = d speed``, the dissipation follows from ``p (1 + e) = log((1 + p)/(1 - e p))`` for every
-/// stiffness, exponent and mass.
+/// With the coefficient of restitution ``e`` and ``p = d speed``, the dissipation follows from ``p (1 + e) =
+/// log((1 + p)/(1 - e p))`` for every stiffness, exponent and mass.
 ///
 /// Source: Hunt and Crossley, Journal of Applied Mechanics 42, 1975.
 #[pyclass(name = "HuntCrossley", frozen, module = "onorbit_rs")]

@@ -11,7 +11,7 @@ use pyo3::types::PySlice;
 /// but while bodies touch, every step is a row if ``record_every=1``.
 #[pyclass(name = "ContactTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyContactTrace {
-    /// Array (T, 19) with all quantities in the order of ``onorbit_rs.COLUMNS``.
+    /// Array (T, 19) with all quantities, in the order of ``onorbit_rs.COLUMNS["contacts"].parts``.
     #[pyo3(get)]
     values: Py<PyAny>,
 }

@@ -14,10 +14,11 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Compliance control of a tool by a virtual spring and damper: ``tau = Jg^T (K e + D e') - k N qdot``.
 ///
-/// The law is passive, and in free fall there is no gravity load to compensate. Friction is not compensated
-/// and may prevent the tool from reaching its goal. Because torques are held between control ticks, the
-/// motion is unstable if the damping exceeds about twice the inertia of the tool divided by the control
-/// period.
+/// ``Jg`` is the generalized Jacobian of the tool, ``e`` its pose error, and ``N`` the projection on joint
+/// rates that do not move the tool. The law is passive, and in free fall there is no gravity load to
+/// compensate. Friction is not compensated and may prevent the tool from reaching its goal. Because torques
+/// are held between control ticks, the motion is unstable if the damping exceeds about twice the inertia of
+/// the tool divided by the control period.
 ///
 /// Parameters
 /// ----------

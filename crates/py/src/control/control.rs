@@ -28,6 +28,11 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Permitted error during the motion, in the form of ``tolerance``; default: unlimited.
 /// time : float, optional
 ///     Time allowed after the end of the reference, s; default: unlimited.
+///
+/// Raises
+/// ------
+/// ShapeError
+///     If a tolerance is neither a number nor a vector.
 #[pyclass(name = "Goal", frozen, module = "onorbit_rs")]
 pub(crate) struct PyGoal {
     goal: Goal,
@@ -68,7 +73,7 @@ impl PyGoal {
 /// joints : list of str, optional
 ///     Names of the joints; default: all.
 /// tool : str, optional
-///     Frame of the reference of a Python controller; default: that of the simulation.
+///     Frame that tracks the reference of a Python controller; default: the ``tool`` of the simulation.
 /// name : str, optional
 ///     Name of the control in the trace and the results; default: ``control_`` followed by its index in the
 ///     list.
@@ -84,6 +89,11 @@ impl PyGoal {
 ///     Goal with tolerances.
 /// starts_at_present : bool
 ///     If True, the reference is shifted so that it begins at the current pose or joint positions.
+///
+/// Raises
+/// ------
+/// DtypeError
+///     If ``joints`` is not a list of names, or ``after`` is not a name.
 #[pyclass(name = "Control", frozen, module = "onorbit_rs")]
 pub(crate) struct PyControl {
     controller: Py<PyAny>,

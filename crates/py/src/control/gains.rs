@@ -19,7 +19,8 @@ pub(super) fn gains(value: Any<'_, '_>, name: &str) -> PyResult<[f64; 36]> {
     }
 }
 
-/// Reads a joint gain, which is a number or a (k,) array, and returns it with its length.
+/// Reads a joint gain, which is a number or a (k,) array, and returns it with its length, which is 1 for a
+/// number or the default.
 pub(super) fn per_joint(value: Option<Any<'_, '_>>, name: &str, default: f64) -> PyResult<(PerJoint, usize)> {
     let Some(value) = value else { return Ok((default.into(), 1)) };
     if let Ok(number) = value.extract::<f64>() {
@@ -32,7 +33,7 @@ pub(super) fn per_joint(value: Option<Any<'_, '_>>, name: &str, default: f64) ->
     }
 }
 
-/// Returns the common length of those gains that have one entry per joint.
+/// Returns the common length of those gains that have more than one entry; 1 if all are numbers.
 pub(super) fn one_count(py: Python<'_>, gains: &[&(PerJoint, usize)]) -> PyResult<usize> {
     let mut counts: Vec<usize> = gains.iter().map(|gain| gain.1).filter(|n| *n > 1).collect();
     counts.sort_unstable();

@@ -23,7 +23,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     or N, and no gains may be given.
 /// p, i, d : float or (k,) array, optional
 ///     Proportional, integral and derivative gains. For ``position`` they are in N m/rad, N m/(rad s) and N m
-///     s/rad, or N/m, N/(m s) and N s/m for prismatic joints.
+///     s/rad, or N/m, N/(m s) and N s/m for prismatic joints; for ``velocity``, they are in these units times
+///     s.
 /// i_limit : float or (k,) array, optional
 ///     Limit of the integral term, N m or N.
 /// effort_limit : float or (k,) array, optional

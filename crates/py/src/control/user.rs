@@ -18,9 +18,11 @@ pub(crate) struct PyState {
     /// Desired pose of the tool, (4, 4), m, or None without a reference: relative to the base for a reference in
     /// the frame ``"base"``, otherwise in W.
     reference_pose: Option<Py<PyAny>>,
-    /// Desired twist of the tool, (6,), m/s and rad/s, in the frame of ``reference_pose``, or None.
+    /// Desired twist of the tool, (6,), linear part first, m/s and rad/s, in the frame of ``reference_pose``,
+    /// or None.
     reference_velocity: Option<Py<PyAny>>,
-    /// Desired acceleration of the tool, (6,), m/s² and rad/s², in the frame of ``reference_pose``, or None.
+    /// Desired acceleration of the tool, (6,), linear part first, m/s² and rad/s², in the frame of
+    /// ``reference_pose``, or None.
     reference_acceleration: Option<Py<PyAny>>,
 }
 
@@ -94,7 +96,8 @@ impl Controller for PythonController {
 }
 
 impl PythonController {
-    /// Calls a method of the object. If the object has no such method, calls the method of the base class.
+    /// Calls a method of the object. If the object has no such method, calls that of the Python class
+    /// `Controller`.
     fn call<'py>(&self, py: Python<'py>, name: &str, arguments: impl PyCallArgs<'py>) -> PyResult<Py<PyAny>> {
         let object = self.object.bind(py);
         let method = match object.getattr_opt(name)? {

@@ -8,8 +8,10 @@ use onorbit_core::batch::Kernel;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-/// Derivatives of the reduced model at given joint accelerations, in the tangent space of
-/// ``Model.integrate``.
+/// Derivatives of the reduced model (see :class:`FreeFloating` for its symbols) at given joint accelerations,
+/// in the tangent space of ``Model.integrate``.
+///
+/// ``q`` and ``v`` are the state of base and joints; ``q̈`` is the acceleration of the joints.
 #[pyclass(name = "FreeFloatingDerivatives", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyFreeFloatingDerivatives {
     /// Derivative ``∂τ/∂q`` of the joint torques ``τ = M* q̈ + c* - Q*``, (n, nv) or (B, n, nv).
@@ -21,8 +23,8 @@ pub(crate) struct PyFreeFloatingDerivatives {
     acceleration_dq: Py<PyAny>,
     /// Derivative ``∂ẍ/∂v`` of the frame's acceleration, (6, nv) or (B, 6, nv), rows in W axes, linear first.
     acceleration_dv: Py<PyAny>,
-    /// Derivative ``∂ẋ/∂q`` of the frame's twist ``ẋ = J v``, (6, nv) or (B, 6, nv), rows in W axes, linear
-    /// first.
+    /// Derivative ``∂ẋ/∂q`` of the frame's twist ``ẋ = J v``, with the frame's Jacobian ``J``, (6, nv) or (B,
+    /// 6, nv), rows in W axes, linear first.
     velocity_dq: Py<PyAny>,
 }
 

@@ -6,14 +6,17 @@ use crate::model::PyModel;
 use onorbit_core::batch::Kernel;
 use pyo3::prelude::*;
 
-/// Reduced model of a free-floating manipulator: ``M* q̈ + c* = τ + Q*`` and ``ẍ = Jg q̈ + d``.
+/// Reduced model of a free-floating manipulator: ``M* q̈ + c* = τ + Q*`` and ``ẍ = Jg q̈ + d``, with the
+/// joint accelerations ``q̈``, the joint torques ``τ`` and the acceleration ``ẍ`` of a frame.
 #[pyclass(name = "FreeFloating", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyFreeFloating {
     /// Reduced mass matrix ``M*``, (n, n) or (B, n, n), kg m², kg m and kg.
     inertia: Py<PyAny>,
     /// Reduced bias forces ``c*``, (n,) or (B, n), N m or N.
     bias: Py<PyAny>,
-    /// Generalized external forces ``Q* = Qm - Mbmᵀ Mbb⁻¹ Qb`` at the joints, (n,) or (B, n), N m or N.
+    /// Generalized external forces ``Q* = Qm - Mbmᵀ Mbb⁻¹ Qb`` at the joints, (n,) or (B, n), N m or N; the
+    /// indices ``b`` and ``m`` denote the parts of forces and mass matrix that belong to the base and to the
+    /// joints.
     external: Py<PyAny>,
     /// Generalized Jacobian ``Jg`` of the frame, (6, n) or (B, 6, n), W axes at the frame's origin, linear
     /// rows first.

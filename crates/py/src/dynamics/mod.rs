@@ -20,8 +20,8 @@ type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Evaluates `kernel` for one state or a batch of states.
 ///
-/// `shapes` are the shapes of its outputs for one state; `out` holds the arrays in which they are stored, if
-/// given.
+/// `values` are its inputs and `external` the wrenches by frame. `shapes` are the shapes of its outputs for
+/// one state; `out` holds the arrays in which they are stored, if given.
 pub(crate) fn evaluate<'py, const N: usize>(
     py: Python<'py>,
     model: &PyModel,
@@ -62,7 +62,8 @@ pub(crate) fn evaluate<'py, const N: usize>(
     Ok(outputs.map(Output::into_array))
 }
 
-/// Returns the batch size if the first argument is a batch, and checks that the other arguments match it.
+/// Returns the batch size if the first argument is a batch, otherwise `None`. Fails if another argument has a
+/// different number of axes.
 fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Option<usize>> {
     let first = inputs[0].shape();
     for (input, name) in inputs.iter().zip(names) {

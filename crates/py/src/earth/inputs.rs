@@ -35,7 +35,8 @@ pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
     Epoch::parse(&text).map_err(|error| error.into_python(py))
 }
 
-/// Reads Earth orientation parameters from a table or from constants.
+/// Reads Earth orientation parameters from a table, or from UT1 - UTC, s, and polar motion, rad, both zero by
+/// default.
 pub(super) fn earth_parameters(
     py: Python<'_>,
     eop: Option<Any<'_, '_>>,
@@ -56,7 +57,8 @@ pub(super) fn earth_parameters(
     }
 }
 
-/// Creates an Earth that rotates uniformly about z.
+/// Creates an Earth that rotates uniformly about z, from `angle`, rad (default: 0), at `rate`, rad/s
+/// (default: that of the Earth).
 pub(super) fn about_z(
     py: Python<'_>,
     angle: Option<f64>,

@@ -143,6 +143,11 @@ impl PyEarth {
     /// -------
     /// (3, 3) or (T, 3, 3) array
     ///     Rotation matrix, dimensionless.
+    ///
+    /// Raises
+    /// ------
+    /// EarthError
+    ///     If a time is not finite or outside the table of orientation parameters.
     fn rotation<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at(py, t, &[3, 3], Earth::rotations)
     }
@@ -158,6 +163,11 @@ impl PyEarth {
     /// -------
     /// (3,) or (T, 3) array
     ///     Angular velocity, inertial axes, rad/s.
+    ///
+    /// Raises
+    /// ------
+    /// EarthError
+    ///     If a time is not finite or outside the table of orientation parameters.
     fn angular_velocity<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at(py, t, &[3], Earth::angular_velocities)
     }
@@ -173,6 +183,11 @@ impl PyEarth {
     /// -------
     /// (3,) or (T, 3) array
     ///     Position from the Earth's centre, inertial axes, m.
+    ///
+    /// Raises
+    /// ------
+    /// EarthError
+    ///     Without an epoch, or if a time is not finite, outside 1900 to 2100, or outside the kernel.
     fn sun<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at(py, t, &[3], Earth::suns)
     }
@@ -188,6 +203,11 @@ impl PyEarth {
     /// -------
     /// (3,) or (T, 3) array
     ///     Position from the Earth's centre, inertial axes, m.
+    ///
+    /// Raises
+    /// ------
+    /// EarthError
+    ///     Without an epoch, or if a time is not finite, outside 1900 to 2100, or outside the kernel.
     fn moon<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at(py, t, &[3], Earth::moons)
     }
@@ -205,6 +225,12 @@ impl PyEarth {
     /// -------
     /// (3,) or (T, 3) array
     ///     Position from the Earth's centre, Earth-fixed axes, m.
+    ///
+    /// Raises
+    /// ------
+    /// EarthError, ShapeError
+    ///     If a time is not finite or outside the table of orientation parameters, or if the shapes do not
+    ///     match.
     fn to_fixed<'py>(
         &self,
         py: Python<'py>,
@@ -230,6 +256,12 @@ impl PyEarth {
     ///     Geodetic coordinates on WGS84, rad.
     /// altitude : float or (T,) array
     ///     Altitude above WGS84, m.
+    ///
+    /// Raises
+    /// ------
+    /// EarthError, ShapeError
+    ///     If a time is not finite or outside the table of orientation parameters, a position is not finite
+    ///     or too close to the Earth's centre, or the shapes do not match.
     fn geodetic<'py>(
         &self,
         py: Python<'py>,
@@ -264,7 +296,8 @@ type AtTimes = fn(&Earth, &[f64], &mut [f64]) -> Result<(), EarthError>;
 type OfPositions = fn(&Earth, &[f64], &[f64], &mut [f64]) -> Result<(), EarthError>;
 
 impl PyEarth {
-    /// Returns the Earth with the axes of an orbit.
+    /// Returns the Earth in the axes of an orbit; it is unchanged without an orbit, or if it has no inertial
+    /// axes.
     pub(crate) fn in_axes_of(&self, orbit: Option<&dyn Orbit>) -> Arc<Earth> {
         match orbit {
             Some(orbit) if self.earth.axes().is_some_and(|axes| axes != orbit.axes()) => {

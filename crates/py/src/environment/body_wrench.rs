@@ -27,8 +27,8 @@ use pyo3::prelude::*;
 ///
 /// Raises
 /// ------
-/// EffectError
-///     If the interval is empty.
+/// EffectError, InputError, ShapeError
+///     If the interval is empty, or a vector is not finite or has the wrong shape.
 #[pyclass(name = "BodyWrench", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyBodyWrench;
 

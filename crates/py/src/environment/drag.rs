@@ -10,10 +10,10 @@ use std::sync::Arc;
 /// Drag ``-½ ρ C_D A (n·u)₊ u`` on every face in an atmosphere that rotates with the Earth, and the resulting
 /// torque.
 ///
-/// ``u`` is the velocity, relative to the atmosphere, of the face's centroid or, for a cannonball, of the
-/// centre of mass. The effect requires an orbit and an ``earth``. The density ``ρ`` is computed on a grid of
-/// 128 m and extrapolated with the scale height; within 160 m of a grid point, the relative error is at most
-/// 1e-4.
+/// ``A`` is the area of the face, ``n`` its outward normal, and ``u`` the velocity of its centroid relative
+/// to the atmosphere. For a cannonball, ``n·u`` is the speed ``|u|`` of the centre of mass. The effect
+/// requires an orbit and an ``earth``. The density ``ρ`` is computed on a grid of 128 m and extrapolated with
+/// the scale height; within 160 m of a grid point, the relative error is at most 1e-4.
 ///
 /// Parameters
 /// ----------
@@ -25,6 +25,11 @@ use std::sync::Arc;
 ///     the keys are ``SYSTEM/LINK``, or ``SYSTEM`` for all of its bodies. Default: the surfaces of each ``System`` or, if
 ///     none are given, ``Faces()``: the visual geometry with C_D = 2.2. Bodies without visual geometry then
 ///     have no drag, and a warning is issued.
+///
+/// Raises
+/// ------
+/// EffectError, DtypeError
+///     If the dict of surfaces is empty, or contains anything but surfaces.
 #[pyclass(name = "Drag", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyDrag;
 

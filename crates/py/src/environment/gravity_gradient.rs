@@ -4,9 +4,11 @@ use super::{Kind, PyEffect};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Gravity-gradient torque ``3μ/r³ r̂ × I r̂`` on each body about its centre of mass.
+/// Gravity-gradient torque on each body about its centre of mass.
 ///
-/// The effect requires an orbit around a planet.
+/// For a point mass it is ``3μ/r³ r̂ × I r̂``, with the inertia ``I`` about the centre of mass, the distance
+/// ``r`` from the planet's centre and the unit vector ``r̂`` along it. Other fields of the run contribute by
+/// their gradients. The effect requires an orbit around a planet.
 #[pyclass(name = "GravityGradient", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyGravityGradient;
 

@@ -8,10 +8,12 @@ use pyo3::prelude::*;
 
 /// Radiation pressure of sunlight on every face, with the resulting torque and the Earth's shadow.
 ///
-/// The force on a face is ``-P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, and that on a cannonball ``-P
-/// C_R A ŝ``. ``ŝ`` points to the Sun, and ``P = ν (flux/c) (1 au/d)²``, where ``d`` is the distance of the
-/// Sun and ``ν`` the fraction of the solar disc that the Earth does not occult. Light reflected or emitted by
-/// the Earth is neglected. The effect requires an orbit and an ``earth`` with an epoch.
+/// The force on a sunlit face with area ``A``, outward normal ``n`` and fractions ``ρs`` and ``ρd`` of
+/// specular and diffuse reflection is ``-P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, with ``cos θ =
+/// n·ŝ``, and that on a cannonball ``-P C_R A ŝ``. ``ŝ`` points to the Sun, and ``P = ν (flux/c) (1 au/d)²``,
+/// where ``d`` is the distance of the Sun and ``ν`` the fraction of the solar disc that the Earth does not
+/// occult. Light reflected or emitted by the Earth is neglected. The effect requires an orbit and an
+/// ``earth`` with an epoch.
 ///
 /// Parameters
 /// ----------
@@ -23,6 +25,11 @@ use pyo3::prelude::*;
 ///     If False, the shadow of the Earth (umbra and penumbra) is neglected.
 /// earth_radius : float
 ///     Radius of the Earth used for its shadow, m.
+///
+/// Raises
+/// ------
+/// EffectError, DtypeError
+///     If a number is outside its range, the dict of surfaces is empty, or it contains anything but surfaces.
 #[pyclass(name = "RadiationPressure", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyRadiationPressure;
 

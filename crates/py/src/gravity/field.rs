@@ -14,16 +14,17 @@ use std::sync::Arc;
 /// Gravity field of a planet, excluding its point mass.
 ///
 /// As an effect of a simulation, the field acts on every body. Its ``mu`` is then used instead of the orbit's
-/// value, from which it may differ by at most a relative 1e-5. The orientation of the planet is that of the
-/// simulation's ``earth``. A field of order 0 does not require an ``earth``; without one, the axis of the
-/// field is z. Positions are from the planet's centre in planet-fixed axes.
+/// value, from which it may differ by at most a relative 1e-5; otherwise the simulation raises
+/// ``GravityError``. The orientation of the planet is that of the simulation's ``earth``. A field of order 0
+/// does not require an ``earth``; without one, the axis of the field is z. Positions are from the planet's
+/// centre in planet-fixed axes.
 ///
 /// Parameters
 /// ----------
 /// model : {"egm2008", "jgm3"}
 ///     Bundled model to degree and order 70: EGM2008 (tide-free) or JGM-3 (with the permanent tide).
 /// degree : int
-///     Highest degree.
+///     Highest degree, from 2 to 70.
 /// order : int, optional
 ///     Highest order; default: ``degree``.
 ///
@@ -254,6 +255,8 @@ impl PyGravityField {
     /// ------
     /// GravityError
     ///     If a position is inside the planet, that is, below 0.996 of the reference radius.
+    /// ShapeError
+    ///     If ``r`` has another shape.
     fn acceleration<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at_each(py, r, &[3], GravityField::accelerations)
     }
@@ -274,6 +277,8 @@ impl PyGravityField {
     /// ------
     /// GravityError
     ///     If a position is inside the planet, that is, below 0.996 of the reference radius.
+    /// ShapeError
+    ///     If ``r`` has another shape.
     fn gradient<'py>(&self, py: Python<'py>, r: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
         self.at_each(py, r, &[3, 3], GravityField::gradients)
     }

@@ -7,7 +7,9 @@ use pyo3::prelude::*;
 
 /// Gravity of the Sun or the Moon, which acts on the robot and the reference.
 ///
-/// The acceleration at the position ``r`` is ``μ [(s - r)/|s - r|³ - s/|s|³]``, with the third body at ``s``.
+/// The acceleration relative to the Earth's centre is ``μ [(s - r)/|s - r|³ - s/|s|³]`` at the position
+/// ``r``, where ``μ`` is the gravitational parameter of the third body and ``s`` its position, both positions
+/// from the Earth's centre.
 ///
 /// The effect requires an orbit around the Earth, and an ``earth`` with an epoch.
 ///

@@ -45,6 +45,8 @@ use std::path::PathBuf;
 /// ModelError
 ///     If both robots have a link, joint or frame of the same name, the pose is invalid, or the file of
 ///     ``other`` does not describe a valid robot.
+/// NotFoundError, ReadError
+///     If the file of ``other`` does not exist or cannot be read.
 #[pyfunction]
 #[pyo3(signature = (model, frame, other, other_frame=None, *, pose=None, prefix=""))]
 pub(super) fn attach(

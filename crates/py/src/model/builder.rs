@@ -22,6 +22,11 @@ use pyo3::prelude::*;
 ///     Centre of mass in link axes, m; only with ``mass``. Default: the origin of the link.
 /// inertia : (3, 3) array, optional
 ///     Inertia about the centre of mass in link axes, kg m²; only with ``mass``. Default: zero, a point mass.
+///
+/// Raises
+/// ------
+/// ModelError
+///     If ``com`` or ``inertia`` is given without ``mass``, or a value is invalid.
 #[pyclass(name = "ModelBuilder", module = "onorbit_rs")]
 pub(crate) struct PyModelBuilder {
     builder: ModelBuilder,
@@ -153,6 +158,13 @@ impl PyModelBuilder {
     ///     Link to which the frame is fixed.
     /// xyz, rpy : (3,) array, optional
     ///     Position, m, and roll, pitch, yaw, rad, in the link's frame.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If the link does not exist.
+    /// ModelError
+    ///     If the name is already used, or a value is invalid.
     #[pyo3(signature = (name, link, *, xyz=None, rpy=None))]
     fn add_frame(
         &mut self,
@@ -185,7 +197,8 @@ impl PyModelBuilder {
     }
 }
 
-/// Returns a spacecraft without joints.
+/// Returns a spacecraft without joints, with its mass, kg, and its inertia (3, 3) about the centre of mass,
+/// kg m².
 pub(super) fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<PyModel> {
     let numbers = fixed::<9>(inertia, "inertia", &[3, 3])?;
     let inertia = Matrix3::from_row_slice(&numbers);
@@ -195,12 +208,12 @@ pub(super) fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyR
     PyModel::wrap(py, model, Some(ConstructorCall::with_keywords("Model.rigid_body", &keywords)?), &[])
 }
 
-/// Reads a (3,) vector.
+/// Reads a (3,) vector; returns `default` if none is given.
 pub(super) fn vector(value: Option<Any<'_, '_>>, name: &str, default: [f64; 3]) -> PyResult<Vector3<f64>> {
     Ok(Vector3::from(value.map_or(Ok(default), |value| fixed(value, name, &[3]))?))
 }
 
-/// Reads a position and roll, pitch, yaw.
+/// Reads a position, m, and roll, pitch, yaw, rad; each is zero by default.
 fn pose(xyz: Option<Any<'_, '_>>, rpy: Option<Any<'_, '_>>) -> PyResult<Isometry3<f64>> {
     let angles = vector(rpy, "rpy", [0.0; 3])?;
     let rotation = UnitQuaternion::from_euler_angles(angles.x, angles.y, angles.z);

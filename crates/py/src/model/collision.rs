@@ -9,7 +9,8 @@ use nalgebra::Isometry3;
 use onorbit_core::model::{Geometry, Visual};
 use pyo3::prelude::*;
 
-/// Returns a copy of the robot with another collision shape on a link.
+/// Returns a copy of the robot with an additional collision shape on a link, at `pose` in link axes (default:
+/// the identity).
 pub(super) fn with_collision(
     model: &Bound<'_, PyModel>,
     link: &str,
@@ -28,7 +29,8 @@ pub(super) fn with_collision(
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Returns a copy of the robot in which the collision meshes of a link are replaced by their convex pieces.
+/// Returns a copy of the robot in which the collision meshes of a link are replaced by their convex pieces,
+/// at most `pieces` per mesh. Fails if the link has no mesh.
 pub(super) fn with_convex_pieces(
     model: &Bound<'_, PyModel>,
     link: &str,

@@ -38,7 +38,8 @@ impl PyModel {
     /// Raises
     /// ------
     /// ModelError
-    ///     If the file does not describe a valid robot, or ``links`` is invalid.
+    ///     If the file does not describe a valid robot, ``links`` is invalid, or PyPI's ``xacro`` is required
+    ///     but not installed.
     /// NotFoundError, ReadError
     ///     If the file does not exist or cannot be read.
     #[staticmethod]
@@ -144,7 +145,7 @@ impl PyModel {
         link_change::with_link(slf, name, mass, com, inertia)
     }
 
-    /// Return a copy of the robot with another collision shape on a link.
+    /// Return a copy of the robot with an additional collision shape on a link.
     ///
     /// The collision shape of the link becomes the union of its previous shapes and the new one. It is used
     /// for contacts and distances, and does not change masses.
@@ -178,7 +179,7 @@ impl PyModel {
         with_collision(slf, link, shape, pose)
     }
 
-    /// Return the same robot with the collision meshes of a link divided into convex pieces.
+    /// Return a copy of the robot with the collision meshes of a link divided into convex pieces.
     ///
     /// Undivided, the shape of a mesh is its convex hull, which fills notches and holes. CoACD divides the
     /// meshes, which takes seconds to minutes; the result is kept in the user's folder for caches. A convex
@@ -208,7 +209,7 @@ impl PyModel {
         with_convex_pieces(slf, link, pieces)
     }
 
-    /// Return the same robot with another link as its floating base.
+    /// Return a copy of the robot with another link as its floating base.
     ///
     /// Links, frames and joints keep their names, and joints keep the signs of their positions, rates and
     /// torques. Bodies and joints are numbered depth first from the new base.
@@ -226,6 +227,8 @@ impl PyModel {
     /// ------
     /// FrameError
     ///     If no link has this name.
+    /// ModelError
+    ///     If the new tree is invalid, for example because a joint would move only massless links.
     fn rerooted(slf: &Bound<'_, Self>, link: &str) -> PyResult<Self> {
         reroot::rerooted(slf, link)
     }
@@ -251,6 +254,8 @@ impl PyModel {
     /// ------
     /// FrameError
     ///     If a joint or the base of ``to`` is not in this model.
+    /// ShapeError
+    ///     If ``q`` or ``v`` has the wrong shape.
     fn transfer_state<'py>(
         &self,
         py: Python<'py>,

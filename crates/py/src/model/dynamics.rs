@@ -33,8 +33,8 @@ impl PyModel {
         self.one(Kernel::MassMatrix, &[q], None, &[nv, nv], threads, out)
     }
 
-    /// Return the bias forces ``c - Σ Jᵀ F``: Coriolis and centrifugal forces less generalized external
-    /// forces.
+    /// Return the bias forces ``c - Σ Jᵀ F``: Coriolis and centrifugal forces ``c`` less the generalized
+    /// forces of the external wrenches ``F``, with the Jacobians ``J`` of their frames.
     ///
     /// Parameters
     /// ----------
@@ -50,7 +50,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// (nv,) or (B, nv) array
-    ///     Generalized forces, N and N m.
+    ///     Wrench on the base in base axes, then joint efforts, N and N m.
     #[pyo3(signature = (q, v, *, external=None, threads=None, out=None))]
     fn bias_forces<'py>(
         &self,
@@ -63,7 +63,8 @@ impl PyModel {
         self.one(Kernel::BiasForces, &[q, v], external, &[self.model.nv()], threads, out)
     }
 
-    /// Return the generalized forces ``M a + c - Σ Jᵀ F`` for an acceleration.
+    /// Return the generalized forces ``M a + c - Σ Jᵀ F`` for an acceleration ``a``, with the mass matrix
+    /// ``M`` and the bias forces ``c - Σ Jᵀ F`` of :meth:`bias_forces`.
     ///
     /// Parameters
     /// ----------
@@ -95,7 +96,8 @@ impl PyModel {
         self.one(Kernel::InverseDynamics, &[q, v, a], external, &[self.model.nv()], threads, out)
     }
 
-    /// Return the acceleration ``M⁻¹ (tau - c + Σ Jᵀ F)``, computed in O(n) operations.
+    /// Return the acceleration ``M⁻¹ (tau - c + Σ Jᵀ F)``, with the mass matrix ``M`` and the bias forces ``c
+    /// - Σ Jᵀ F`` of :meth:`bias_forces`, in O(n) operations for n joints.
     ///
     /// Parameters
     /// ----------
@@ -113,7 +115,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// (nv,) or (B, nv) array
-    ///     Acceleration, m/s² and rad/s².
+    ///     Acceleration, the time derivative of ``v``, m/s² and rad/s².
     #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
     fn forward_dynamics<'py>(
         &self,

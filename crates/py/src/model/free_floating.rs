@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl PyModel {
-    /// Return the reduced model ``M*``, ``c*``, ``Q*``, ``Jg``, ``d`` for one frame, which is exact for any
-    /// momentum and wrench.
+    /// Return the reduced model for one frame: ``M*``, ``c*``, ``Q*``, ``Jg`` and ``d`` of
+    /// :class:`FreeFloating`. It is exact for any momentum and wrench.
     ///
     /// ``out`` is the result of an earlier call with the same number of states; it is overwritten and
     /// returned.
@@ -42,8 +42,8 @@ impl PyModel {
         free_floating(q.py(), self, self.frame(frame)?, &[q, v], external, out, threads)
     }
 
-    /// Return the derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and ``ẋ`` at given joint
-    /// accelerations.
+    /// Return the derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and the twist ``ẋ`` of a frame at
+    /// given joint accelerations ``q̈``; :class:`FreeFloating` defines the other symbols.
     ///
     /// Tangent vectors and wrenches are treated as in :meth:`inverse_dynamics_derivatives`. For ``q̈ = 0``,
     /// the results for torque and acceleration are the derivatives of ``c* - Q*`` and ``d``. The derivatives

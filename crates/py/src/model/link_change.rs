@@ -63,13 +63,14 @@ fn link_change(
     Ok(LinkChange { link: link.to_owned(), mass, com, inertia })
 }
 
-/// Converts a dict `{link: {"mass": ..., "com": ..., "inertia": ...}}`.
+/// Converts a dict `{link: {"mass": ..., "com": ..., "inertia": ...}}` (kg, m and kg m²); returns no changes
+/// without one.
 pub(super) fn link_changes(links: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<LinkChange>> {
     let Some(links) = links else { return Ok(Vec::new()) };
     links.iter().map(|(name, values)| change_from_dict(&name.extract::<String>()?, &values)).collect()
 }
 
-/// Converts the dict of values for one link.
+/// Converts the dict of values for one link. An unknown key, or a value of the wrong type, is an error.
 fn change_from_dict(link: &str, values: &Bound<'_, PyAny>) -> PyResult<LinkChange> {
     let py = values.py();
     let refuse = |message: &str| Err(raise(py, "ModelError", message, &fields!(py, "link": link)));

@@ -63,6 +63,9 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 /// arrays. It is a contiguous float64 array, a tuple of three arrays for the derivatives of the dynamics, or
 /// an earlier result of the same class. It must not be accessed by other threads during the call, and its
 /// contents are undefined after an error.
+///
+/// The methods raise ``ShapeError``, ``DtypeError`` or ``InputError`` for invalid arrays, ``FrameError`` for
+/// an unknown frame, and ``ConvergenceError`` if the mass matrix is numerically singular.
 #[pyclass(name = "Model", frozen, module = "onorbit_rs")]
 pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
@@ -125,7 +128,7 @@ impl PyModel {
         Ok(shapes.entry(frame).or_insert(shape).clone())
     }
 
-    /// Returns the pose of a frame in W, (4, 4), for one configuration.
+    /// Returns the pose of a frame in W, (4, 4), m, for one configuration; a batch is an error.
     pub(crate) fn pose_rows<'py>(&self, q: Any<'_, 'py>, frame: usize) -> PyResult<Array<'py>> {
         let pose = self.one(Kernel::FramePose(frame), &[q], None, &[4, 4], None, None)?;
         if pose.ndim() == 2 {

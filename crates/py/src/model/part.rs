@@ -26,6 +26,11 @@ impl PyRobotPart {
     /// Returns
     /// -------
     /// RobotPart
+    ///
+    /// Raises
+    /// ------
+    /// ModelError, NotFoundError, ReadError
+    ///     As for :meth:`Model.from_urdf`.
     #[staticmethod]
     #[pyo3(signature = (path, *, package_paths=None, xacro_arguments=None, xacro=false, links=None))]
     pub(super) fn from_urdf(

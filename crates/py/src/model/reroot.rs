@@ -18,7 +18,8 @@ pub(super) fn rerooted(model: &Bound<'_, PyModel>, link: &str) -> PyResult<PyMod
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Returns the configuration and the velocity of `to` that correspond to a state of `from`.
+/// Returns the configuration and the velocity of `to` with which the links have the poses and twists that
+/// they have in the state `(q, v)` of `from`.
 pub(super) fn transfer_state<'py>(
     py: Python<'py>,
     from: &Model,

@@ -222,7 +222,8 @@ impl PyShape {
         Self::of_all(py, "mesh", &keywords, geometries)
     }
 
-    /// Type of the shape, such as ``cone``.
+    /// Type of the shape: ``box``, ``cylinder``, ``capsule``, ``sphere``, ``cone``, ``torus``, ``half_space``
+    /// or ``mesh``.
     #[getter]
     fn kind(&self) -> &'static str {
         match &self.geometries[0] {

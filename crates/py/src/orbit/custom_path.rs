@@ -17,13 +17,14 @@ use std::sync::Arc;
 /// times : (T,) array
 ///     Simulation times, s.
 /// positions : (T, 3) array
-///     Positions, inertial axes, m.
+///     Positions from the planet's centre, inertial axes, m.
 /// velocities : (T, 3) array, optional
 ///     Velocities, inertial axes, m/s.
 /// accelerations : (T, 3) array, optional
 ///     Accelerations, inertial axes, m/s²; only together with ``velocities``.
 /// attitudes : (T, 4) array, optional
-///     Quaternions (x, y, z, w) of the rotation from path axes to inertial axes, which :meth:`frame` returns.
+///     Quaternions (x, y, z, w) of the rotation from the axes of the path to inertial axes; :meth:`frame`
+///     returns this rotation.
 /// mu : float, optional
 ///     Gravitational parameter, m³/s²; None means that there is no planet.
 /// ends : {"error", "coast"}
@@ -36,6 +37,8 @@ use std::sync::Arc;
 ///     If the points are invalid, or successive attitudes differ by more than 2 rad.
 /// OrbitError
 ///     If ``mu`` is not positive.
+/// InputError, ShapeError
+///     If ``ends`` is unknown, or an array has the wrong shape.
 #[pyclass(name = "CustomPath", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyCustomPath {
     path: Arc<CustomPath>,
@@ -105,7 +108,7 @@ impl PyCustomPath {
         Ok(PyClassInitializer::from(orbit).add_subclass(Self { path }))
     }
 
-    /// First and last time, s.
+    /// First and last of the given times, s of simulation.
     #[getter]
     fn span(&self) -> (f64, f64) {
         self.path.span()

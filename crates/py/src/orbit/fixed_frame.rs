@@ -12,17 +12,23 @@ use std::sync::Arc;
 
 /// Reference orbit at rest in inertial axes.
 ///
-/// The reference has no local orbital frame; :meth:`frame` returns its attitude. With ``mu``, the robot falls
-/// away from the reference, unless the gravity mode of the simulation is ``carried``.
+/// The reference has no local orbital frame: :meth:`lvlh` raises ``OrbitError``, and :meth:`frame` returns
+/// the attitude. With ``mu``, the robot falls away from the reference, unless the gravity mode of the
+/// simulation is ``carried``.
 ///
 /// Parameters
 /// ----------
 /// position : (3,) array, optional
-///     Position from the planet's centre, m; default: zero.
+///     Position from the planet's centre, inertial axes, m; default: zero.
 /// attitude : (4,) array, optional
 ///     Quaternion (x, y, z, w) from the axes of the reference to inertial axes; default: no rotation.
 /// mu : float, optional
 ///     Gravitational parameter, m³/s²; None means that there is no planet.
+///
+/// Raises
+/// ------
+/// InputError, OrbitError
+///     If a number is not finite or the attitude is not a unit quaternion, or if ``mu`` is not positive.
 #[pyclass(name = "FixedFrame", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyFixedFrame;
 

@@ -202,7 +202,8 @@ impl PyKepler {
 
     /// Return the states of many elliptic orbits without creating an object for each.
     ///
-    /// The states equal those of ``Kepler(...).state(t)`` up to the rounding of ``n t``.
+    /// The states equal those of ``Kepler(...).state(t)`` up to the rounding of the product of mean motion
+    /// and time.
     ///
     /// Parameters
     /// ----------
@@ -224,14 +225,16 @@ impl PyKepler {
     /// Returns
     /// -------
     /// r : (N, 3) array
-    ///     Positions, m.
+    ///     Positions from the planet's centre, inertial axes, m.
     /// v : (N, 3) array
-    ///     Velocities, m/s.
+    ///     Velocities, inertial axes, m/s.
     ///
     /// Raises
     /// ------
     /// InputError
     ///     If an orbit is not an ellipse, or a number is not finite.
+    /// ShapeError
+    ///     If the arrays have different lengths.
     #[staticmethod]
     #[pyo3(signature = (
         t, *, semi_major_axis, eccentricity, inclination, raan, argument_of_periapsis, mean_anomaly,
@@ -314,7 +317,7 @@ impl PyKepler {
         }
     }
 
-    /// Period of revolution, s; None for an open orbit.
+    /// Period of revolution without secular rates, s; None for an open orbit.
     #[getter]
     fn period(&self) -> Option<f64> {
         self.kepler.period()

@@ -90,6 +90,8 @@ impl PyOrbit {
     /// ------
     /// OrbitError
     ///     If the orbit has no state at one of the times. ``Sgp4Error`` and ``PathError`` are subclasses.
+    /// GravityError, EarthError
+    ///     If the gravity or the Earth of a ``Numerical`` orbit cannot be evaluated.
     fn state<'py>(
         &self,
         py: Python<'py>,

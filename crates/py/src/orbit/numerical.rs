@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// Parameters
 /// ----------
 /// r : (3,) array
-///     Position at ``t0``, inertial axes, m.
+///     Position from the planet's centre at ``t0``, inertial axes, m.
 /// v : (3,) array
 ///     Velocity at ``t0``, inertial axes, m/s.
 /// t0 : float
@@ -44,6 +44,8 @@ use std::sync::Arc;
 ///     times at which the orbit is inside the planet.
 /// GravityError, EarthError
 ///     If the gravity effects contradict each other or ``mu``, or if they require an ``earth`` or an epoch.
+/// InputError, ShapeError
+///     If ``axes`` is unknown, or ``r`` or ``v`` is not finite or has the wrong shape.
 #[pyclass(name = "Numerical", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PyNumerical;
 

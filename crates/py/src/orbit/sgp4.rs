@@ -38,6 +38,8 @@ use std::sync::Arc;
 ///     other gravity constants, or in AFSPC mode unless ``propagator`` is ``reference``.
 /// Sgp4Error
 ///     If SGP4 rejects an element set or a time; ``code`` is the error code.
+/// InputError
+///     If the arguments are neither two lines nor a ``Satrec`` alone, or a choice is unknown.
 #[pyclass(name = "Sgp4", extends = PyOrbit, frozen, module = "onorbit_rs")]
 pub(super) struct PySgp4 {
     sgp4: Arc<Sgp4>,
@@ -171,6 +173,8 @@ impl PySgp4 {
     /// ------
     /// ElementSetError
     ///     If the message cannot be read or lacks a keyword, or if an entry is invalid.
+    /// InputError
+    ///     If ``gravity`` or ``propagator`` is unknown.
     #[staticmethod]
     #[pyo3(signature = (message, *, gravity="wgs72", propagator="native"))]
     fn from_omm<'py>(

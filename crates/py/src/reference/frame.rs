@@ -19,9 +19,14 @@ use std::sync::Arc;
 /// pose : (4, 4) array
 ///     Pose in W at time zero, m.
 /// velocity : (3,) array, optional
-///     Constant velocity, W axes, m/s.
+///     Constant velocity of its origin, W axes, m/s.
 /// spin : (3,) array, optional
 ///     Constant angular velocity, W axes, rad/s.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     If the pose is not a rigid transform, or a number is not finite, or an array has the wrong shape.
 #[pyclass(name = "Target", frozen, module = "onorbit_rs")]
 pub(crate) struct PyTarget {
     target: Target,
@@ -75,7 +80,7 @@ pub(super) enum Frame {
 }
 
 impl Frame {
-    /// Reads the argument ``frame``: a name or a target; W by default.
+    /// Reads the argument ``frame``: a name or a target; W by default. Any other value is an error.
     pub(super) fn of(value: Option<Any<'_, '_>>) -> PyResult<Self> {
         let Some(value) = value else { return Ok(Self::World) };
         if let Ok(target) = value.cast::<PyTarget>() {

@@ -11,7 +11,12 @@ use pyo3::prelude::*;
 /// pose : (4, 4) array
 ///     Pose of the tool in ``frame``, m.
 /// frame : {"world", "lvlh", "base"} or Target, optional
-///     Frame of the reference; default: W.
+///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     If the pose is not a rigid transform or not finite, has the wrong shape, or ``frame`` is unknown.
 #[pyclass(name = "Hold", extends = PyReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyHold;
 

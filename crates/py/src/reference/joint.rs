@@ -40,6 +40,11 @@ fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> 
 /// ----------
 /// q : (n,) array
 ///     Positions, rad or m.
+///
+/// Raises
+/// ------
+/// ControlError, ShapeError
+///     If a position is not finite, or ``q`` is not a vector.
 #[pyclass(name = "JointHold", extends = PyJointReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyJointHold;
 
@@ -69,6 +74,12 @@ impl PyJointHold {
 ///     ``times``.
 /// stops : bool
 ///     If False, the path passes through the points without stopping.
+///
+/// Raises
+/// ------
+/// ControlError, ShapeError
+///     If times and limits are both given or both missing, if a value is invalid, or if an array has the
+///     wrong shape.
 #[pyclass(name = "JointWaypoints", extends = PyJointReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyJointWaypoints;
 
@@ -109,6 +120,11 @@ impl PyJointWaypoints {
     /// Returns
     /// -------
     /// JointWaypoints
+    ///
+    /// Raises
+    /// ------
+    /// ControlError, ShapeError
+    ///     If an index is not that of a joint, or for the reasons stated for the constructor.
     #[staticmethod]
     #[pyo3(signature = (start, moves, *, times=None, speed=None, acceleration=None))]
     fn one_by_one<'py>(
@@ -143,6 +159,11 @@ impl PyJointWaypoints {
 ///     Positions, rad or m.
 /// rates : (K, n) array, optional
 ///     Rates, rad/s or m/s; default: computed from the positions.
+///
+/// Raises
+/// ------
+/// ControlError, ShapeError
+///     If the times do not increase, a number is not finite, or an array has the wrong shape.
 #[pyclass(name = "JointSampled", extends = PyJointReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyJointSampled;
 

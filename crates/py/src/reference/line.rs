@@ -20,7 +20,13 @@ use pyo3::prelude::*;
 ///     Limits of the angular velocity and acceleration, rad/s and rad/s². Limits cannot be combined with
 ///     ``duration``.
 /// frame : {"world", "lvlh", "base"} or Target, optional
-///     Frame of the reference; default: W.
+///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     If the duration and limits are both given or both missing, a value is invalid, or an array has the
+///     wrong shape.
 #[pyclass(name = "Line", extends = PyReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyLine;
 

@@ -8,7 +8,8 @@ use pyo3::prelude::*;
 
 /// Line with a superimposed parabola, ``p(t) = p0 + s d + s (1 - s) h``, with constant attitude.
 ///
-/// ``s`` is the quintic time law from 0 to 1.
+/// ``p0`` is the initial position, and ``s`` a quintic polynomial of time that rises from 0 to 1 within the
+/// duration.
 ///
 /// Parameters
 /// ----------
@@ -22,7 +23,12 @@ use pyo3::prelude::*;
 ///     Coefficient ``h`` of the parabola, axes of ``frame``, m; at half the distance, the lateral offset is a
 ///     quarter of ``h``.
 /// frame : {"world", "lvlh", "base"} or Target, optional
-///     Frame of the reference; default: W.
+///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     If the duration is not positive, another value is invalid, or an array has the wrong shape.
 #[pyclass(name = "LineParabola", extends = PyReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyLineParabola;
 

@@ -184,7 +184,7 @@ impl PyJointReference {
     }
 }
 
-/// Samples a reference of a tool at one time or at many times.
+/// Samples a reference of a tool at one time or at many times, s, in its own frame or in W.
 fn table<'py>(
     py: Python<'py>,
     reference: &TaskReference,

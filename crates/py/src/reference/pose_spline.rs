@@ -21,7 +21,13 @@ use pyo3::prelude::*;
 /// stops : bool
 ///     If False, the path passes through the poses without stopping.
 /// frame : {"world", "lvlh", "base"} or Target, optional
-///     Frame of the reference; default: W.
+///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     If times and limits are both given or both missing, a value is invalid, or an array has the wrong
+///     shape.
 #[pyclass(name = "Waypoints", extends = PyReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyWaypoints;
 
@@ -75,7 +81,12 @@ impl PyWaypoints {
 /// velocities : (K, 6) array, optional
 ///     Velocities, axes of ``frame``, linear first, m/s and rad/s.
 /// frame : {"world", "lvlh", "base"} or Target, optional
-///     Frame of the reference; default: W.
+///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     If the times do not increase, a value is invalid, or an array has the wrong shape.
 #[pyclass(name = "Sampled", extends = PyReference, frozen, module = "onorbit_rs")]
 pub(super) struct PySampled;
 

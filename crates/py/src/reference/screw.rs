@@ -25,7 +25,13 @@ use pyo3::prelude::*;
 /// duration, speed, acceleration, angular_speed, angular_acceleration : float, optional
 ///     As for :class:`Line`.
 /// frame : {"world", "lvlh", "base"} or Target, optional
-///     Frame of the reference; default: W.
+///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     If the duration and limits are both given or both missing, a value is invalid, such as a zero
+///     ``axis``, or an array has the wrong shape.
 #[pyclass(name = "Circle", extends = PyReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyCircle;
 
@@ -86,7 +92,12 @@ impl PyCircle {
 /// duration, speed, acceleration, angular_speed, angular_acceleration : float, optional
 ///     As for :class:`Line`.
 /// frame : {"world", "lvlh", "base"} or Target, optional
-///     Frame of the reference; default: W.
+///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
+///
+/// Raises
+/// ------
+/// ControlError, InputError, ShapeError
+///     As for :class:`Circle`.
 #[pyclass(name = "Screw", extends = PyReference, frozen, module = "onorbit_rs")]
 pub(super) struct PyScrew;
 

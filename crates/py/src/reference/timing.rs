@@ -7,7 +7,7 @@ use crate::errors::{IntoPython, plain};
 use onorbit_core::reference::{RateLimit, ReferenceError, TaskLimits, Timing};
 use pyo3::prelude::*;
 
-/// Reads the duration or times, or the limits of a frame's motion. Giving both is an error.
+/// Reads the duration or times, or the limits of a frame's motion. Giving both or neither is an error.
 pub(super) fn of_task<T>(
     py: Python<'_>,
     given: Option<T>,
@@ -27,7 +27,7 @@ pub(super) fn of_task<T>(
     }
 }
 
-/// Reads the times, or limits for each of `count` joints. Giving both is an error.
+/// Reads the times, s, or limits for each of `count` joints. Giving both or neither is an error.
 pub(super) fn of_joints(
     py: Python<'_>,
     count: usize,

@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 use std::sync::Arc;
 
 /// Creates the simulation of a world with default settings of the integration. `given` states which arguments
-/// that belong to a robot have been given.
+/// that belong to a robot have been given; any of them is an error.
 pub(super) fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> PyResult<Simulation> {
     if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
         return Err(PyTypeError::new_err(format!(

@@ -80,6 +80,16 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     External physics engine that replaces the native engine, such as ``onorbit_rs.engines.Mujoco``. It is
 ///     an object with a method ``step`` (see Notes).
 ///
+/// Raises
+/// ------
+/// TypeError
+///     If ``model`` is neither a robot nor a world, ``q`` or ``v`` is missing for a robot, or an argument of
+///     a robot is given with a world.
+/// InputError, ShapeError
+///     If a number is out of range, or an array has the wrong shape.
+/// OrbitError, EarthError, GravityError, EffectError, ControlError, EngineError
+///     If the orbit, the Earth, the environment, the controllers and the engine do not fit together.
+///
 /// Notes
 /// -----
 /// ``engine.step(start, end, q, v, tau, wrenches)`` returns a tuple: ``q`` and ``v`` at ``end``, the
@@ -112,7 +122,7 @@ pub(crate) struct PySimulation {
     /// Reference orbit; None without one.
     #[pyo3(get)]
     orbit: Option<Py<PyOrbit>>,
-    /// Length of an integration step, s.
+    /// Length of fixed steps, s; with ``dormand_prince``, the spacing of the recorded rows.
     #[pyo3(get)]
     time_step: f64,
     /// Number of steps from one recorded row to the next.
@@ -246,6 +256,8 @@ impl PySimulation {
     ///     At Ctrl-C; ``trace`` holds the rows so far.
     /// SimulationError
     ///     If the run diverges; ``trace`` holds the rows so far.
+    /// InputError, CheckpointError
+    ///     If a duration is invalid, or ``resume`` belongs to a different simulation.
     #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
     fn run(
         &self,

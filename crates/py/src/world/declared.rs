@@ -48,7 +48,9 @@ use std::sync::Arc;
 /// Raises
 /// ------
 /// WorldError
-///     If a system or an event is invalid.
+///     If a system, a contact or an event is invalid.
+/// InputError, OrbitError, EarthError, GravityError, EffectError, ControlError
+///     As for ``Simulation``.
 #[pyclass(name = "World", frozen, module = "onorbit_rs")]
 pub(crate) struct PyWorld {
     systems: Vec<Py<PySystem>>,
@@ -130,7 +132,7 @@ impl PyWorld {
         self.orbit.as_ref().map(|orbit| orbit.clone_ref(py))
     }
 
-    /// Returns the model of the system `name`.
+    /// Returns the model of the system `name`; an unknown name is an error.
     pub(crate) fn model_of<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyModel>> {
         let system = self.systems.iter().find(|system| system.get().name == name);
         system.map(|system| system.get().model.bind(py).clone()).ok_or_else(|| {

@@ -20,7 +20,7 @@ struct Condition {
 }
 
 impl Condition {
-    /// Creates the condition, of which exactly one must be given.
+    /// Creates the condition. Exactly one of `at`, `after`, `on_command` and `latch` must be given.
     fn new(
         py: Python<'_>,
         name: &str,
@@ -140,6 +140,14 @@ fn frame_at(
 /// pose : (4, 4) array, optional
 ///     Nominal pose of the captured frame in the capturing frame, m; the distance may be at most 1000 m. By
 ///     default the two frames coincide.
+///
+/// Raises
+/// ------
+/// WorldError
+///     If not exactly one condition is given, or an argument is given without the one that it belongs to.
+/// InputError, ShapeError, DtypeError, ModelError
+///     If a number is not finite, an array has the wrong shape, a name is not text, or ``pose`` is not a
+///     rigid transform.
 #[pyclass(name = "Capture", frozen, module = "onorbit_rs")]
 pub(crate) struct PyCapture {
     /// Name of the event.
@@ -239,7 +247,14 @@ impl PyCapture {
 ///     If True, the release happens when ``Stepper.trigger`` is called.
 /// impulse : (6,) array, optional
 ///     Impulse of a spring on the captured system: N s, then N m s, at the origin and in the axes of the
-///     capturing frame. The opposite impulse acts on the other system.
+///     capturing frame; default: zero. The opposite impulse acts on the other system.
+///
+/// Raises
+/// ------
+/// WorldError
+///     If not exactly one condition is given, or ``delay`` is given without ``after``.
+/// InputError, ShapeError, DtypeError
+///     If ``impulse`` is not finite or has the wrong shape, or a name is not text.
 #[pyclass(name = "Release", frozen, module = "onorbit_rs")]
 pub(crate) struct PyRelease {
     /// Name of the event.

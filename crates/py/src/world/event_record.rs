@@ -20,7 +20,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 ///     Kind of the event. A contact touches down when the first pieces of its links touch, and lifts off when
 ///     the last ones separate.
 /// time : float
-///     Time, s.
+///     Simulation time, s.
 /// systems : (str, str)
 ///     Names of the two systems, beginning with the capturing system; for a contact, those of the links that
 ///     touched first, in the order of its sides.
@@ -38,6 +38,11 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// peak_force : float, optional
 ///     Largest normal force since the touch-down, N; None unless the event is a lift-off. It is the largest
 ///     force at the end of a step, or the maximum of the parabola through three such forces.
+///
+/// Raises
+/// ------
+/// InputError, ShapeError
+///     If ``kind`` is unknown, or an array has the wrong shape.
 #[pyclass(name = "EventRecord", frozen, module = "onorbit_rs")]
 #[derive(PartialEq)]
 pub(crate) struct PyEventRecord {
@@ -45,7 +50,7 @@ pub(crate) struct PyEventRecord {
     #[pyo3(get)]
     name: String,
     kind: EventKind,
-    /// Time, s.
+    /// Simulation time, s.
     #[pyo3(get)]
     time: f64,
     /// Names of the two systems, beginning with the capturing system.

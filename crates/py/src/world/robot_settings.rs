@@ -61,7 +61,7 @@ impl RobotSettings {
     }
 }
 
-/// Reads an initial configuration and velocity.
+/// Reads an initial configuration and velocity, each a vector; their lengths are not checked here.
 pub(crate) fn initial_state(
     py: Python<'_>,
     model: &Model,

@@ -45,6 +45,12 @@ use std::sync::Arc;
 ///     Names of other systems whose models the controllers know. While such a system is connected to this
 ///     one, laws that use a model use the model of the connected tree, in which the joints of the other
 ///     system have no motor torque.
+///
+/// Raises
+/// ------
+/// ShapeError, DtypeError, EffectError
+///     If ``q`` or ``v`` is not a vector, ``knows`` is not a list of names, or ``surfaces`` is invalid. Other
+///     invalid arguments raise an error when the ``World`` is constructed.
 #[pyclass(name = "System", frozen, module = "onorbit_rs")]
 pub(crate) struct PySystem {
     /// Name of the system.

@@ -14,7 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Returns the number of the system `name`.
+/// Returns the index of the system `name` in `names`; an unknown name is an error.
 pub(super) fn find(py: Python<'_>, names: &[String], name: &str) -> PyResult<usize> {
     names.iter().position(|known| known == name).ok_or_else(|| {
         let message = format!("there is no system '{name}'; the systems are: {}", names.join(", "));
@@ -49,7 +49,7 @@ impl Systems {
         }
     }
 
-    /// Returns the number of the system `name`.
+    /// Returns the index of the system `name`; an unknown name is an error.
     pub(crate) fn find(&self, py: Python<'_>, name: &str) -> PyResult<usize> {
         find(py, &self.names, name)
     }
@@ -150,6 +150,11 @@ impl PySystemStepper {
     ///     Accelerations, rad/s² or m/s².
     /// check_only : bool
     ///     If True, the command is checked and not sent.
+    ///
+    /// Raises
+    /// ------
+    /// ControlError, ShapeError, InputError
+    ///     As for :meth:`Stepper.send`.
     #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None, check_only=false))]
     fn send(
         &self,
@@ -182,6 +187,11 @@ impl PySystemStepper {
     ///     Accelerations, rad/s² or m/s².
     /// start : float, optional
     ///     Simulation time of the start, s; default: the current time.
+    ///
+    /// Raises
+    /// ------
+    /// ControlError, ShapeError, InputError
+    ///     As for :meth:`Stepper.send_trajectory`.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -208,7 +218,12 @@ impl PySystemStepper {
     /// torque : (3,) array, optional
     ///     Torque, N m; default: 0.
     /// frame : {"world", "body"}
-    ///     Axes in which force and torque are constant.
+    ///     Axes in which force and torque are constant: W axes, or the axes of the body.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError, InputError, ShapeError, EngineError
+    ///     As for :meth:`Stepper.wrench`.
     #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
     fn wrench(
         &self,

@@ -62,6 +62,11 @@ impl PyWorldTrace {
 #[pymethods]
 impl PyWorldTrace {
     /// Return the trace of a system.
+    ///
+    /// Raises
+    /// ------
+    /// WorldError
+    ///     If there is no such system.
     fn __getitem__(&self, py: Python<'_>, name: &str) -> PyResult<Py<PyTrace>> {
         Ok(self.traces[find(py, &self.names, name)?].clone_ref(py))
     }

@@ -11,6 +11,11 @@ use pyo3::prelude::*;
 /// ----------
 /// density : float
 ///     Density, kg/m³.
+///
+/// Raises
+/// ------
+/// EffectError
+///     If the density is negative or not finite.
 #[pyclass(name = "ConstantAtmosphere", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
 pub(super) struct PyConstantAtmosphere;
 

@@ -18,6 +18,11 @@ use pyo3::prelude::*;
 ///     Reference altitude above WGS84, m.
 /// scale_height : float, optional
 ///     Altitude difference over which the density decreases by the factor e, m.
+///
+/// Raises
+/// ------
+/// EffectError
+///     If only some of the arguments are given, or one is outside its range.
 #[pyclass(name = "ExponentialAtmosphere", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
 pub(super) struct PyExponentialAtmosphere;
 

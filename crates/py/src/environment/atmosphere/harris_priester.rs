@@ -17,6 +17,11 @@ use pyo3::prelude::*;
 ///     Exponent ``n``: from 2 for low inclinations to 6 for polar orbits.
 /// lag : float
 ///     Angle by which the apex of the bulge lies east of the Sun, rad.
+///
+/// Raises
+/// ------
+/// EffectError
+///     If ``exponent`` is not between 2 and 6, or ``lag`` not between -π and π.
 #[pyclass(name = "HarrisPriester", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
 pub(super) struct PyHarrisPriester;
 

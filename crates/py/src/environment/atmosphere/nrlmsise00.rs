@@ -29,7 +29,13 @@ use std::path::{Path, PathBuf};
 ///     CSV file with one row per day and the columns ``DATE, AP_AVG, F10.7_OBS, F10.7_OBS_CENTER81``, and
 ///     ``AP1`` to ``AP8`` for the three-hourly history (``SW-All.csv`` of CelesTrak).
 /// three_hourly : bool
-///     If False, only the daily mean of the table is used.
+///     If False, only the daily mean of ``ap`` in the table is used.
+///
+/// Raises
+/// ------
+/// EffectError, ShapeError, NotFoundError, ReadError
+///     If the space weather is incomplete, given twice or invalid, or the table does not exist or cannot be
+///     read.
 #[pyclass(name = "Nrlmsise00", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
 pub(super) struct PyNrlmsise00;
 

@@ -49,8 +49,8 @@ impl SurfaceAssignment {
         }
     }
 
-    /// Returns the surfaces on the given systems. Issues a warning if bodies without visual geometry have no
-    /// faces.
+    /// Returns the surfaces on the given systems. Bodies without visual geometry that have no faces for this
+    /// reason cause a warning; a single system without any surface is an error.
     pub(crate) fn on_with_warning(
         &self,
         py: Python<'_>,

@@ -5,7 +5,8 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::surfaces::Surface;
 use pyo3::prelude::*;
 
-/// Surface with the same area in all directions. Forces act at the centre of mass, so there is no torque.
+/// Surface with the same area in all directions. Forces act at the body's centre of mass, so there is no
+/// torque.
 ///
 /// Parameters
 /// ----------
@@ -16,6 +17,11 @@ use pyo3::prelude::*;
 /// reflectivity : float
 ///     Radiation pressure coefficient C_R: 1 if all light is absorbed, 2 for a flat mirror that faces the
 ///     Sun.
+///
+/// Raises
+/// ------
+/// EffectError
+///     If a number is negative or not finite, or ``reflectivity`` is above 2.
 #[pyclass(name = "Cannonball", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyCannonball;
 

@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 
 /// Faces of a body's visual geometry, which is that of a link and of all links fixed to it.
 ///
-/// Boxes, cylinders and spheres are represented exactly, capsules with an error of 2 %; meshes are rejected.
+/// Boxes, cylinders and spheres are represented exactly, capsules with an error of 2 %; for meshes, the
+/// construction of the simulation raises ``EffectError``.
 ///
 /// The force on each face depends on its angle of incidence and acts at its centroid, which results in a
 /// torque. Faces do not shadow each other.
@@ -20,6 +21,11 @@ use pyo3::prelude::*;
 ///     Fraction of the light that is reflected specularly.
 /// diffuse : float
 ///     Fraction of the light that is reflected diffusely; the remainder is absorbed.
+///
+/// Raises
+/// ------
+/// EffectError
+///     If a number is outside its range, or the fractions add up to more than 1.
 #[pyclass(name = "Faces", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyFaces;
 

@@ -18,6 +18,11 @@ use pyo3::prelude::*;
 ///     Centroids relative to the origin of the link or frame, in its axes, m.
 /// drag_coefficient, specular, diffuse : float
 ///     As for ``Faces``.
+///
+/// Raises
+/// ------
+/// EffectError, ShapeError
+///     If a number is outside its range, a normal is zero, or an array has the wrong shape.
 #[pyclass(name = "Plates", extends = PySurface, frozen, module = "onorbit_rs")]
 pub(super) struct PyPlates;
 

@@ -19,7 +19,7 @@ use pyo3::prelude::*;
 /// mean_motion : float
 ///     Mean motion of the circular orbit, rad/s.
 /// t : float or (T,) array
-///     Time, s.
+///     Time over which the motion is propagated, s.
 ///
 /// Returns
 /// -------
@@ -55,9 +55,10 @@ pub(super) fn hill_transition<'py>(
 /// mean_motion : float
 ///     Mean motion of the circular orbit, rad/s.
 /// r : (3,) array
-///     Relative position, Hill's axes, m.
+///     Position relative to the origin, which moves on the circular orbit, in Hill's axes (see
+///     :func:`hill_transition`), m.
 /// t : float
-///     Time, s.
+///     Time after which the satellite reaches the origin, s.
 ///
 /// Returns
 /// -------

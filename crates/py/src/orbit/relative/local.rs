@@ -18,7 +18,7 @@ use pyo3::prelude::*;
 /// t : float or (T,) array
 ///     Simulation time, s.
 /// r : (3,) or (T, 3) array
-///     Position, inertial axes, m.
+///     Position from the planet's centre, inertial axes, m.
 /// v : (3,) or (T, 3) array
 ///     Velocity, inertial axes, m/s.
 /// frame : {"lvlh", "nadir"}
@@ -28,7 +28,7 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// rho : (3,) or (T, 3) array
-///     Relative position, axes of the frame, m.
+///     Position relative to the reference orbit, axes of the frame, m.
 /// rho_dot : (3,) or (T, 3) array
 ///     Rate of change of the relative position in the rotating frame, m/s.
 ///
@@ -36,6 +36,8 @@ use pyo3::prelude::*;
 /// ------
 /// OrbitError
 ///     As for :meth:`Orbit.lvlh`, or if a number is not finite.
+/// InputError, ShapeError
+///     If ``frame`` is unknown, or the shapes of ``r`` and ``v`` do not match that of ``t``.
 #[pyfunction]
 #[pyo3(signature = (orbit, t, r, v, *, frame="lvlh"))]
 pub(super) fn to_lvlh<'py>(
@@ -60,7 +62,7 @@ pub(super) fn to_lvlh<'py>(
 /// t : float or (T,) array
 ///     Simulation time, s.
 /// r : (3,) or (T, 3) array
-///     Relative position, axes of the frame, m.
+///     Position relative to the reference orbit, axes of the frame, m.
 /// v : (3,) or (T, 3) array
 ///     Rate of change of the relative position in the rotating frame, m/s.
 /// frame : {"lvlh", "nadir"}
@@ -69,7 +71,7 @@ pub(super) fn to_lvlh<'py>(
 /// Returns
 /// -------
 /// r : (3,) or (T, 3) array
-///     Position, inertial axes, m.
+///     Position from the planet's centre, inertial axes, m.
 /// v : (3,) or (T, 3) array
 ///     Velocity, inertial axes, m/s.
 ///
