@@ -57,8 +57,8 @@ impl Evaluator {
     /// any number of threads.
     ///
     /// # Errors
-    /// [`InputError`] for the first invalid input in the order of the arguments; the contents of the outputs
-    /// are then undefined.
+    /// [`InputError`] for the first invalid input in the order of the arguments, or for the first result that
+    /// is not finite; the contents of the outputs are then undefined.
     pub fn many<'a>(
         kernel: Kernel,
         model: &Model,
@@ -79,7 +79,7 @@ impl Evaluator {
     }
 }
 
-/// Computes all states. Returns true if all inputs and outputs are valid.
+/// Computes all states. Returns true if the inputs of all computed states are valid and their outputs finite.
 fn evaluate_all<S: Real>(
     call: &Call<'_>,
     outputs: &mut [RowsMut<'_>],
@@ -124,7 +124,7 @@ fn split_rows<'a>(
     next
 }
 
-/// Returns the error of a call with invalid inputs or outputs.
+/// Returns the error of the first invalid input or, if there is none, of the first output that is not finite.
 #[cold]
 fn first_fault(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(), InputError> {
     for (name, rows) in call.kernel.inputs().iter().zip(call.inputs) {

@@ -11,7 +11,7 @@ pub(super) struct Strides {
     pub(super) count: usize,
 }
 
-/// Loads rows into lanes. Lanes without a state repeat the last row.
+/// Loads rows into lanes: `to[i]` holds entry `i` of every row. Lanes without a state repeat the last row.
 #[inline(always)]
 pub(super) fn gather<S: Real>(from: &[f64], strides: Strides, to: &mut [S]) {
     let last = strides.count - 1;

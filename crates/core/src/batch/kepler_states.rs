@@ -8,7 +8,8 @@ use crate::spatial::{InstructionSet, Lanes4, Lanes8, Real};
 /// Number of states per task.
 const CHUNK: usize = 4096;
 
-/// Computes positions (m) and velocities (m/s) on Kepler ellipses, each an (N, 3) array.
+/// Computes positions (m) from the planet's centre and velocities (m/s) on Kepler ellipses in inertial axes,
+/// each an (N, 3) array.
 ///
 /// `elements`: semi-major axis (m), eccentricity, inclination, right ascension of the node, argument of
 /// periapsis and mean anomaly at time zero (rad), and time (s). Each has one value for all states or one
@@ -16,7 +17,7 @@ const CHUNK: usize = 4096;
 ///
 /// # Errors
 /// [`InputError`] for wrong lengths, numbers that are not finite, elements that do not describe an ellipse,
-/// or zero threads.
+/// `mu` that is not positive, or zero threads.
 pub fn kepler_states<'a>(
     elements: [&[f64]; 7],
     mu: f64,

@@ -21,7 +21,7 @@ pub enum Kernel {
     FramePose(usize),
     /// `q, v` → `(6,)` twist at the frame origin, W axes, m/s and rad/s.
     FrameVelocity(usize),
-    /// `q` → `(6, nv)` Jacobian at the frame origin, W axes.
+    /// `q` → `(6, nv)` Jacobian of the twist at the frame origin, W axes.
     FrameJacobian(usize),
     /// `q` → `(nv, nv)` mass matrix.
     MassMatrix,
@@ -31,9 +31,10 @@ pub enum Kernel {
     InverseDynamics,
     /// `q, v, tau` → `(nv,)` generalized accelerations, m/s² and rad/s².
     ForwardDynamics,
-    /// `q, v, a` → `∂τ/∂q`, `∂τ/∂v`, `∂τ/∂a`, each `(nv, nv)`.
+    /// `q, v, a` → derivatives `∂τ/∂q`, `∂τ/∂v`, `∂τ/∂a` of the generalized forces `τ`, each `(nv, nv)`. Here
+    /// and below, `∂/∂q` is the derivative with respect to `δ` of `q ⊕ δ`.
     InverseDynamicsDerivatives,
-    /// `q, v, tau` → `∂a/∂q`, `∂a/∂v`, `∂a/∂τ`, each `(nv, nv)`.
+    /// `q, v, tau` → derivatives `∂a/∂q`, `∂a/∂v`, `∂a/∂τ` of the generalized accelerations, each `(nv, nv)`.
     ForwardDynamicsDerivatives,
     /// `q, v` → `(6,)` linear momentum, kg m/s, and angular momentum about the centre of mass, kg m²/s, W
     /// axes.
@@ -42,14 +43,15 @@ pub enum Kernel {
     KineticEnergy,
     /// `q` → `(3,)` centre of mass in W, m.
     CenterOfMass,
-    /// `q, v` → reduced model `M*` `(n, n)`, `c*` `(n,)`, `Q*` `(n,)`, `Jg` `(6, n)`, `d` `(6,)`.
+    /// `q, v` → reduced model without the base: mass matrix `M*` `(n, n)`, bias `c*` `(n,)`, external forces
+    /// `Q*` `(n,)`, generalized Jacobian `Jg` `(6, n)` of a frame and its drift `d` `(6,)`.
     FreeFloating(usize),
-    /// `q, v, joint_acceleration` → `∂τ/∂q`, `∂τ/∂v`, each `(n, nv)`, and `∂ẍ/∂q`, `∂ẍ/∂v`, `∂ẋ/∂q`, each
-    /// `(6, nv)`.
+    /// `q, v, joint_acceleration` → derivatives of the joint efforts, `∂τ/∂q`, `∂τ/∂v`, each `(n, nv)`, and
+    /// of the acceleration `ẍ` and twist `ẋ` of a frame, `∂ẍ/∂q`, `∂ẍ/∂v`, `∂ẋ/∂q`, each `(6, nv)`.
     FreeFloatingDerivatives(usize),
-    /// `q, dv` → `(nq,)` configuration `q ⊕ dv`.
+    /// `q, dv` → `(nq,)` configuration `q ⊕ dv` ([`integrate`]).
     Integrate,
-    /// `q, q2` → `(nv,)` difference `q2 ⊖ q`.
+    /// `q, q2` → `(nv,)` difference `q2 ⊖ q`, m and rad ([`difference`]).
     Difference,
 }
 

@@ -20,8 +20,8 @@ const INSTANTS: usize = 4096;
 /// Number of integration steps of a numerical orbit between two checks of the stop flag.
 const STEPS: usize = 16;
 
-/// Computes positions (m) and velocities (m/s) of `orbits`, each (N, T, 3), row-major. The states of an orbit
-/// are in the axes of that orbit.
+/// Computes positions (m) from the planet's centre and velocities (m/s) of `orbits`, each (N, T, 3),
+/// row-major. The states of an orbit are in the inertial axes of that orbit.
 ///
 /// The results are bit-identical for any number of threads.
 ///

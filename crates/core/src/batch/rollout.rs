@@ -19,7 +19,7 @@ pub enum RolloutControl<'a> {
     /// No commanded torques; damping and friction of the joints still act.
     #[default]
     Passive,
-    /// Given joint efforts, `(B, steps, n)`, N m or N.
+    /// Given joint efforts, `(B, steps, n)`, N m or N, each held during its step.
     Torques(&'a [f64]),
     /// Computed torque that tracks the same reference in all runs. The reference must not be in an orbital
     /// frame.
