@@ -18,21 +18,21 @@ pub struct ContactLaw {
 /// Rule for the length of steps while bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSteps {
-    /// Number of steps in half a period of the fastest oscillation of a contact, which is the duration of an
-    /// elastic impact with a linear force.
+    /// Number of steps in half a period of the fastest oscillation of a contact. An elastic impact with a
+    /// linear force lasts half a period.
     pub count: usize,
     /// True if steps are shortened near touch-down and lift-off for exponents between 1 and 4, where equal
     /// steps reduce the order of the integrator.
     pub is_graded: bool,
-    /// Part of the energy of a contact that a step may gain or lose by the error of the integrator. Steps
+    /// Fraction of the energy of a contact that a step may gain or lose by the error of the integrator. Steps
     /// with larger errors, which occur for example where the nearest faces or edges change, are repeated with
     /// half the length.
     pub energy_error: f64,
 }
 
 impl Default for ContactSteps {
-    /// Returns 128 graded steps, with which an elastic impact of spheres keeps its energy to about 1e-11, and
-    /// an energy error of 1e-10 per step.
+    /// Returns 128 graded steps, with which an elastic impact of spheres changes the energy by a fraction of
+    /// about 1e-11, and an energy error of 1e-10 per step.
     fn default() -> Self {
         Self { count: 128, is_graded: true, energy_error: 1e-10 }
     }
@@ -67,7 +67,8 @@ impl Contact {
     /// Checks the law and the shapes.
     ///
     /// # Errors
-    /// [`ContactError`] for the first invalid parameter or shape, or for a link on both sides.
+    /// [`ContactError`] for the first invalid parameter or shape, or if all pieces of both sides belong to
+    /// the same link.
     pub fn check(&self) -> Result<(), ContactError> {
         if let Some(law) = &self.law {
             law.normal.check()?;
@@ -96,7 +97,7 @@ impl Contact {
         Some(own)
     }
 
-    /// Returns the system of the first piece of the first side.
+    /// Returns the system of the first piece of the first side; `None` if that side has no pieces.
     pub(crate) fn first_system(&self) -> Option<usize> {
         self.sides[0].first().map(|side| side.frame.system)
     }

@@ -46,9 +46,10 @@ pub struct FrictionForce {
     pub force: Vec3<f64>,
     /// Bristles after the displacement.
     pub bristle: Bristle,
-    /// Distance from the next change between sticking and slipping, negative beyond the change: `1 − |σ z + c
-    /// v|/(μ N)` while the contact sticks, and the cosine of the angle between bristles and velocity while it
-    /// slips.
+    /// Distance from the next change between sticking and slipping, negative beyond the change, with the
+    /// symbols of [`Friction::after`]: `1 − |σ z + c v|/(μ N)` if the contact stuck at the start. If it
+    /// slipped, the margin is the cosine of the angle between bristles and velocity on the cone, and `|σ z +
+    /// c v|/(μ N) − 1` inside the cone. Inside the cone it is 0 if `μ N = 0`.
     pub margin: f64,
 }
 
@@ -57,10 +58,12 @@ impl Friction {
     /// the relative displacement `moved`, m, from the bristles `start`, with the damping `damping`, N s/m.
     /// All vectors are tangential.
     ///
-    /// Inside the cone, `ż = v` and `F = −(σ z + c v)`. On the cone, `|F| = μ N`, and the direction `d` of
-    /// the bristles, of length `μ N/σ`, turns towards the velocity: `ḋ = (1 − d dᵀ) v/|z|`. For a constant
-    /// velocity, the angle `φ` between `d` and `v` obeys `tan φ/2 = tan φ₀/2 exp(−s/|z|)` with the path
-    /// length `s`.
+    /// The cone is `|σ z + c v| ≤ μ N` with the deflection `z`, the velocity `v = rate`, the normal force `N`
+    /// and the static coefficient `μ`, which is replaced by the kinetic one if `start` slips. Inside the
+    /// cone, `ż = v` and `F = −(σ z + c v)`. On the cone, `|F| = μ N` with the kinetic coefficient, and the
+    /// direction `d` of the bristles, of length `μ N/σ`, turns towards the velocity: `ḋ = (1 − d dᵀ) v/|z|`.
+    /// For a constant velocity, the angle `φ` between `d` and `v`, at first `φ₀`, obeys `tan φ/2 = tan φ₀/2
+    /// exp(−s/|z|)` with the path length `s`.
     pub fn after(
         &self,
         start: &Bristle,
@@ -91,7 +94,7 @@ impl Friction {
     }
 
     /// Returns the damping inside the cone, N s/m, of a contact with the reciprocal effective mass
-    /// `mobility`, 1/kg.
+    /// `mobility`, 1/kg. The default damping is 0 if `mobility` is 0.
     pub fn damping_for(&self, mobility: f64) -> f64 {
         // c = 2 ζ √(σ m)
         let default = || 2.0 * DAMPING_RATIO * (self.stiffness / mobility).sqrt();
@@ -99,8 +102,9 @@ impl Friction {
     }
 
     /// Returns the law of the moment about the normal, N m, as a function of the angle of twist, rad; `None`
-    /// without torsional friction. A patch with the effective radius `r = τ/μ` has the torsional stiffness
-    /// `σ r²`.
+    /// without torsional friction. Its coefficients are in m, its stiffness in N m/rad and its damping in N m
+    /// s/rad. A patch with the effective radius `r = τ/μ`, of the coefficients `τ` of torsional and `μ` of
+    /// kinetic friction, has the torsional stiffness `σ r²`; `μ = 0` counts as 1.
     pub fn torsion(&self) -> Option<Self> {
         if self.torsional == 0.0 {
             return None;
@@ -117,7 +121,7 @@ impl Friction {
         })
     }
 
-    /// Returns the elastic energy of bristles, `½ σ z²`, J.
+    /// Returns the elastic energy of bristles with the deflection `z`, m: `½ σ z²`, J.
     pub fn elastic_energy(&self, deflection: Vec3<f64>) -> f64 {
         0.5 * self.stiffness * deflection.dot(deflection)
     }
@@ -126,7 +130,7 @@ impl Friction {
     ///
     /// # Errors
     /// [`ContactError::Parameter`] for a coefficient or a damping below 0, a static coefficient below the
-    /// kinetic one, or a stiffness that is not positive.
+    /// kinetic one, a stiffness that is not positive, or a parameter that is not finite.
     pub fn check(&self) -> Result<(), ContactError> {
         at_least("coefficient of kinetic friction", self.kinetic_coefficient, 0.0, "")?;
         at_least("coefficient of static friction", self.static_coefficient, self.kinetic_coefficient, "")?;
@@ -146,8 +150,8 @@ fn unit(v: Vec3<f64>) -> Vec3<f64> {
     if length > 0.0 { v * (1.0 / length) } else { Vec3::zero() }
 }
 
-/// Returns the direction of slipping bristles of length `length`, m, that pointed along `from`, after sliding
-/// by `path`, m, at the velocity `rate`, m/s.
+/// Returns the unit vector along slipping bristles of length `length`, m, that pointed along `from`, after
+/// sliding by `path`, m, at the velocity `rate`, m/s. Without a velocity or a length, it is that of `from`.
 fn turned(from: Vec3<f64>, rate: Vec3<f64>, path: f64, length: f64) -> Vec3<f64> {
     let (from, to) = (unit(from), unit(rate));
     if rate.norm() == 0.0 || length <= 0.0 {

@@ -5,7 +5,9 @@
 //! | `F = k xⁿ (1 + d ẋ)` | [`NormalLaw::force`] |
 //! | `F = k x + c ẋ` | [`NormalLaw::force`] |
 //! | `d v₀ (1 + e) = ln[(1 + d v₀)/(1 − e d v₀)]` | [`dissipation_for`] |
-//! | `ż = v` inside the cone `\|σ z + c v\| ≤ μ N`, `z = μ N/σ d` on it | [`Friction::after`] |
+//! | `ż = v` inside the cone `\|σ z + c v\| ≤ μ N`, `\|z\| = μ N/σ` on it | [`Friction::after`] |
+//!
+//! The normal force `F` depends on the depth `x`; the other symbols are defined at the functions.
 
 mod declared;
 mod error;

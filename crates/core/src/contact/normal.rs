@@ -51,7 +51,7 @@ impl NormalLaw {
     }
 
     /// Returns the elastic part of the force, `k xⁿ`, N. A linear law is continued to negative depths, so
-    /// that the force is smooth where the bodies separate.
+    /// that the force is smooth where the bodies separate; for other exponents it is 0 there.
     #[inline]
     pub fn elastic_force(&self, x: f64) -> f64 {
         let (stiffness, exponent) = (self.stiffness(), self.exponent());
@@ -64,13 +64,14 @@ impl NormalLaw {
         }
     }
 
-    /// Returns the elastic energy, J, stored at the depth `x`, m.
+    /// Returns the elastic energy, J, stored at the depth `x`, m; 0 at negative depths.
     pub fn elastic_energy(&self, x: f64) -> f64 {
         // U = k xⁿ⁺¹/(n + 1)
         if x > 0.0 { self.elastic_force(x) * x / (self.exponent() + 1.0) } else { 0.0 }
     }
 
-    /// Returns the derivative of the elastic force, `n k xⁿ⁻¹`, N/m.
+    /// Returns the derivative of the elastic force at the depth `x`, m: `n k xⁿ⁻¹`, N/m. At negative depths
+    /// it is 0, or `k` if the law is linear.
     pub fn tangent_stiffness(&self, x: f64) -> f64 {
         self.exponent() * self.stiffness() * x.max(0.0).powf(self.exponent() - 1.0)
     }
@@ -119,8 +120,8 @@ impl NormalLaw {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// [`ContactError::Parameter`] for a stiffness that is not positive, an exponent below 1 or negative
-    /// dissipation or damping.
+    /// [`ContactError::Parameter`] for a stiffness that is not positive, an exponent below 1, negative
+    /// dissipation or damping, or a parameter that is not finite.
     pub fn check(&self) -> Result<(), ContactError> {
         match *self {
             Self::HuntCrossley { stiffness, exponent, dissipation } => {
