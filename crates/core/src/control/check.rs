@@ -7,10 +7,11 @@ use crate::model::Model;
 /// Checks that each control applies to the robot and that no two controls conflict.
 ///
 /// # Errors
-/// [`ControlError`] for names that occur twice; groups that are empty, repeat a joint or overlap while both
-/// controls are active; gains, goals or references that are invalid or do not fit a group; goals without a
-/// reference; time windows that are empty; controls that start after a control that does not exist or never
-/// ends; and controls of which only some compensate the environment.
+/// [`ControlError`] for names that occur twice; groups that are empty, contain a joint twice or one that does
+/// not exist, or overlap while both controls are active, as far as their times are known before the run;
+/// gains, goals or references that are invalid or do not fit a group; goals or shifts to the present state
+/// without a reference; time windows that are empty; controls that start after a control that does not exist
+/// or never ends, or after themselves; and controls of which only some compensate the environment.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
     for (i, control) in controls.iter().enumerate() {
         if controls[..i].iter().any(|other| other.name == control.name) {

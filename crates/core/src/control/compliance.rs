@@ -7,17 +7,18 @@ use super::gains::{check_matrix, check_numbers};
 use crate::model::Model;
 use crate::spatial::Motion;
 
-/// Cartesian impedance control without inertia shaping: `τ = Jgᵀ (K e + D ė) − k N q̇`, with the pose error
-/// `e` of the frame and the null-space projector `N` of `Jg`.
+/// Cartesian impedance control without inertia shaping: `τ = Jgᵀ (K e + D ė) − k N q̇`, with the generalized
+/// Jacobian `Jg` of the frame and its null-space projector `N`, the pose error `e` and the velocity error `ė`
+/// of the frame, desired less actual, and the joint rates `q̇`.
 ///
 /// In free fall there is no gravity load to compensate. Friction is not compensated: the tool comes to rest
 /// where the spring torque is below the static friction of the joints, which may be off its goal. The law is
 /// passive: the power of the joint torques is `τᵀ q̇`, so that with the kinetic energy `T`, the spring energy
-/// `U = ½ eᵀ K e`, zero momentum (`ẋ = Jg q̇`), no friction and a reference at rest `d/dt (T + U) = −ẋᵀ D ẋ −
-/// k |N q̇|² ≤ 0`. For a reference relative to the base, `ẋ = J q̇` for any momentum, and the law is passive
-/// as well. If the robot drifts past a reference fixed in W, the spring pulls the robot, which may gain
-/// energy. The rotational spring has a potential energy if its stiffness is the same about all axes, or if the error
-/// is small.
+/// `U = ½ eᵀ K e`, the twist `ẋ` of the frame, zero momentum (`ẋ = Jg q̇`), no friction and a reference at
+/// rest `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. For a reference relative to the base, `ẋ = J q̇` with the
+/// Jacobian `J` relative to the base for any momentum, and the law is passive as well. If the robot drifts
+/// past a reference fixed in W, the spring pulls the robot, which may gain energy. The rotational spring has
+/// a potential energy if its stiffness is the same about all axes, or if the error is small.
 ///
 /// Source: Hogan, J. Dyn. Sys. Meas. Control 107(1), 1985.
 #[derive(Clone, Debug)]

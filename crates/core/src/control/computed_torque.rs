@@ -18,9 +18,11 @@ use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 /// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + f`,
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
 ///
-/// with the exact drift `d` of [`FreeFloating`], the attitude error by the logarithm on SO(3), the null-space
-/// projector `N = 1 − J₀⁺ Jg`, the joint torques `Q*` of the external wrenches, and the damping torque `f = b
-/// q̇` of the joints. Near a singularity the damped inverse `Jg⁺` reproduces some directions only partly. The
+/// with the reduced model `M*`, `c*`, `Jg` and the exact drift `d` of [`FreeFloating`], the actual pose `p`
+/// of the frame and the desired pose `pd`, the attitude error by the logarithm on SO(3), the joint rates `q̇`,
+/// the null-space projector `N = 1 − J₀⁺ Jg`, the joint torques `Q*` of the external wrenches, and the
+/// damping torque `f = b q̇` of joints with the damping coefficient `b`, which is 0 unless friction is
+/// compensated. Near a singularity the damped inverse `Jg⁺` reproduces some directions only partly. The
 /// suppressed part of the joint rates is `D q̇` with `D = (J₀⁺ − Jg⁺) Jg` and the undamped inverse `J₀⁺`; it
 /// is damped by `κ`, the mean of the diagonal of `Kd`. The joint drives compensate Coulomb friction on the
 /// basis of the desired acceleration `q̈` ([`ComputedTorqueWork::desired_accelerations`]).
@@ -78,7 +80,7 @@ impl ComputedTorque {
     }
 
     /// Returns the commanded acceleration `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)` of the frame, m/s² and
-    /// rad/s², where `p` denotes its actual and `pd` its desired pose.
+    /// rad/s², from its pose error `pd − p`, its velocity error and the desired acceleration.
     #[inline(always)]
     pub(super) fn reference_acceleration<S: Real>(
         &self,
@@ -157,8 +159,8 @@ impl ControlLaw for ComputedTorque {
 /// errors would chatter at the goal.
 const AT_GOAL: f64 = 2e-8;
 
-/// Returns the acceleration commanded by a law with the gain `kp` (1/s²), or zero if it is no larger than the
-/// acceleration for an error of [`AT_GOAL`].
+/// Returns `acceleration`, rad/s² (m/s²), commanded by a law with the gain `kp` (1/s²), or zero if its
+/// magnitude is no larger than the acceleration for an error of [`AT_GOAL`].
 pub(super) fn zero_within_goal_error(acceleration: f64, kp: f64) -> f64 {
     if acceleration.abs() <= kp * AT_GOAL { 0.0 } else { acceleration }
 }
@@ -169,7 +171,7 @@ pub(super) fn check_frame(model: &Model, frame: usize) -> Result<&Frame, Control
     model.frames().get(frame).ok_or(ControlError::NoSuchFrame { frame, count })
 }
 
-/// Returns the joints on the path from a frame to the base, starting at the frame.
+/// Returns the indices of the joints on the path from a frame to the base, starting at the frame.
 pub(super) fn joints_between(model: &Model, frame: usize) -> impl Iterator<Item = usize> {
     let body = model.frames()[frame].body;
     let path = std::iter::successors(Some(body), |&k| (k > 0).then(|| model.nodes()[k].parent));
@@ -200,9 +202,9 @@ impl<S: Real> ComputedTorqueWork<S> {
         }
     }
 
-    /// Writes the joint accelerations of the last call, rad/s² (m/s²), which the compensation of Coulomb
-    /// friction uses. They are `None` if `law` does not compensate friction, and zero for joints that may
-    /// stay at rest.
+    /// Writes the joint accelerations of the last call in the first lane, rad/s² (m/s²), which the
+    /// compensation of Coulomb friction uses. They are `None` if `law` does not compensate friction, and zero
+    /// for joints that may stay at rest.
     pub fn desired_accelerations(&self, law: &ComputedTorque, asked: &mut [Option<f64>]) {
         let stiffness = law.least_stiffness();
         for (to, from) in asked.iter_mut().zip(&self.acceleration) {
@@ -211,18 +213,19 @@ impl<S: Real> ComputedTorqueWork<S> {
     }
 }
 
-/// Returns the error of a frame in W axes: `pd − p`, m, and `log(Rd Rᵀ)`, rad.
+/// Returns the pose error of a frame, desired less actual, in W axes: the difference of the positions, m, and
+/// the rotation vector of `rot_wd rot_wfᵀ`, rad.
 #[inline(always)]
 pub fn task_error<S: Real>(rot_wf: &Mat3<S>, pos_w: Vec3<S>, desired: &TaskSample<S>) -> Motion<S> {
     Motion::new(desired.pos_w - pos_w, log_rotation(&(desired.rot_wd * rot_wf.transpose())))
 }
 
-/// Computes the joint torques, `(n,)`, N m, that track the `desired` pose and motion. The compensation of
+/// Computes the joint torques, `(n,)`, N m (N), that track the `desired` pose and motion. The compensation of
 /// Coulomb friction is not included.
 ///
 /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and, in `data`, the external
 /// wrenches that are to be compensated. With `is_relative`, `desired` and the tracked motion are relative to
-/// the base.
+/// the base, in base axes, otherwise in W.
 pub fn computed_torque<S: Real>(
     law: &ComputedTorque,
     model: &Model,

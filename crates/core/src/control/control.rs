@@ -36,7 +36,7 @@ pub enum Begin {
     At(f64),
     /// Start when the control with this index ends or its goal is decided; that control is then stopped.
     After(usize),
-    /// Start when the event with this number happens.
+    /// Start when the event with this number happens; active controls of the same joints are then stopped.
     AfterEvent(usize),
 }
 

@@ -57,7 +57,8 @@ pub(super) trait ControlLaw {
     }
 
     /// Returns the acceleration, rad/s² (m/s²), of the joint at `place` in the group, for
-    /// [`JointCommand::Acceleration`].
+    /// [`JointCommand::Acceleration`], from its tracking error, its rate, rad/s (m/s), and the desired motion
+    /// of the group.
     fn joint_acceleration(&self, _place: usize, _error: f64, _rate: f64, _desired: &JointSample) -> f64 {
         0.0
     }
@@ -96,7 +97,7 @@ pub(super) trait ControlLaw {
         Ok(())
     }
 
-    /// Returns the state of a user-defined controller for a checkpoint.
+    /// Returns the state of a user-defined controller for a checkpoint; empty for other laws.
     fn save(&self) -> Result<Vec<u8>, ControlError> {
         Ok(Vec::new())
     }
@@ -139,7 +140,7 @@ pub(super) struct TaskDamping {
     pub(super) pseudo_inverse: f64,
     /// Damping `k` of joint motion that does not affect the task, 1/s.
     pub(super) null_space: f64,
-    /// Damping `κ` of the joint rates `D q̇` that the damped pseudo-inverse suppresses, 1/s.
+    /// Damping `κ` of the part of the joint rates that the damped pseudo-inverse suppresses, 1/s.
     pub(super) suppressed: f64,
 }
 
@@ -153,9 +154,12 @@ pub(super) struct EffortInput<'a> {
     pub(super) elapsed: f64,
     /// Desired motion of the joints of the group.
     pub(super) desired: &'a JointSample,
-    /// Tracking error of the control, `(width,)`, and velocity error of its tracked frame, m/s and rad/s.
+    /// Tracking error of the control, `(width,)`, and velocity error of its tracked frame, m/s and rad/s,
+    /// which is zero unless the law needs the Jacobian.
     pub(super) error: (&'a [f64], Motion<f64>),
-    /// Generalized Jacobian of the tracked frame, restricted to the columns of the group, `(6, k)`.
+    /// Generalized Jacobian of the tracked frame or, for a reference relative to the base, its Jacobian
+    /// relative to the base, with the columns of the group, `(6, k)`; outdated unless the law needs the
+    /// Jacobian.
     pub(super) jacobian: &'a [f64],
     /// Rates of the `k` joints of the group, `(k,)`, rad/s (m/s).
     pub(super) rates: &'a [f64],

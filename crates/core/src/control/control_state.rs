@@ -31,7 +31,8 @@ pub struct ControlMemory {
     /// True if the reference is shifted to begin at the pose or the joint positions at the start of the
     /// control.
     is_shifted: bool,
-    /// Shift of the reference, or configuration that is held: a pose (rotation, position) or joint positions.
+    /// Shift of the reference, or configuration that is held: a pose (12 numbers: the columns of the rotation
+    /// matrix, then the position, m) or the joint positions of the group, rad (m).
     anchor: Vec<f64>,
     pub(super) pid: PidMemory,
     /// Time of the last control tick, s.
@@ -147,8 +148,9 @@ impl ControlState {
         (Mat3::from_columns(at(0), at(1), at(2)), at(3))
     }
 
-    /// Evaluates the desired motion at `t`, s, and the tracking error of the frame or of the joints of the
-    /// control. `q` and `rates` contain the positions and rates of all joints.
+    /// Evaluates the desired motion at `t`, s, and the tracking error of the joints of the control or, if it
+    /// is needed, of the frame, whose pose must be up to date. `q` and `rates` contain the positions and
+    /// rates of all joints.
     pub(super) fn evaluate(
         &mut self,
         control: &Control,

@@ -29,10 +29,11 @@ pub trait Controller: Send {
         Ok(())
     }
 
-    /// Writes the joint torques, N m (N), which are held until the next call.
+    /// Writes the torques of the joints of the control, `(k,)`, N m (N), which are held until the next call.
     ///
     /// # Errors
-    /// [`ControlError`] if the torques cannot be computed; the error ends the run.
+    /// [`ControlError`] if the torques cannot be computed; the error ends the run, and so do torques that are
+    /// not finite.
     fn update(&mut self, now: &Observation<'_>, tau: &mut [f64]) -> Result<(), ControlError>;
 
     /// Returns the state that the controller keeps between calls, for a checkpoint. By default there is none.

@@ -12,8 +12,9 @@ use serde::{Deserialize, Serialize};
 /// [`Stepper::send`](crate::simulation::Stepper::send).
 ///
 /// A command is held until the next command. If a command has positions or rates, the torque is that of
-/// [`JointComputedTorque`], `τ = M* (a + kd (vd − q̇) + kp (qd − q)) + c* − Q* + f`, plus the commanded
-/// effort. Without positions there is no position term; a position without a rate is to be held at rest. If a
+/// [`JointComputedTorque`], `τ = M* (a + kd (vd − q̇) + kp (qd − q)) + c* − Q* + f`, with the commanded
+/// positions `qd`, rates `vd` and accelerations `a`, plus the commanded effort. Without positions there is no
+/// position term, without accelerations `a = 0`; a position without a rate is to be held at rest. If a
 /// command has only efforts, they are the torques.
 ///
 /// Before the first command, a group holds its initial positions if `kp` is not zero, otherwise damps its
@@ -23,7 +24,8 @@ pub struct External {
     /// Computed-torque law that is used for commands with positions or rates.
     pub law: JointComputedTorque,
     /// Time after the last command, or after the end of the last trajectory, at which `on_timeout` applies,
-    /// s. Until a trajectory with a later start begins, the timeout of the running command applies.
+    /// s; `None` for no timeout. Until a trajectory with a later start begins, the timeout of the running
+    /// command applies.
     pub timeout: Option<f64>,
     /// Behaviour after the timeout.
     pub on_timeout: OnTimeout,

@@ -67,8 +67,8 @@ impl ExternalCommand {
         }
     }
 
-    /// Returns the time at which a command sent at `sent`, s, ends, s; for a trajectory, the time of its last
-    /// point.
+    /// Returns the time, s, from which the timeout of a command sent at `sent`, s, counts: `sent`, or the
+    /// time of the last point of a trajectory if that is later.
     pub(super) fn end(&self, sent: f64) -> f64 {
         match self {
             Self::Setpoint(_) => sent,
@@ -190,7 +190,7 @@ impl JointTrajectory {
         Ok(())
     }
 
-    /// Inserts the state at `t`, s, as the first point, unless the first point is earlier than `t`.
+    /// Inserts the state at `t`, s, as the first point if all points are later than `t`.
     pub(super) fn start_from(&mut self, t: f64, state: &JointSample) {
         let first = t - self.start;
         if self.times[0] <= first {

@@ -28,13 +28,15 @@ impl PerJoint {
         self.0.iter().all(|x| *x > 0.0)
     }
 
-    /// Checks that there is one number, or one per joint of `count` joints, and that no number is negative.
+    /// Checks that there is one number, or one per joint of `count` joints, and that all numbers are finite,
+    /// not negative and at most [`LARGEST`].
     pub(super) fn check(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         check_numbers(name, &self.0)
     }
 
-    /// Checks limits in the same way as [`PerJoint::check`]; infinity means no limit.
+    /// Checks the count of limits like [`PerJoint::check`], and that no limit is negative or NaN; infinity
+    /// means no limit.
     pub(super) fn check_limit(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         match self.0.iter().find(|x| x.is_nan() || **x < 0.0) {
@@ -92,7 +94,8 @@ fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     }
 }
 
-/// Checks that a `(6, 6)` gain is finite and that its diagonal has no negative entry.
+/// Checks that the entries of a `(6, 6)` gain are finite and at most [`LARGEST`] in magnitude, and that its
+/// diagonal has no negative entry.
 pub(super) fn check_matrix(name: &'static str, gains: &[f64; 36]) -> Result<(), ControlError> {
     check_size(name, gains)?;
     check_numbers(name, &[0, 1, 2, 3, 4, 5].map(|i| gains[7 * i]))

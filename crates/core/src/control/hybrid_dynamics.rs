@@ -9,14 +9,14 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 ///
 /// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`, where `f` is the sum of the damping and
 /// friction torques and of the feedforward of joint laws; other symbols are those of
-/// [`ComputedTorque`](super::ComputedTorque). The joints `E` react like a second base, `q̈_E = y − G q̈_A`
-/// with `G = M_EE⁻¹ M_EA` and `y = M_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d` depends only on `A`:
-/// `ẍ = (J_A − J_E G) q̈_A + d + J_E y`. The set `A` consists of the joints `J`, whose accelerations are
-/// commanded by joint laws, and the joints `T`, which the tasks drive. A single damped pseudo-inverse of all
-/// task rows gives `q̈_T = J_T⁺ (p̈r − d − J_E y − J_J q̈_J) − N k q̇ − κ D q̇`, so that each task accounts
-/// for the reactions to all others. Joints held by friction belong to neither set; their acceleration is
-/// zero. For a single task on all joints the solution equals that of
-/// [`computed_torque`](super::computed_torque).
+/// [`ComputedTorque`](super::ComputedTorque). A subscript selects the rows or columns of a set of joints. The
+/// joints `E` react like a second base, `q̈_E = y − G q̈_A` with `G = M*_EE⁻¹ M*_EA` and `y = M*_EE⁻¹ (τ_E −
+/// l_E)`, so that a task `ẍ = J q̈ + d` with the Jacobian `J` depends only on `A`: `ẍ = J' q̈_A + d + J_E y`
+/// with `J' = J_A − J_E G`. The set `A` consists of the joints `C`, whose accelerations are commanded by
+/// joint laws, and the joints `T`, which the tasks drive. A single damped pseudo-inverse of all task rows
+/// gives `q̈_T = J'_T⁺ (p̈r − d − J_E y − J'_C q̈_C) − N k q̇_T − κ D q̇_T`, so that each task accounts for the
+/// reactions to all others. Joints held by friction belong to neither set; their acceleration is zero. For a
+/// single task on all joints the solution equals that of [`computed_torque`](super::computed_torque).
 ///
 /// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
 pub(super) struct HybridDynamics {
@@ -25,9 +25,10 @@ pub(super) struct HybridDynamics {
     pub(super) inertia: Vec<f64>,
     /// Load `l` of the joints, `(n,)`, N m (N).
     pub(super) load: Vec<f64>,
-    /// Joint accelerations `q̈`, `(n,)`, rad/s² (m/s²); the caller sets the accelerations of the joints `J`.
+    /// Joint accelerations `q̈`, `(n,)`, rad/s² (m/s²); the caller sets the accelerations of the joints `C`.
     pub(super) acceleration: Vec<f64>,
-    /// Damping `k` in the null space and damping `κ` of suppressed rates, for each joint of `T`, 1/s.
+    /// Damping `k` in the null space and damping `κ` of suppressed rates, 1/s, `(n,)`; only the entries of
+    /// the joints `T` are used.
     pub(super) null_damping: Vec<[f64; 2]>,
     tasks: Vec<usize>,
     fixed: Vec<usize>,
@@ -37,7 +38,8 @@ pub(super) struct HybridDynamics {
     gain: Vec<f64>,
     y: Vec<f64>,
     jacobian: Vec<f64>,
-    /// Accelerations `p̈r − d − J_E y − J_J q̈_J`, for all tasks, that the joints `T` must produce.
+    /// Accelerations `p̈r − d − J_E y − J'_C q̈_C`, for all tasks, that the joints `T` must produce, m/s² and
+    /// rad/s².
     task_accelerations: Vec<f64>,
     damping: Vec<f64>,
     inverse: PseudoInverse<f64>,
@@ -68,7 +70,8 @@ impl HybridDynamics {
         }
     }
 
-    /// Eliminates the joints with given efforts `tau`, and clears the tasks.
+    /// Eliminates the joints with given efforts `tau`, and clears the tasks. `commands` and `tau` are `(n,)`;
+    /// inertia and load must be set.
     pub(super) fn eliminate(&mut self, commands: &[JointCommand], tau: &[f64]) {
         let Self { n, inertia, load, tasks, fixed, given, factor, gain, y, acceleration, .. } = self;
         for (list, command) in
@@ -104,9 +107,9 @@ impl HybridDynamics {
         for (row, acceleration) in jacobian.chunks_exact(n).zip(acceleration) {
             let of_given = &mut of_given[..given.len()];
             of_given.iter_mut().zip(given).for_each(|(x, &i)| *x = row[i]);
-            // J_A − J_E G
+            // J' = J_A − J_E G
             let entry = |a: usize| row[a] - dot(of_given, &self.gain[a * n..]);
-            // p̈r − d − J_E y − J_J q̈_J
+            // p̈r − d − J_E y − J'_C q̈_C
             let fixed: f64 = self.fixed.iter().map(|&a| entry(a) * self.acceleration[a]).sum();
             self.task_accelerations.push(acceleration - dot(of_given, &self.y) - fixed);
             self.jacobian.extend(self.tasks.iter().map(|&a| entry(a)));

@@ -8,11 +8,12 @@ use crate::model::Model;
 use crate::reference::JointSample;
 
 /// Joint-space computed torque on the reduced model, which produces `q̈ = q̈d + kd (q̇d − q̇) + kp (qd − q)`
-/// exactly, whatever the motion of the base.
+/// exactly, whatever the motion of the base, if it compensates all external wrenches and friction.
 ///
-/// `τ = M* q̈ + c* − Q* + f`, so that the error `e = qd − q` obeys `ë + kd ė + kp e = 0`. The joint drives
-/// compensate Coulomb friction, from rest and through reversals. Joint angles are not wrapped: after a full
-/// turn the error is 2π.
+/// `τ = M* q̈ + c* − Q* + f` with the desired positions `qd` and the symbols of
+/// [`ComputedTorque`](super::ComputedTorque), so that the error `e = qd − q` obeys `ë + kd ė + kp e = 0`. The
+/// joint drives compensate Coulomb friction, from rest and through reversals. Joint angles are not wrapped:
+/// after a full turn the error is 2π.
 #[derive(Clone, Debug)]
 pub struct JointComputedTorque {
     /// Gain `kp` of the position error, 1/s².
@@ -36,8 +37,8 @@ impl JointComputedTorque {
     /// Checks the gains for a group of `count` joints.
     ///
     /// # Errors
-    /// [`ControlError`] if the number of gains is neither 1 nor `count`, or if a gain is negative or not
-    /// finite.
+    /// [`ControlError`] if the number of gains is neither 1 nor `count`, or if a gain is negative, not finite
+    /// or too large.
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         self.kp.check("kp", count)?;
         self.kd.check("kd", count)

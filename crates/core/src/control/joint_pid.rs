@@ -18,7 +18,8 @@ use crate::reference::JointSample;
 pub struct JointPid {
     /// Quantity that the reference commands.
     pub interface: Interface,
-    /// Proportional gain `p`, N m/rad, or N m s/rad for errors of the rate (N/m, N s/m for a prismatic joint).
+    /// Proportional gain `p`, N m/rad, or N m s/rad for errors of the rate (N/m, N s/m for a prismatic
+    /// joint).
     pub p: PerJoint,
     /// Integral gain `i`: the unit of `p` per second.
     pub i: PerJoint,
@@ -55,7 +56,8 @@ impl JointPid {
     }
 
     /// Computes the effort, N m (N), of the joint at `place` in the group with the position `q` and the rate
-    /// `rate`, `dt` s after the last tick.
+    /// `rate`, `dt` s after the last tick, and updates `memory`. For the effort interface it is the effort of
+    /// the reference within the limit.
     pub(super) fn effort(
         &self,
         place: usize,

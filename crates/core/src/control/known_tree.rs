@@ -1,8 +1,8 @@
 //! Reduced model of a robot that is connected to other robots whose models its controllers know.
 //!
-//! The controllers treat the links beyond a grasp as links of their robot, connected by additional joints that
-//! have no motors. Eliminating these joints yields a reduced model of the robot's own joints, which all laws
-//! can use unchanged.
+//! The controllers treat the links beyond a grasp as links of their robot, connected by additional joints
+//! that have no motors. Eliminating these joints yields a reduced model of the robot's own joints, which all
+//! laws can use unchanged.
 
 use crate::dynamics::{Data, FreeFloating, free_floating_frame, free_floating_recursion, kinematics};
 use crate::model::Model;
@@ -20,17 +20,20 @@ pub struct KnownTree {
     pub q: Vec<f64>,
     /// Velocity of the tree, `(nv,)`, m/s and rad/s.
     pub v: Vec<f64>,
-    /// For each joint of the robot, its index in the tree; then the indices of all other joints.
+    /// For each joint of the robot, its index in the tree.
     own: Vec<usize>,
+    /// Indices of all other joints of the tree, `(p,)`.
     others: Vec<usize>,
     /// For each frame of the robot, its index in the tree.
     frames: Vec<usize>,
     full: FreeFloating<f64>,
-    /// Factor of `M_PP`, and `M_PP⁻¹ M_PO` with one row per joint of the robot.
+    /// Factor of `M_PP`, `(p, p)`, with the symbols of [`KnownTree::reduce`].
     factor: Vec<f64>,
+    /// Transpose of `M_PP⁻¹ M_PO`: one row per joint of the robot, `(n, p)`.
     gain: Vec<f64>,
-    /// `M_PP⁻¹ c_P` and `M_PP⁻¹ Q_P`, rad/s² (m/s²).
+    /// `M_PP⁻¹ c_P`, `(p,)`, rad/s² (m/s²).
     bias: Vec<f64>,
+    /// `M_PP⁻¹ Q_P`, `(p,)`, rad/s² (m/s²).
     external: Vec<f64>,
 }
 
@@ -63,8 +66,9 @@ impl KnownTree {
         self.data.clear_external();
     }
 
-    /// Computes the reduced model of the robot's own joints `O`, with the accelerations of the other joints
-    /// `P`, which have no motor torques: `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`.
+    /// Computes inertia, bias and external forces of the reduced model of the robot's own joints `O`, with
+    /// the accelerations of the other joints `P`, which have no motor torques: `q̈_P = M_PP⁻¹ (Q_P − c_P −
+    /// M_PO q̈_O)`. `M`, `c` and `Q` denote `M*`, `c*` and `Q*` of the tree ([`FreeFloating`]).
     ///
     /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
     pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {
@@ -97,7 +101,8 @@ impl KnownTree {
     /// Computes pose, twist, Jacobian and drift of a frame (index) of the robot. Requires the results of
     /// [`KnownTree::reduce`] in `out`.
     ///
-    /// `J' = J_O − J_P M_PP⁻¹ M_PO`,  `d' = d + J_P M_PP⁻¹ (Q_P − c_P)`
+    /// `J' = J_O − J_P M_PP⁻¹ M_PO`, `d' = d + J_P M_PP⁻¹ (Q_P − c_P)`, with the generalized Jacobian `J` and
+    /// the drift `d` of the tree.
     pub(super) fn reduce_frame<S: Scalar>(&mut self, frame: usize, out: &mut FreeFloating<S>) {
         let Self { model, data, q, v, full, own, others, frames, gain, bias, external, .. } = self;
         free_floating_frame(model, data, q, v, frames[frame], full);

@@ -11,7 +11,8 @@ pub(super) const ROWS: usize = 6;
 /// For each task, `1/σ²` is the sum of the six diagonal entries of `(J Jᵀ)⁻¹` in its rows. `σ²` is at most
 /// the square of the smallest singular value of the task's own six rows of `J`; for a single task it is at
 /// least a sixth of that square. If `σ²` is below the task's `λ₀²`, the rows of that task are damped by the
-/// difference, `λ² = λ₀² − σ²`. The null-space projector always uses the undamped inverse, because a
+/// difference, `λ² = λ₀² − σ²`; the diagonal matrix `Λ²` has `λ²` in these rows and zeros in the others. The
+/// null-space projector always uses the undamped inverse, because a
 /// projector from the damped inverse would disturb the task.
 ///
 /// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
@@ -166,8 +167,8 @@ fn transpose_apply_rows<S: Real>(rows: usize, factor: &[S], jacobian: &[S], x: &
     }
 }
 
-/// Returns `Σ (A⁻¹)_jj = Σ (L⁻¹)_ij²/D_i` over the given columns `j`, with the factors of `A`; `column` is
-/// workspace.
+/// Returns `Σ (A⁻¹)_jj = Σ (L⁻¹)_ij²/D_i` over the given columns `j`, with the factors of `A = L D Lᵀ`;
+/// `column` is workspace.
 #[inline(always)]
 fn inverse_trace<S: Real>(factor: &[S], rows: usize, columns: std::ops::Range<usize>, column: &mut [S]) -> S {
     let mut trace = S::of(0.0);

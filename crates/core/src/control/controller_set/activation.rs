@@ -10,7 +10,7 @@ use crate::spatial::Scalar;
 
 impl<S: Scalar> ControllerSet<'_, S> {
     /// Evaluates the goals, and stops and starts the controls for which this is due at `t`, s. Returns true
-    /// if the set of active controls changed.
+    /// if the set of active controls changed or a control missed its goal.
     pub(super) fn activate(&mut self, t: f64, model: &Model) -> Result<bool, ControlError> {
         let mut has_changed = self.stop_due(t);
         for i in 0..self.controls.len() {
@@ -25,8 +25,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         Ok(has_changed)
     }
 
-    /// Evaluates the goals at `t`, s, and stops the controls that end there. Returns true if the set of active
-    /// controls changed.
+    /// Evaluates the goals at `t`, s, and stops the controls that end there. Controls that miss their goal
+    /// hold their present pose or joint positions. Returns true if a control ended or missed its goal.
     fn stop_due(&mut self, t: f64) -> bool {
         let Self { controls, states, same_instant, .. } = self;
         let now = t + *same_instant;

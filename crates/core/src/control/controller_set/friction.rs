@@ -9,8 +9,8 @@ use crate::spatial::Scalar;
 const CREEP: f64 = 1e-2;
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Adds damping and friction to the loads of the joints with given efforts. Joints with friction that are
-    /// at rest are assumed to stick.
+    /// Adds damping and friction to the loads of the joints with given efforts. Joints with static friction
+    /// that are at rest are assumed to stick, unless the engine has no static friction.
     pub(super) fn assume_friction(&mut self, model: &Model) {
         for (j, joint) in model.joints().iter().enumerate() {
             if self.commands[j] != JointCommand::Effort {

@@ -159,8 +159,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         all.filter(|(_, (_, state))| state.is_running()).map(|(index, (control, _))| (index, &control.law))
     }
 
-    /// Returns the control that drives joint `j` at `t`, s: one that is active or is due to start, or `None` if
-    /// there is no such control.
+    /// Returns the control that drives joint `j` at `t`, s: one that is active or is due to start, or `None`
+    /// if there is no such control.
     pub fn driver_of(&self, j: usize, t: f64) -> Option<&Control> {
         let now = t + self.same_instant;
         let drives = |(control, state): &(&Control, &ControlState)| {
@@ -200,14 +200,16 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     }
 
     /// Returns the desired pose and motion of a control at the instant that was evaluated last, relative to
-    /// the base if the reference is, otherwise in W; `None` while the control is not active.
+    /// the base if the reference is, otherwise in W; `None` without a tracked frame or while the control is
+    /// not active.
     pub fn desired(&self, control: usize) -> Option<&TaskSample<f64>> {
         let state = &self.states[control];
         state.desired_pose.as_ref().filter(|_| state.is_running())
     }
 
     /// Returns the tracking error of a control, desired less actual, `(width,)`, at the instant that was
-    /// evaluated last; zeros if the control is not active or has not yet been evaluated.
+    /// evaluated last; zeros if the control is not active or has not yet been evaluated, and for a tracked
+    /// frame whose error neither the law nor a goal or column needs.
     pub fn error(&self, control: usize) -> &[f64] {
         &self.states[control].error
     }
@@ -350,7 +352,7 @@ fn running<'c>(
 }
 
 /// Returns the law and the reference of a control if it tracks a frame by computed torque with all `n`
-/// joints.
+/// joints; otherwise `None`.
 fn task_on_all_joints(control: &Control, n: usize) -> Option<(&ComputedTorque, &TaskReference)> {
     match &control.law {
         Law::TaskComputedTorque(law, reference) if control.joints.len() == n => Some((law, reference)),
