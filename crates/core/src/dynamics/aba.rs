@@ -10,8 +10,8 @@ use super::subspace::{add_joint_motion, articulated_force, joint_effort};
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{ArticulatedInertia, Force, Motion, Real};
 
-/// Computes the generalized acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)` under joint efforts `τ` and external
-/// wrenches `F`.
+/// Computes the generalized acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F)` under generalized forces `τ`, bias forces
+/// `c` and external wrenches `F` on frames with the Jacobians `J`.
 ///
 /// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes, N and N m.
 ///

@@ -9,7 +9,8 @@ use crate::spatial::{Real, SpatialInertia};
 
 /// Computes the mass matrix `M(q)`, row major `(nv, nv)`, in kg, kg m and kg m².
 ///
-/// `Mbb = I_0^c`, where `I_k^c` is the composite inertia of the subtree of body `k`. The force `I_k^c S_k` is
+/// `Mbb = I_0^c`, where `I_k^c` is the composite inertia of the subtree of body `k`. With the motion subspace
+/// `S_k` of joint `k`, the force `I_k^c S_k` is
 /// shifted from body origin to body origin towards the base; its component along joint `j` is `M_jk = S_jᵀ
 /// I_k^c S_k` for each ancestor `j` of `k`, and its value at the base is column `k` of `Mbm`.
 ///
@@ -66,7 +67,8 @@ pub(super) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) 
     }
 }
 
-/// Writes the base block of the mass matrix, `Mbb = [[m 1, −h×], [h×, I_o]]`.
+/// Writes the base block of the mass matrix, `Mbb = [[m 1, −h×], [h×, I_o]]`, with the mass `m`, the first
+/// moment of mass `h` and the inertia `I_o` of the robot about the base origin.
 #[inline(always)]
 fn base_block<S: Real>(composite: &SpatialInertia<S>, nv: usize, out: &mut [S]) {
     let o = S::of(0.0);

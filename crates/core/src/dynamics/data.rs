@@ -6,6 +6,7 @@ use crate::spatial::{
 };
 
 /// Quantities of one body in base axes B, about the origin of the body, which is a point on its joint axis.
+/// `S` is the motion subspace of its joint.
 ///
 /// If moments were taken about the origin of the base instead, rounding errors would be `(L/l)²` times larger
 /// for a body of size `l` at a distance `L` from the base.

@@ -10,9 +10,10 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Real;
 
-/// Solves `M a = τ − c + Σ Jᵀ F` for `a`. A joint is locked if `is_locked` returns true for the index of its
-/// body; locked joints have the accelerations `given`, `(n,)`, or zero if `given` is empty. Stores the
-/// accelerations of all bodies and the holding torques of locked joints in `data`, as the ABA recursion does.
+/// Solves `M a = τ − c + Σ Jᵀ F` for `a`, with the external wrenches `F` in `data`, whose kinematics must be
+/// up to date. A joint is locked if `is_locked` returns true for the index of its body; locked joints have
+/// the accelerations `given`, `(n,)`, or zero if `given` is empty. Stores the accelerations of all bodies and
+/// the holding torques of locked joints in `data`, as the ABA recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
 pub(super) fn solve<S: Real>(
@@ -68,7 +69,7 @@ pub(super) fn inverse_mass<S: Real>(data: &Data<S>, nv: usize, out: &mut [S]) {
     }
 }
 
-/// Removes joint `i` from the equations: its row and column become those of the identity.
+/// Removes component `i` of the velocity from the equations: its row and column become those of the identity.
 #[inline(always)]
 fn remove_joint<S: Real>(m: &mut [S], nv: usize, i: usize) {
     for j in 0..nv {

@@ -124,7 +124,7 @@ pub fn free_floating_frame<S: Real>(
 /// axes.
 ///
 /// `ẋ = J q̇`, `ẍ = J q̈ + d`, `d = J̇ q̇`, with twists relative to the base. Because the motion of the base
-/// cancels, `J` is the Jacobian of the arm alone.
+/// cancels, `J` is the Jacobian of the arm alone. Requires up-to-date [`kinematics`] in `data`.
 pub fn base_relative_frame<S: Real>(
     model: &Model,
     data: &Data<S>,

@@ -86,7 +86,7 @@ fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out
 const TILE: usize = 4;
 
 /// Computes `A b` for a symmetric matrix `A`, `(nv, nv)` with `nv ≥ 6`, and `N` columns `b`, given by their
-/// nonzero rows. Passes each row of the result to a callback.
+/// nonzero rows. Passes each row of the result to a callback, some rows twice.
 #[inline(always)]
 fn product<S: Real, const N: usize>(
     a: &[S],

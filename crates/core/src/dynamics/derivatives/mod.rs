@@ -10,8 +10,8 @@
 //!
 //! A change of the position of joint `j` moves its whole subtree `C`. In axes that move with the subtree, the
 //! forces change only because of the velocity `Ψ̇ = v × S` and the acceleration `Ψ̈ = a × S + v × Ψ̇` of the
-//! joint axis. With the composite inertia `I_C`, the Coriolis operator `2B_C` and the force `f_C` through the
-//! joint:
+//! joint axis, with the motion subspace `S` of the joint and the twist `v` and acceleration `a` of its body.
+//! With the composite inertia `I_C`, the Coriolis operator `2B_C` and the force `f_C` through the joint:
 //!
 //! ```text
 //! ∂f_C/∂q_j = 2B_C Ψ̇ + I_C Ψ̈ + S ×* f_C        ∂f_C/∂q̇_j = 2B_C S + 2 I_C Ψ̇
