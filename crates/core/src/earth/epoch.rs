@@ -131,13 +131,14 @@ impl Epoch {
         (1..self.after(1.0).leap_seconds()).contains(&self.leap_seconds())
     }
 
-    /// Returns this epoch as the modified Julian date of UTC and the seconds since midnight.
+    /// Returns this epoch as the modified Julian date of UTC, whole days, and the seconds since midnight.
     pub(super) fn utc(self) -> (i64, f64) {
         let since_midnight = self.tai + DAY_NS / 2 + (self.utc_minus_tai() as i64) * 1_000_000_000;
         (MJD_2000 + since_midnight.div_euclid(DAY_NS), since_midnight.rem_euclid(DAY_NS) as f64 * 1e-9)
     }
 
-    /// Returns the span of the series for nutation, Sun and Moon, 1900 to 2100, in s after this epoch.
+    /// Returns the start and the end of the span of the series for nutation, Sun and Moon, 1900 to 2100, s
+    /// after this epoch.
     pub(super) fn series_span(self) -> (f64, f64) {
         let since = self.since(Self::default());
         (-36_525.0 * DAY - since, 36_525.0 * DAY - since)

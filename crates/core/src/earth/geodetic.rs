@@ -9,7 +9,7 @@ use super::error::EarthError;
 pub struct Ellipsoid {
     /// Radius of the equator, m.
     pub radius: f64,
-    /// Flattening `f`.
+    /// Flattening `f`: the polar radius is `1 - f` times the equatorial radius.
     pub flattening: f64,
 }
 
@@ -29,8 +29,9 @@ pub struct Geodetic {
     pub altitude: f64,
 }
 
-/// Smallest accepted distance from the centre, m. Within `a e²` = 43 km of the centre, normals of the
-/// ellipsoid intersect, so latitudes are not unique.
+/// Smallest accepted distance from the centre, m. Within `a e²` = 43 km of the centre, with the equatorial
+/// radius `a` and the eccentricity `e` of WGS84, normals of the ellipsoid intersect, so latitudes are not
+/// unique.
 const NEAREST: f64 = 50e3;
 
 impl Geodetic {

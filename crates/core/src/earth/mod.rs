@@ -75,8 +75,8 @@ impl Earth {
     }
 
     /// Returns the same Earth with time zero at `epoch`, without a kernel: the positions of Sun and Moon come
-    /// from series. An Earth with uniform rotation then has GCRF axes. For an Earth of IAU 2006, `epoch` must be
-    /// the epoch it was created with, because its rotation is not recomputed.
+    /// from series. An Earth with uniform rotation then has GCRF axes. For an Earth of IAU 2006, `epoch` must
+    /// be the epoch it was created with, because its rotation is not recomputed.
     pub fn with_epoch(mut self, epoch: Epoch) -> Self {
         if let Rotation::AboutZ { inertial, .. } = &mut self.rotation {
             *inertial = Some(Box::new(Orientation::of_axes(epoch, epoch.series_span())));
@@ -172,7 +172,7 @@ impl Earth {
         }
     }
 
-    /// Returns the angular velocity of `F` with respect to `I`, axes of `I`, rad/s.
+    /// Returns the angular velocity of `F` with respect to `I` at simulation time `t`, s, axes of `I`, rad/s.
     pub fn angular_velocity(&self, t: f64) -> Vector3<f64> {
         match &self.rotation {
             Rotation::AboutZ { rate, .. } => Vector3::z() * *rate,
@@ -180,8 +180,8 @@ impl Earth {
         }
     }
 
-    /// Returns the geometric position of the Sun from the Earth's centre, axes of `I`, m, without correction
-    /// for light time.
+    /// Returns the geometric position of the Sun from the Earth's centre at simulation time `t`, s, axes of
+    /// `I`, m, without correction for light time.
     ///
     /// Without a kernel, direction and distance are within 2″ and 4e-6 of JPL's DE421 from 1900 to 2050.
     ///
@@ -193,8 +193,8 @@ impl Earth {
         Ok(sun_moon.sun(t, |t| self.rot_ig(t)))
     }
 
-    /// Returns the geometric position of the Moon from the Earth's centre, axes of `I`, m, without correction
-    /// for light time.
+    /// Returns the geometric position of the Moon from the Earth's centre at simulation time `t`, s, axes of
+    /// `I`, m, without correction for light time.
     ///
     /// Without a kernel, direction and distance are within 10″ and 3e-5 of JPL's DE421 from 1900 to 2050.
     ///

@@ -26,8 +26,8 @@ pub(super) struct Orientation {
 }
 
 impl Orientation {
-    /// Creates the orientation for a run that starts at `epoch`. The pole is interpolated within `span`, s of
-    /// simulation.
+    /// Creates the orientation for a run that starts at `epoch`. The pole is interpolated between the two
+    /// simulation times `span`, s.
     pub(super) fn new(
         epoch: Epoch,
         axes: Axes,
@@ -81,8 +81,9 @@ impl Orientation {
     /// Returns the rotation from components in `I` to components in `F`: `W R₃(θ - s) Mᵀ` from GCRF, `W
     /// R₃(θ₈₂)` from TEME.
     ///
-    /// `W` is the polar motion. The rows of `R₃(-s) Mᵀ` are the celestial intermediate axes, with the pole
-    /// `X, Y`. `θ₈₂` is the mean sidereal time of 1982.
+    /// `W` is the polar motion, `θ` the Earth rotation angle and `s` the CIO locator; `R₃` rotates the axes
+    /// about z. The rows of `R₃(-s) Mᵀ` are the celestial intermediate axes, with the pole `X, Y`. `θ₈₂` is
+    /// the mean sidereal time of 1982.
     ///
     /// Source: IERS Conventions (2010), eq. 5.1 and 5.10; Vallado and others, AIAA 2006-6753, for TEME.
     pub(super) fn rot_fi(&self, t: f64) -> Matrix3<f64> {
@@ -97,8 +98,8 @@ impl Orientation {
         }
     }
 
-    /// Returns the polar motion `W = R₁(-y_p) R₂(-x_p)` to second order in the angles; `s'` (0.05 mas) is
-    /// neglected.
+    /// Returns the polar motion `W = R₁(-y_p) R₂(-x_p)` to second order in the angles; the locator `s'` of
+    /// the terrestrial origin (0.05 mas) is neglected.
     fn polar_motion(&self, t: f64) -> Matrix3<f64> {
         let [x, y] = self.parameters.polar_motion(t);
         let (cx, cy) = (1.0 - 0.5 * x * x, 1.0 - 0.5 * y * y);

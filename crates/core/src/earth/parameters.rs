@@ -14,7 +14,7 @@ pub(super) enum Parameters {
     Table(Box<[Row]>),
 }
 
-/// Row of a table for the simulation time `time`, s.
+/// Row of a table: UT1 - TAI, s, and polar motion `x_p, y_p`, rad, at the simulation time `time`, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     pub(super) time: f64,

@@ -2,8 +2,9 @@
 
 use super::precession::polynomial;
 
-/// Series `Σ cᵢ Tⁱ + Σ (a sin θ + b cos θ)`, in which each `θ` is a sum of multiples of `l, l', F, D, Ω` and
-/// planetary longitudes.
+/// Series `Σ cᵢ Tⁱ + Σ (a sin θ + b cos θ)`, in which `T` is in Julian centuries of TT from J2000.0 and each
+/// `θ` is a sum of multiples of `l, l', F, D, Ω` and planetary longitudes. Terms in which `l'` has the
+/// multiple `k` are multiplied by `(1 - 0.002516 T)` to the power `|k|`.
 pub(super) struct Series {
     pub(super) polynomial: &'static [f64],
     pub(super) terms: &'static [([i8; 8], [f64; 2])],

@@ -7,7 +7,7 @@ use super::rotation::{r1, r3};
 use super::{moon_table, sun_table};
 
 /// Returns the fundamental arguments `l, l', F, D, Ω` and the mean longitudes of Venus, Mars and Jupiter,
-/// rad.
+/// rad, at `t`, Julian centuries of TT from J2000.0.
 ///
 /// Source: IERS Conventions (2010), eq. 5.43 and 5.44.
 fn all_arguments(t: f64) -> [f64; 8] {
@@ -29,7 +29,7 @@ pub(super) fn sun(t: f64) -> Vector3<f64> {
     from_ecliptic(t, x[2] - x[3] + x[4] + longitude * ARC_SECOND, latitude * ARC_SECOND, distance * 1e3)
 }
 
-/// Returns the geometric position of the Moon; axes and units as for [`sun`].
+/// Returns the geometric position of the Moon from the Earth's centre; axes and units as for [`sun`].
 pub(super) fn moon(t: f64) -> Vector3<f64> {
     let x = all_arguments(t);
     let [longitude, latitude, distance] =
