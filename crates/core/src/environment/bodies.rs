@@ -27,8 +27,9 @@ impl Bodies {
         Self { layout, blocks }
     }
 
-    /// Stores the motion of all bodies of the system at position `system` of the run. `motion(first)` returns
-    /// the motion of the bodies from body `first` on, one per lane of `S`.
+    /// Stores the motion of all bodies of the system at position `system` of the run; velocities are stored
+    /// only if `with_velocity` is true. `motion(first)` returns the motion of the bodies from body `first`
+    /// on, one per lane of `S`.
     #[inline(always)]
     pub(crate) fn store_motion<S: Real>(
         &mut self,

@@ -7,6 +7,9 @@
 //! | `F = -½ ρ C_D A (n·u)₊ u` on a face | `surfaces/face.rs` `add_drag`, `sums.rs` `wrench`, `surface_block.rs` `drag` |
 //! | `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` on a face | `surfaces/face.rs` `add_pressure`, `sums.rs` `wrench` |
 //!
+//! The symbols are defined at [`DifferentialGravity`], [`GravityGradient`], [`Drag`] and
+//! [`RadiationPressure`].
+//!
 //! [`Effect`] is the trait that each effect implements. To add an effect, add a file and a line in this
 //! module. `W` has inertial axes, and its origin is on the reference orbit.
 

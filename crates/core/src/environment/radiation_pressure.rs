@@ -15,10 +15,12 @@ use nalgebra::Vector3;
 /// of the Earth.
 ///
 /// The force on a face with area `A` and outward normal `n` is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ +
-/// ρd/3) n]` at the centroid if `cos θ = n·ŝ > 0`. The force on a cannonball is `F = -P C_R A ŝ` at the
-/// centre of mass. `ŝ` points to the Sun. `P = ν (Φ/c) (1 au/d)²` with the flux `Φ` at 1 au, the distance `d`
-/// of the Sun, and the fraction `ν` of the solar disc that the Earth does not occult. Parts do not shadow
-/// each other. Light reflected by the Earth is neglected.
+/// ρd/3) n]` at the centroid if `cos θ = n·ŝ > 0`, with the fractions `ρs` and `ρd` of the light that are
+/// reflected specularly and diffusely. The force on a cannonball with the cross-section `A` and the
+/// reflectivity `C_R` is `F = -P C_R A ŝ` at the centre of mass. The unit vector `ŝ` points to the Sun. `P =
+/// ν (Φ/c) (1 au/d)²` with the flux `Φ` at 1 au, the speed of light `c`, the distance `d` of the Sun, and the
+/// fraction `ν` of the solar disc that the Earth does not occult. Parts do not shadow each other. Light
+/// reflected by the Earth is neglected.
 ///
 /// The shadow is evaluated at every stage of a step; steps do not end at its edge. A penumbra, which takes
 /// about 8 s in a low orbit, is smooth enough for steps of 1 s. Longer fixed steps resolve the penumbra only

@@ -140,7 +140,8 @@ impl<'a> Scene<'a> {
         Ok((*reference, self.earth.ok_or(EnvironmentError::NoEarth { effect })?))
     }
 
-    /// Returns the planet of the reference orbit, or an error if the reference is below ground.
+    /// Returns the planet of the reference orbit, or an error if there is none or the reference is below
+    /// ground.
     pub(super) fn planet(&self, effect: &'static str) -> Result<Planet<'a>, EnvironmentError> {
         let found = self.reference.and_then(|reference| Some((reference, reference.gravity?)));
         let (Reference { state, in_free_fall, .. }, gravity) =

@@ -24,8 +24,8 @@ pub struct Wrenches {
     blocks: Vec<WrenchLanes<Column8>>,
 }
 
-/// Forces through the centres of mass of several bodies, and torques about the centres of mass, one body per
-/// lane.
+/// Forces through the centres of mass of several bodies, N, and torques about the centres of mass, N m, one
+/// body per lane.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct WrenchLanes<T> {
     pub(crate) force: Vec3<T>,

@@ -4,7 +4,8 @@ use super::error::{AtmosphereError, positive};
 use super::model::Atmosphere;
 use super::point::AtmospherePoint;
 
-/// Layer from altitude `base` upwards: `ρ = density exp(-(h - base)/scale_height)`.
+/// Layer from altitude `base` upwards, with the density `ρ = density exp(-(h - base)/scale_height)` at the
+/// geodetic altitude `h`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
     /// Altitude of the base, m.
@@ -15,7 +16,8 @@ pub struct Layer {
     pub scale_height: f64,
 }
 
-/// Exponential atmosphere, `ρ = ρ₀ exp(-(h - h₀)/H)` in each layer; `h` is the geodetic altitude.
+/// Exponential atmosphere, `ρ = ρ₀ exp(-(h - h₀)/H)` in each layer, with the geodetic altitude `h`, the
+/// density `ρ₀` at the base `h₀` of the layer and its scale height `H`.
 ///
 /// The first layer also applies below its base, and the last layer extends to infinity. The density may be
 /// discontinuous between layers, by up to 3 % in Vallado's table.
@@ -28,8 +30,8 @@ impl ExponentialAtmosphere {
     /// Creates the atmosphere from layers in ascending order.
     ///
     /// # Errors
-    /// [`AtmosphereError::NoLayers`] for an empty list, [`AtmosphereError::LayerOrder`] for bases that are not
-    /// finite or do not ascend, and [`AtmosphereError::Value`] for a density or scale height that is not
+    /// [`AtmosphereError::NoLayers`] for an empty list, [`AtmosphereError::LayerOrder`] for bases that are
+    /// not finite or do not ascend, and [`AtmosphereError::Value`] for a density or scale height that is not
     /// positive and finite.
     pub fn new(layers: Vec<Layer>) -> Result<Self, AtmosphereError> {
         if layers.is_empty() {

@@ -10,9 +10,10 @@ use std::f64::consts::PI;
 /// Harris-Priester atmosphere for mean solar activity, with a density between a night profile `ρm` and a day
 /// profile `ρM`.
 ///
-/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)`, where `ψ` is the angle between the position and the apex of the density
-/// bulge, which lies `lag` east of the Sun. The model is defined from 100 to 1000 km of geodetic altitude.
-/// Between the tabulated altitudes, the profiles are exponential.
+/// `ρ = ρm + (ρM - ρm) cosⁿ(ψ/2)` with the exponent `n`, where `ψ` is the angle, at the Earth's centre,
+/// between the position and the apex of the density bulge, which lies the angle `lag` east of the Sun. The
+/// model is defined from 100 to 1000 km of geodetic altitude. Between the tabulated altitudes, the profiles
+/// are exponential.
 ///
 /// Source: Montenbruck and Gill, Satellite Orbits, Springer 2000, section 3.5.2 and table 3.8.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +48,8 @@ impl HarrisPriester {
         Ok(Rotation3::from_axis_angle(&axis, self.lag) * sun)
     }
 
-    /// Returns the density, kg/m³, at a geodetic altitude, m, and at an angle `ψ` from the apex of the bulge.
+    /// Returns the density, kg/m³, at a geodetic altitude, m, and at the angle `ψ` from the apex of the bulge
+    /// whose cosine is `cos_psi`.
     ///
     /// # Errors
     /// [`AtmosphereError::OutsideLayers`] below 100 km and above 1000 km.

@@ -21,8 +21,8 @@ const GRID: (f64, f64) = (128.0, 0.125);
 /// Altitude difference from which the scale height is computed, m.
 const RISE: f64 = 100.0;
 
-/// Density near a point `r₀`: `ρ(r) = ρ₀ exp(-κ û·(r - r₀))` with the inverse scale height `κ` and the
-/// vertical `û`.
+/// Density near a point `r₀`: `ρ(r) = ρ₀ exp(-κ û·(r - r₀))` with the density `ρ₀` and the inverse scale
+/// height `κ` at `r₀` and the upward unit vector `û`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalAtmosphere {
     time: f64,

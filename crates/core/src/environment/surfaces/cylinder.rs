@@ -41,7 +41,8 @@ impl Cylinder<Column8> {
 }
 
 impl<S: Real> Cylinder<S> {
-    /// Adds the drag on the part of the curved side that faces the stream.
+    /// Adds the drag on the part of the curved side that faces the stream, with `v` and `w` as in
+    /// [`DragSums::wrench`].
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         let (axis, area) = (self.axis, S::of(2.0) * self.radius * self.length);
@@ -58,7 +59,8 @@ impl<S: Real> Cylinder<S> {
     /// Adds the radiation pressure on the illuminated half of the curved side.
     ///
     /// `n = cos φ ŝ⊥ + sin φ a × ŝ⊥`, `n·ŝ = σ cos φ`, `dA = r L dφ`, `|φ| < π/2`, where `a` is the axis,
-    /// `s⊥` the part of `ŝ` normal to the axis, `σ = |s⊥|` and `ŝ⊥ = s⊥/σ`.
+    /// `s⊥` the part of `ŝ` normal to the axis, `σ = |s⊥|`, `ŝ⊥ = s⊥/σ`, `n` the normal of the area `dA` at
+    /// the angle `φ` from `ŝ⊥`, `r` the radius and `L` the length.
     #[inline(always)]
     pub(super) fn add_pressure(&self, to_sun: Vec3<S>, optics: &Optics<S>, sums: &mut PressureSums<S>) {
         let (s, Optics { specular, diffuse }) = (S::of, *optics);

@@ -48,8 +48,8 @@ impl<S: Real> Face<S> {
     /// Adds the term `a = A (n·u)₊` of the face to the sums for drag.
     ///
     /// The drag of a face at its centroid `c`, where `u = v + w × c`, is `F = -½ ρ C_D A (n·u)₊ u = -½ ρ C_D
-    /// a u`. [`DragSums::wrench`] computes `-Σ a u`, `SurfaceBlock::drag` multiplies by `½ C_D`, and `Drag`
-    /// by `ρ`.
+    /// a u`. [`DragSums::wrench`], which defines `v` and `w`, computes `-Σ a u`, `SurfaceBlock::drag`
+    /// multiplies by `½ C_D`, and `Drag` by `ρ`.
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         // n·u = n·(v + w × c) = n·v + (c × n)·w

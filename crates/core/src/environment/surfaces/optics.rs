@@ -8,7 +8,9 @@ use crate::spatial::Real;
 /// absorbed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Optics<T = f64> {
+    /// Fraction `ρs` that is reflected specularly.
     pub(super) specular: T,
+    /// Fraction `ρd` that is reflected diffusely.
     pub(super) diffuse: T,
 }
 

@@ -20,7 +20,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Creates a cannonball: a surface with the same area, m², and coefficients in all directions.
+    /// Creates a cannonball: a surface with the same area, m², and coefficients in all directions, on which
+    /// all forces act at the centre of mass.
     ///
     /// # Errors
     /// [`SurfaceError::Value`] for a negative or non-finite value, and for a reflectivity above 2.
@@ -41,7 +42,8 @@ impl Surface {
     ///
     /// # Errors
     /// [`SurfaceError::UnknownBody`], [`SurfaceError::NoShape`] for a body without shapes,
-    /// [`SurfaceError::Mesh`] for a mesh, and [`SurfaceError::Value`] for an invalid coefficient or size.
+    /// [`SurfaceError::Mesh`] and [`SurfaceError::Shape`] for other shapes, and [`SurfaceError::Value`] for
+    /// an invalid drag coefficient.
     pub fn from_shapes(
         model: &Model,
         body: usize,
@@ -58,7 +60,7 @@ impl Surface {
     }
 
     /// Creates a surface from flat plates with areas, m², outward normals of any length, and centroids, m.
-    /// Normals are in the axes of `frame`, centroids are relative to its origin.
+    /// Normals and centroids are in the axes of `frame`, centroids relative to its origin.
     ///
     /// # Errors
     /// [`SurfaceError::UnknownBody`], [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`],

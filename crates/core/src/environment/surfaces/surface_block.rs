@@ -48,8 +48,8 @@ impl SurfaceBlock {
         self.is_empty
     }
 
-    /// Returns the drag wrenches at a density of 1 kg/m³ on consecutive bodies, one per lane of `S`, in body
-    /// axes.
+    /// Returns the drag wrenches at a density of 1 kg/m³ on consecutive bodies from body `offset` of the
+    /// block on, one per lane of `S`, in body axes.
     ///
     /// `v` is the velocity of the centre of mass and `w` the angular velocity, both relative to the
     /// atmosphere, in body axes.
@@ -69,7 +69,8 @@ impl SurfaceBlock {
         sums.wrench(v, w) * (S::of(0.5) * self.drag_coefficient.load(offset))
     }
 
-    /// Returns the wrenches of light from the direction `to_sun` at a pressure of 1 N/m², in body axes.
+    /// Returns the wrenches of light from the direction `to_sun` (unit vectors in body axes) at a pressure of
+    /// 1 N/m² on the same bodies as [`Self::drag`], in body axes.
     #[inline(always)]
     pub(in crate::environment) fn pressure<S: Real>(&self, offset: usize, to_sun: Vec3<S>) -> WrenchLanes<S> {
         let (mut sums, optics) = (PressureSums::zero(), self.optics.load(offset));
