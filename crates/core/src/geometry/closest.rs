@@ -70,8 +70,8 @@ pub(super) fn nearest_pieces<'a>(
     best.ok_or(GeometryError::EmptyCompound)
 }
 
-/// Returns the distance of two shapes that are not compounds. The kind that comes first in [`rank`] is the first shape
-/// of every method, so that exchanging the shapes exchanges the result.
+/// Returns the distance of two shapes that are not compounds. The kind that comes first in [`rank`] is the
+/// first shape of every method, so that exchanging the shapes exchanges the result.
 fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximity, GeometryError> {
     if rank(a) > rank(b) {
         return Ok(single(b, pose_b, a, pose_a)?.exchanged());
@@ -111,7 +111,7 @@ fn rank(shape: &Shape) -> usize {
 }
 
 /// Returns the distance between a sphere about the origin and `b`: the distance from the centre of the sphere
-/// to `b`, less the radius.
+/// to `b`, less the radius; `None` if `b` is a hull.
 fn sphere(radius: f64, b: &Shape, pose: &Pose) -> Option<Proximity> {
     let nearest = signed_distance(b, pose.to_shape(Vec3::zero()))?;
     let normal = pose.rot * -nearest.normal;
@@ -123,7 +123,8 @@ fn sphere(radius: f64, b: &Shape, pose: &Pose) -> Option<Proximity> {
     })
 }
 
-/// Returns the distance of two capsules, which is the distance of their axes less both radii.
+/// Returns the distance of two capsules, which is the distance of their axes less both radii; `None` for
+/// other shapes.
 fn capsules(a: &Shape, b: &Shape, pose: &Pose) -> Option<Proximity> {
     let (Shape::Capsule { radius: radius_a, half_length }, Shape::Capsule { radius: radius_b, .. }) = (a, b)
     else {
@@ -142,7 +143,7 @@ fn capsules(a: &Shape, b: &Shape, pose: &Pose) -> Option<Proximity> {
 }
 
 /// Returns the distance between `a` and a half-space, attained at the point of `a` that lies farthest towards
-/// the half-space.
+/// the half-space; `None` if `a` is a half-space too.
 fn half_space(a: &Shape, pose: &Pose) -> Option<Proximity> {
     let normal = -pose.rot.z;
     let lowest = support(a, normal)?;

@@ -8,8 +8,8 @@ use super::shape::Shape;
 use super::support::rounding;
 use crate::spatial::Vec3;
 
-/// Distance, relative to the size of the shapes, to which the second shape is moved along the normal to find the nearest
-/// points of close and of overlapping shapes.
+/// Distance, relative to the size of the shapes, to which the second shape is moved along the normal to find
+/// the nearest points of close and of overlapping shapes.
 const MARGIN: f64 = 0.1;
 
 /// Largest number of corrections of the normal.
@@ -21,11 +21,13 @@ const FINAL: f64 = 1e-12;
 /// Change of the normal, rad, below which the iteration ends as soon as the change no longer decreases.
 const RESOLUTION: f64 = 1e-7;
 
-/// Largest difference between the distance of the witness points and that of the supporting planes, relative to the size.
+/// Largest difference between the distance of the witness points and that of the supporting planes, relative
+/// to the size.
 const RESOLVED: f64 = 1e-9;
 
 /// Returns the distance of two convex shapes with the pose of the second in the axes of the first, or, if the
-/// iteration does not converge, the difference of the bounds of the distance, m.
+/// iteration does not converge, the difference of the bounds of the distance, m, which is NaN if no normal
+/// was found.
 pub(super) fn closest(a: &Shape, b: &Shape, pose: &Pose) -> Result<Proximity, f64> {
     let cores = Cores { a, b, pose: *pose };
     let (sphere_a, sphere_b) = (a.bounding_sphere(), b.bounding_sphere());
@@ -55,12 +57,13 @@ pub(super) fn closest(a: &Shape, b: &Shape, pose: &Pose) -> Result<Proximity, f6
     })
 }
 
-/// Returns the nearest points and the normal of shapes that are close or overlap, from an approximate normal.
+/// Returns the nearest points and the normal of shapes that are close or overlap, from an approximate normal;
+/// `None` if the shapes overlap even after the second was moved along it.
 ///
-/// The signed distance is the largest separation of supporting planes, `max over n of s(n)`. The second shape is moved
-/// along `n` until it is at the distance `m`, where the normal of the nearest points is the next `n`. The separation never
-/// decreases, and the error of the normal shrinks by `(depth + m)/(R + m)`, with the radius of curvature `R` of the
-/// difference of the shapes: at once for polytopes.
+/// The signed distance is the largest separation of supporting planes, `max over n of s(n)`. The second shape
+/// is moved along `n` until it is at the distance `m`, where the normal of the nearest points is the next
+/// `n`. The separation never decreases, and the error of the normal shrinks by `(depth + m)/(R + m)`, with
+/// the radius of curvature `R` of the difference of the shapes: at once for polytopes.
 fn corrected(cores: &Cores<'_>, mut normal: Vec3<f64>, margin: f64) -> Option<Nearest> {
     let mut separation = cores.separation(normal);
     let (mut found, mut last) = (None, f64::INFINITY);

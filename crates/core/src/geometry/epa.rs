@@ -1,5 +1,5 @@
-//! Direction of the least translation that separates overlapping convex shapes, by the expanding polytope algorithm
-//! (EPA).
+//! Direction of the least translation that separates overlapping convex shapes, by the expanding polytope
+//! algorithm (EPA).
 
 use super::polytope::Polytope;
 use crate::spatial::Vec3;
@@ -76,7 +76,8 @@ pub(super) fn least_support(farthest: impl Fn(Vec3<f64>) -> Vec3<f64>) -> Option
     best.1
 }
 
-/// Returns four points of the set that span a tetrahedron.
+/// Returns four points of the set that span a tetrahedron, which is flat if the set is; `None` if a
+/// coordinate is not finite.
 fn spread(farthest: &impl Fn(Vec3<f64>) -> Vec3<f64>) -> Option<[Vec3<f64>; 4]> {
     let x = Vec3::new(1.0, 0.0, 0.0);
     let (a, b) = (farthest(x), farthest(-x));

@@ -114,7 +114,8 @@ fn disc(radius: f64, z: f64, away: Vec3<f64>, sign: f64) -> Feature {
     Feature::Face { corners: (0..DISC_CORNERS).map(corner).collect(), normal: Vec3::new(0.0, 0.0, sign) }
 }
 
-/// Returns the face with the normal nearest to `d` among those that contain a point.
+/// Returns the face with the normal nearest to `d` among those that contain `witness`, or a point if none
+/// does.
 fn hull_face(hull: &Hull, witness: Vec3<f64>, d: Vec3<f64>) -> Feature {
     let tolerance = ON_FACE * hull.bounding_sphere().radius;
     let vertices = hull.vertices();

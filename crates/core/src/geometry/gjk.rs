@@ -31,7 +31,8 @@ pub(super) struct Cores<'a> {
     pub(super) pose: Pose,
 }
 
-/// Nearest points of both shapes and the unit normal from the first to the second.
+/// Nearest points of both shapes, m, and the unit normal from the first to the second, in the axes of the
+/// first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Nearest {
     pub(super) on_a: Vec3<f64>,
@@ -60,7 +61,8 @@ impl Cores<'_> {
         Self { pose: Pose { pos: self.pose.pos + by, ..self.pose }, ..*self }
     }
 
-    /// Returns the nearest points of separated shapes; `None` if they touch or overlap.
+    /// Returns the nearest points of separated shapes; `None` if they touch or overlap. `start` is an
+    /// approximate direction from the first shape to the second.
     ///
     /// The iteration ends when the supporting planes confirm the distance to rounding, or when their
     /// separation no longer increases. The distance alone is not a sufficient criterion, because it no longer

@@ -31,7 +31,8 @@ impl Hull {
     /// Returns the convex hull of points, m.
     ///
     /// # Errors
-    /// [`GeometryError`] if a coordinate is not finite or the points lie in a plane.
+    /// [`GeometryError::Hull`] if a coordinate is not finite, or if the points lie in a plane or are too
+    /// close to each other.
     pub fn new(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
         let failed = |cause| GeometryError::Hull { count: points.len(), cause };
         if points.iter().any(|p| !p.norm().is_finite()) {
@@ -131,7 +132,8 @@ fn spread(points: &[Vec3<f64>]) -> Option<([usize; 4], f64)> {
     (area > FLAT * extent * extent && thickness > FLAT * extent).then_some(([a, b, c, d], extent))
 }
 
-/// Grows the tetrahedron `first` by the farthest point outside a face until all points are inside.
+/// Grows the tetrahedron `first` by the farthest point outside a face until no point is more than
+/// `tolerance`, m, outside; `None` if rounding errors prevent this.
 fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Polytope> {
     let mut polytope = Polytope::default();
     if !polytope.start(first.map(|i| points[i])) {

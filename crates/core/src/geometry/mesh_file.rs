@@ -8,8 +8,9 @@ use std::path::Path;
 /// Largest accepted size of a mesh file, bytes.
 const LARGEST: usize = 256_000_000;
 
-/// Length of a binary STL file without triangles, bytes, and of one triangle.
+/// Length of a binary STL file without triangles, bytes.
 const STL_HEAD: usize = 84;
+/// Length of a triangle in a binary STL file, bytes.
 const STL_TRIANGLE: usize = 50;
 
 /// Reads the triangles of an STL or OBJ file, chosen by the file extension, or returns the reason why the

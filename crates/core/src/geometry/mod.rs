@@ -1,11 +1,13 @@
-//! Distances between collision shapes: closed forms for spheres, pairs of capsules and half-spaces, and GJK and EPA for
-//! the other pairs of convex shapes.
+//! Distances between collision shapes: closed forms for spheres, pairs of capsules and half-spaces, and GJK
+//! and EPA for the other pairs of convex shapes.
 //!
 //! | Equation | Function |
 //! |-|-|
 //! | signed distance from a point to a shape, its closest point and normal | [`signed_distance`] |
 //! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` for convex ones | [`closest()`] |
 //! | contact points, `w = f a + (1 − f) e` | [`manifold()`] |
+//!
+//! `n` is a unit vector; `a` and `b` are points of the first and of the second shape.
 
 mod boundary;
 mod bounding_sphere;

@@ -94,7 +94,8 @@ fn length(corners: &[Point], i: usize) -> f64 {
     (q[0] - p[0]).hypot(q[1] - p[1])
 }
 
-/// Returns the weights of the corners of a patch.
+/// Returns the weights of the corners of a patch, `w` of [`manifold`](super::manifold), from the corners and
+/// the depths there, m.
 fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     let extent = extent(corners, |i| depths[i]);
     let band = TILT * extent;
@@ -151,7 +152,7 @@ fn extent(corners: &[Point], depth: impl Fn(usize) -> f64) -> f64 {
 }
 
 /// Returns the contact points of two lines on round surfaces with the sum `radius` of their radii: the ends
-/// of their common part, in the mean direction of both, and the witness points.
+/// of their common part, in the mean direction of both, and the witness points; `None` without a common part.
 fn lines(
     plane: &Projection,
     proximity: &Proximity,

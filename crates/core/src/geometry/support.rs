@@ -19,8 +19,9 @@ pub(super) fn support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     }
 }
 
-/// Returns the farthest point of the core of a shape in the direction `d`. The core of a sphere is its
-/// centre, that of a capsule its axis, and that of any other shape the shape itself.
+/// Returns the farthest point of the core of a shape in the direction `d`, in the axes of the shape. The core
+/// of a sphere is its centre, that of a capsule its axis, and that of any other convex body the body itself;
+/// `None` for a torus, a half-space and a compound.
 pub(super) fn core_support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     match shape {
         Shape::Sphere { .. } => Some(Vec3::zero()),

@@ -30,10 +30,11 @@ struct Sample {
     on_circle: Vec3<f64>,
 }
 
-/// Returns the distance of shape `a` from a torus with this pose in the axes of `a`; `None` if the middle
-/// circle of the torus intersects the core of `a` (the axis of a capsule, the middle circle of a torus, or
-/// the entire shape for other kinds), because the shortest separating translation is then not determined by a
-/// single point.
+/// Returns the distance of shape `a` from a torus with this major and minor radius, m, and this pose in the
+/// axes of `a`; `None` if the middle circle of the torus intersects the core of `a` (the centre of a sphere,
+/// the axis of a capsule, the middle circle of a torus, or the entire shape for other kinds), because the
+/// shortest separating translation is then not determined by a single point, or if the distance of a hull
+/// does not converge.
 ///
 /// The distance along the circle may have several minima. Each interval between neighbouring samples that
 /// contains a minimum is bisected to find the angle at which the rate `nᵀ c'` of the distance changes sign.
@@ -84,7 +85,8 @@ fn sample(a: &Shape, major_radius: f64, pose: &Pose, angle: f64) -> Option<Sampl
     Some(Sample { angle, distance: nearest.distance, slope, nearest, on_circle })
 }
 
-/// Returns the nearest boundary point of a shape to a point in its axes.
+/// Returns the nearest boundary point of a shape to a point in its axes; `None` for a compound, or if the
+/// distance of a hull does not converge.
 fn nearest_point(a: &Shape, p: Vec3<f64>) -> Option<BoundaryPoint> {
     if let Shape::Hull(hull) = a {
         let radius = POINT * hull.bounding_sphere().radius;
