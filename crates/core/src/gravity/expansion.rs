@@ -12,7 +12,8 @@ use std::sync::{Mutex, PoisonError};
 /// without its point mass.
 const LINEAR_RADIUS: f64 = 40.0;
 
-/// Linear expansion `g(x) = g₀ + G₀ (x - x₀)` of a gravity field, with the gradient `G₀` at `x₀`.
+/// Linear expansion `g(x) = g₀ + G₀ (x - x₀)` of a gravity field about the position `x₀` (`at`), m, with the
+/// acceleration `g₀` (`value`), m/s², and the gradient `G₀`, 1/s².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Expansion {
     pub(super) at: Vec3<f64>,

@@ -127,8 +127,8 @@ impl Gravity {
         Err(GravityError::OtherPlanet { field: self.mu, orbit: mu })
     }
 
-    /// Returns the acceleration, m/s², at position `r` from the planet's centre, m, and simulation time `t`, s;
-    /// axes of `I`.
+    /// Returns the acceleration, m/s², at position `r` from the planet's centre, m, and simulation time `t`,
+    /// s; axes of `I`.
     ///
     /// # Errors
     /// [`GravityError`] below the surface of a planet with a field, and the errors of third bodies.
@@ -166,7 +166,8 @@ impl Gravity {
         Ok(tensor)
     }
 
-    /// Returns the rotation from `I` to axes fixed in the planet, if there is a field that needs it.
+    /// Returns the rotation from `I` to axes fixed in the planet at simulation time `t`, s; `None` without a
+    /// field or an Earth.
     #[inline]
     fn rot_fi(&self, t: f64) -> Option<Matrix3<f64>> {
         self.field.as_ref().and(self.earth.as_ref()).map(|earth| earth.rot_fi(t))

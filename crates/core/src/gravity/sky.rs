@@ -38,7 +38,9 @@ impl Gravity {
         Ok(Sky { rot_fi, first: OnceCell::new(), third: third.transpose()? })
     }
 
-    /// Returns the expansion of the planet's field about `at` or about the nearest grid point, axes of `I`.
+    /// Returns the expansion, in axes of `I`, of the planet's field about the grid point nearest to `at`, m.
+    /// If the field is in closed form or `travel`, m, exceeds the grid spacing, it is the expansion about
+    /// `at`.
     pub(super) fn expand_about(
         &self,
         field: &GravityField,
