@@ -13,8 +13,9 @@ pub fn neutral(model: &Model) -> Vec<f64> {
 /// Computes `q ⊕ δ`: the base moves with the constant body twist `δ[..6]` for unit time, and the joint
 /// positions change by `δ[6..]`.
 ///
-/// `p' = p + R V(θ) ρ`, `R' = R exp(θ)`, with `ρ = δ[..3]`, `θ = δ[3..6]`, `φ = |θ|` and `V = 1 + (1−cos
-/// φ)/φ² θ× + (φ−sin φ)/φ³ θ×²`. `q`, `out`: `(nq,)`; `delta`: `(nv,)`, m and rad, linear first.
+/// `p' = p + R V(θ) ρ`, `R' = R exp(θ)` for the position `p` and rotation `R` of the base, with `ρ = δ[..3]`,
+/// `θ = δ[3..6]`, `φ = |θ|` and `V = 1 + (1−cos φ)/φ² θ× + (φ−sin φ)/φ³ θ×²`. `q`, `out`: `(nq,)`; `delta`:
+/// `(nv,)`, m and rad, linear first.
 #[inline(always)]
 pub fn integrate<S: Real>(q: &[S], delta: &[S], out: &mut [S]) {
     let attitude = Quat::from_xyzw(&q[3..]);

@@ -90,7 +90,7 @@ pub struct Visual {
     pub pose: Isometry3<f64>,
     /// Geometry of the shape.
     pub geometry: Geometry,
-    /// Colour: red, green, blue and opacity, each from 0 to 1.
+    /// Colour: red, green, blue and opacity, each from 0 to 1; `None` if none is given.
     pub rgba: Option<[f64; 4]>,
 }
 

@@ -22,7 +22,8 @@ pub(super) enum Sense {
     Physical,
     /// Inertia that violates the triangle inequality, so that no body with positive density has it.
     BreaksTriangle([f64; 3]),
-    /// Inertia with a negative principal moment within the rounding tolerance.
+    /// Inertia with a principal moment that is negative by more than [`PRINTED_DIGITS`] permits, but within
+    /// the tolerance [`LEAST_GYRATION`].
     Rounded([f64; 3]),
     /// Indefinite inertia, for which some rotation has negative kinetic energy.
     Indefinite([f64; 3]),
@@ -52,8 +53,8 @@ pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, M
     Ok(if *mass == 0.0 { Sense::Massless } else { sense(inertia, *mass) })
 }
 
-/// Returns the inertia used in the dynamics, in which principal moments that are negative because of rounding
-/// are set to zero.
+/// Returns the inertia used in the dynamics, which differs from the given one only for [`Sense::Rounded`]:
+/// negative principal moments are then set to zero.
 pub(super) fn usable_inertia(inertial: &Inertial) -> Matrix3<f64> {
     match sense(&inertial.inertia, inertial.mass) {
         Sense::Rounded(_) => without_negative_moments(&inertial.inertia),

@@ -14,7 +14,8 @@ pub(super) fn is_heavy_on_light(nodes: &[Node]) -> bool {
 }
 
 /// Returns the largest ratio of the inertia of a body, about the origin of its parent, to the inertia of one
-/// of its ancestors other than the base. The inertias are compared by their traces, with all joints at zero.
+/// of its ancestors, about the ancestor's own origin. The inertias are compared by their traces, with all
+/// joints at zero.
 ///
 /// Single bodies are compared instead of subtrees, because long arms of similar links lose no digits. Bodies
 /// without inertia are ignored.
@@ -32,8 +33,8 @@ fn load_ratio(nodes: &[Node]) -> f64 {
     largest
 }
 
-/// Returns the trace of the inertia about a point at the distance `c` from the centre of mass: `tr I = tr I_c
-/// + 2 m c²`.
+/// Returns the trace of the inertia, kg m², about a point at the vector `c`, m, from the centre of mass: `tr
+/// I = tr I_c + 2 m c²`.
 fn trace_about(node: &Node, c: Vec3<f64>) -> f64 {
     let inertia = &node.about_com;
     inertia.xx + inertia.yy + inertia.zz + 2.0 * node.mass * c.dot(c)

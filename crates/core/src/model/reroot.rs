@@ -70,9 +70,11 @@ impl Description {
 impl Joint {
     /// Returns the joint as traversed from its child link to its parent link.
     ///
-    /// `X_pc(q) = X₀ R(a, q) X₁`, so `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹`: the axis is negated, so that the joint
-    /// position keeps its sign. Properties that depend only on `q` and `q̇` (friction, limits, rotor inertia)
-    /// do not change.
+    /// With the pose `X_pc` of the child in the parent, the pose `X₀` of the joint's frame (`origin`), the
+    /// motion `R(a, q)` about or along the axis `a` and the pose `X₁` of the child in that frame
+    /// (`child_pose`), `X_pc(q) = X₀ R(a, q) X₁`, so `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹`: the axis is negated, so
+    /// that the joint position keeps its sign. Properties that depend only on `q` and `q̇` (friction, limits,
+    /// rotor inertia) do not change.
     fn reversed(&self) -> Self {
         let kind = match self.kind {
             JointKind::Fixed => JointKind::Fixed,

@@ -179,7 +179,8 @@ impl Model {
         self.warnings.push(warning);
     }
 
-    /// Returns the pose of a frame, fixed to some body, in the axes of that body's link.
+    /// Returns the pose of a frame, fixed to some body, in the axes of that body's link: the rotation from
+    /// frame axes to link axes, and the origin of the frame, m.
     pub fn pose_in_link(&self, frame: &Frame) -> (Mat3<f64>, Vec3<f64>) {
         let link = self.body_frame(frame.body);
         let to_link = link.rot_kf.transpose();
