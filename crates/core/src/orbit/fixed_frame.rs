@@ -17,8 +17,9 @@ pub struct FixedFrame {
 }
 
 impl FixedFrame {
-    /// Creates the frame at `position` (m), with axes rotated by `attitude`, around a planet with
-    /// gravitational parameter `mu` (m³/s²), or without a planet if `mu` is `None`.
+    /// Creates the frame at `position` (m, from the planet's centre, axes of `I`), with the rotation
+    /// `attitude` from its axes to `I`, around a planet with gravitational parameter `mu` (m³/s²), or without
+    /// a planet if `mu` is `None`.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for `position`, `attitude` and `mu`, and

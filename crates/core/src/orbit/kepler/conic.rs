@@ -36,7 +36,8 @@ pub(super) struct PerifocalState<S = f64> {
     pub(super) vy: S,
 }
 
-/// Ellipse with its semi-axes `a` and `b` and the velocity scales `√(μ a)` and `√(μ p)`.
+/// Ellipse with its semi-axes `a` and `b`, m, and the velocity scales `√(μ a)` and `√(μ p)`, m²/s, with the
+/// semi-latus rectum `p`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ellipse<S> {
     pub(super) e: S,
@@ -124,7 +125,8 @@ pub(super) enum Conic {
         /// Half the speed at periapsis, `√(μ/(2 q))`, m/s.
         speed: f64,
     },
-    /// Hyperbola, `e > 1`; the phase is the time since periapsis. The semi-axes `a` and `b` are positive.
+    /// Hyperbola, `e > 1`; the phase is the time since periapsis. The semi-axes `a` and `b`, m, are positive;
+    /// the other fields are those of the ellipse.
     Hyperbola { a: f64, b: f64, n: f64, velocity_scale: [f64; 2] },
 }
 

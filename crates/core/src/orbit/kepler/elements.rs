@@ -176,7 +176,8 @@ fn shape(elements: &Elements) -> Result<Shape, OrbitError> {
     }
 }
 
-/// Returns the epoch, s, and the phase at the epoch.
+/// Returns an instant, s, and the phase there as defined by [`Conic::advance`]: the time of periapsis with
+/// phase 0 if it is given, otherwise the epoch.
 fn phase(elements: &Elements, shape: &Shape, conic: &Conic) -> Result<(f64, f64), OrbitError> {
     let epoch = finite("epoch", elements.epoch)?;
     match (elements.phase, conic) {

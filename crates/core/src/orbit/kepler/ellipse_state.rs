@@ -4,7 +4,8 @@ use super::conic::{Ellipse, wrap};
 use crate::spatial::{Real, Vec3};
 use std::f64::consts::TAU;
 
-/// Returns the position (m) and velocity (m/s) `t` s after the instant to which the mean anomaly refers.
+/// Returns the position (m, from the planet's centre) and velocity (m/s), in the inertial axes of the
+/// elements, `t` s after the instant to which the mean anomaly refers.
 ///
 /// `elements`: semi-major axis (m), eccentricity in [0, 1), inclination, node, argument of periapsis and mean
 /// anomaly (rad); `mu`: m³/s². For large `t`, the phase has the rounding error of `n t`, where `n` is the

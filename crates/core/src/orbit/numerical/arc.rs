@@ -8,12 +8,13 @@ use std::sync::{PoisonError, RwLock};
 
 /// Largest estimated position error within a step, relative to the distance from the planet's centre.
 const TOLERANCE: f64 = 1e-14;
-/// Lengths of the first and the smallest step, in units of `√(r³/μ)`.
+/// Length of the first step, in units of `√(r³/μ)` with the distance `r` from the planet's centre.
 const FIRST: f64 = 0.1;
+/// Length of the smallest step, in the same units.
 const SHORTEST: f64 = 1e-9;
-/// Ratio of the next step to the longest step that the tolerance permits; smallest and largest ratio of
-/// successive steps.
+/// Ratio of the next step to the longest step that the tolerance permits.
 const SAFETY: f64 = 0.9;
+/// Smallest and largest ratio of successive steps.
 const CHANGE: (f64, f64) = (0.25, 2.0);
 /// Largest number of steps on either side of the initial state, which cover years of a low orbit and take 90
 /// MB.

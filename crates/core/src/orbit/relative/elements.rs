@@ -1,8 +1,9 @@
 //! Relative orbital elements of a deputy satellite with respect to a chief satellite.
 //!
 //! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`,
-//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`, where `d` denotes the deputy. These elements are
-//! regular for circular orbits and singular for an equatorial chief.
+//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`, where `d` denotes the deputy, `a` the semi-major axis,
+//! `e` the eccentricity, `i` the inclination, `Ω` the node, `ω` the argument of periapsis and `M` the mean
+//! anomaly. These elements are regular for circular orbits and singular for an equatorial chief.
 //!
 //! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, thesis, TU Delft
 //! 2010.
@@ -15,11 +16,12 @@ use std::f64::consts::{PI, TAU};
 /// Sine of the chief's inclination below which its node is treated as undefined.
 const EQUATORIAL: f64 = 1e-6;
 
-/// Orbital elements of one satellite that are regular for circular orbits.
+/// Orbital elements of one satellite that are regular for circular orbits; `a` in m, angles in rad.
 struct Regular {
     a: f64,
     /// Mean argument of latitude, `M + ω`, rad.
     u: f64,
+    /// `e cos ω` and `e sin ω`.
     e: [f64; 2],
     i: f64,
     node: f64,

@@ -46,13 +46,16 @@ pub fn hill_transitions(n: f64, times: &[f64], out: &mut [f64]) -> Result<(), Or
     Ok(())
 }
 
-/// Determinant of `n Φ_rv` below which no impulse leads to the origin in the given time.
+/// Magnitude of the determinant of `n Φ_rv` ([`intercept_velocity`]) up to which no impulse leads to the
+/// origin in the given time.
 const SINGULAR: f64 = 1e-9;
 
 /// Returns the velocity, m/s, with which a satellite at `r` (m, axes `L`) reaches the origin in `t` s. The
 /// change to this velocity is the first impulse of a two-impulse rendezvous.
 ///
-/// `v = -Φ_rv⁻¹ Φ_rr r`. The second impulse cancels the final velocity, which [`hill_transition`] gives.
+/// `v = -Φ_rv⁻¹ Φ_rr r`, where the blocks `Φ_rr` and `Φ_rv` of the transition matrix give the final position
+/// due to the initial position and velocity. The second impulse cancels the final velocity, which
+/// [`hill_transition`] gives.
 ///
 /// # Errors
 /// The errors of [`hill_transition`], and [`OrbitError::NoIntercept`] at times when a component of the

@@ -18,7 +18,8 @@ impl LocalFrame {
     /// All kinds, each with its name.
     pub const ALL: [(&'static str, Self); 2] = [("lvlh", Self::Lvlh), ("nadir", Self::Nadir)];
 
-    /// Returns the rotation from local axes to `I`, and the angular velocity of the frame in its own axes.
+    /// Returns the rotation from local axes to `I`, and the angular velocity of the frame in its own axes,
+    /// rad/s.
     fn of(self, reference: &OrbitState) -> Result<(Matrix3<f64>, Vector3<f64>), OrbitError> {
         match self {
             Self::Lvlh => Lvlh::of(reference).map(|frame| (frame.rot_il, frame.rate_l)),
@@ -29,8 +30,8 @@ impl LocalFrame {
 
 /// Returns the position (m) and velocity (m/s) relative to `reference` in its rotating local frame.
 ///
-/// `ρ = R_liᵀ (r - R)`, `ρ̇ = R_liᵀ (v - V) - ω × ρ`, with `r` and `v` in `I`, and `R` and `V` of the
-/// reference.
+/// `ρ = R_ilᵀ (r - R)`, `ρ̇ = R_ilᵀ (v - V) - ω × ρ`, with `r` and `v` in `I`, `R` and `V` of the reference,
+/// the rotation `R_il` from local axes to `I` and the angular velocity `ω` of the local frame.
 ///
 /// # Errors
 /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 const SAME_PLANET: f64 = 1e-5;
 
 /// Returns the position of `orbit` in the frame W of `reference` at simulation time `t`, s, `r - r_ref` in m,
-/// and its time derivative in m/s.
+/// and its time derivative in m/s, in axes of the reference.
 ///
 /// `t` is the simulation time of the reference. An orbit with an epoch, such as one of an element set, is
 /// evaluated at the same instant; if the reference has no epoch, the epoch of `earth` applies. If the axes of

@@ -15,7 +15,7 @@ pub(super) type Five = [f64; 5];
 pub(super) struct ThirdBody {
     /// Secular rates of the five quantities, per minute.
     pub(super) rates: Five,
-    /// Amplitudes of `F₂`, `F₃` and `sin f` for each of the five quantities.
+    /// Amplitudes of `F₂`, `F₃` and `sin f` ([`ThirdBody::waves`]) for each of the five quantities.
     waves: [[f64; 3]; 5],
     eccentricity: f64,
     /// Mean motion of the body, rad/min.
@@ -134,7 +134,8 @@ impl ThirdBody {
         Self { rates, waves, eccentricity: eb, motion: n, anomaly: body.anomaly }
     }
 
-    /// Returns the periodic perturbations of the five quantities of [`Five`], `t` minutes after the epoch.
+    /// Returns the periodic perturbations of the five quantities of [`Five`], `t` minutes after the epoch:
+    /// sums of `F₂ = ½ sin²f - ¼`, `F₃ = -½ sin f cos f` and `sin f` with the true anomaly `f` of the body.
     pub(super) fn waves(&self, t: f64) -> Five {
         // f = M + 2 e sin M,  F₂ = ½ sin²f - ¼,  F₃ = -½ sin f cos f
         let anomaly = self.anomaly + self.motion * t;

@@ -17,9 +17,11 @@ const NEARLY_CIRCULAR: f64 = 1e-4;
 #[derive(Clone, Debug)]
 pub(super) struct NearEarth {
     pub(super) epoch: Mean,
-    /// Rates `Ṁ`, `ω̇`, `Ω̇`, rad/min.
+    /// Rate `Ṁ` of the mean anomaly, rad/min.
     pub(super) anomaly_rate: f64,
+    /// Rate `ω̇` of the argument of perigee, rad/min.
     pub(super) perigee_rate: f64,
+    /// Rate `Ω̇` of the node, rad/min.
     pub(super) node_rate: f64,
     node_drag: f64,
     b_star: f64,
@@ -37,8 +39,9 @@ struct Fine {
     t: [f64; 3],
     perigee: f64,
     anomaly: f64,
-    /// `(1 + η cos M₀)³` and `sin M₀`.
+    /// `(1 + η cos M₀)³` with the mean anomaly `M₀` at the epoch.
     cube0: f64,
+    /// `sin M₀`.
     sin0: f64,
 }
 
@@ -55,8 +58,9 @@ pub(super) struct SecularElements<S = f64> {
 
 /// Converts the published mean elements to Brouwer's mean elements.
 ///
-/// `n″₀ = n₀/(1 + δ₀)`, `δ₀ = d/a₀²`, `a₀ = a₁ (1 - δ₁² - δ₁ (1/3 + 134 δ₁²/81))`, `δ₁ = d/a₁²`,
-/// `a₁ = (kₑ/n₀)^{2/3}`, `d = ¾ J₂ (3 cos²i - 1)/(1 - e²)^{3/2}`.
+/// `n″₀ = n₀/(1 + δ₀)`, `δ₀ = d/a₀²`, `a₀ = a₁ (1 - δ₁² - δ₁ (1/3 + 134 δ₁²/81))`, `δ₁ = d/a₁²`, `a₁ =
+/// (kₑ/n₀)^{2/3}`, `d = ¾ J₂ (3 cos²i - 1)/(1 - e²)^{3/2}`, with the published mean motion `n₀`, rad/min,
+/// inclination `i` and eccentricity `e`; `a₀` and `a₁` are in Earth radii.
 pub(super) fn brouwer(set: &MeanElements, earth: &Earth) -> Mean {
     let MeanElements { inclination: i, eccentricity: e, mean_motion: n, .. } = *set;
     let (cos, p) = (i.cos(), 1.0 - e * e);

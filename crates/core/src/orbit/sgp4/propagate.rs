@@ -20,8 +20,9 @@ const ECCENTRICITIES: std::ops::Range<f64> = -0.001..1.0;
 pub(super) struct Propagator {
     pub(super) earth: Earth,
     near: NearEarth,
-    /// Semi-major axis at the epoch, Earth radii, and sine and cosine of the inclination at the epoch.
+    /// Semi-major axis at the epoch, Earth radii.
     a: f64,
+    /// Sine and cosine of the inclination at the epoch.
     inclination_sin_cos: (f64, f64),
     deep: Option<DeepSpace>,
 }

@@ -13,14 +13,15 @@ pub(super) const EARTH_RATE: f64 = 4.375_269_088_011_3e-3;
 /// Step of the integration, min.
 const STEP: f64 = 720.0;
 
-/// Resonance with the Earth's rotation: `ṅ = Σ d sin(p ω + q λ - φ)` in the resonant longitude `λ`,
-/// `λ̇ = n + λ̇₀`.
+/// Resonance with the Earth's rotation: `ṅ = Σ d sin(p ω + q λ - φ)` in the resonant longitude `λ`, `λ̇ = n +
+/// λ̇₀`, with the mean motion `n`, the argument of perigee `ω` and the terms of [`Harmonic`].
 #[derive(Clone, Debug)]
 pub(super) struct Resonance {
     kind: Kind,
     harmonics: Vec<Harmonic>,
-    /// Resonant longitude `λ` at the epoch, rad, and its rate offset `λ̇₀`, rad/min.
+    /// Resonant longitude `λ` at the epoch, rad.
     longitude: f64,
+    /// Offset `λ̇₀` of the rate of `λ`, rad/min.
     drift: f64,
     n: f64,
     perigee: f64,
@@ -36,7 +37,8 @@ enum Kind {
     HalfDay,
 }
 
-/// Secular rates of the angles, rad/min, caused by the Earth's oblateness and by Sun and Moon.
+/// Secular rates of the angles, rad/min: each pair holds the rate caused by the Earth's oblateness, which
+/// includes the mean motion for the mean anomaly, and that caused by Sun and Moon.
 pub(super) struct Rates {
     pub(super) anomaly: [f64; 2],
     pub(super) perigee: [f64; 2],
