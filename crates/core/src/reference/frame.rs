@@ -119,11 +119,13 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
     })
 }
 
-/// Returns the time derivative of the x component of L's angular velocity. Because it depends on the jerk of
-/// the orbit, it is computed by finite differences with steps of 1e-3 rad along the orbit, or less near the
-/// ends of its time span.
+/// Returns the time derivative, rad/s², of the x component of L's angular velocity, which is `rate`, rad/s,
+/// at time `t`, s. Because it depends on the jerk of the orbit, it is computed by finite differences with
+/// steps of 1e-3 rad along the orbit, or less near the ends of its time span; 0 if the orbit has no frames
+/// near `t`.
 ///
-/// `ẋ = [8 (x₁ − x₋₁) − (x₂ − x₋₂)]/12h`, and at an end `ẋ = ±(4 x₁ − x₂ − 3 x₀)/2h`.
+/// With the component `x_k` at `t + k h`, `ẋ = [8 (x₁ − x₋₁) − (x₂ − x₋₂)]/12h`, and at an end
+/// `ẋ = ±(4 x_±1 − x_±2 − 3 x₀)/2h`.
 fn turn_of_plane(orbit: &dyn Orbit, t: f64, rate: &Vector3<f64>) -> f64 {
     let x = |dt: f64| orbit.lvlh(t + dt).ok().map(|there| there.rate_l.x);
     let steps = || (0..12).map(|halvings| 1e-3 / rate.norm() * 0.5_f64.powi(halvings));

@@ -4,7 +4,8 @@ use super::{Hold, ReferenceError, TaskLimits, TaskPath, TaskSample, TimeLaw};
 use crate::spatial::{Mat3, Motion, Vec3, exp_so3, log_rotation};
 
 /// Straight line `p(t) = p₀ + s d` with the attitude `R(t) = exp(s θ) R₀` on a geodesic of SO(3), where
-/// `s(t)` is a time law.
+/// `s(t)` is a time law, `p₀` and `R₀` are the start pose, `d` is the displacement, m, and `θ` the rotation
+/// vector, rad.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     start: Hold,

@@ -6,7 +6,8 @@ use crate::spatial::{Motion, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
 /// Line with a lateral parabola, `p(t) = p₀ + s d + s(1 − s) h`, with constant attitude, where `s(t)` is the
-/// quintic time law from 0 to 1.
+/// quintic time law from 0 to 1, `p₀` the start position, `d` the displacement and `h` the coefficient of the
+/// parabola, m.
 ///
 /// The motion starts and ends at rest with zero acceleration. The start pose is held before the motion and
 /// the end pose after it.

@@ -57,8 +57,8 @@ impl PoseSpline {
     }
 
     /// Creates the spline through samples of a motion at `times`, s. Their `velocities` (K, 6), if known, are
-    /// linear, then angular, in the axes of the poses. The first pose is held before the first time, and the
-    /// last pose after the last time.
+    /// linear, m/s, then angular, rad/s, in the axes of the frame in which the poses are given. The first
+    /// pose is held before the first time, and the last pose after the last time.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, times that
