@@ -22,8 +22,9 @@ impl Simulation {
     /// range or with a quaternion that does not have unit norm; a joint that starts beyond its limits when
     /// these are enforced; a time step, tolerance or other number outside its range; an effect or a gravity
     /// field without the orbit that it requires; an effect that acts on no system, or twice on the same body;
-    /// an Earth whose epoch or axes differ from those of the orbit; invalid names, events or controls; a
-    /// reference without a tool; a reference that starts too far from the tool or the joints that follow it.
+    /// an Earth whose epoch or axes differ from those of the orbit; invalid names, events, contacts or
+    /// controls; a setting that an external engine does not support; a reference without a tool; a reference
+    /// that starts too far from the tool or the joints that follow it.
     pub fn check(&self) -> Result<(), SimulationError> {
         self.check_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;

@@ -11,9 +11,9 @@ use super::tree_state::{TreeRate, TreeState};
 use crate::dynamics::center_of_mass;
 use crate::spatial::{Real, Vec3};
 
-/// Returns the moment of the external forces about the common centre of mass `c`, with each force `F_i` acting
-/// at the centre of mass `c_i` of its tree: `Σ (c_i − c) × F_i`, W axes, N m. Requires the kinematics of
-/// `state` in the trees.
+/// Returns the moment of the external forces about the common centre of mass `c`, with each force `F_i`
+/// acting at the centre of mass `c_i` of its tree: `Σ (c_i − c) × F_i`, W axes, N m. Requires the kinematics
+/// of `state` in the trees.
 pub(super) fn orbital_moment<S: Real>(trees: &[Tree<'_, S>], state: &State<S>, rate: &Rate<S>) -> Vec3<S> {
     S::enter(
         #[inline(always)]
@@ -27,9 +27,9 @@ pub(super) fn orbital_moment<S: Real>(trees: &[Tree<'_, S>], state: &State<S>, r
     )
 }
 
-/// Refers the moments in `rate` to the common centre of mass: adds `(c_i − c) × (F_i − m_i ΣF/m)`. The second
-/// term is the inertial force in the frame of the common centre of mass, and vanishes in the sum. Requires the
-/// kinematics of `state` in the trees.
+/// Refers the moments in `rate` to the common centre of mass: adds `(c_i − c) × (F_i − m_i ΣF/m)` with the
+/// mass `m_i` of each tree and the total mass `m`. The second term is the inertial force in the frame of the
+/// common centre of mass, and vanishes in the sum. Requires the kinematics of `state` in the trees.
 pub(super) fn refer_to_common_center<S: Real>(trees: &[Tree<'_, S>], state: &State<S>, rate: &mut Rate<S>) {
     S::enter(
         #[inline(always)]
@@ -44,7 +44,8 @@ pub(super) fn refer_to_common_center<S: Real>(trees: &[Tree<'_, S>], state: &Sta
 }
 
 /// Refers the angular impulses of the step from `start` to `state` to the centres of mass of the trees: moves
-/// the changes of `(c_i − c) × (P_i − m_i v_c)` from the impulses of the trees to the common impulse.
+/// the changes of `(c_i − c) × (P_i − m_i v_c)` from the impulses of the trees to the common impulse. `P_i`
+/// and `m_i` are the momentum and the mass of a tree, and `v_c` is the velocity of the common centre of mass.
 pub(super) fn move_to_own_centers<S: Real>(trees: &[Tree<'_, S>], start: &State<S>, state: &mut State<S>) {
     S::enter(
         #[inline(always)]

@@ -123,7 +123,7 @@ impl<S: Scalar> RunState<'_, S> {
         (0..self.systems.len()).map(snapshot).collect()
     }
 
-    /// Returns the pose and the twist in W of a frame of a system.
+    /// Returns the pose and the twist in W of a frame of a system, given the states of all systems.
     pub(super) fn pose_and_twist(
         &self,
         place: FrameIndex,
@@ -135,7 +135,8 @@ impl<S: Scalar> RunState<'_, S> {
         (frame_pose(model, &data, q, place.frame), frame_velocity(model, &data, q, place.frame))
     }
 
-    /// Returns the twist of the second frame relative to the first, at the origin of the second frame.
+    /// Returns the twist of the second frame relative to the first, at the origin of the second frame, W
+    /// axes, m/s and rad/s.
     fn relative_twist(&self, [by, of]: [FrameIndex; 2], states: &[Snapshot]) -> Motion<f64> {
         let (pose_by, twist_by) = self.pose_and_twist(by, states);
         let (pose_of, twist_of) = self.pose_and_twist(of, states);

@@ -8,14 +8,16 @@ use serde::{Deserialize, Serialize};
 /// Errors of the momentum and of the energy of a group of several systems, accumulated over the rows of a
 /// run.
 ///
-/// The checks are `max |P − P₀ − ∫F dt|` and `max |L − L₀ − ∫T dt|`, the latter about the centre of mass of
-/// the group, relative to the largest sums of the magnitudes of the momenta of the bodies, and `max |T − T₀ −
-/// W|` relative to the sum of `Σ |ΔW|` and the largest kinetic energy `T`.
+/// The checks are `max |P − P₀ − ∫F dt|` of the linear momentum `P` under the external forces `F`, and `max
+/// |L − L₀ − ∫T dt|` of the angular momentum `L` about the centre of mass of the group under the external
+/// moments `T`, both relative to the largest sums of the magnitudes of the momenta of the bodies, and `max |E
+/// − E₀ − W|` of the kinetic energy `E` and the work `W`, relative to the sum of `Σ |ΔW|` and the largest
+/// `E`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupBalance {
     /// Numbers of the systems in the world.
     pub systems: Vec<usize>,
-    /// Values of `P − ∫F dt`, N s, `L − ∫T dt`, N m s, and `T − W`, J, in the first row; `None` before that
+    /// Values of `P − ∫F dt`, N s, `L − ∫T dt`, N m s, and `E − W`, J, in the first row; `None` before that
     /// row.
     first: Option<(Momentum<f64>, f64)>,
     /// Work `W` in the last row, J.

@@ -25,9 +25,10 @@ impl Latch {
     /// Returns the relative margin of the condition that is closest to its bound; it is positive inside the
     /// envelope. Requires the kinematics of `states`, relative to W, in `trees`.
     ///
-    /// `min(1 − d/d_max, 1 − θ/θ_max, 1 − v/v_max, 1 − ω/ω_max)`, with the velocity of the captured frame's
-    /// origin as observed in the capturing frame, `v = |v_b − v_a − ω_a × (p_b − p_a)|`, and `ω = |ω_b −
-    /// ω_a|`.
+    /// `min(1 − d/d_max, 1 − θ/θ_max, 1 − v/v_max, 1 − ω/ω_max)`, with the distance `d` of the origins `p_a`
+    /// of the capturing and `p_b` of the captured frame, the angle `θ` between the frames, the velocity of
+    /// the captured frame's origin as observed in the capturing frame, `v = |v_b − v_a − ω_a × (p_b − p_a)|`,
+    /// and `ω = |ω_b − ω_a|`.
     pub(super) fn inside<S: Real>(&self, trees: &[Tree<'_, S>], states: &[TreeState<S>]) -> f64 {
         let [by, of] = self.frames.map(|(tree, frame)| {
             let (tree, q) = (&trees[tree], &states[tree].q);

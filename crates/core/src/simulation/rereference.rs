@@ -12,8 +12,9 @@ impl<S: Scalar> Tree<'_, S> {
     /// Makes a local orbit in free fall, which starts at the centre of mass of this system, the reference of
     /// `loads`, and transforms `state` to its frame. This system must be the only one on which `loads` act.
     ///
-    /// The centre of mass is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`, `P' = 0`.
-    /// The kinetic energy in the new frame is lower by `P²/2m` (König's theorem).
+    /// The centre of mass `c` is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`, `P' =
+    /// 0` with the position `p` of the base, the momentum `P` and the mass `m`. The kinetic energy in the new
+    /// frame is lower by `P²/2m` (König's theorem). Without an orbit, nothing changes.
     pub(super) fn rereference(
         &mut self,
         loads: &mut EnvironmentLoads,

@@ -57,14 +57,15 @@ impl Attitude {
     /// Adds an interval. With `Ṙ = R [ω×]`, the Magnus expansion
     /// `log(R₀ᵀ R₁) = ∫ω dt + ½ ∫∫ ω(s) × ω(t) ds dt + …` (`s < t`) becomes
     ///
-    /// `h (ω₀ + ω₁)/2 + h²/12 (ω̇₀⁺ − ω̇₁⁻) + h²/12 ω₀ × ω₁ + O(h⁵)`.
+    /// `h (ω₀ + ω₁)/2 + h²/12 (ω̇₀⁺ − ω̇₁⁻) + h²/12 ω₀ × ω₁ + O(h⁵)`
     ///
-    /// The first two terms are the integral of the cubic through the data. The third term is the commutator,
-    /// which is missing if attitudes are composed from `exp(∫ω dt)`, however accurate the rates are. If a
-    /// wrench jumps at the second row, `ω̇₁⁻` may be unknown. It is then taken from the parabola through the
-    /// other data:
-    /// `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. The error of the parabola
-    /// is `d h⁴/72` with the third derivative `d` of the rates, which is estimated from the neighbouring
+    /// with the length `h` of the interval, the angular velocities `ω₀` and `ω₁` at its ends and the angular
+    /// accelerations `ω̇₀⁺` just after its start and `ω̇₁⁻` just before its end, in base axes. The first two
+    /// terms are the integral of the cubic through the data. The third term is the commutator, which is
+    /// missing if attitudes are composed from `exp(∫ω dt)`, however accurate the rates are. If a wrench jumps
+    /// at the second row, `ω̇₁⁻` may be unknown. It is then taken from the parabola through the other data:
+    /// `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. The error of the parabola is
+    /// `d h⁴/72` with the third derivative `d` of the rates, which is estimated from the neighbouring
     /// intervals.
     #[inline]
     pub(super) fn add(&mut self, before: &BaseMotion, now: &BaseMotion) {

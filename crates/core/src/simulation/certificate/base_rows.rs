@@ -42,9 +42,10 @@ impl BaseRows {
         }
     }
 
-    /// Adds an interval of length `h`. `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` is the inverse dynamics at the
-    /// configuration `q_m` in the middle of the interval. Its base rows, in W axes and about the centre of
-    /// mass, equal the mean wrench `ΔJ/h` up to `O(h²)`.
+    /// Adds an interval of length `h`, s. `f = ID(q_m, (v₀ + v₁)/2, (v₁ − v₀)/h)` is the inverse dynamics at
+    /// the configuration `q_m` in the middle of the interval, with the velocities `v₀` and `v₁` at its ends.
+    /// Its base rows, in W axes and about the centre of mass, equal the mean wrench `ΔJ/h` up to `O(h²)`,
+    /// where `ΔJ` is the change of the recorded impulse.
     pub(super) fn add(&mut self, model: &Model, before: &TraceRow<'_>, now: &TraceRow<'_>) {
         let h = now.time - before.time;
         let [q, v, a] = &mut self.middle;

@@ -61,14 +61,16 @@ pub struct Certificate {
     /// is 1 for attitudes composed without the commutator, and far smaller for integration on the rotation
     /// group.
     pub attitude_consistency: Option<f64>,
-    /// Difference between the attitudes after a step and after two half steps, summed over the run, rad.
+    /// Difference between the attitudes after a step and after two half steps, summed over the run, rad; for
+    /// an adaptive integrator, the sum of its own error estimates. `None` if errors of steps are not
+    /// estimated.
     pub attitude_step_doubling_rad: Option<f64>,
     /// Difference between the positions and rates after a step and after two half steps, summed over the run,
     /// for the joint with the largest value. Angles are in rad, displacements relative to the robot's size,
-    /// and rates relative to the joint's largest rate.
+    /// and rates relative to the joint's largest rate. `None` without step doubling or without joints.
     pub joint_step_doubling_rel: Option<f64>,
     /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass
-    /// plus the robot's size.
+    /// plus the robot's size. `None` without step doubling.
     pub position_step_doubling_rel: Option<f64>,
 }
 

@@ -43,6 +43,7 @@ impl StepDoubling<'_> {
 
     /// Returns the position error of the base's origin relative to the `path` of the centre of mass, m, plus
     /// the robot's size. The error of the velocity, multiplied by the duration of the run, is included.
+    /// Returns `None` without step doubling.
     pub(super) fn origin(&self, path: f64) -> Option<f64> {
         let origin = self.trace.step_doubling.first()?;
         Some(relative(origin.position + origin.rate * self.duration(), path + self.size))

@@ -126,8 +126,9 @@ impl Touching {
         [sliding, twisting]
     }
 
-    /// Returns the bristles of a contact that has just begun. The bristles slip if their force grows faster
-    /// than the limit of friction.
+    /// Returns the bristles of a contact that has just begun. The bristles slip if their damping exceeds the
+    /// limit of friction or, at a touch-down without a force, if their elastic force grows faster than that
+    /// limit.
     fn begun(
         &self,
         friction: &Friction,

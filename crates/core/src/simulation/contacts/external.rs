@@ -21,8 +21,8 @@ impl Contacts {
         }
     }
 
-    /// Returns, for each combination of pieces, whether a connection of `pairs` of bodies, (system, body), holds
-    /// both of its links. `body` returns the body of a frame.
+    /// Returns, for each combination of pieces, true if the bodies of its two links are one of the connected
+    /// `pairs` of bodies, each given as (system, body). `body` returns the body of a frame.
     pub(in crate::simulation) fn held_by(
         &self,
         pairs: Vec<[(usize, usize); 2]>,
@@ -40,8 +40,8 @@ impl Contacts {
         self.list.iter_mut().zip(held).for_each(|(touching, held)| touching.is_held = *held);
     }
 
-    /// Adds the impulse and the work of a declared contact in a step of the engine to the state of the
-    /// contact.
+    /// Adds the impulse and the work of a declared contact in a step of the engine to the state of its first
+    /// combination of pieces.
     pub(in crate::simulation) fn add_exchanged(
         &self,
         contact: usize,

@@ -10,7 +10,8 @@ use crate::world::impulse_response;
 
 /// Returns the change of relative velocity per unit impulse, 1/kg, along the normal and in the tangential
 /// direction in which it is largest, and the change of the relative rate of turn about the normal per unit
-/// angular impulse, 1/(kg m²): `nᵀ W n` with `W = J_A M_A⁻¹ J_Aᵀ + J_B M_B⁻¹ J_Bᵀ`.
+/// angular impulse, 1/(kg m²): `nᵀ W n` for each direction `n`, with `W = J_A M_A⁻¹ J_Aᵀ + J_B M_B⁻¹ J_Bᵀ` of
+/// the Jacobians `J` at the point and the mass matrices `M` of both sides.
 pub(super) fn mobility<S: Real>(
     sides: &[Side; 2],
     trees: &[Tree<'_, S>],

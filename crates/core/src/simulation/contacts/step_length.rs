@@ -120,7 +120,7 @@ impl Touching {
 
     /// Returns the amplitude of the oscillation of the contact relative to its depth and to the length of
     /// slipping bristles: the present amplitude or, if larger, the previous amplitude, which decays within a
-    /// few periods.
+    /// few periods. It is at most 1, and 1 for pieces that do not press on each other.
     pub(super) fn activity(&self, t: f64, loading: &Loading) -> f64 {
         let Some(law) = &self.law else { return 1.0 };
         if self.mode.phase != Phase::Pressing || self.mode.mobility[0] == 0.0 {

@@ -46,8 +46,9 @@ impl<S: Real> DormandPrince<S> {
         Self { k: vec![rate.clone(); 7], tolerance, control, span: (0.0, 0.0), control_period }
     }
 
-    /// Computes a step: `y' = y ⊕ h Σ b_i k_i`. The attitude is represented by the rotation vector `θ` since
-    /// the start of the step, `θ̇ = dexp⁻¹(θ) ω`. Requires the first stage in `stages`.
+    /// Computes a step: `y' = y ⊕ h Σ b_i k_i` with the length `h`, the rates `k_i` at the stages and the
+    /// weights `b_i`. The attitude is represented by the rotation vector `θ` since the start of the step, `θ̇
+    /// = dexp⁻¹(θ) ω`, with the angular velocity `ω` of the base. Requires the first stage in `stages`.
     pub(super) fn step(
         &mut self,
         stages: &mut Stages<S>,
@@ -176,7 +177,7 @@ impl<S: Real> DormandPrince<S> {
 }
 
 /// Returns the largest rate of base and joints in the first lane, rad/s; `size` is the length, m, by which
-/// the linear velocity of the base is divided.
+/// the linear velocity of the base is divided. Rates of prismatic joints in m/s count as rad/s.
 fn fastest<S: Real>(v: &[S], size: f64) -> f64 {
     let linear = Vec3::from_slice(v).norm().lane(0) / size;
     let angular = Vec3::from_slice(&v[3..]).norm().lane(0);

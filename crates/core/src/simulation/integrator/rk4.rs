@@ -37,7 +37,8 @@ impl<S: Real> BaseStages<S> {
     }
 }
 
-/// Computes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude. Requires
+/// Computes a step: `y' = y ⊕ h (k₁ + 2 k₂ + 2 k₃ + k₄)/6`, with `k = dexp⁻¹(θ) ω` for the attitude, where
+/// `ω` is the angular velocity of the base and `θ` its rotation vector since the start of the step. Requires
 /// the first stage in `stages`.
 ///
 /// The position of the base's origin is instead integrated from its acceleration with Nyström weights. This

@@ -18,10 +18,11 @@ impl<S: Real> Tree<'_, S> {
     /// Applies the impulses of all joints that move into their stops. Requires the kinematics of `state` in
     /// `data`, which afterwards holds the kinematics after the impacts, without loads.
     ///
-    /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj` with the coefficient of restitution `e`. The momentum
-    /// does not change, and the dissipated energy is `−½ (1 − e) λ q̇_j`. Joints that rest at their stops
-    /// stay locked as long as their stops push against them. Friction exerts no impulse. If `is_endless`,
-    /// joints do not rebound, which ends an infinite sequence of bounces.
+    /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj` with the unit vector `e_j` of joint `j`, its rate
+    /// `q̇_j` before the impact and the coefficient of restitution `e`. The momentum does not change, and the
+    /// dissipated energy is `−½ (1 − e) λ q̇_j`. Joints that rest at their stops stay locked as long as their
+    /// stops push against them. Friction exerts no impulse. If `is_endless`, joints do not rebound, which
+    /// ends an infinite sequence of bounces.
     pub(crate) fn resolve_impacts(&mut self, state: &mut TreeState<S>, is_endless: bool) {
         let n = self.model.joint_count();
         for round in 0..4 * n + 4 {
@@ -53,8 +54,8 @@ impl<S: Real> Tree<'_, S> {
         kinetic_energy(&self.model, &self.data, &state.v)
     }
 
-    /// Writes the change of velocity caused by a unit impulse with this sign at joint `j` to `scratch`. Returns
-    /// `(M⁻¹)_jj`, the change of that joint's rate per unit impulse.
+    /// Writes the change of velocity caused by a unit impulse with this sign at joint `j` to `scratch`.
+    /// Returns `(M⁻¹)_jj`, the change of that joint's rate per unit impulse.
     fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> f64 {
         let n = self.model.joint_count();
         for body in &mut self.data.bodies {

@@ -27,7 +27,7 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
     }
 
     /// Returns the rate of a slipping joint in its direction of slip, relative to the rates at both ends of
-    /// the step.
+    /// the step; infinity for other joints, for joints without friction, or if slip is ignored.
     fn slip_margin(&self, j: usize) -> f64 {
         let modes = &self.tree.modes;
         let direction = modes.direction(j);
@@ -39,7 +39,7 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
     }
 
     /// Returns the distance of a joint from the nearer limit, relative to the distance at the start of the
-    /// step.
+    /// step; infinity for locked joints and for joints without stops.
     fn limit_margin(&self, j: usize) -> f64 {
         let modes = &self.tree.modes;
         let (lower, upper) = modes.limits(j);
@@ -58,7 +58,7 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
     }
 
     /// Returns the rate of the first joint that came to rest or reached its stop, rad/s (m/s): the larger of
-    /// the magnitudes at both ends of the step.
+    /// the magnitudes at both ends of the step; `None` if there is no such joint.
     pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
         let rate = |state: &TreeState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
         let came_to_rest = |j: &usize| rate(self.end, *j) == 0.0 && rate(self.start, *j) > 0.0;

@@ -1,5 +1,5 @@
-//! Step method that ends a step early when a joint stops, starts to slip or reaches a limit, or when a latch
-//! opens or closes.
+//! Step method that ends a step early when a joint stops, starts to slip or reaches a limit, when a latch
+//! opens or closes, or when the mode of a contact changes.
 
 use super::margins::ModesOfStep;
 use crate::simulation::equations::EquationsOfMotion;
@@ -25,8 +25,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
 
-/// Method that integrates the equations of motion and locates changes of the modes of joints and of latches
-/// within a step.
+/// Method that integrates the equations of motion and locates changes of the modes of joints, latches and
+/// contacts within a step.
 pub(crate) struct StepMethod<S> {
     pub(crate) integration: Integration<S>,
     start: State<S>,
@@ -227,7 +227,7 @@ impl<S: Real> StepMethod<S> {
         self.margin(equations, state, (whole.0, end))
     }
 
-    /// Returns the relative margin to the next change of the mode of a joint or of a latch. It is negative if
+    /// Returns the margin to the next change of the mode of a joint, a latch or a contact. It is negative if
     /// the change is overdue.
     fn margin(
         &mut self,
