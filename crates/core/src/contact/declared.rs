@@ -28,13 +28,16 @@ pub struct ContactSteps {
     /// with larger errors, which occur for example where the nearest faces or edges change, are repeated with
     /// half the length.
     pub energy_error: f64,
+    /// True if bounding spheres exclude pairs of pieces from the search for those that touch and for the smallest
+    /// gap. The results are the same; without it every pair is considered in every step.
+    pub has_broad_phase: bool,
 }
 
 impl Default for ContactSteps {
     /// Returns 128 graded steps, with which an elastic impact of spheres changes the energy by a fraction of
     /// about 1e-11, and an energy error of 1e-10 per step.
     fn default() -> Self {
-        Self { count: 128, is_graded: true, energy_error: 1e-10 }
+        Self { count: 128, is_graded: true, energy_error: 1e-10, has_broad_phase: true }
     }
 }
 

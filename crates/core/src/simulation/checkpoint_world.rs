@@ -29,7 +29,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Checks the numbers of contacts, and the systems of their touches.
     pub(super) fn check_contacts(&self, progress: &Progress) -> Result<(), CheckpointError> {
         let (Progress { state, world, .. }, own) = (progress, &self.equations.contacts);
-        let pieces = self.state.contacts.len();
+        let pieces = own.pairs();
         check_each([
             ("pairs of pieces that may touch", state.contacts.len(), pieces),
             ("modes of contacts", world.contacts.len(), pieces),

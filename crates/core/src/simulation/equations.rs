@@ -137,7 +137,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         &mut self,
         t: f64,
         end: f64,
-        state: &State<S>,
+        state: &mut State<S>,
     ) -> Result<f64, SimulationError> {
         if self.contacts.is_empty() {
             return Ok(end);

@@ -92,10 +92,12 @@ impl<S: Scalar> RunState<'_, S> {
             let (rows, work_done) = (run.recorder.rows_recorded(), run.recorder.trace.work_done);
             SystemProgress { rows, work_done, settled: run.settled.clone() }
         };
+        let mut state = self.state.map(|x| x.value());
+        state.contacts = self.equations.contacts.all_states(&state.contacts);
         Progress {
             steps: self.steps,
             cursor: self.schedule.cursor(),
-            state: self.state.map(|x| x.value()),
+            state,
             step_control,
             idle_steps,
             trees: self.equations.trees.iter().enumerate().map(tree).collect(),

@@ -73,6 +73,7 @@ impl<S: Real> State<S> {
         if self.trees.len() > 1 {
             self.orbital = rate.orbital.scale_add(h, from.orbital);
         }
+        self.contacts.resize(from.contacts.len(), ContactState::ZERO);
         for ((to, from), rate) in self.contacts.iter_mut().zip(&from.contacts).zip(&rate.contacts) {
             *to = from.plus(rate, h.lane(0));
         }
@@ -98,6 +99,7 @@ impl<S: Real> Rate<S> {
         if self.trees.len() > 1 {
             self.orbital = other.orbital.scale_add(s, self.orbital);
         }
+        self.contacts.resize(other.contacts.len(), ContactState::ZERO);
         for (sum, other) in self.contacts.iter_mut().zip(&other.contacts) {
             *sum = sum.plus(other, s.lane(0));
         }
@@ -117,6 +119,6 @@ impl<S: Real> Rate<S> {
     pub(crate) fn clear(&mut self) {
         self.trees.iter_mut().for_each(TreeRate::clear);
         self.orbital = Vec3::zero();
-        self.contacts.fill(ContactState::ZERO);
+        self.contacts.clear();
     }
 }

@@ -56,7 +56,7 @@ impl<S: Scalar> RunState<'_, S> {
         let end = self.schedule.first_due(t, end);
         // 3 impacts of joints at their stops
         self.impacts(t, (t, end))?;
-        let end = self.equations.begin_contacts(t, end, &self.state)?;
+        let end = self.equations.begin_contacts(t, end, &mut self.state)?;
         self.take_touches();
         if self.has_controls() {
             self.equations.members.follow(&self.equations.trees, &self.state.trees);

@@ -231,8 +231,9 @@ fn warn_of_pairs(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     };
     let [a, b] = [0, 1].map(|side| most.sides[side].len());
     let message = format!(
-        "the contacts have {total} pairs of convex pieces, most of them in '{}' ({a} pieces with {b}), all of which \
-         every step considers; name only the links that can touch",
+        "the contacts have {total} pairs of convex pieces, most of them in '{}' ({a} pieces with {b}); each pair needs \
+         about 3 kB, and pairs near each other are evaluated in every step; narrow the patterns to the links that can \
+         touch, such as SYSTEM/gripper* instead of SYSTEM/*",
         most.name
     );
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)

@@ -9,9 +9,9 @@ use crate::spatial::Vec3;
 
 /// Least distance of pieces that count as far apart, as a fraction of the smaller reach and in addition to
 /// the distance that they may travel within the step.
-const FAR: f64 = 0.1;
+pub(super) const FAR: f64 = 0.1;
 /// Safety factor of the distance that pieces travel within the step at their present velocities.
-const TRAVEL: f64 = 3.0;
+pub(super) const TRAVEL: f64 = 3.0;
 /// Bristles without deflection that stick.
 const AT_REST: Bristle = Bristle { deflection: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, is_slipping: false };
 /// Relative tolerance within which a change of mode counts as reached.

@@ -38,6 +38,7 @@ impl Contacts {
     /// Sets which combinations of pieces a connection of the external engine holds.
     pub(in crate::simulation) fn set_held(&mut self, held: &[bool]) {
         self.list.iter_mut().zip(held).for_each(|(touching, held)| touching.is_held = *held);
+        self.is_rigid = Vec::new();
     }
 
     /// Adds the impulse and the work of a declared contact in a step of the engine to the state of its first

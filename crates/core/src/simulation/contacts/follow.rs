@@ -2,16 +2,15 @@
 
 use super::Contacts;
 use super::touches::Integrals;
-use crate::simulation::contact_state::ContactState;
 
 impl Contacts {
     /// Finds the contacts that touch or separate at `t`, s, and adds their records to `happened`. Requires
-    /// the samples at `t`.
-    pub(super) fn update_touches(&mut self, t: f64, states: &[ContactState]) {
-        let Self { list, touches, samples, happened, names, .. } = self;
+    /// the samples and the states of all pairs at `t`.
+    pub(super) fn update_touches(&mut self, t: f64) {
+        let Self { list, states, touches, samples, happened, names, .. } = self;
         for (contact, (touch, sample)) in touches.iter_mut().zip(samples).enumerate() {
             let integrals = || {
-                let own = list.iter().zip(states).filter(|(touching, _)| touching.contact == contact);
+                let own = list.iter().zip(&*states).filter(|(touching, _)| touching.contact == contact);
                 let mut sum = own.fold(Integrals::ZERO, |sum, (_, state)| sum.with(state));
                 sum.loss -= sample.elastic;
                 sum

@@ -36,6 +36,11 @@ impl Frames {
         })
     }
 
+    /// Returns the number of frames.
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
     /// Discards the motions of the last state, before those of another state are computed.
     pub(super) fn forget(&mut self) {
         self.motions.fill(None);

@@ -2,11 +2,14 @@
 //! cuts, and the length of steps while bodies touch.
 
 mod begin;
+mod broad_phase;
 mod external;
 mod follow;
 mod frames;
+mod gaps;
 mod mobility;
 mod mode;
+mod near;
 mod pressure;
 mod record;
 mod side;
@@ -26,16 +29,36 @@ use crate::contact::{Contact, ContactError, ContactSteps};
 use crate::geometry::{BoundingSphere, Pose, Shape};
 use crate::spatial::Real;
 use crate::world::FrameIndex;
+use broad_phase::BroadPhase;
 use frames::Frames;
+use gaps::Gaps;
 use mode::Phase;
 use side::{Side, SideMotion};
 use touches::Sample;
 use touching::{Loading, Touching};
 
+/// Number of pairs of pieces up to which bounding spheres cost more time than they save.
+const FEW: usize = 16;
+
 /// Contacts of a run, one entry per combination of convex pieces of both sides.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contacts {
     list: Vec<Touching>,
+    /// Numbers of the pairs whose states are those of the simulation, in ascending order: all pairs that are not
+    /// far apart.
+    near: Vec<usize>,
+    /// Buffer for pairs that may be near.
+    candidates: Vec<usize>,
+    /// States of all pairs; those of near pairs are not up to date.
+    states: Vec<ContactState>,
+    /// True for pairs whose state is not zero.
+    has_touched: Vec<bool>,
+    /// True for pairs that are fixed to each other; empty if this is not known.
+    is_rigid: Vec<bool>,
+    /// Instant at which the modes were determined, s; NaN if they are to be determined anew.
+    begun_at: f64,
+    broad_phase: BroadPhase,
+    gaps: Gaps,
     frames: Frames,
     /// States of the contacts for which [`Self::begin`] has computed the loadings; empty once the loadings
     /// have been used.
@@ -62,9 +85,10 @@ impl Contacts {
     pub(super) fn new(declared: &[Contact], steps: ContactSteps) -> Self {
         let mut list = Vec::new();
         for (contact, Contact { name, sides, law, may_start_overlapping }) in declared.iter().enumerate() {
-            for a in &sides[0] {
-                for b in sides[1].iter().filter(|b| b.frame != a.frame) {
-                    let sides = [a, b].map(|side| Side {
+            for (i, a) in sides[0].iter().enumerate() {
+                for (j, b) in sides[1].iter().enumerate().filter(|(_, b)| b.frame != a.frame) {
+                    let sides = [(i, a), (j, b)].map(|(piece, side)| Side {
+                        piece,
                         declared: side.frame,
                         place: (side.frame.system, side.frame.frame),
                         number: 0,
@@ -92,7 +116,24 @@ impl Contacts {
         let names = declared.iter().map(|contact| contact.name.clone()).collect();
         let (touches, samples) = (vec![Touch::NONE; declared.len()], vec![Sample::FAR; declared.len()]);
         let energy_error = f64::INFINITY;
-        let mut contacts = Self { list, names, steps, energy_error, touches, samples, ..Self::default() };
+        let (near, states) = ((0..list.len()).collect(), vec![ContactState::ZERO; list.len()]);
+        let (has_touched, gaps) = (vec![false; list.len()], Gaps::new(&list, declared.len()));
+        let begun_at = f64::NAN;
+        let steps = ContactSteps { has_broad_phase: steps.has_broad_phase && list.len() > FEW, ..steps };
+        let mut contacts = Self {
+            list,
+            near,
+            states,
+            has_touched,
+            begun_at,
+            gaps,
+            names,
+            steps,
+            energy_error,
+            touches,
+            samples,
+            ..Self::default()
+        };
         contacts.number_frames();
         contacts
     }
@@ -106,8 +147,14 @@ impl Contacts {
         vec![ContactState::ZERO; self.list.len()]
     }
 
+    /// Returns the number of pairs of pieces.
+    pub(super) fn pairs(&self) -> usize {
+        self.list.len()
+    }
+
     /// Sets, for every frame, the number of its tree and its index in the model of the tree.
     pub(super) fn place(&mut self, place: impl Fn(FrameIndex) -> (usize, usize)) {
+        self.write_instant();
         for side in self.list.iter_mut().flat_map(|touching| &mut touching.sides) {
             side.place = place(side.declared);
         }
@@ -120,27 +167,19 @@ impl Contacts {
         for side in self.list.iter_mut().flat_map(|touching| &mut touching.sides) {
             side.number = self.frames.number(side.place);
         }
-    }
-
-    pub(super) fn save(&self) -> (Vec<Mode>, Vec<Touch>) {
-        (self.list.iter().map(|touching| touching.mode).collect(), self.touches.clone())
-    }
-
-    pub(super) fn restore(&mut self, (modes, touches): (Vec<Mode>, Vec<Touch>)) {
-        self.begun.clear();
-        self.list.iter_mut().zip(modes).for_each(|(touching, mode)| touching.mode = mode);
-        self.touches = touches;
+        self.broad_phase = BroadPhase::new(&self.list, self.frames.len());
+        self.is_rigid = Vec::new();
     }
 
     /// Returns the loadings computed last, which a trial step overwrites.
     pub(super) fn loadings(&self) -> Vec<Option<Loading>> {
-        self.list.iter().map(|touching| touching.last).collect()
+        self.near.iter().map(|&number| self.list[number].last).collect()
     }
 
     /// Restores the loadings that [`Self::loadings`] returned.
     pub(super) fn set_loadings(&mut self, loadings: Vec<Option<Loading>>) {
         self.begun.clear();
-        self.list.iter_mut().zip(loadings).for_each(|(touching, loading)| touching.last = loading);
+        self.near.iter().zip(loadings).for_each(|(&number, loading)| self.list[number].last = loading);
     }
 
     /// Computes the loading of every contact and adds the forces to the wrenches in `trees`. Requires the
@@ -150,14 +189,18 @@ impl Contacts {
         trees: &mut [Tree<'_, S>],
         state: &State<S>,
     ) -> Result<(), ContactError> {
-        let Self { list, frames, begun, .. } = self;
+        let Self { list, near, frames, begun, .. } = self;
+        if near.is_empty() {
+            return Ok(());
+        }
         // the first stage of a step begins at the state for which its modes were determined
         let is_begun = *begun == state.contacts && frames.are_of(trees, state);
         begun.clear();
         if !is_begun {
             frames.forget();
         }
-        for (touching, own) in list.iter_mut().zip(&state.contacts) {
+        for (&number, own) in near.iter().zip(&state.contacts) {
+            let touching = &mut list[number];
             if touching.mode.phase == Phase::Far {
                 touching.last = None;
                 continue;
@@ -177,34 +220,39 @@ impl Contacts {
     }
 
     /// Writes the time derivatives of the states of the contacts for the loadings computed last.
-    pub(super) fn rates(&self, rates: &mut [ContactRate]) {
-        for (touching, rate) in self.list.iter().zip(rates) {
+    pub(super) fn rates(&self, rates: &mut Vec<ContactRate>) {
+        rates.clear();
+        rates.extend(self.near.iter().map(|&number| {
+            let touching = &self.list[number];
             let center = self.touches[touching.contact].center;
-            *rate = touching.last.as_ref().map_or(ContactState::ZERO, |loading| loading.rates(center));
-        }
+            touching.last.as_ref().map_or(ContactState::ZERO, |loading| loading.rates(center))
+        }));
     }
 
     /// Determines the modes for the step from `t` to `end`, s, and returns the end of the step, which is
-    /// earlier than `end` while bodies touch. Requires the kinematics of `state` in the trees.
+    /// earlier than `end` while bodies touch. The states of contacts in `state` become those of the near pairs.
+    /// Requires the kinematics of `state` in the trees.
     pub(super) fn begin<S: Real>(
         &mut self,
         (t, end): (f64, f64),
         trees: &[Tree<'_, S>],
-        state: &State<S>,
+        state: &mut State<S>,
     ) -> Result<f64, ContactError> {
         let (mut longest, mut energy) = (f64::INFINITY, 0.0);
         self.samples.fill(Sample::FAR);
-        let Self { list, frames, steps, samples, has_engine, .. } = self;
-        frames.forget();
-        for (touching, own) in list.iter_mut().zip(&state.contacts) {
-            touching.last = None;
+        self.frames.forget();
+        self.keep(&state.contacts);
+        self.find_rigid(trees);
+        self.find_candidates((t, end), trees, state);
+        self.begun_at = t;
+        self.near.clear();
+        let Self { list, near, candidates, states, frames, steps, samples, has_engine, .. } = self;
+        for &number in candidates.iter() {
+            let (touching, own) = (&mut list[number], &states[number]);
             let motions = touching.motions(frames, trees, state);
-            if touching.is_rigid(trees) {
-                touching.mode.phase = Phase::Far;
-                continue;
-            }
             let mobility = |sides: &_, loading: &_| mobility::mobility(sides, trees, &state.trees, loading);
             let Some(loading) = touching.begin((t, end), &motions, own, mobility)? else { continue };
+            near.push(number);
             if *has_engine {
                 touching.prepare_for_engine(trees, &state.trees, &loading);
             }
@@ -213,11 +261,17 @@ impl Contacts {
             samples[touching.contact].add(touching, &motions, &loading);
             touching.last = Some(loading);
         }
+        if self.has_engine {
+            self.near.clear();
+            self.near.extend(0..self.list.len()); // the engine changes the states of any pair
+        }
+        state.contacts.clear();
+        state.contacts.extend(self.near.iter().map(|&number| self.states[number]));
         if !self.has_engine {
             self.begun.clone_from(&state.contacts);
         }
         self.energy_error = if energy > 0.0 { self.steps.energy_error * energy } else { f64::INFINITY };
-        self.update_touches(t, &state.contacts);
+        self.update_touches(t);
         if longest >= end - t {
             return Ok(end);
         }
@@ -264,9 +318,10 @@ impl Contacts {
         state: &State<S>,
     ) -> Result<f64, ContactError> {
         let mut least = f64::INFINITY;
-        let Self { list, frames, ignores_slip, .. } = self;
+        let Self { list, near, frames, ignores_slip, .. } = self;
         frames.forget();
-        for (touching, own) in list.iter().zip(&state.contacts) {
+        for (&number, own) in near.iter().zip(&state.contacts) {
+            let touching = &list[number];
             if touching.mode.phase == Phase::Far || touching.law.is_none() {
                 continue;
             }

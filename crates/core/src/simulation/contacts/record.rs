@@ -55,14 +55,24 @@ impl Contacts {
             dissipated: 0.0,
             impulse: Vec3::zero(),
         };
-        let Self { list, frames, .. } = self;
-        frames.forget();
-        for (touching, own) in list.iter().zip(&state.contacts).filter(|(one, _)| one.contact == contact) {
-            let loading = match touching.last {
-                Some(loading) => loading,
-                None => touching.evaluate(&touching.motions(frames, trees, state), own)?,
-            };
-            row.add(touching, &loading, own);
+        self.frames.forget();
+        self.keep(&state.contacts);
+        let least = self.bound_gaps(contact, trees, state)?;
+        let Self { list, states, has_touched, gaps, frames, .. } = self;
+        let first = gaps.pairs[contact].start;
+        for (bound, number) in gaps.bounds.iter().zip(first..) {
+            if *bound > least && !has_touched[number] {
+                continue;
+            }
+            let (touching, own) = (&list[number], &states[number]);
+            match touching.last {
+                Some(loading) => row.add(touching, &loading, own),
+                None if *bound > least => row.add_integrals(own, [0.0; 2]),
+                None => {
+                    let motions = touching.motions(frames, trees, state);
+                    row.add(touching, &touching.evaluate(&motions, own)?, own);
+                }
+            }
         }
         Ok(row.values(&self.touches[contact]))
     }
@@ -79,6 +89,11 @@ impl Row {
         self.power += loading.pressure.map_or(0.0, |pressure| pressure.power) + loading.friction_power();
         let [normal, bristles] = touching.elastic_energies(loading);
         self.elastic += normal + bristles;
+        self.add_integrals(state, [normal, bristles]);
+    }
+
+    /// Adds the integrals of a pair of pieces with these elastic energies, J.
+    fn add_integrals(&mut self, state: &ContactState, [normal, bristles]: [f64; 2]) {
         self.dissipated += (state.normal_work - normal) + (state.friction_work - bristles);
         self.impulse += state.impulse;
     }

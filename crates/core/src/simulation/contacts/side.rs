@@ -19,6 +19,8 @@ pub(super) struct Side {
     pub(super) number: usize,
     pub(super) shape: Shape,
     pub(super) pose: Pose,
+    /// Number of the piece on its side of the contact.
+    pub(super) piece: usize,
     /// Distance from the origin of the frame to the farthest point of the shape, m; infinite for a
     /// half-space.
     pub(super) reach: f64,

@@ -1,0 +1,110 @@
+//! Bounding spheres of the pieces of every contact, which exclude pairs from the search for the smallest gap.
+
+use super::Contacts;
+use super::side::Side;
+use super::touching::Touching;
+use crate::contact::ContactError;
+use crate::geometry::{BoundingSphere, Pose};
+use crate::simulation::state::State;
+use crate::simulation::tree::Tree;
+use crate::spatial::{Real, Vec3};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Uncertainty of a distance, relative to all lengths from which it is computed.
+const UNCERTAIN: f64 = 1e-9;
+
+/// Bounds of the gaps of the pairs of pieces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Gaps {
+    /// Numbers of the pairs of each contact.
+    pub(super) pairs: Vec<Range<usize>>,
+    /// For each piece of each contact, a pair and its side that have this piece, and the sphere of the piece.
+    pieces: Vec<Vec<(usize, usize, BoundingSphere)>>,
+    /// For each pair, the pieces of its sides among those of its contact.
+    sides: Vec<[usize; 2]>,
+    /// Centres of the spheres of one contact in W, m.
+    centers: Vec<Vec3<f64>>,
+    /// Lower bounds of the gaps of the pairs of one contact, m; negative infinity for pairs that are evaluated.
+    pub(super) bounds: Vec<f64>,
+}
+
+impl Gaps {
+    /// Creates the spheres for the pairs in `list`, which is in the order of its `count` contacts.
+    pub(super) fn new(list: &[Touching], count: usize) -> Self {
+        let mut new = Self { pieces: vec![Vec::new(); count], ..Self::default() };
+        for contact in 0..count {
+            let first = list.partition_point(|touching| touching.contact < contact);
+            new.pairs.push(first..list.partition_point(|touching| touching.contact <= contact));
+        }
+        let mut known = HashMap::new();
+        for (number, touching) in list.iter().enumerate() {
+            let pieces = &mut new.pieces[touching.contact];
+            new.sides.push([0, 1].map(|i| {
+                let side = &touching.sides[i];
+                *known.entry((touching.contact, i, side.piece)).or_insert_with(|| {
+                    pieces.push((number, i, side.shape.bounding_sphere()));
+                    pieces.len() - 1
+                })
+            }));
+        }
+        new
+    }
+
+    /// Writes `|c_b − c_a| − r_a − r_b`, less the rounding errors, for the pairs of a contact. `pose` returns the pose of
+    /// a piece in W.
+    fn bound(&mut self, contact: usize, list: &[Touching], mut pose: impl FnMut(&Side) -> Pose) {
+        let Self { pairs, pieces, sides, centers, bounds } = self;
+        let pieces = &pieces[contact];
+        let center = |(pair, side, sphere): &(usize, usize, BoundingSphere)| {
+            pose(&list[*pair].sides[*side]).to_common(sphere.center)
+        };
+        centers.clear();
+        centers.extend(pieces.iter().map(center));
+        let bound = |[a, b]: &[usize; 2]| {
+            let apart = (centers[*b] - centers[*a]).norm();
+            let radii = pieces[*a].2.radius + pieces[*b].2.radius;
+            let uncertain = UNCERTAIN * (apart + radii + centers[*a].norm() + centers[*b].norm());
+            apart - radii - uncertain
+        };
+        bounds.clear();
+        bounds.extend(sides[pairs[contact].clone()].iter().map(bound));
+    }
+
+    /// Returns the pair of the last contact, counted from its first, with the lowest bound of those that are not
+    /// evaluated.
+    fn lowest(&self) -> Option<usize> {
+        let open = (0..self.bounds.len()).filter(|at| self.bounds[*at].is_finite());
+        open.min_by(|a, b| self.bounds[*a].total_cmp(&self.bounds[*b]))
+    }
+}
+
+impl Contacts {
+    /// Writes the lower bounds of the gaps of a contact, and returns an upper bound of the smallest gap, m. Pairs with
+    /// larger lower bounds do not have the smallest gap.
+    pub(super) fn bound_gaps<S: Real>(
+        &mut self,
+        contact: usize,
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+    ) -> Result<f64, ContactError> {
+        let Self { list, near, states, gaps, frames, steps, .. } = self;
+        if !steps.has_broad_phase {
+            gaps.bounds.clear();
+            gaps.bounds.resize(gaps.pairs[contact].len(), f64::NEG_INFINITY);
+            return Ok(f64::INFINITY);
+        }
+        gaps.bound(contact, list, |side| frames.motion(side.number, trees, state).frame.compose(&side.pose));
+        let (first, mut least) = (gaps.pairs[contact].start, f64::INFINITY);
+        for &number in near.iter().filter(|number| gaps.pairs[contact].contains(*number)) {
+            if let Some(loading) = &list[number].last {
+                gaps.bounds[number - first] = f64::NEG_INFINITY;
+                least = least.min(-loading.depth);
+            }
+        }
+        let Some(at) = gaps.lowest().filter(|at| gaps.bounds[*at] <= least) else { return Ok(least) };
+        let (touching, own) = (&list[first + at], &states[first + at]);
+        let loading = touching.evaluate(&touching.motions(frames, trees, state), own)?;
+        Ok(least.min(-loading.depth))
+    }
+}

@@ -1,0 +1,102 @@
+//! Pairs of pieces that are not far apart. Only they are evaluated during a step, and only their states change.
+
+use super::mode::{Mode, Phase};
+use super::{Contacts, Touch};
+use crate::simulation::contact_state::ContactState;
+use crate::simulation::state::State;
+use crate::simulation::tree::Tree;
+use crate::spatial::Real;
+
+impl Contacts {
+    /// Stores the states of the near pairs among those of all pairs.
+    pub(super) fn keep(&mut self, states: &[ContactState]) {
+        for (&number, state) in self.near.iter().zip(states) {
+            self.states[number] = *state;
+            self.has_touched[number] |= *state != ContactState::ZERO;
+        }
+    }
+
+    /// Returns the states of all pairs, given those of the near ones.
+    pub(in crate::simulation) fn all_states(&self, near: &[ContactState]) -> Vec<ContactState> {
+        let mut all = self.states.clone();
+        self.near.iter().zip(near).for_each(|(&number, state)| all[number] = *state);
+        all
+    }
+
+    /// Returns the modes of all pairs, and the touches.
+    pub(in crate::simulation) fn save(&self) -> (Vec<Mode>, Vec<Touch>) {
+        let mut modes: Vec<Mode> = self.list.iter().map(|touching| touching.mode).collect();
+        for number in self.known_far() {
+            modes[number].since = self.begun_at;
+        }
+        (modes, self.touches.clone())
+    }
+
+    /// Restores what [`Self::save`] returned. The states are then those of all pairs.
+    pub(in crate::simulation) fn restore(&mut self, (modes, touches): (Vec<Mode>, Vec<Touch>)) {
+        self.begun.clear();
+        self.list.iter_mut().zip(modes).for_each(|(touching, mode)| touching.mode = mode);
+        self.touches = touches;
+        self.near = (0..self.list.len()).collect();
+        self.begun_at = f64::NAN;
+    }
+
+    /// Writes the instant of the present modes to those of far pairs, before the modes are determined anew at
+    /// the same instant.
+    pub(super) fn write_instant(&mut self) {
+        for number in self.known_far() {
+            self.list[number].mode.since = self.begun_at;
+        }
+        self.begun_at = f64::NAN;
+    }
+
+    /// Returns the pairs that are far apart since the start of the step.
+    fn known_far(&self) -> Vec<usize> {
+        if self.begun_at.is_nan() || self.is_rigid.len() < self.list.len() {
+            return Vec::new();
+        }
+        let mut is_far: Vec<bool> = self.is_rigid.iter().map(|is_rigid| !is_rigid).collect();
+        self.near.iter().for_each(|&number| is_far[number] = false);
+        (0..is_far.len()).filter(|&number| is_far[number]).collect()
+    }
+
+    /// Finds the pairs that are rigid, unless they are known.
+    pub(super) fn find_rigid<S: Real>(&mut self, trees: &[Tree<'_, S>]) {
+        if self.is_rigid.len() == self.list.len() {
+            return;
+        }
+        self.is_rigid = self.list.iter().map(|touching| touching.is_rigid(trees)).collect();
+        let rigid = self.list.iter_mut().zip(&self.is_rigid).filter(|(_, is_rigid)| **is_rigid);
+        rigid.for_each(|(touching, _)| (touching.mode.phase, touching.last) = (Phase::Far, None));
+    }
+
+    /// Finds the pairs that may not be far apart in the step from `t` to `end`, s; the others become far.
+    pub(super) fn find_candidates<S: Real>(
+        &mut self,
+        (t, end): (f64, f64),
+        trees: &[Tree<'_, S>],
+        state: &State<S>,
+    ) {
+        let Self { list, frames, steps, near, candidates: found, broad_phase, is_rigid, .. } = self;
+        // modes that were determined at `t` remain
+        let is_known = |number: &usize| list[*number].mode.since == t;
+        found.clear();
+        found.extend(near.iter().copied().filter(is_known));
+        if !steps.has_broad_phase {
+            found.extend(0..list.len());
+            found.sort_unstable();
+        } else if self.begun_at != t {
+            broad_phase.find(frames, trees, state, end - t, found);
+        }
+        found.dedup();
+        found.retain(|number| !is_rigid[*number]);
+        for &number in near.iter() {
+            list[number].last = None;
+            if found.binary_search(&number).is_err() {
+                let mode = &mut list[number].mode;
+                mode.phase = Phase::Far;
+                mode.since = if is_rigid[number] { mode.since } else { t };
+            }
+        }
+    }
+}
