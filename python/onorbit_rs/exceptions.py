@@ -230,7 +230,8 @@ class ControlError(OnOrbitError, ValueError):
 
 
 class SimulationError(OnOrbitError, ArithmeticError):
-    """The run diverged; ``trace`` contains the rows recorded before the divergence."""
+    """A run diverged, cannot continue or has ended; ``trace`` contains the rows recorded before a divergence.
+    """
 
     time: Any = None
     q: Any = None

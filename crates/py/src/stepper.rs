@@ -19,8 +19,7 @@ type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 ///
 /// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. If
 /// the current time is within a step, the state is computed by dense output (adaptive steps) or by a shorter
-/// trial step. The whole step is computed later. Once the run has ended, all methods raise
-/// ``SimulationError``.
+/// trial step. The whole step is computed later. After the end, methods raise ``SimulationError``.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
     pub(crate) run: SharedRun,
@@ -322,8 +321,7 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     First row to return (default: 0); in a world, optionally a dict with the first row of each system.
-    ///     An index above the number of rows raises ``InputError``.
+    ///     First row to return, at most the number of rows (default: 0); in a world, also a dict by system.
     ///
     /// Returns
     /// -------

@@ -36,7 +36,9 @@ def degrees_with_prefix(peak: float, unit: str = "deg") -> tuple[float, str]:
 
 
 def digits(value: float) -> str:
-    """Return a number as text with four significant digits, or as an integer from 1e4 to 1e7."""
+    """Return a number as text with four significant digits; magnitudes from 1e4 to 1e7 are rounded to
+    integers.
+    """
     return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
 
 

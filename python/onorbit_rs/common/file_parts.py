@@ -4,5 +4,5 @@ from __future__ import annotations
 
 
 def file_part(name: str) -> str:
-    """Return a user-defined name with characters replaced that a file name may not contain."""
+    """Return the first 60 characters of a name; all but letters, digits, ``-`` and ``_`` become ``_``."""
     return "".join(char if char.isalnum() or char in "-_" else "_" for char in name)[:60]

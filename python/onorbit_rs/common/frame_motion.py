@@ -41,7 +41,8 @@ class MovingFrame(NamedTuple):
 def frame_motion(a: MovingFrame, b: MovingFrame) -> FrameMotion:
     """Return the motion of frame b relative to frame a, as a latch between them measures it.
 
-    `r = R_aᵀ (p_b − p_a)`, `ω = R_aᵀ (ω_b − ω_a)`, `v = R_aᵀ (v_b − v_a − ω_a × (p_b − p_a))`
+    `r = R_aᵀ (p_b − p_a)`, `ω = R_aᵀ (ω_b − ω_a)`, `v = R_aᵀ (v_b − v_a − ω_a × (p_b − p_a))`, with the
+    attitude `R`, origin `p`, velocity `v` and angular velocity `ω` of each frame in W.
     """
     (pose_a, twist_a), (pose_b, twist_b) = map(_pose_and_twist, (a, b))
     rot_aw = np.swapaxes(pose_a[:, :3, :3], 1, 2)

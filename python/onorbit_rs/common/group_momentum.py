@@ -17,8 +17,9 @@ if TYPE_CHECKING:
 def group_momentum(momenta: Sequence[Floats], centers: Sequence[Floats], masses: Sequence[float]) -> Floats:
     """Return the momentum (systems, T, 6) of each system about the common centre of mass, in axes of W.
 
-    With the common centre of mass `c`, the angular part of system `k` is `L_k + (c_k − c) × P_k`. The sum
-    over the systems is the total momentum.
+    With the common centre of mass `c`, the angular part of system `k` is `L_k + (c_k − c) × P_k`, where `P_k`
+    is its linear momentum and `L_k` its angular momentum about its own centre of mass `c_k`. The sum over the
+    systems is the total momentum.
 
     Parameters
     ----------

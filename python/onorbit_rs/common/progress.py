@@ -31,7 +31,9 @@ class Progress:
 
 @contextmanager
 def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
-    """Show a progress bar during the block, if stderr is a terminal."""
+    """Show a progress bar during the block, if stderr is a terminal and not ``quiet``; yield its
+    :class:`Progress`.
+    """
     if quiet or not _is_watched():
         yield Progress()
         return

@@ -19,7 +19,9 @@ NEAR = 2e-3
 
 
 def fitted(pieces: list[Floats], vertices: Floats, triangles: NDArray[np.int32]) -> list[Floats]:
-    """Return the pieces with each corner moved to a near vertex, else edge, else face of the mesh."""
+    """Return the pieces with each corner moved to the nearest vertex, else edge, else face of the mesh, if
+    its distance is at most :data:`NEAR`; other corners stay.
+    """
     near = NEAR * float(np.linalg.norm(np.ptp(vertices, axis=0)))
     corners = vertices[triangles]  # (t, 3, 3)
     low, high = corners.min(axis=1) - near, corners.max(axis=1) + near

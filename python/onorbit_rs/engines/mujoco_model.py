@@ -62,7 +62,7 @@ def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any
 
 
 def _time_constant(given: float | None, time_step: float) -> float:
-    """Return the time constant of welds, s; raise EngineError if it is below two time steps."""
+    """Return the time constant of welds, s, by default two time steps; raise EngineError if it is shorter."""
     shortest = 2.0 * time_step
     if given is None:
         return shortest

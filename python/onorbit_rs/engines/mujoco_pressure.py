@@ -50,9 +50,10 @@ class _Rows:
 class Contacts:
     """Contacts of a compiled model, with MuJoCo's collisions and friction, and the declared normal force.
 
-    MuJoCo's contacts are springs with damping whose force is ``(a_ref − a)/R``. With a large ``R``, the
-    reference acceleration ``a_ref = R F`` gives a chosen normal force ``F`` for every exponent, and friction
-    obeys MuJoCo's cone for this force. The points of one pair of geoms share the stiffness.
+    MuJoCo's contacts are springs with damping whose force is ``(a_ref − a)/R``, with the acceleration ``a``
+    along the constraint and the regularization ``R``. With a large ``R``, the reference acceleration ``a_ref
+    = R F`` gives a chosen normal force ``F`` for every exponent, and friction obeys MuJoCo's cone for this
+    force. The points of one pair of geoms share the stiffness.
     """
 
     def __init__(self, mujoco: ModuleType, model: Any, touches: Sequence[Touch]) -> None:
@@ -98,7 +99,9 @@ class Contacts:
         data.qacc[:] = data.qacc_smooth + pushed[0]
 
     def _gain(self, data: Any, rows: Indices) -> Floats:
-        """Return the derivative of the reference accelerations by the normal forces, `J M⁻¹ Jᵀ + R`, 1/kg."""
+        """Return the derivative of the reference accelerations by the normal forces, `J M⁻¹ Jᵀ + R`, 1/kg,
+        with the Jacobian `J` of the normal rows, the mass matrix `M` and the regularization `R`.
+        """
         jacobian = data.efc_J.reshape(-1, self._model.nv)[rows]
         response = np.empty_like(jacobian)
         self._mujoco.mj_solveM(self._model, data, response, jacobian)

@@ -53,14 +53,14 @@ def to_rbdl(
 def from_rbdl(
     model: Model, q: ArrayLike, v: ArrayLike, joints: Sequence[str] | None = None
 ) -> tuple[Floats, Floats]:
-    """Return `q` and `v` of onorbit_rs from RBDL's ``Q`` and ``QDot``.
+    """Return `q` and `v` of onorbit_rs from RBDL's ``Q`` and ``QDot`` (see :func:`to_rbdl`).
 
     Parameters
     ----------
     model : Model
         Robot.
     q : (nq,) or (B, nq) array
-        ``Q``.
+        Configuration ``[p, quat_xyz, joints, quat_w]`` of RBDL.
     v : (nv,) or (B, nv) array
         ``QDot``.
     joints : sequence of str, optional

@@ -39,9 +39,10 @@ def to_spart(
 ) -> tuple[tuple[Floats, Floats, Floats], tuple[Floats, Floats]]:
     """Return SPART's ``(R0, r0, qm)`` and ``(u0, um)``.
 
-    ``R0`` rotates base axes to inertial axes, and ``r0 = p + R c`` is the centre of mass of the base link.
-    ``u0 = [w_B, v_W + R (w_B × c)]`` is the angular velocity of the base link in base axes and the velocity
-    of ``r0`` in inertial axes; the twist of the base link in inertial axes is ``t0 = P0 u0``.
+    ``R0 = R`` rotates base axes to inertial axes, and ``r0 = p + R c`` is the centre of mass of the base
+    link, whose origin is at ``p``. ``u0 = [w_B, v_W + R (w_B × c)]`` is the angular velocity of the base link
+    in base axes and the velocity of ``r0`` in inertial axes; with SPART's matrix ``P0``, the twist of the
+    base link in inertial axes is ``t0 = P0 u0``.
 
     Parameters
     ----------
@@ -97,9 +98,9 @@ def from_spart(
     model : Model
         Robot.
     position : (R0, r0, qm)
-        Rotation matrix of the base, its centre of mass and joint positions.
+        Rotation matrix of the base, its centre of mass and joint positions, as returned by :func:`to_spart`.
     velocity : (u0, um)
-        Twist of the base and joint rates.
+        Twist of the base and joint rates, as returned by :func:`to_spart`.
     joints : sequence of str, optional
         As in :func:`to_spart`.
     base_com : (3,) array, optional

@@ -24,7 +24,9 @@ NORM_TOLERANCE = 1e-6
 
 
 def checked(name: str, value: ArrayLike, *shape: int) -> Floats:
-    """Return a finite array of this shape, or a batch of such arrays."""
+    """Return a finite array of this shape, or a batch of such arrays; raise DtypeError, ShapeError or
+    InputError otherwise.
+    """
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:

@@ -27,7 +27,9 @@ _ROUNDING = 1e-9
 
 
 def joint_loads(trace: Trace, built: Built) -> Summary:
-    """Return the largest joint torque and force of the run, and the largest joint rates at its end."""
+    """Return the largest joint torque, N m, and force, N, of the run, and the largest joint rates at its end,
+    rad/s and m/s. Entries of a kind of joint that the robot lacks are omitted.
+    """
     tau, rates = np.abs(np.asarray(trace.tau)), np.abs(np.asarray(trace.v)[-1, JOINTS_V])
     loads: Summary = {}
     for is_prismatic, load, rate in (
@@ -70,12 +72,14 @@ def largest_fractions(values: Floats, limits: Sequence[float | None]) -> Floats:
 
 
 def rate_fractions(trace: Trace, model: Model) -> Floats:
-    """Return the largest rate of each joint as a fraction of its limit, (n,)."""
+    """Return the largest rate of each joint as a fraction of its limit, (n,); 0 for joints without a limit.
+    """
     return largest_fractions(np.asarray(trace.v)[:, JOINTS_V], [joint.velocity for joint in model.joints])
 
 
 def effort_fractions(trace: Trace, model: Model) -> Floats:
-    """Return the largest effort of each joint as a fraction of its limit, (n,)."""
+    """Return the largest effort of each joint as a fraction of its limit, (n,); 0 for joints without a limit.
+    """
     return largest_fractions(np.asarray(trace.tau), [joint.effort for joint in model.joints])
 
 
@@ -94,7 +98,9 @@ def loads_exceeded(trace: Trace, model: Model) -> Summary:
 
 
 def joint_errors(key: str, errors: Floats, built: Built, wanted: list[str] | None = None) -> Summary:
-    """Return the largest errors as ``KEY_joint_error_max_rad`` and ``…_m``, given errors (T, joints)."""
+    """Return the largest errors as ``KEY_joint_error_max_rad`` of revolute and ``…_m`` of prismatic joints,
+    if there are any. ``errors``, (T, joints), are those of all joints or of those named ``wanted``, rad or m.
+    """
     prismatic = _are_prismatic(built, wanted)
     units = {"rad": ~prismatic, "m": prismatic}
     return {

@@ -120,7 +120,9 @@ class FolderLock:
 
 
 def owner_of(folder: Path) -> Owner | None:
-    """Return the running process that holds the lock of a folder; None if there is none or it is unknown."""
+    """Return the running process that holds the lock of a folder; None if there is none or the lock file
+    cannot be opened. The process has number 0 if the lock file does not name it.
+    """
     try:
         with open_to_read(folder / LOCK) as stream:
             if _try_lock(stream.fileno(), None):

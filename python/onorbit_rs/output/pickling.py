@@ -34,7 +34,7 @@ class PickledTrace(SavedTrace):
         return PickledTrace, tuple(getattr(self, part.name) for part in fields(self))
 
     def certificate(self) -> Any:
-        """Return the certificate of the trace."""
+        """Return the certificate as computed by :meth:`onorbit_rs.Trace.certificate` before pickling."""
         return self.results_of_methods["certificate"]
 
     def joint_limits_exceeded(self) -> Any:
@@ -47,7 +47,9 @@ class PickledTrace(SavedTrace):
 
 
 def arrays_of(trace: Trace) -> dict[str, Any]:
-    """Return the columns of a trace by path, including those of every control, effect and contact."""
+    """Return the columns of a trace by path, including those of every control, effect and contact, but
+    without ``rereferenced``.
+    """
     arrays = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
     contacts = {name: contact.values for name, contact in trace.contacts.items()}
     for name, by_owner in (

@@ -24,7 +24,9 @@ class Replacement:
 
     @contextmanager
     def writing(self, name: str) -> Iterator[Path]:
-        """Yield a temporary path, which :meth:`commit` renames to ``name``."""
+        """Yield a temporary path, which :meth:`commit` renames to ``name``; raise OutputFolderError if it
+        cannot be written or the file may not be replaced.
+        """
         file = self._folder.path / name
         with output_errors(file):
             self._folder.check_replaceable(name)
@@ -34,7 +36,9 @@ class Replacement:
             self._written[name] = temporary, Entry.of(temporary)
 
     def commit(self) -> None:
-        """Add the files to the manifest, if the folder has one, then rename them."""
+        """Add the files to the manifest, if the folder has one, then rename them; raise OutputFolderError if
+        this fails.
+        """
         if not self._written:
             return
         folder = self._folder

@@ -25,7 +25,7 @@ class SavedContact:
     """Contact with the attributes of :class:`onorbit_rs.ContactTrace`."""
 
     values: Floats
-    """All quantities, (T, 19), in the order of ``onorbit_rs.COLUMNS``."""
+    """All quantities, (T, 19), in the order of ``onorbit_rs.COLUMNS["contacts"].parts``."""
 
     def __getattr__(self, name: str) -> Floats:
         """Return a quantity of the contact: (T,), or (T, 3) for a vector."""

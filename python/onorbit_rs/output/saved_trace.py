@@ -35,12 +35,14 @@ class SavedTrace:
 
     @property
     def tracking(self) -> dict[str, Any]:
-        """Tracking errors (T, k), m and rad, by the name of the control."""
+        """Tracking errors by the name of the control, as in :class:`onorbit_rs.Trace`: (T, 6), m and rad, or
+        (T, k).
+        """
         return self._by_owner("tracking")
 
     @property
     def wrenches(self) -> dict[str, Any]:
-        """Wrenches (T, bodies, 6), N and N m, by the name of the effect."""
+        """Wrenches (T, bodies, 6), N and N m, by the name of the effect, as in :class:`onorbit_rs.Trace`."""
         return self._by_owner("wrenches")
 
     @property

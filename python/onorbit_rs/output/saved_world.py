@@ -91,7 +91,7 @@ class PickledWorldTrace(SavedWorldTrace):
         return PickledWorldTrace, tuple(getattr(self, part.name) for part in fields(self))
 
     def certificate(self) -> Any:
-        """Return the certificate of the trace."""
+        """Return the certificate as computed by :meth:`onorbit_rs.WorldTrace.certificate` before pickling."""
         return self.checks
 
 

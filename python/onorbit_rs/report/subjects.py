@@ -37,7 +37,9 @@ def subject_of_run(
 
 
 def figures_of(subject: Subject, system: str) -> list[OwnDrawing]:
-    """Return the figures of one robot; their names begin with ``system`` if it is not empty."""
+    """Return the figures of one robot, none if its trace has fewer than two rows; their names begin with
+    ``system`` if it is not empty.
+    """
     from onorbit_rs import figures
 
     if len(subject.trace.time) < 2:
@@ -49,7 +51,9 @@ def figures_of(subject: Subject, system: str) -> list[OwnDrawing]:
 def world_figures(
     saved: SavedRun, scenario: WorldScenario, summary: dict[str, Any], remarks: list[str]
 ) -> list[OwnDrawing]:
-    """Return the figures of all systems together, then those of each system."""
+    """Return the figures of all systems together, then those of each system; none if they share fewer than
+    two rows.
+    """
     from onorbit_rs import figures
 
     trace = cast("WorldTrace", saved.world_trace())
@@ -82,7 +86,9 @@ def _robot(scenario: Scenario, summary: dict[str, Any], remarks: list[str], syst
 
 
 def _around(saved: SavedRun, scenario: Scenario, remarks: list[str]) -> tuple[Orbit | None, Earth | None]:
-    """Return the orbit and the Earth of a run."""
+    """Return the orbit and the Earth of a run; None for each that the scenario lacks or, with a remark, that
+    cannot be read.
+    """
     orbit = earth = None
     with _remarked(remarks, "the orbit could not be read; figures that show it are omitted"):
         orbit = None if scenario.orbit is None else scenario.orbit.build(saved.folder)

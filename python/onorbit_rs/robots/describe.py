@@ -56,7 +56,8 @@ def _moments(inertia: NDArray[np.float64]) -> list[float]:
 def _whole_robot(model: Model) -> tuple[list[float], list[float]]:
     """Return the centre of mass in base axes, and the principal moments about it, with joints at zero.
 
-    The inertia follows from the base block of the mass matrix: `I_com = I_origin + m c× c×`.
+    The inertia follows from the base block of the mass matrix: `I_com = I_origin + m c× c×`, with the mass
+    `m` and the cross-product matrix `c×` of the centre of mass.
     """
     q = model.neutral()
     x, y, z = com = np.asarray(model.center_of_mass(q))

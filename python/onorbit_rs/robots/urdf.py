@@ -22,7 +22,7 @@ def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     """Return a robot as URDF, with shapes, limits and losses; named frames become links without mass.
 
     Lengths and angles are written in full precision. Paths of meshes are absolute. Half-spaces and convex
-    pieces of meshes, which URDF does not have, are omitted.
+    pieces of meshes, static friction and rotor inertia, which URDF does not have, are omitted.
 
     Parameters
     ----------

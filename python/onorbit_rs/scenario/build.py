@@ -182,7 +182,7 @@ def controlled(
     runs_code: bool,
     neighbours: Mapping[str, Neighbour] | None = None,
 ) -> tuple[Any, Any]:
-    """Return new controllers, and the reference if there is a single controller.
+    """Return new controllers, or None without any, and the reference of a single controller, otherwise None.
 
     ``neighbours`` are the other systems of the world. Without them, controls that start after an event or
     track a frame of another system are omitted.

@@ -45,7 +45,9 @@ def connections(scenario: WorldScenario) -> tuple[Connection, ...]:
 
 
 def touching(scenario: WorldScenario, models: Mapping[str, Model]) -> tuple[tuple[str, ...], ...]:
-    """Return the systems of each contact of a scenario."""
+    """Return the names of the systems that each contact of a scenario may touch, in the order of the
+    contacts.
+    """
     return tuple(tuple(touching_systems(contact, models)) for contact in scenario.contacts)
 
 

@@ -99,7 +99,7 @@ class CommandLog:
     """
 
     def __init__(self, file: str | os.PathLike[str] | None = None) -> None:
-        """Create an empty log and open its file."""
+        """Create an empty log; open its file, if one is given, or raise an OutputFolderError."""
         self.entries: list[Command] = []
         self._path = None if file is None else Path(file)
         self._stream = None

@@ -37,7 +37,9 @@ def finished(
     folder: OutputFolder | None,
     tell: Callable[[str], None],
 ) -> dict[str, Any]:
-    """Evaluate the certificate of a completed run, write its folder, and return its summary."""
+    """Return the summary of a completed run with its certificate; write the results to ``folder``, if given.
+    ``tell`` receives the name of each stage of the work.
+    """
     tell("certificate")
     if folder is None:
         summary = _summary(trace, built)
@@ -96,7 +98,9 @@ def _not_drawn(folder: OutputFolder) -> str:
 
 
 def keep_failed(error: Exception, built: Built | BuiltWorld, folder: OutputFolder | None) -> None:
-    """Write the rows of a run that failed with an error other than divergence; add a note to the error."""
+    """Write the rows of a run that failed with an error other than divergence, and add a note to the error.
+    Nothing happens without ``folder`` or without rows.
+    """
     trace = getattr(error, "trace", None)
     if folder is None or trace is None or len(trace) == 0:
         return
@@ -115,7 +119,9 @@ def keep_stopped(
     folder: OutputFolder | None,
     tell: Callable[[str], None],
 ) -> None:
-    """Write the rows of a run that stopped early; add the folder to the message of ``stop``."""
+    """Write the rows of a run that stopped early to ``folder``, if given; state the reason and the folder in
+    the message of ``stop``.
+    """
     if isinstance(stop, SimulationError):
         if isinstance(built, Built):
             stop.message = divergence(stop, built.scenario, built.model)

@@ -37,7 +37,7 @@ def replay_commands(
     InputError
         If an entry is invalid or times decrease; in this case no command is applied.
     OnOrbitError
-        The errors of the methods of the stepper.
+        If the stepper rejects a command, or the run fails.
     """
     queue = Queue(entries, stepper.time)
     while queue.commands:

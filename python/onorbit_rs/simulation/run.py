@@ -60,7 +60,7 @@ class Run:
     scenario : Scenario or WorldScenario
         Scenario that was run.
     out : Path or None
-        Output folder.
+        Output folder; None if the run had none.
     """
 
     trace: Trace | WorldTrace

@@ -33,7 +33,8 @@ class InitialMobility:
         return len(joint_columns(law, self.model.joint_names))
 
     def of_joints(self, law: Any) -> Floats:
-        """Return `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹` of the joints of a law, with the other joints fixed.
+        """Return `(Mmm - Mmb Mbb⁻¹ Mbm)⁻¹`, with the blocks of the mass matrix for the base `b` and the
+        joints `m` of a law; the other joints are fixed.
 
         The mobility is at least as large if the other joints are free.
         """
@@ -44,7 +45,9 @@ class InitialMobility:
         return np.asarray(np.linalg.inv(inertia), dtype=np.float64)
 
     def of_tool(self, law: Any) -> Floats:
-        """Return `Jg M*⁻¹ Jgᵀ`, (6, 6): the acceleration of a law's tool per unit wrench on the tool."""
+        """Return `Jg M*⁻¹ Jgᵀ`, (6, 6), the acceleration of a law's tool per unit wrench on the tool, with
+        the generalized Jacobian `Jg` and the reduced mass matrix `M*` of the law's joints.
+        """
         tool = tool_of(law, self.tool)
         assert tool is not None  # check_control rejects a task-space law without a tool
         columns = joint_columns(law, self.model.joint_names)
