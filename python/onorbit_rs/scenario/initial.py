@@ -77,10 +77,11 @@ class InitialState(Part):
     ) -> tuple[Floats, Floats]:
         """Return the configuration and the velocity of the robot at time zero.
 
-        A position and attitude relative to L are rotated by `R_il`, and the rotation of L is added in body
-        axes: `ω_b = ω + R_bl ω_l` and `v_b = v + R_bl (ω_l × p_l)`, with the rate `ω_l` in the axes of L. The
-        axes of a path take the place of L if ``frame`` is ``path``.
-        The velocity of a frame of the system ``neighbour`` is added in the same way.
+        A position `p_l` and an attitude relative to L are rotated by `R_il` from L to inertial axes, and the
+        rotation of L is added to the given velocities `v` and `ω` in body axes: `ω_b = ω + R_bl ω_l` and `v_b
+        = v + R_bl (ω_l × p_l)`, with the rate `ω_l` in the axes of L and the rotation `R_bl` from L to body
+        axes. The axes of a path take the place of L if ``frame`` is ``path``. The velocity of a frame of the
+        system ``neighbour`` is added in the same way.
 
         Returns
         -------

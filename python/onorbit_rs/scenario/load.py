@@ -86,7 +86,8 @@ def locate(source: str | os.PathLike[str]) -> Path:
 
 
 def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
-    """Return a validated scenario from plain data; ``lines`` contains the line of each entry.
+    """Return a validated scenario from plain data, or raise ScenarioError; ``lines`` contains the line of
+    each entry.
 
     Several ``systems`` give a :class:`WorldScenario`; a single system or robot gives a :class:`Scenario`.
     """

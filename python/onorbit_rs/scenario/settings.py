@@ -63,7 +63,7 @@ class IntegrationSettings(Part):
         return math.ceil(self.duration / self.time_step * (1.0 - 1e-9))
 
     def arguments(self) -> dict[str, Any]:
-        """Return the settings as keyword arguments of :class:`onorbit_rs.Simulation`."""
+        """Return the settings except ``duration``, as keyword arguments of :class:`onorbit_rs.Simulation`."""
         values = self.model_dump(exclude_none=True, exclude={"duration"})
         if self.rereference_beyond == "never":
             values["rereference_beyond"] = math.inf
@@ -111,7 +111,9 @@ class WorldSettings(IntegrationSettings):
     """Time constant of the connections of ``engine: mujoco``. Default, and least: two time steps."""
 
     def arguments(self) -> dict[str, Any]:
-        """Return the settings as keyword arguments of :class:`onorbit_rs.Simulation`."""
+        """Return the settings except ``duration`` and those of the engine, as keyword arguments of
+        :class:`onorbit_rs.Simulation` and, for ``rereference_beyond``, of :class:`onorbit_rs.World`.
+        """
         values = super().arguments()
         values.pop("weld_time_constant", None)
         return values

@@ -70,7 +70,9 @@ def _drift_from_reference(
 
 
 def _initial_state(orbit: _core.Orbit, *, is_sgp4: bool) -> tuple[Floats, Floats]:
-    """Return the initial position and its derivative, from which SGP4's velocity differs by up to 1 m/s."""
+    """Return the initial position, m, and its derivative, m/s, from which SGP4's velocity differs by up to 1
+    m/s.
+    """
     start, velocity = map(np.asarray, orbit.state(0.0))
     if is_sgp4:
         before, after = np.asarray(orbit.state(np.array([-_HALF_STEP, _HALF_STEP]))[0])
