@@ -28,7 +28,8 @@ impl<S: Real> ArticulatedInertia<S> {
         Self { linear: o, coupling: Mat3::zero(), angular: o }
     }
 
-    /// Adds the inertia of a rigid body: `A = m 1`, `H = −h×`.
+    /// Adds the inertia of a rigid body with mass `m` and first moment `h`: `A = m 1`, `H = −h×`, and `I`
+    /// about the origin.
     #[inline(always)]
     pub fn add_rigid(&mut self, i: &SpatialInertia<S>) {
         let (a, c, h) = (&mut self.linear, &mut self.coupling, i.moment);

@@ -5,7 +5,7 @@ use super::vec3::Vec3;
 use nalgebra::Matrix3;
 use std::ops::{Add, AddAssign, Mul};
 
-/// 3 × 3 matrix. A rotation matrix `rot_ab` converts B components to A components.
+/// 3 × 3 matrix `A`. A rotation matrix `rot_ab` converts B components to A components.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mat3<S> {
     /// First column.

@@ -4,7 +4,7 @@ use super::scalar::Real;
 use super::vec3::Vec3;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// Motion vector: the twist of a body, or its spatial acceleration, which is the time derivative of the
+/// Motion vector `v`: the twist of a body, or its spatial acceleration, which is the time derivative of the
 /// twist.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion<S> {

@@ -8,8 +8,8 @@ use nalgebra::{Matrix3, Vector3};
 /// Distance from half a turn, rad, within which the direction of rotation between two attitudes is ambiguous.
 const HALF_TURN_MARGIN: f64 = 1e-6;
 
-/// Spline `R(t) = Rk exp(φ(t))` between attitudes `Rk`, where `φ` is the quintic polynomial with the given
-/// angular velocities and accelerations at the knots.
+/// Spline `R(t) = Rk exp(φ(t))` from each attitude `Rk` to the next, where `φ`, rad, is the quintic
+/// polynomial with the given angular velocities and accelerations at the knots.
 ///
 /// With zero rates and accelerations at the knots each piece is a geodesic. Outside the knots the first or
 /// last attitude is held.
@@ -30,7 +30,7 @@ struct Piece {
 }
 
 impl RotationSpline {
-    /// Creates the spline that is at rest at each of the attitudes (K,).
+    /// Creates the spline that is at rest at each of the attitudes (K,), which it reaches at `times` (K,), s.
     ///
     /// # Errors
     /// [`SplineError`] for fewer than two points, wrong lengths, times that do not increase, or successive
@@ -40,8 +40,8 @@ impl RotationSpline {
         Self::new(times, attitudes, &zeros, &zeros)
     }
 
-    /// Creates the spline through the attitudes whose angular velocities and accelerations are those of the
-    /// C² cubic spline through the quaternions.
+    /// Creates the spline through the attitudes (K,) at `times` (K,), s, whose angular velocities and
+    /// accelerations at the knots are those of the C² cubic spline through the quaternions with these `ends`.
     ///
     /// # Errors
     /// The errors of [`RotationSpline::resting`].
@@ -61,8 +61,9 @@ impl RotationSpline {
         Self::new(times, &attitudes, &rates, &accelerations)
     }
 
-    /// Creates the spline through the attitudes with the given angular velocities `rates` (K,), rad/s in body
-    /// axes. The angular accelerations are those of the cubic spline through the angular velocities.
+    /// Creates the spline through the attitudes (K,) at `times` (K,), s, with the angular velocities `rates`
+    /// (K,), rad/s in body axes. The angular accelerations are those of the cubic spline through the angular
+    /// velocities.
     ///
     /// # Errors
     /// The errors of [`RotationSpline::resting`].
@@ -108,8 +109,8 @@ impl RotationSpline {
         Ok(Self { times: times.to_vec(), pieces })
     }
 
-    /// Returns the attitude at `t`, s, and the angular velocity (rad/s) and acceleration (rad/s²) in the
-    /// reference axes.
+    /// Returns the attitude at `t`, s, and the angular velocity (rad/s) and acceleration (rad/s²) in the axes
+    /// relative to which the attitudes are given; both are zero outside the knots.
     pub fn sample(&self, t: f64) -> (Quat<f64>, Vec3<f64>, Vec3<f64>) {
         let at = KnotInterval::of(&self.times, t);
         let Piece { start, from, to } = &self.pieces[at.segment];

@@ -2,7 +2,7 @@
 
 use super::scalar::Real;
 
-/// Returns the scalar product of two rows.
+/// Returns the scalar product of two rows; extra elements of the longer row are ignored.
 #[inline(always)]
 pub fn dot<S: Real>(a: &[S], b: &[S]) -> S {
     // a loop, because a fold would not be inlined and would be compiled for the baseline

@@ -40,7 +40,8 @@ pub enum Ends {
     Free,
 }
 
-/// Spline of quintic polynomials with given value, slope and curvature at the knots, which is C².
+/// Spline of quintic polynomials with given value, slope and curvature (first and second derivative) at K
+/// knots, which is C². A value has n components; arrays are row-major.
 ///
 /// The C² cubic spline is a special case. Outside the knots, the value of the nearest end is held.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,11 +54,11 @@ pub struct Spline {
 
 impl Spline {
     /// Creates the spline with knots at `times` (K,), s, and with `values`, `slopes` and `curvatures` (K, n)
-    /// at the knots.
+    /// at the knots, where n is `width`.
     ///
     /// # Errors
-    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite, or times that
-    /// do not increase.
+    /// [`SplineError`] for fewer than two points, wrong lengths, numbers that are not finite or exceed 1e60,
+    /// or times that do not increase.
     pub fn new(
         times: &[f64],
         width: usize,
@@ -78,7 +79,7 @@ impl Spline {
         Ok(Self { times: times.to_vec(), width, knots })
     }
 
-    /// Creates the spline that is at rest at every point.
+    /// Creates the spline through `values` (K, n) at `times` (K,), s, that is at rest at every point.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].
@@ -87,8 +88,9 @@ impl Spline {
         Self::new(times, width, values, &zeros, &zeros)
     }
 
-    /// Creates the spline through the points whose slopes and curvatures are those of the C² cubic spline.
-    /// With [`Ends::Rest`], the slopes and curvatures of the first and the last point are zero.
+    /// Creates the spline through `values` (K, n) at `times` (K,), s, whose slopes and curvatures at the
+    /// knots are those of the C² cubic spline. With [`Ends::Rest`], the slopes and curvatures of the first
+    /// and the last point are zero.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].
@@ -105,8 +107,8 @@ impl Spline {
         Self::new(times, width, values, &slopes, &curvatures)
     }
 
-    /// Creates the spline of order 6 through the points with the given `slopes`, which has a continuous third
-    /// derivative.
+    /// Creates the spline of order 6 through `values` (K, n) at `times` (K,), s, with the given `slopes` (K,
+    /// n), which has a continuous third derivative.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].
@@ -137,7 +139,8 @@ impl Spline {
         &self.knots[3 * self.width * k..][..3 * self.width]
     }
 
-    /// Computes the value, slope and curvature at `t`, s; each is (n,).
+    /// Computes the value, slope and curvature at `t`, s; each is (n,). Outside the knots, slope and
+    /// curvature are zero.
     pub fn sample(&self, t: f64, value: &mut [f64], slope: &mut [f64], curvature: &mut [f64]) {
         let (n, at) = (self.width, KnotInterval::of(&self.times, t));
         let (start, end) = (self.knot(at.segment), self.knot(at.segment + 1));
@@ -183,8 +186,9 @@ impl KnotInterval {
     }
 }
 
-/// Evaluates `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵` at `s = u h`, with coefficients that satisfy the
-/// conditions at both ends. The conditions at `s = 0` are satisfied to the last bit.
+/// Returns the value, slope and curvature of `p + v s + a s²/2 + c₃s³ + c₄s⁴ + c₅s⁵` at `s = u h`, which has
+/// the value, slope and curvature `[p, v, a]` at `s = 0` and `[p1, v1, a1]` at `s = h`. The conditions at `s
+/// = 0` are satisfied to the last bit.
 fn quintic(h: f64, u: f64, [p, v, a]: [f64; 3], [p1, v1, a1]: [f64; 3]) -> [f64; 3] {
     // differences of position, velocity and acceleration at the far end, over h³, h² and h
     let difference_p = ((p1 - p) / h - v - a * (0.5 * h)) / (h * h);
@@ -231,7 +235,8 @@ pub(super) fn check_rows(
     }
 }
 
-/// Returns the slope at each point of the C² cubic spline through all points.
+/// Returns the slope at each point of the C² cubic spline through all points; zero at both ends with
+/// [`Ends::Rest`].
 ///
 /// `m₋/h₋ + 2 (1/h₋ + 1/h) m + m₊/h = 3 (Δ₋/h₋ + Δ/h)` at each inner point, where `m` is the slope, `h` the
 /// length of the interval after the point, and `Δ` the slope of the chord over that interval; `₋` and `₊`
@@ -265,6 +270,7 @@ fn cubic_slopes(times: &[f64], width: usize, values: &[f64], ends: Ends) -> Vec<
 }
 
 /// Returns the slope at one end of the polynomial through the (at most four) points nearest to that end.
+/// Point number `k` from that end has the index `index(k)`, and point `i` the value `value(i)`.
 fn end_slope(times: &[f64], value: impl Fn(usize) -> f64, index: impl Fn(usize) -> usize) -> f64 {
     let count = times.len().min(4);
     let t = |k: usize| times[index(k)];
@@ -278,7 +284,8 @@ fn end_slope(times: &[f64], value: impl Fn(usize) -> f64, index: impl Fn(usize) 
     slope
 }
 
-/// Returns the curvatures of the cubic polynomials with these values and slopes.
+/// Returns the curvatures of the cubic polynomials with these values and slopes; zero at both ends with
+/// [`Ends::Rest`].
 fn cubic_curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64], ends: Ends) -> Vec<f64> {
     let last = times.len() - 1;
     let mut out = vec![0.0; values.len()];

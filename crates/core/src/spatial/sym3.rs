@@ -6,7 +6,7 @@ use super::vec3::Vec3;
 use nalgebra::Matrix3;
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// Symmetric 3 × 3 matrix.
+/// Symmetric 3 × 3 matrix `A`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sym3<S> {
     /// First diagonal entry.
