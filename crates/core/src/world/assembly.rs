@@ -44,7 +44,8 @@ pub struct BodyPlace {
 
 /// Assembles the trees into which `welds` connect the systems with these `models`. The names of links, joints
 /// and frames in the models must have the names of the systems as prefixes. The root of a tree is the first
-/// of its systems in `roots`, or the system with the lowest number if `roots` contains none of them.
+/// of its systems in `roots`, or the system with the lowest number if `roots` contains none of them. Trees
+/// are in the order of `roots`, followed by the other trees in the order of their roots.
 ///
 /// # Errors
 /// [`ModelError`] if the model of a tree is not valid.

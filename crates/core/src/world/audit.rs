@@ -6,7 +6,9 @@ use crate::spatial::{Force, Motion, Scalar, Vec3};
 
 /// Speed below which a body is treated as at rest, m/s. It keeps the scales of momentum above zero.
 const REST: f64 = 1e-9;
-/// Smallest angular scale of a body, relative to `|r| |p| + |H|`, because `r × p` and `H` may cancel.
+/// Smallest angular scale of a body, relative to `|r| |p| + |H|`, because `r × p` and `H` may cancel; `r` is
+/// the arm from the reference point to the body's origin, `p` the linear momentum, and `H` the angular
+/// momentum about that origin.
 const LEAST: f64 = 1e-3;
 
 /// Momentum of a system, and the scales relative to which its errors are stated.
@@ -14,13 +16,13 @@ const LEAST: f64 = 1e-3;
 pub struct Balance {
     /// Linear momentum, N s, and angular momentum about a point, N m s, in W axes.
     pub momentum: Force<f64>,
-    /// Sums of the magnitudes of the momenta of the bodies, N s and N m s, with a lower bound for bodies at
-    /// rest.
+    /// Sums over the bodies of the magnitudes of the linear momenta, N s, and of the angular momenta about
+    /// the same point, N m s, with a lower bound for each body.
     pub scales: [f64; 2],
 }
 
 impl Balance {
-    /// Computes the momentum of a system about `point` in W, m.
+    /// Computes the momentum and scales of a system about `point` in W, m.
     pub fn of(model: &Model, q: &[f64], v: &[f64], point: Vec3<f64>) -> Self {
         let mut data = Data::<f64>::new(model);
         kinematics(model, &mut data, q, v);
@@ -36,8 +38,8 @@ impl Balance {
         all
     }
 
-    /// Returns the scales of the momentum about `point` in W, m, relative to a frame that moves with `velocity`
-    /// in W, m/s. Requires the kinematics of the system at `q` in `data`.
+    /// Returns the scales of the momentum about `point` in W, m, relative to a frame that moves with
+    /// `velocity` in W, m/s. Requires the kinematics of the system at `q` in `data`.
     pub(crate) fn scales_in_frame<S: Scalar>(
         velocity: Vec3<f64>,
         data: &Data<S>,
@@ -71,7 +73,8 @@ impl Balance {
         self.scales = [0, 1].map(|i| self.scales[i] + other.scales[i]);
     }
 
-    /// Returns the changes of both momenta since `before`, relative to the scales.
+    /// Returns the magnitudes of the changes of linear and angular momentum since `before`, each relative to
+    /// the larger of the two scales.
     pub fn error_since(&self, before: &Self) -> [f64; 2] {
         let change = self.momentum - before.momentum;
         let sizes = [change.linear.norm(), change.angular.norm()];
@@ -93,13 +96,14 @@ fn add_scales(scales: &mut [f64; 2], h: Force<f64>, about_point: Vec3<f64>, leve
 /// `after` at `q`.
 ///
 /// If an impulse stops only the motions that a connection forbids, the energy lost is the energy of the
-/// velocity change: `T⁻ − T⁺ = ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺)`, summed over the systems.
+/// velocity change: `T⁻ − T⁺ = ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺)`, summed over the systems, with the kinetic energy
+/// `T` and the mass matrix `M`.
 pub fn energy_of_change(model: &Model, q: &[f64], before: &[f64], after: &[f64]) -> f64 {
     let change: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
     energy(model, q, &change)
 }
 
-/// Returns the kinetic energy of a system, J.
+/// Returns the kinetic energy of a system at the configuration `q` and velocity `v`, J.
 pub fn energy(model: &Model, q: &[f64], v: &[f64]) -> f64 {
     let mut data = Data::<f64>::new(model);
     kinematics(model, &mut data, q, v);

@@ -48,8 +48,8 @@ pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
 ///
 /// # Errors
 /// [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a
-/// capture within one system or one that would produce an invalid tree, numbers outside their range, or events that
-/// wait for each other.
+/// capture within one system or one that would produce an invalid tree, a latch without a capture, numbers
+/// outside their range, or events that wait for themselves or each other.
 pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldError> {
     for (i, event) in events.iter().enumerate() {
         if events[..i].iter().any(|before| before.name == event.name) {

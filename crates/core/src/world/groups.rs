@@ -29,8 +29,8 @@ impl Union {
     }
 }
 
-/// Returns the systems that an event involves. For an event that waits for another event, these include the
-/// systems of that other event.
+/// Returns the systems that an event involves, some possibly repeated: those of the capture, also for its
+/// release. For an event that waits for another event, these include the systems of that other event.
 pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
     let (mut all, mut at) = (Vec::new(), number);
     for _ in 0..=events.len() {

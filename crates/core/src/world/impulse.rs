@@ -26,10 +26,13 @@ pub struct Moving<'a> {
 /// prescribed motion.
 ///
 /// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
-/// of the tree equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`, summed over all bodies and rotors. By
-/// Gauss's principle, `v⁺` is the motion that the tree and its closed loops permit and that is closest to the
-/// previous motion in the metric of the kinetic energy. Without closed loops, with `Λ = (J M⁻¹ Jᵀ)⁻¹` of the
-/// relative twist `J v` at the connection, the result equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻`.
+/// of the tree, less the impulses that close its loops, equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`,
+/// summed over all bodies and rotors, with the mass matrix `M` and velocity `v⁺` of the tree, and the
+/// Jacobian `J_k`, inertia `I_k` and previous twist `V_k⁻` of a body. By Gauss's principle, `v⁺` is the
+/// motion that the tree and its closed loops permit and that is closest to the previous motion `v⁻` of the
+/// systems in the metric of the kinetic energy. Without closed loops, in the coordinates of the systems, it
+/// equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻` with their mass matrix `M`, the relative twist `J v` at the connection, and `Λ
+/// = (J M⁻¹ Jᵀ)⁻¹`.
 pub fn connected_velocity(
     tree: &Model,
     q: &[f64],
@@ -69,9 +72,10 @@ pub fn connected_velocity(
     v
 }
 
-/// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i`, of a robot at `q` that is caused by an impulse
-/// `i` at the origin of a frame, N s and N m s in the axes of the frame. The rates of the joints `given`,
-/// whose motion is prescribed, do not change.
+/// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i` with the mass matrix `M` and the Jacobian `J` of
+/// `frame`, of a robot at `q` that is caused by an impulse `i` at the origin of the frame, N s and N m s in
+/// the axes of the frame. The rates of the joints `given`, whose motion is prescribed, do not change, and the
+/// response keeps loops closed; `M` and `J` are those of the remaining free coordinates.
 pub fn impulse_response(
     model: &Model,
     q: &[f64],

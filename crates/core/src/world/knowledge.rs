@@ -12,7 +12,8 @@ pub struct IdleKnowledge {
     pub system: usize,
     /// Number of the known system.
     pub known: usize,
-    /// Systems on the path between the two that are not known; empty if no captures connect the two.
+    /// Systems, on a shortest path of captures between the two, that are not known; empty if no captures
+    /// connect the two.
     pub through: Vec<usize>,
 }
 

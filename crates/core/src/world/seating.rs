@@ -45,8 +45,8 @@ impl Seating {
     }
 }
 
-/// Connection that a weld adds to a tree: moving joints, the travel of each, and the constant pose after the
-/// last of them.
+/// Connection that a weld adds to a tree: moving joints, the travel of each, rad (m), and the constant pose
+/// after the last of them.
 pub(super) struct Chain {
     pub(super) joints: Vec<Joint>,
     pub(super) travels: Vec<f64>,
@@ -68,8 +68,9 @@ impl Weld {
     /// Returns the connection from the capturing frame to the captured frame or, if `is_reversed`, in the
     /// opposite direction. `name` is the prefix of the names of its joints.
     ///
-    /// `X(s) = (p₀ + s d, exp(s θ n) R₀)` with `d = p₁ − p₀` and `exp(θ n) = R₁ R₀ᵀ`, where the indices 0 and
-    /// 1 denote the start and the nominal pose.
+    /// `X(s) = (p₀ + s d, exp(s θ n) R₀)` is the pose (position `p`, rotation `R`) of the captured frame in
+    /// the capturing frame at the fraction `s` of the motion, with `d = p₁ − p₀` and `exp(θ n) = R₁ R₀ᵀ`; the
+    /// indices 0 and 1 denote the start and the nominal pose.
     pub(super) fn chain(&self, name: &str, is_reversed: bool) -> Chain {
         let start = self.pose.isometry();
         let rotation = |turn| Isometry3::from_parts(Translation3::identity(), turn);
