@@ -35,8 +35,8 @@ pub fn read_text(path: &Path, limit: usize) -> Result<String, TextFileError> {
 /// Reads a file of at most `limit` bytes.
 ///
 /// # Errors
-/// [`TextFileError`] if the file cannot be read. Devices and pipes are rejected, because reading them may
-/// never end.
+/// [`TextFileError`] if the file cannot be read or is larger than `limit`. Devices and pipes are rejected,
+/// because reading them may never end.
 pub fn read_bytes(path: &Path, limit: usize) -> Result<Vec<u8>, TextFileError> {
     let refuse = |error: std::io::Error| match error.kind() {
         ErrorKind::NotFound => TextFileError::NotFound,
