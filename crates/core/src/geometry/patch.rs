@@ -94,8 +94,8 @@ fn length(corners: &[Point], i: usize) -> f64 {
     (q[0] - p[0]).hypot(q[1] - p[1])
 }
 
-/// Returns the weights of the corners of a patch, `w` of [`manifold`](super::manifold), from the corners and
-/// the depths there, m.
+/// Returns the weights of the corners of a patch, `w` of [`manifold`](mod@super::manifold), from the corners
+/// and the depths there, m.
 fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     let extent = extent(corners, |i| depths[i]);
     let band = TILT * extent;
