@@ -15,7 +15,7 @@ pub(super) type Five = [f64; 5];
 pub(super) struct ThirdBody {
     /// Secular rates of the five quantities, per minute.
     pub(super) rates: Five,
-    /// Amplitudes of `F₂`, `F₃` and `sin f` ([`ThirdBody::waves`]) for each of the five quantities.
+    /// Amplitudes of `F₂`, `F₃` and `sin f` ([`ThirdBody::waves()`]) for each of the five quantities.
     waves: [[f64; 3]; 5],
     eccentricity: f64,
     /// Mean motion of the body, rad/min.
