@@ -59,8 +59,8 @@ pub(super) struct Cursor {
 }
 
 impl Schedule {
-    /// Creates a schedule with events at these times, s. Each clock ticks at least at time zero; the switches
-    /// of clocks are cuts as well.
+    /// Creates a schedule with events at these times, s, of which those that are not finite are ignored. Each
+    /// clock ticks at least at time zero; the switches of clocks are cuts as well.
     pub(super) fn new(
         time_step: f64,
         duration: Option<f64>,
@@ -91,7 +91,8 @@ impl Schedule {
         self.due = due;
     }
 
-    /// Returns the time of the first event between `t` and `end`, s, or `end` if there is none.
+    /// Returns the time, s, of the first event between `t` and `end` that became known during the run, or
+    /// `end` if there is none.
     pub(super) fn first_due(&self, t: f64, end: f64) -> f64 {
         let is_between = |due: &f64| *due > t + self.tolerance() && *due < end - self.tolerance();
         self.due.iter().copied().filter(is_between).fold(end, f64::min)
@@ -145,12 +146,14 @@ impl Schedule {
         self.clocks.iter().flat_map(|clock| clock.switches.iter().copied())
     }
 
-    /// Returns the number of grid steps of a run with a planned end, of which the last may be shorter.
+    /// Returns the number of grid steps of the run, of which the last may be shorter; `None` without a
+    /// planned end.
     pub(super) fn grid_steps(&self) -> Option<usize> {
         self.duration.map(|duration| (duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize)
     }
 
-    /// Returns an upper bound of the number of intervals of a run with a planned end.
+    /// Returns an upper bound of the number of intervals of the run, apart from events that become known
+    /// during it; `None` without a planned end.
     pub(super) fn intervals(&self) -> Option<usize> {
         let duration = self.duration?;
         let ticks = |period: f64| if period == self.time_step { 0.0 } else { (duration / period).ceil() };

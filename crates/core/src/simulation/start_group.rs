@@ -227,7 +227,7 @@ impl Shared {
     }
 
     /// Returns the names of the effects whose wrenches are recorded, followed by the name of the commanded
-    /// wrenches.
+    /// wrenches if a control follows external commands; empty if wrenches are not recorded.
     fn recorded_effects(&self) -> Vec<String> {
         let effects = self.effect_names.iter().filter(|_| self.record_wrenches).cloned();
         effects.chain(self.takes_commands.then(|| WRENCH_COMMAND.to_owned())).collect()
@@ -249,7 +249,7 @@ impl Shared {
     }
 
     /// Creates the schedule of the run. Steps of an adaptive integrator end at grid points only if there are
-    /// latches, and at control ticks only if there are controls.
+    /// latches or contacts, and at control ticks only if there are controls.
     fn schedule(&self, duration: Option<f64>, systems: &[&mut System], events: &[Event]) -> Schedule {
         // in `Carried` mode, the acceleration of the reference orbit, including its jumps, does not act on
         // the robot
@@ -284,7 +284,7 @@ impl Shared {
     }
 }
 
-/// Returns true if a control depends on the position of the robot in W.
+/// Returns true if the reference of the tool or a control may depend on the position of the robot in W.
 fn tracks_world(system: &System) -> bool {
     system.reference.is_some()
         || system

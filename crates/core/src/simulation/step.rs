@@ -12,14 +12,15 @@ use crate::spatial::{Scalar, Vec3};
 
 impl<S: Scalar> RunState<'_, S> {
     /// Computes a step that starts at the current cut, which is the start of `interval`. The step ends at
-    /// `end`, or earlier at the first change of a joint's mode or if the tolerance requires a shorter step.
+    /// `end`, or earlier: at an event that became known during the run, at the first change of the mode of a
+    /// joint, latch or contact, while bodies touch, or if the tolerance requires a shorter step.
     pub(super) fn step_to(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
         let start = interval.start;
         self.order_of_execution(end, interval).map_err(|error| self.name_divergence(error, start))?;
         if self.state.is_finite() { Ok(()) } else { Err(self.diverged(start)) }
     }
 
-    /// Computes a step over the whole interval.
+    /// Computes a step over the interval, or over its first part as in [`step_to`](Self::step_to).
     pub(super) fn step(&mut self, interval: &Interval) -> Result<(), SimulationError> {
         self.step_to(interval.end, interval)
     }
@@ -39,9 +40,10 @@ impl<S: Scalar> RunState<'_, S> {
         self.record_within_step()
     }
 
-    /// Computes kinematics, impacts, loads, controllers and modes at the start of a step in `interval` that
-    /// is to end at `end`. The function is also used for the last row, after which there is no step. Returns
-    /// the end of the step, s, which is earlier than `end` if an event has made a cut within the interval.
+    /// Computes kinematics, events, impacts, loads, controllers and modes at the start of a step in
+    /// `interval` that is to end at `end`. The function is also used for the last row, after which there is
+    /// no step. Returns the end of the step, s, which is earlier than `end` if an event has made a cut within
+    /// the interval, or while bodies touch.
     pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<f64, SimulationError> {
         let t = interval.start;
         // 1 kinematics, and the base twist projected onto the momentum

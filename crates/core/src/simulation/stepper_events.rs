@@ -11,7 +11,8 @@ impl Stepper<'_> {
     ///
     /// # Errors
     /// [`SimulationError::World`] for an event that does not exist, has already happened, or does not happen
-    /// on command; the run does not change. Errors of a step end the run.
+    /// on command; the run does not change. [`SimulationError::Ended`] if the run has ended. Errors of a step
+    /// end the run.
     pub fn trigger(&mut self, name: &str) -> Result<(), SimulationError> {
         self.check()?;
         for group in 0..self.groups.len() {

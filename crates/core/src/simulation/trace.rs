@@ -37,7 +37,7 @@ macro_rules! define_trace {
             pub work_done: f64,
             /// Estimated attitude error at the end of the run, rad: the accumulated difference between steps
             /// and half steps or, for an embedded pair, between its two solutions. The amplification of
-            /// errors by the motion is not included.
+            /// errors by the motion is not included. `None` if errors of steps are not estimated.
             pub attitude_step_doubling: Option<f64>,
             /// Accumulated differences between steps and half steps: one entry for the base's origin, then
             /// one per joint. Empty for an adaptive integrator and for an external engine.
@@ -102,8 +102,8 @@ impl NamedColumn {
     }
 }
 
-/// Errors of one coordinate over a run: summed differences between steps and half steps, the largest rate, and
-/// the sum of the jumps of the acceleration.
+/// Errors of one coordinate over a run: summed differences between steps and half steps, the largest rate,
+/// and the sum of the jumps of the acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateDrift {
     /// Difference of the position, m or rad.
@@ -114,7 +114,7 @@ pub struct CoordinateDrift {
     /// Largest magnitude of the rate, m/s or rad/s.
     pub fastest: f64,
     /// Sum `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration from the end of a step of
-    /// length `h` to the start of the next step.
+    /// length `h` to the start of the next step; zero for the base's origin.
     pub jumps: f64,
 }
 

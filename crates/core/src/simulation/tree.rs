@@ -18,7 +18,7 @@ pub(crate) struct Tree<'a, S> {
     pub(crate) data: Data<S>,
     /// Commanded joint torques, `(n,)`, N m (N), without the compensation of Coulomb friction.
     pub(crate) command: Vec<S>,
-    /// Generalized forces of a stage, `(nv,)`: command, damping and friction.
+    /// Generalized forces of a stage, `(nv,)`, N m (N): command, damping and friction; zero at the base.
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
@@ -62,13 +62,13 @@ impl<'a, S: Real> Tree<'a, S> {
         }
     }
 
-    /// Computes the kinematics of `state` and projects its base twist onto its momentum: `v_b = Mbb⁻¹ (h −
-    /// Mbm q̇)`.
+    /// Computes the kinematics of `state` and projects its base twist `v_b` onto its momentum: `v_b = Mbb⁻¹
+    /// (h − Mbm q̇)`, with the blocks `Mbb` of the base and `Mbm` between base and joints of the mass matrix.
     ///
     /// The momentum `h` is integrated from the external wrenches alone, so without such wrenches it is
     /// conserved to rounding, whereas the integrated base twist has a truncation error. In a run with several
-    /// trees, the base is also shifted so that the centre of mass is the integral of its velocity `P/m`.
-    /// Stages within a step are not projected.
+    /// trees, the base is also shifted so that the centre of mass is the integral of its velocity `P/m`,
+    /// linear momentum over mass. Stages within a step are not projected.
     ///
     /// Closed loops are projected first in position and, after the base twist, in velocity.
     pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
@@ -108,8 +108,8 @@ impl<'a, S: Real> Tree<'a, S> {
         );
     }
 
-    /// Projects the velocity of `state` onto the closed loops, which does not change the momentum. Computes the
-    /// kinematics. Requires the articulated-body inertias of [`project_configuration`].
+    /// Projects the velocity of `state` onto the closed loops, which does not change the momentum. Computes
+    /// the kinematics. Requires the articulated-body inertias of [`project_configuration`].
     fn close_velocity(&mut self, state: &mut TreeState<S>) {
         // relative to the base's origin, as in `project_twist`
         let frame_velocity = Vec3::from_slice(&state.v);
@@ -122,8 +122,8 @@ impl<'a, S: Real> Tree<'a, S> {
         self.update_kinematics(state);
     }
 
-    /// Computes the accelerations `a`, `(nv,)`, at the velocity `v` under the generalized forces in `forces`, with
-    /// the present modes of the joints and the constraints of closed loops.
+    /// Computes the accelerations `a`, `(nv,)`, at the velocity `v` under the generalized forces in `forces`,
+    /// with the present modes of the joints and the constraints of closed loops.
     pub(super) fn accelerate(&mut self, v: &[S], a: &mut [S]) {
         let Self { model, data, loops, forces, modes, .. } = self;
         let locked = modes.locked().map(|locked| (locked, modes.accelerations()));
@@ -245,7 +245,8 @@ impl<'a, S: Real> Tree<'a, S> {
         joints.map(|(command, torque)| torque.map_or(*command, |torque| *command + S::of(torque)))
     }
 
-    /// Computes the generalized forces at the joints, `τ − b q̇ − f s` with the direction of slip `s`. The
+    /// Computes the generalized forces at the joints, `τ − b q̇ − f s`, with the commanded torque `τ`, the
+    /// damping `b`, the Coulomb friction `f` and the direction of slip `s`, and writes them to `forces`. The
     /// friction `f s` is omitted for joints whose motors compensate it.
     pub(super) fn update_joint_forces(&mut self, v: &[S]) {
         let Self { model, modes, command, forces, is_lossy, .. } = self;
@@ -266,8 +267,8 @@ impl<'a, S: Real> Tree<'a, S> {
 }
 
 /// Computes the velocity and acceleration of the base in W, the sum of the wrenches on the first `loaded`
-/// bodies, and the power of all forces. `v` and the velocities in `data` are relative to a frame that moves
-/// with `frame_velocity`.
+/// bodies about the centre of mass in W axes, and the power of all forces, and writes them to `rate`. `v` and
+/// the velocities in `data` are relative to a frame that moves with `frame_velocity`, W axes, m/s.
 #[inline(always)]
 fn base_rates<S: Real>(
     data: &Data<S>,

@@ -16,14 +16,15 @@ pub(crate) struct TreeState<S> {
     /// axes, N s and N m s. The value changes only with a change of the reference orbit.
     pub(crate) initial_momentum: Momentum<S>,
     /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N
-    /// m s.
+    /// m s. In a group with contacts, the moments of a step are about the common centre of mass until the
+    /// step ends.
     pub(crate) impulse: Momentum<S>,
     /// Work done by motors and external wrenches less the energy dissipated in the joints, J, since the start
     /// of the run or, in a tree with several members, since its assembly.
     pub(crate) work: S,
     /// Energy dissipated by damping, friction and stops of the joints, J, over the same time.
     pub(crate) dissipated: S,
-    /// Position of the centre of mass in W, which is the integral of `P/m`, m; `None` in a run with a single
+    /// Position of the centre of mass in W, m, integrated from its velocity; `None` in a run with a single
     /// tree. Once per step the base is shifted accordingly, so that the angular momentum of several trees
     /// about a common point is exact.
     pub(crate) center: Option<Vec3<S>>,
@@ -49,13 +50,14 @@ pub(crate) struct TreeRate<S> {
     /// Acceleration, `(nv,)`, m/s² and rad/s².
     pub(crate) a: Vec<S>,
     /// Time derivative of the momentum: the sum of the external forces, and of their moments about the centre
-    /// of mass, W axes, N and N m.
+    /// of mass, W axes, N and N m; in a group with contacts, about the common centre of mass.
     pub(crate) wrench: Momentum<S>,
     /// Power of the motors and external wrenches less the power dissipated in the joints, W.
     pub(crate) power: S,
     /// Power dissipated by damping and friction, W.
     pub(crate) loss: S,
-    /// Velocity of the centre of mass, `P/m`, W axes, m/s; `None` in a run with a single tree.
+    /// Velocity of the centre of mass, linear momentum over mass, W axes, m/s; `None` in a run with a single
+    /// tree.
     pub(crate) center_velocity: Option<Vec3<S>>,
     /// Parts of `loss` that belong to the joints of each member, W; empty for a tree with a single member.
     pub(crate) shares: Vec<S>,
@@ -195,8 +197,8 @@ impl<S: Real> TreeState<S> {
         }
     }
 
-    /// Stores `from ⊕ h rate`: increments are added to positions and velocities, and the attitude is
-    /// multiplied by `exp(h θ̇)`.
+    /// Stores `from ⊕ h rate` with the step `h`, s: increments are added to positions and velocities, and the
+    /// attitude is multiplied by `exp(h θ̇)` with the rate `θ̇` of the rotation vector.
     #[inline(always)]
     pub(crate) fn move_from(&mut self, from: &Self, rate: &TreeRate<S>, h: S) {
         rate.base_velocity.scale_add(h, Vec3::from_slice(&from.q)).write(&mut self.q);

@@ -34,11 +34,12 @@ pub enum WrenchAxes {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct WrenchCommands {
     held: Vec<Held>,
-    /// Time of the last command, s.
+    /// Time of the last command, s; `None` before the first.
     changed_at: Option<f64>,
 }
 
-/// Commanded wrench that is held: a force at `point` and a torque, in W axes or in body axes.
+/// Commanded wrench that is held: a force, N, at `point`, m, in the axes of `body`, and a torque, N m. Force
+/// and torque are in W axes or in body axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Held {
     /// Number of the system in the world, and index of the frame.
@@ -55,7 +56,7 @@ impl WrenchCommands {
         self.held.is_empty()
     }
 
-    /// Returns the time of the last command, s.
+    /// Returns the time of the last command, s; `None` before the first.
     pub(super) fn changed_at(&self) -> Option<f64> {
         self.changed_at
     }
