@@ -28,8 +28,9 @@ pub struct ContactSteps {
     /// with larger errors, which occur for example where the nearest faces or edges change, are repeated with
     /// half the length.
     pub energy_error: f64,
-    /// True if bounding spheres exclude pairs of pieces from the search for those that touch and for the smallest
-    /// gap. The results are the same; without it every pair is considered in every step.
+    /// True if bounding spheres exclude pairs of pieces from the search for those that touch and for the
+    /// smallest gap, in runs with more than 16 pairs. The results are the same; without it every pair is
+    /// considered in every step.
     pub has_broad_phase: bool,
 }
 
