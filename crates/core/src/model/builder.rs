@@ -17,7 +17,8 @@ const MOST_JOINTS: usize = 2000;
 /// Builder of a model from links and joints.
 ///
 /// The first link is the floating base. Each further link is connected by a joint to a link that was added
-/// before. Closed loops are added as constraints by [`close`](ModelBuilder::close). [`build`](ModelBuilder::build) returns the model.
+/// before. [`close`](ModelBuilder::close) adds closed loops as constraints, and
+/// [`build`](ModelBuilder::build) returns the model.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
     pub(super) description: Description,
@@ -50,8 +51,8 @@ impl ModelBuilder {
     /// Adds the link `child`, connected to the link `parent` by `joint`.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown parent, a name used twice, too many moving joints, an axis of length zero,
-    /// negative damping, reversed limits, or an invalid inertia of the child.
+    /// [`ModelError`] for an unknown parent, a name used twice, too many moving joints, an axis of length
+    /// zero, negative damping, reversed limits, or an invalid inertia of the child.
     pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
         let parent = self.link(parent)?;
         if self.has_joint(&joint.name) {

@@ -25,8 +25,8 @@ pub struct Loop {
     /// Distance of the two origins for [`LoopKind::Distance`], m; `None` means the distance at which all
     /// joint positions are zero. Other kinds ignore it.
     pub length: Option<f64>,
-    /// True if the start of a simulation is moved to the nearest configuration that closes the loop. If false,
-    /// a start that does not close the loop is an error.
+    /// True if the start of a simulation is moved to the nearest configuration that closes the loop. If
+    /// false, a start that does not close the loop is an error.
     pub project: bool,
 }
 
@@ -50,7 +50,7 @@ pub enum LoopKind {
 pub struct Mimic {
     /// Name of the leader.
     pub leader: String,
-    /// Ratio of the two rates.
+    /// Rate of the joint over the rate of the leader.
     pub ratio: f64,
     /// Position of the joint while its leader is at zero, rad (m).
     pub offset: f64,
@@ -72,8 +72,8 @@ impl ModelBuilder {
     /// Closes a loop between two frames that were added before.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown frame, a loop of a frame with itself, a name that another loop has, or
-    /// numbers that are not finite.
+    /// [`ModelError`] for an unknown frame, a loop of a frame with itself, an empty name or one that another
+    /// loop has, a pose that is not finite, or a length outside 1e-6 m to 1e12 m.
     pub fn close(&mut self, closing: Loop) -> Result<&mut Self, ModelError> {
         let names = self.description.links.iter().map(|link| link.name.as_str());
         let names = names.chain(self.description.frames.iter().map(|(name, ..)| name.as_str()));

@@ -7,14 +7,13 @@ use crate::spatial::{Mat3, Vec3};
 use nalgebra::Isometry3;
 
 /// Constraint on the motion of a model: a closed loop or a mimic joint.
-
 #[derive(Clone, Debug)]
 pub struct Closure {
     /// Name of the loop or of the mimic joint.
     pub name: String,
     /// Equation that the configuration must satisfy.
     pub constraint: Constraint,
-    /// True if the start of a simulation may be moved to satisfy the constraint.
+    /// True if the start of a simulation may be moved to satisfy the constraint; false for mimic joints.
     pub project: bool,
 }
 
@@ -25,7 +24,7 @@ pub enum Constraint {
     Frames {
         /// Kind of the joint.
         kind: LoopKind,
-        /// Frames of the joint on both bodies.
+        /// Frames of the joint on both bodies, with the axis of the joint along z.
         frames: [Frame; 2],
         /// Distance of the two origins, m, for [`LoopKind::Distance`]; otherwise zero.
         length: f64,
@@ -36,7 +35,7 @@ pub enum Constraint {
         joint: usize,
         /// Index of the leader.
         leader: usize,
-        /// Ratio of the two rates.
+        /// Rate of the joint over the rate of the leader.
         ratio: f64,
         /// Position of the joint while its leader is at zero, rad (m).
         offset: f64,
@@ -54,13 +53,14 @@ impl Closure {
 }
 
 impl Model {
-    /// Returns the constraints of the robot: first its closed loops in the order of their declaration, then its
-    /// mimic joints.
+    /// Returns the constraints of the robot: first its closed loops in the order of their declaration, then
+    /// its mimic joints.
     pub fn closures(&self) -> &[Closure] {
         &self.closures
     }
 
-    /// Returns the constraints for the loops and the mimic joints of the description.
+    /// Returns the constraints for the loops and the mimic joints of the description, or an error for unknown
+    /// frames or leaders, loops within a body or of zero length, and joints that mimic each other.
     pub(super) fn compile_closures(&self) -> Result<Vec<Closure>, ModelError> {
         let description = self.description.clone();
         let loops = description.loops.iter().map(|closing| self.compile_loop(closing));
