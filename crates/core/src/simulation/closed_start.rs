@@ -14,13 +14,13 @@ const ACCEPTED: f64 = 1e-6;
 const CLOSED: f64 = 1e-11;
 
 impl System {
-    /// Returns the initial configuration and velocity with all loops closed, in the metric of the kinetic energy
-    /// the nearest ones to the given state. Mimic joints that start at zero follow their leaders.
+    /// Returns the initial configuration and velocity with all loops closed, in the metric of the kinetic
+    /// energy the nearest ones to the given state. Mimic joints that start at zero follow their leaders.
     ///
     /// # Errors
-    /// [`SimulationError::OpenLoop`] for a loop without `project`, or a mimic joint, that is open or opens by more
-    /// than 1e-6 m or rad (per second), and [`SimulationError::CannotClose`] for loops that cannot be closed
-    /// together.
+    /// [`SimulationError::OpenLoop`] for a loop without `project`, and [`SimulationError::OpenMimic`] for a
+    /// mimic joint, that is open or opens by more than 1e-6 m or rad (per second);
+    /// [`SimulationError::CannotClose`] for loops that cannot be closed together.
     pub(super) fn closed_start(&self) -> Result<[Vec<f64>; 2], SimulationError> {
         let (model, mut q, mut v) = (&*self.model, self.q.clone(), self.v.clone());
         if model.closures().is_empty() {
@@ -51,8 +51,8 @@ impl System {
     }
 }
 
-/// Sets the positions and rates of mimic joints at zero from those of their leaders. A chain of mimic joints needs
-/// several passes.
+/// Sets the positions and rates of mimic joints at zero from those of their leaders. A chain of mimic joints
+/// needs several passes.
 fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
     let [given_q, given_v] = [q.to_vec(), v.to_vec()];
     for _ in model.closures() {
@@ -68,7 +68,8 @@ fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
     }
 }
 
-/// Checks that no closure without `project` is open, or opens, by more than [`ACCEPTED`] in `x`, `(m,)`.
+/// Checks that no closure without `project` is open, or opens, by more than [`ACCEPTED`]; `x` are the errors
+/// of all scalar constraints, or their rates, and `units` those of distances and angles in `x`.
 fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> Result<(), SimulationError> {
     for (i, closure) in loops.closures().iter().enumerate().filter(|(_, closure)| !closure.project) {
         let sizes = loops.magnitudes(i, x);
@@ -84,7 +85,7 @@ fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> 
     Ok(())
 }
 
-/// Returns a distance and an angle with their units; zeros are left out.
+/// Returns a text with a distance and an angle, or their rates, and the `units` of both; zeros are left out.
 fn opening(sizes: [f64; 2], units: [&str; 2]) -> String {
     let parts = sizes.iter().zip(units).filter(|(size, _)| **size > 0.0);
     let parts: Vec<String> = parts.map(|(size, unit)| format!("{} {unit}", short(*size))).collect();

@@ -132,7 +132,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     }
 
     /// Determines the modes of the contacts for the step from `t` to `end`, s, and returns the end of the
-    /// step, which is earlier than `end` while bodies touch. Requires the kinematics of `state` in the trees.
+    /// step, which is earlier than `end` while bodies touch. The states of contacts in `state` become those
+    /// of the near pairs. Requires the kinematics of `state` in the trees.
     pub(super) fn begin_contacts(
         &mut self,
         t: f64,
@@ -145,7 +146,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.contacts.begin((t, end), &self.trees, state).map_err(at_time(t))
     }
 
-    /// Returns true if a joint of any tree has friction or stops, if a latch may close, or if bodies may touch.
+    /// Returns true if a joint of any tree has friction or stops, if a latch may close, or if bodies may
+    /// touch.
     pub(crate) fn has_modes(&self) -> bool {
         !self.latches.is_empty()
             || !self.contacts.is_empty()

@@ -27,11 +27,11 @@ struct Loose<'a, S> {
 }
 
 impl<'a, S: Scalar> RunState<'a, S> {
-    /// Assembles the trees for the active connections at `t`, s. Trees whose members do not change are kept.
-    /// The other trees receive the states of their members and preserve their momenta. Requires the
-    /// kinematics of the state, relative to W, in the trees, and the states of the parts; afterwards the new
-    /// trees hold their kinematics. With an external engine, the connections are passed to the engine, and
-    /// each system remains a tree.
+    /// Assembles the trees for the active connections at `t`, s. Trees whose members, closed loops and joints
+    /// with prescribed motion do not change are kept. The other trees receive the states of their members and
+    /// preserve their momenta. Requires the kinematics of the state, relative to W, in the trees, and the
+    /// states of the parts; afterwards the new trees hold their kinematics. With an external engine, the
+    /// connections are passed to the engine, and each system remains a tree.
     pub(super) fn recompile(&mut self, t: f64) -> Result<(), SimulationError> {
         if self.mover.is_external() {
             self.pass_welds();
@@ -124,7 +124,8 @@ impl<'a, S: Scalar> RunState<'a, S> {
     }
 }
 
-/// Returns the momentum of systems, with the angular part about `center` in W.
+/// Returns the total momentum of systems, W axes, N s and N m s, with the angular part about `center` in W,
+/// m.
 fn momentum_of<S: Scalar>(systems: &[Moving<'_>], center: Vec3<S>) -> Momentum<S> {
     let point = center.map(|x| x.value());
     let balances = systems.iter().map(|system| Balance::of(system.model, system.q, system.v, point));
@@ -154,8 +155,8 @@ struct Old<'a, S> {
 }
 
 impl<'a, S: Scalar> Old<'a, S> {
-    /// Returns the number of the tree that has exactly these members, these joints with prescribed motion and the
-    /// closed loops of `model`; `None` if no tree does.
+    /// Returns the number of the tree that has exactly these members, these joints with prescribed motion and
+    /// the closed loops of `model`; `None` if no tree does or without a `model`.
     fn unchanged(&self, model: Option<&Model>, members: &[Member], given: &[GivenJoint]) -> Option<usize> {
         let tree = |system: usize| match self.places[system] {
             Place::Part(part) => self.parts[part].as_ref().map(|part| part.tree),

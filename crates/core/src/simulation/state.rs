@@ -13,7 +13,8 @@ pub(crate) struct State<S> {
     /// Time integral of the moments of the external forces about the common centre of mass of all trees, with
     /// each force acting at the centre of mass of its tree, W axes, N m s; zero for a single tree.
     pub(crate) orbital: Vec3<S>,
-    /// Integrals of the contacts; empty without contacts.
+    /// Integrals of the pairs of pieces that are not far apart, in ascending order of their numbers; of all
+    /// pairs at the start of a run and in checkpoints. Empty without contacts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) contacts: Vec<ContactState>,
 }

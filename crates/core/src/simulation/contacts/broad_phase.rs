@@ -1,4 +1,5 @@
-//! Broad phase: bounding spheres of frames and systems select the pairs of pieces that may touch within a step.
+//! Broad phase: bounding spheres of frames and systems select the pairs of pieces that may touch within a
+//! step.
 
 use super::begin::{FAR, TRAVEL};
 use super::frames::{FrameMotion, Frames};
@@ -8,7 +9,7 @@ use crate::simulation::tree::Tree;
 use crate::spatial::{Real, Vec3};
 use std::collections::BTreeMap;
 
-/// Sphere in W that contains what a frame or a system can reach within a step.
+/// Sphere in W, m, that contains what the pieces of a frame or of a system can reach within a step.
 #[derive(Clone, Copy, Debug)]
 struct Sphere {
     center: Vec3<f64>,
@@ -26,12 +27,13 @@ impl Sphere {
 pub(super) struct BroadPhase {
     /// Largest reach of the pieces of each frame, m.
     reaches: Vec<f64>,
-    /// Frames of each system.
+    /// Numbers of the frames of each system.
     systems: Vec<Vec<usize>>,
     /// Pairs of systems with the pairs of their frames.
     blocks: Vec<([usize; 2], Vec<FramePair>)>,
-    /// Spheres of the frames and of the systems.
+    /// Spheres of the frames.
     spheres: Vec<Sphere>,
+    /// Spheres of the systems.
     around: Vec<Sphere>,
 }
 
@@ -69,13 +71,15 @@ impl BroadPhase {
         new
     }
 
-    /// Adds to `found`, in ascending order, the numbers of all pairs that may not be far apart during the next
-    /// `h` seconds, and of some others. Requires the kinematics of `state` in `trees`.
+    /// Adds to `found`, in ascending order, the numbers of all pairs that may not be far apart during the
+    /// next `h` seconds, and of some others. Requires the kinematics of `state` in `trees`.
     ///
-    /// A pair is far apart if `|p_b − p_a| > r_a + r_b + FAR min(r_a, r_b) + TRAVEL h s`, where the speed `s` is at most
-    /// `|v_b − v_a| + |ω_a| r_a + |ω_b| r_b`. With radii `(1 + FAR) r + TRAVEL h (|v − u| + |ω| r)` and any common
-    /// velocity `u`, this holds for all pairs of pieces of two frames whose spheres do not meet. The excess
-    /// `FAR max(r_a, r_b)` of these radii is larger than all rounding errors.
+    /// A pair is far apart if `|p_b − p_a| > r_a + r_b + FAR min(r_a, r_b) + TRAVEL h s`, with the origins
+    /// `p` of the frames of its sides, the reaches `r`, and the speed `s` of at most `|v_b − v_a| + |ω_a| r_a
+    /// + |ω_b| r_b` for the velocities `v` and angular velocities `ω` of the frames. With radii `(1 + FAR) r
+    /// + TRAVEL h (|v − u| + |ω| r)` and any common velocity `u`, this holds for all pairs of pieces of two
+    /// frames whose spheres do not meet. The excess `FAR max(r_a, r_b)` of these radii is larger than all
+    /// rounding errors.
     pub(super) fn find<S: Real>(
         &mut self,
         frames: &mut Frames,

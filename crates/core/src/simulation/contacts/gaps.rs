@@ -25,7 +25,8 @@ pub(super) struct Gaps {
     sides: Vec<[usize; 2]>,
     /// Centres of the spheres of one contact in W, m.
     centers: Vec<Vec3<f64>>,
-    /// Lower bounds of the gaps of the pairs of one contact, m; negative infinity for pairs that are evaluated.
+    /// Lower bounds of the gaps of the pairs of one contact, m; negative infinity for pairs that are
+    /// evaluated.
     pub(super) bounds: Vec<f64>,
 }
 
@@ -51,8 +52,9 @@ impl Gaps {
         new
     }
 
-    /// Writes `|c_b − c_a| − r_a − r_b`, less the rounding errors, for the pairs of a contact. `pose` returns the pose of
-    /// a piece in W.
+    /// Writes `|c_b − c_a| − r_a − r_b`, less the rounding errors, for the pairs of a contact to `bounds`,
+    /// with the centres `c` and radii `r` of the spheres of both pieces. `pose` returns the pose of a piece
+    /// in W.
     fn bound(&mut self, contact: usize, list: &[Touching], mut pose: impl FnMut(&Side) -> Pose) {
         let Self { pairs, pieces, sides, centers, bounds } = self;
         let pieces = &pieces[contact];
@@ -71,8 +73,8 @@ impl Gaps {
         bounds.extend(sides[pairs[contact].clone()].iter().map(bound));
     }
 
-    /// Returns the pair of the last contact, counted from its first, with the lowest bound of those that are not
-    /// evaluated.
+    /// Returns the pair with the lowest finite bound, counted from the first pair of the contact for which
+    /// `bounds` were written; `None` if all pairs are evaluated.
     fn lowest(&self) -> Option<usize> {
         let open = (0..self.bounds.len()).filter(|at| self.bounds[*at].is_finite());
         open.min_by(|a, b| self.bounds[*a].total_cmp(&self.bounds[*b]))
@@ -80,8 +82,9 @@ impl Gaps {
 }
 
 impl Contacts {
-    /// Writes the lower bounds of the gaps of a contact, and returns an upper bound of the smallest gap, m. Pairs with
-    /// larger lower bounds do not have the smallest gap.
+    /// Writes the lower bounds of the gaps of a contact, and returns an upper bound of the smallest gap, m.
+    /// Pairs with larger lower bounds do not have the smallest gap. Without a broad phase, every pair is to
+    /// be evaluated, and the upper bound is infinite.
     pub(super) fn bound_gaps<S: Real>(
         &mut self,
         contact: usize,

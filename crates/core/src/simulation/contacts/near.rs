@@ -1,4 +1,5 @@
-//! Pairs of pieces that are not far apart. Only they are evaluated during a step, and only their states change.
+//! Pairs of pieces that are not far apart. Only they are evaluated during a step, and only their states
+//! change.
 
 use super::mode::{Mode, Phase};
 use super::{Contacts, Touch};
@@ -50,7 +51,8 @@ impl Contacts {
         self.begun_at = f64::NAN;
     }
 
-    /// Returns the pairs that are far apart since the start of the step.
+    /// Returns the pairs that are far apart since the start of the step; empty if the modes are to be
+    /// determined anew or the rigid pairs are not known.
     fn known_far(&self) -> Vec<usize> {
         if self.begun_at.is_nan() || self.is_rigid.len() < self.list.len() {
             return Vec::new();
@@ -60,7 +62,7 @@ impl Contacts {
         (0..is_far.len()).filter(|&number| is_far[number]).collect()
     }
 
-    /// Finds the pairs that are rigid, unless they are known.
+    /// Finds the pairs that are rigid, unless they are known; they become far.
     pub(super) fn find_rigid<S: Real>(&mut self, trees: &[Tree<'_, S>]) {
         if self.is_rigid.len() == self.list.len() {
             return;
@@ -70,7 +72,8 @@ impl Contacts {
         rigid.for_each(|(touching, _)| (touching.mode.phase, touching.last) = (Phase::Far, None));
     }
 
-    /// Finds the pairs that may not be far apart in the step from `t` to `end`, s; the others become far.
+    /// Writes the pairs that may not be far apart in the step from `t` to `end`, s, to `candidates`; the
+    /// others become far.
     pub(super) fn find_candidates<S: Real>(
         &mut self,
         (t, end): (f64, f64),
