@@ -43,9 +43,10 @@ pub struct BodyPlace {
 }
 
 /// Assembles the trees into which `welds` connect the systems with these `models`. The names of links, joints
-/// and frames in the models must have the names of the systems as prefixes. The root of a tree is the first
-/// of its systems in `roots`, or the system with the lowest number if `roots` contains none of them. Trees
-/// are in the order of `roots`, followed by the other trees in the order of their roots.
+/// and frames in the models must have the names of the systems as prefixes. Welds that connect systems which
+/// are already connected become closed loops of the tree. The root of a tree is the first of its systems in
+/// `roots`, or the system with the lowest number if `roots` contains none of them. Trees are in the order of
+/// `roots`, followed by the other trees in the order of their roots.
 ///
 /// # Errors
 /// [`ModelError`] if the model of a tree is not valid.
@@ -113,7 +114,8 @@ impl<'m> GrowingTree<'m> {
         Ok(())
     }
 
-    /// Closes the loops of those welds that connect two systems of the tree a second time.
+    /// Closes the loops of those welds that connect two systems which other welds have joined to the tree,
+    /// except between frames of the same body.
     fn close_loops(&mut self, welds: &[Weld]) -> Result<(), ModelError> {
         let is_closing = |weld: &&Weld| {
             let are_here = [weld.by, weld.of].iter().all(|place| self.order.contains(&place.system));
