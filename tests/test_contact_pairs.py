@@ -48,3 +48,21 @@ def test_thousands_of_pairs_warn_and_have_the_smallest_gap_and_its_touch_down() 
         assert abs(gap - (np.linalg.norm(centers, axis=-1).min() - 2 * RADIUS)) < 1e-12
     assert before.sum() > 20
     assert np.abs(trace.momentum - trace.momentum[0]).max() < 1e-13
+
+
+def test_a_pattern_on_both_sides_names_each_pair_once() -> None:
+    """The exchanged pair would double the force, and both would cancel in the record."""
+    ball, law = oo.robots.load("ball"), oo.HuntCrossley(1e6)
+    systems = [
+        oo.System("a", ball, [0, 0, 0, 0, 0, 0, 1], [0.1, 0, 0, 0, 0, 0]),
+        oo.System("b", ball, [0.22, 0, 0, 0, 0, 0, 1], np.zeros(6)),
+    ]
+    touches = []
+    for sides in (("a/*", "b/*"), ("*", "*"), (["a/*", "b/*"], "*")):
+        contact = oo.Contact(*sides, normal=law, name="touch")
+        trace = oo.Simulation(oo.World(systems, contacts=[contact]), time_step=0.01).run(0.5)
+        touches.append(trace.contacts["touch"])
+    for touch in touches[1:]:
+        np.testing.assert_array_equal(touch.gap, touches[0].gap)
+        np.testing.assert_array_equal(touch.force, touches[0].force)
+    assert touches[0].impulse[-1, 0] > 0.3

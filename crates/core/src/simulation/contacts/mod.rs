@@ -25,7 +25,7 @@ use super::error::SimulationError;
 use super::recording::EventRecord;
 use super::state::State;
 use super::tree::Tree;
-use crate::contact::{Contact, ContactError, ContactSteps};
+use crate::contact::{Contact, ContactError, ContactSide, ContactSteps};
 use crate::geometry::{BoundingSphere, Pose, Shape};
 use crate::spatial::Real;
 use crate::world::FrameIndex;
@@ -85,8 +85,13 @@ impl Contacts {
     pub(super) fn new(declared: &[Contact], steps: ContactSteps) -> Self {
         let mut list = Vec::new();
         for (contact, Contact { name, sides, law, may_start_overlapping }) in declared.iter().enumerate() {
+            let order = |side: &ContactSide| (side.frame.system, side.frame.frame);
+            let [first, second] = [0, 1].map(|i| on_both(&sides[i], &sides[1 - i]));
             for (i, a) in sides[0].iter().enumerate() {
                 for (j, b) in sides[1].iter().enumerate().filter(|(_, b)| b.frame != a.frame) {
+                    if first[i] && second[j] && order(b) < order(a) {
+                        continue; // the pair of `b` and `a`, which has both pieces on the other sides, is the same
+                    }
                     let sides = [(i, a), (j, b)].map(|(piece, side)| Side {
                         piece,
                         declared: side.frame,
@@ -353,6 +358,14 @@ impl Touching {
         let body = |(tree, frame): (usize, usize)| trees[tree].model.frames()[frame].body;
         self.is_held || (a.0 == b.0 && body(a) == body(b))
     }
+}
+
+/// Returns for each piece of a side whether the other side has it too.
+fn on_both(pieces: &[ContactSide], others: &[ContactSide]) -> Vec<bool> {
+    let key =
+        |piece: &ContactSide| (piece.frame, piece.pose, piece.shape.bounding_sphere(), piece.shape.name());
+    let others: Vec<_> = others.iter().map(key).collect();
+    pieces.iter().map(|piece| others.contains(&key(piece))).collect()
 }
 
 /// Returns the distance from the origin of a frame to the farthest point of a shape at `pose` in the frame, m;
