@@ -91,8 +91,8 @@ fn sliding_turns_into_rolling() {
     assert!((end * 1.4 - 1.0).abs() < 1e-4, "{:e}", end * 1.4 - 1.0);
 }
 
-/// A body that cannot turn breaks away when a slowly growing force reaches the cone; while it slides, friction
-/// has its kinetic value.
+/// A body that cannot turn breaks away when a slowly growing force reaches the cone; while it slides,
+/// friction has its kinetic value.
 #[test]
 fn a_pressed_body_breaks_away_at_the_cone() {
     let law = law(Friction { static_coefficient: 0.5, ..FRICTION });
@@ -107,6 +107,35 @@ fn a_pressed_body_breaks_away_at_the_cone() {
     assert!((time - 0.5).abs() < 2e-3, "{time}");
     let sliding = friction(&recording, last) / (0.3 * weight) - 1.0;
     assert!(sliding.abs() < 1e-6, "{sliding:e}");
+}
+
+/// Deflection and elastic energy have no jump where a body that slides to rest, or breaks away, begins or
+/// ceases to slip: the dissipated energy never decreases, and no step loses more than sliding over its
+/// length.
+#[test]
+fn stick_and_slip_change_the_energies_continuously() {
+    let sliding: fn(f64) -> Vector3<f64> = |_| Vector3::new(0.0, 0.0, -MASS * G);
+    let ramp: fn(f64) -> Vector3<f64> = |t| Vector3::new(G * t, 0.0, -MASS * G);
+    for (coefficient, speed, force) in [(0.3, 0.02, sliding), (0.5, 0.02, sliding), (0.3, 0.0, ramp)] {
+        let law = law(Friction { static_coefficient: coefficient, ..FRICTION });
+        let recording = on_plane(1e12, speed, law, force).run(0.4).unwrap();
+        let column = &recording.systems[0].contacts[0].values;
+        let times = &recording.systems[1].time;
+        for k in 1..recording.rows() {
+            let [before, now] = [&column[19 * (k - 1)..], &column[19 * k..]];
+            let path = before[10].max(now[10]) * (times[k] - times[k - 1]);
+            let lost = now[13] - before[13];
+            assert!(
+                lost > -1e-13 && lost <= 0.5 * MASS * G * path + 1e-13,
+                "{coefficient} {speed}: {lost:e} J"
+            );
+            assert!(
+                (now[12] - before[12]).abs() <= 0.5 * MASS * G * path + 1e-8,
+                "{:e} J",
+                now[12] - before[12]
+            );
+        }
+    }
 }
 
 #[test]

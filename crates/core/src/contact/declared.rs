@@ -32,13 +32,23 @@ pub struct ContactSteps {
     /// smallest gap, in runs with more than 16 pairs. The results are the same; without it every pair is
     /// considered in every step.
     pub has_broad_phase: bool,
+    /// True if the forces at several points are the gradient of their elastic energy. False leaves out the
+    /// change of the weights and the sliding of the points along the faces: a negative control, which
+    /// creates and destroys energy.
+    pub is_conservative: bool,
 }
 
 impl Default for ContactSteps {
     /// Returns 128 graded steps, with which an elastic impact of spheres changes the energy by a fraction of
     /// about 1e-11, and an energy error of 1e-10 per step.
     fn default() -> Self {
-        Self { count: 128, is_graded: true, energy_error: 1e-10, has_broad_phase: true }
+        Self {
+            count: 128,
+            is_graded: true,
+            energy_error: 1e-10,
+            has_broad_phase: true,
+            is_conservative: true,
+        }
     }
 }
 

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 
 /// Default damping ratio of the bristles.
 const DAMPING_RATIO: f64 = 0.1;
+/// Damping ratio below which slipping bristles are on the cone at once. Those with more damping approach it
+/// at the rate `σ/c`, which a step must resolve.
+const LEAST_RATIO: f64 = 0.01;
 
 /// Coulomb friction with elastic bristles.
 ///
@@ -39,32 +42,75 @@ pub struct Bristle {
     pub is_slipping: bool,
 }
 
-/// Friction force on the second body, with the state of the bristles, after a displacement.
+/// Damping `c` of the bristles, N s/m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BristleDamping {
+    /// Damping while the contact sticks.
+    pub sticking: f64,
+    /// The same while it slips; 0 if the bristles are then on the cone at once.
+    pub slipping: f64,
+}
+
+/// Friction on the second body after a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionForce {
     /// Tangential force on the second body, N.
     pub force: Vec3<f64>,
     /// Bristles after the displacement.
     pub bristle: Bristle,
-    /// Distance from the next change between sticking and slipping, negative beyond the change, with the
-    /// symbols of [`Friction::after`]: `1 − |σ z + c v|/(μ N)` if the contact stuck at the start. If it
-    /// slipped, the margin is the cosine of the angle between bristles and velocity on the cone, and `|σ z +
-    /// c v|/(μ N) − 1` inside the cone. Inside the cone it is 0 if `μ N = 0`.
+    /// Rate of the deflection of the bristles, m/s: the sliding velocity without its plastic part.
+    pub elastic_rate: Vec3<f64>,
+    /// Distance from the next change between sticking and slipping, negative beyond it: `1 − |σ z + c v|/(μ
+    /// N)` while the contact sticks, and `|σ z + c v|/(μ N) − 1` while it slips; for slipping bristles
+    /// without damping, the cosine of the angle between bristles and velocity.
     pub margin: f64,
 }
 
 impl Friction {
     /// Returns the friction under the normal force `normal`, N, at the sliding velocity `rate`, m/s, after
-    /// the relative displacement `moved`, m, from the bristles `start`, with the damping `damping`, N s/m.
-    /// All vectors are tangential.
+    /// the elastic displacement `moved`, m, from the bristles `start`: the integral of
+    /// [`FrictionForce::elastic_rate`]. All vectors are tangential.
     ///
-    /// The cone is `|σ z + c v| ≤ μ N` with the deflection `z`, the velocity `v = rate`, the normal force `N`
-    /// and the static coefficient `μ`, which is replaced by the kinetic one if `start` slips. Inside the
-    /// cone, `ż = v` and `F = −(σ z + c v)`. On the cone, `|F| = μ N` with the kinetic coefficient, and the
-    /// direction `d` of the bristles, of length `μ N/σ`, turns towards the velocity: `ḋ = (1 − d dᵀ) v/|z|`.
-    /// For a constant velocity, the angle `φ` between `d` and `v`, at first `φ₀`, obeys `tan φ/2 = tan φ₀/2
-    /// exp(−s/|z|)` with the path length `s`.
+    /// With the trial force `f = σ z + c v`, a contact sticks while `|f| ≤ μ N`: `ż = v` and `F = −f`.
+    /// Beyond the cone, `F = −μ N f/|f|`, and the bristles carry this force, `σ z + c ż = μ N f/|f|`. The
+    /// velocity `v − ż` is that of the slip, parallel to the force. Force and deflection are continuous
+    /// where the contact begins or ceases to slip, but for the difference of static and kinetic friction.
+    ///
+    /// Without damping, slipping bristles have the length `μ N/σ` and turn towards the velocity, `ḋ = (1 −
+    /// d dᵀ) v/|z|`. For a constant velocity, the angle `φ` between both obeys `tan φ/2 = tan φ₀/2
+    /// exp(−s/|z|)` with the path `s`.
+    ///
+    /// Source of the return to the cone: Simo and Hughes, Computational Inelasticity, 1998, sections 1.2
+    /// and 1.7.
     pub fn after(
+        &self,
+        start: &Bristle,
+        moved: Vec3<f64>,
+        rate: Vec3<f64>,
+        normal: f64,
+        damping: BristleDamping,
+    ) -> FrictionForce {
+        let is_slipping = start.is_slipping;
+        if is_slipping && damping.slipping == 0.0 {
+            return self.on_cone(start, moved, rate, normal, damping.sticking);
+        }
+        let deflection = start.deflection + moved;
+        let trial = deflection * self.stiffness + rate * damping.sticking;
+        let limit = if is_slipping { self.kinetic_coefficient } else { self.static_coefficient } * normal;
+        let beyond = trial.norm() - limit;
+        let relative = if limit > 0.0 { beyond / limit } else { beyond / f64::MIN_POSITIVE };
+        let margin = if is_slipping { relative } else { -relative };
+        let bristle = Bristle { deflection, is_slipping: is_slipping && beyond > 0.0 };
+        if beyond <= 0.0 {
+            return FrictionForce { force: -trial, bristle, elastic_rate: rate, margin };
+        }
+        let direction = unit(trial);
+        let plastic = if is_slipping { beyond / damping.slipping } else { 0.0 };
+        FrictionForce { force: direction * -limit, bristle, elastic_rate: rate - direction * plastic, margin }
+    }
+
+    /// Returns the friction of slipping bristles without damping.
+    fn on_cone(
         &self,
         start: &Bristle,
         moved: Vec3<f64>,
@@ -74,31 +120,29 @@ impl Friction {
     ) -> FrictionForce {
         let trial = start.deflection + moved;
         let elastic = trial * self.stiffness + rate * damping;
-        let limit =
-            if start.is_slipping { self.kinetic_coefficient } else { self.static_coefficient } * normal;
+        let limit = self.kinetic_coefficient * normal;
         let beyond = elastic.norm() - limit;
         if beyond <= 0.0 {
-            let margin = if limit > 0.0 { -beyond / limit } else { 0.0 };
-            let margin = if start.is_slipping { -margin } else { margin };
+            let margin = if limit > 0.0 { beyond / limit } else { 0.0 };
             let bristle = Bristle { deflection: trial, is_slipping: false };
-            return FrictionForce { force: -elastic, bristle, margin };
+            return FrictionForce { force: -elastic, bristle, elastic_rate: rate, margin };
         }
-        let length = self.kinetic_coefficient * normal / self.stiffness;
-        let from = if start.is_slipping { start.deflection } else { trial };
-        let direction = turned(from, rate, moved.norm(), length);
-        let deflection = direction * length;
-        let margin =
-            if start.is_slipping { cosine(direction, rate) } else { -beyond / limit.max(f64::MIN_POSITIVE) };
-        let bristle = Bristle { deflection, is_slipping: true };
-        FrictionForce { force: -(deflection * self.stiffness), bristle, margin }
+        let length = limit / self.stiffness;
+        let direction = turned(start.deflection, rate, moved.norm(), length);
+        let bristle = Bristle { deflection: direction * length, is_slipping: true };
+        let margin = cosine(direction, rate);
+        FrictionForce { force: direction * -limit, bristle, elastic_rate: rate, margin }
     }
 
-    /// Returns the damping inside the cone, N s/m, of a contact with the reciprocal effective mass
-    /// `mobility`, 1/kg. The default damping is 0 if `mobility` is 0.
-    pub fn damping_for(&self, mobility: f64) -> f64 {
+    /// Returns the damping of a contact with the reciprocal effective mass `mobility`, 1/kg.
+    pub fn damping_for(&self, mobility: f64) -> BristleDamping {
         // c = 2 ζ √(σ m)
-        let default = || 2.0 * DAMPING_RATIO * (self.stiffness / mobility).sqrt();
-        self.damping.unwrap_or_else(|| if mobility > 0.0 { default() } else { 0.0 })
+        let with_ratio = |ratio: f64| {
+            if mobility > 0.0 { 2.0 * ratio * (self.stiffness / mobility).sqrt() } else { 0.0 }
+        };
+        let sticking = self.damping.unwrap_or_else(|| with_ratio(DAMPING_RATIO));
+        let is_resolved = mobility > 0.0 && sticking >= with_ratio(LEAST_RATIO);
+        BristleDamping { sticking, slipping: if is_resolved { sticking } else { 0.0 } }
     }
 
     /// Returns the law of the moment about the normal, N m, as a function of the angle of twist, rad; `None`

@@ -6,8 +6,8 @@ use super::shape::Shape;
 use crate::spatial::Vec3;
 use std::f64::consts::TAU;
 
-/// Number of corners of the polygon that approximates a disc.
-const DISC_CORNERS: u32 = 8;
+/// Corners of the polygon in place of a disc.
+pub(super) const DISC_CORNERS: u32 = 8;
 
 /// Distance of a point from a face below which it lies on the face, relative to the size of the hull.
 const ON_FACE: f64 = 1e-9;
@@ -30,6 +30,8 @@ pub(super) enum Feature {
         corners: Vec<Vec3<f64>>,
         /// Outward unit normal.
         normal: Vec3<f64>,
+        /// Centre and radius of the disc of which the polygon is a part.
+        disc: Option<(Vec3<f64>, f64)>,
     },
     /// Boundary plane of a half-space.
     Plane,
@@ -41,9 +43,10 @@ impl Feature {
     pub(super) fn of(shape: &Shape, pose: &Pose, witness: Vec3<f64>, d: Vec3<f64>) -> Self {
         match local(shape, pose.to_shape(witness), pose.rot.transpose_mul(d)) {
             Self::Segment { ends, radius } => Self::Segment { ends: ends.map(|p| pose.to_common(p)), radius },
-            Self::Face { corners, normal } => Self::Face {
+            Self::Face { corners, normal, disc } => Self::Face {
                 corners: corners.into_iter().map(|p| pose.to_common(p)).collect(),
                 normal: pose.rot * normal,
+                disc: disc.map(|(center, radius)| (pose.to_common(center), radius)),
             },
             other => other,
         }
@@ -100,7 +103,7 @@ fn box_face(half_edges: [f64; 3], d: [f64; 3]) -> Feature {
         Vec3::from_slice(&corner)
     };
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(corner).to_vec();
-    Feature::Face { corners, normal: Vec3::from_slice(&normal) }
+    Feature::Face { corners, normal: Vec3::from_slice(&normal), disc: None }
 }
 
 /// Returns a regular polygon in a disc about the z axis, whose first corner, in the direction `away`, is the
@@ -111,7 +114,11 @@ fn disc(radius: f64, z: f64, away: Vec3<f64>, sign: f64) -> Feature {
         let (sine, cosine) = (sign * TAU * f64::from(k) / f64::from(DISC_CORNERS)).sin_cos();
         Vec3::new(0.0, 0.0, z) + away * (radius * cosine) + side * (radius * sine)
     };
-    Feature::Face { corners: (0..DISC_CORNERS).map(corner).collect(), normal: Vec3::new(0.0, 0.0, sign) }
+    Feature::Face {
+        corners: (0..DISC_CORNERS).map(corner).collect(),
+        normal: Vec3::new(0.0, 0.0, sign),
+        disc: Some((Vec3::new(0.0, 0.0, z), radius)),
+    }
 }
 
 /// Returns the face with the normal nearest to `d` among those that contain `witness`, or a point if none
@@ -125,5 +132,6 @@ fn hull_face(hull: &Hull, witness: Vec3<f64>, d: Vec3<f64>) -> Feature {
     nearest.map_or(Feature::Point, |face| Feature::Face {
         corners: face.corners.iter().map(|i| vertices[*i]).collect(),
         normal: face.normal,
+        disc: None,
     })
 }

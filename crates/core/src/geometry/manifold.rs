@@ -1,28 +1,32 @@
 //! Contact points of two shapes.
 //!
-//! The surfaces that face each other along the normal `n` are reduced to features: a face, a line on a round
-//! surface, or a point. Their common part, as seen along `n`, is a polygon or a segment. Its corners are the
-//! contact points, each with the depth `x_i` of the overlap there. With `g(s) = (1 − s²)²` below `s = 1` and
-//! 0 above, and slopes relative to `TILT`, the weights are `w = f a + (1 − f) e`:
+//! The surfaces that face each other along the normal `n` are reduced to features: a face, a line on a
+//! round surface, or a point. Their common part is a polygon or a segment. Its corners are the contact
+//! points, each with the depth `x_i` of the overlap there. With `g(s) = (1 − s²)²` below `s = 1` and 0
+//! above, the weights of the common part of two faces are `w_i ∝ a_i g(s_i)`:
 //!
-//! - `a_i` by area: `Σ a_i x_i` is the mean depth of the patch ([`weights`](super::polygon::weights)). These
-//!   weights are continuous where the patch gains or loses a corner. A box that lies on a plane has `a_i =
-//!   1/4`.
-//! - `f = g(slope of the patch)`: the face loses its weight to its deepest edges and corner as the face
-//!   tilts.
-//! - `e_i` by edges: an edge of length `l` gives `½ l h` to each of its ends, and the sum is scaled to the
-//!   largest `h` of all edges; the deepest corner has the rest. `h = g(slope of the edge) g(s)`, with the
-//!   height `s` of the edge above the deepest corner, relative to `TILT` times the extent of the patch.
+//! - `a_i` by the angle at the corner, such that the weighted mean of the corners is the centroid. A box
+//!   that lies on a plane has `a_i = 1/4`. A corner that splits into two passes its weight on to both, and
+//!   a point on an edge has none.
+//! - `s_i` by the largest slope from the corner to a deeper one, relative to `TILT`. The face loses its
+//!   weight to its deepest edge and corner as it tilts.
 //!
-//! The weights sum to 1 and are continuous in the pose where the normal is, except where a body rolls from a
-//! face to a neighbour with almost the same normal. The contact points of two lines are the ends of their
-//! common part, with weights that decrease with the angle between the lines and their slope; the witness
-//! points, where the lines cross, receive the rest.
+//! The common part is seen along the bisector of the normals of both faces, and the depth of the deepest
+//! corner is that of the shapes. Depths and weights are therefore functions of the pose without jumps where
+//! `n` changes from one face to the other, and each point has their gradients. Jumps remain where a body
+//! rolls from a face to a neighbour with almost the same normal, and where the direction of the least depth
+//! changes by a large angle between two pairs of parallel faces.
+//!
+//! A line on a round surface and a face have as points the ends of their common part, with weights by its
+//! slope. Two lines have the ends of their common part, with weights that fall with the angle between the
+//! lines and their slope; the witness points receive the rest. These points are fixed to the shapes: their
+//! gradients leave out how they slide.
 
 use super::closest::{check, check_pose, nearest_pieces};
+use super::contact_point::{ContactPoint, witness};
 use super::error::GeometryError;
 use super::feature::Feature;
-use super::patch::{ContactPoint, contact_points, witness};
+use super::patch::contact_points;
 use super::pose::Pose;
 use super::proximity::Proximity;
 use super::shape::Shape;
@@ -32,7 +36,8 @@ use super::shape::Shape;
 pub struct Manifold {
     /// Distance, witness points and normal of the shapes.
     pub proximity: Proximity,
-    /// Contact points with positive weights: 1 to 8 for the usual shapes, more between faces with many corners.
+    /// Contact points with positive weights: 1 to 8 for the usual shapes, more between faces with many
+    /// corners.
     pub points: Vec<ContactPoint>,
 }
 
@@ -63,6 +68,17 @@ impl Points {
             Self::One(points) => points,
             Self::Many(points) => points,
         }
+    }
+
+    /// Returns the same points, fixed to both shapes and with constant weights.
+    pub(crate) fn fixed(mut self, proximity: &Proximity) -> Self {
+        if let Self::Many(points) = &mut self {
+            for point in points {
+                *point =
+                    ContactPoint::new(proximity, [point.point_a, point.point_b], point.depth, point.weight);
+            }
+        }
+        self
     }
 }
 

@@ -5,18 +5,22 @@
 //! |-|-|
 //! | signed distance from a point to a shape, its closest point and normal | [`signed_distance`] |
 //! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` for convex ones | [`closest()`] |
-//! | contact points, `w = f a + (1 − f) e` | [`manifold()`] |
+//! | contact points, `w_i ∝ a_i g(s_i)` | [`manifold()`] |
 //!
 //! `n` is a unit vector; `a` and `b` are points of the first and of the second shape.
 
 mod boundary;
 mod bounding_sphere;
 mod closest;
+mod contact_point;
 mod convex;
+mod dual;
 mod epa;
 mod error;
+mod facets;
 mod feature;
 mod gjk;
+mod gradient;
 mod hull;
 mod least;
 mod link_shape;
@@ -40,6 +44,7 @@ mod torus;
 pub use boundary::{BoundaryPoint, signed_distance};
 pub use bounding_sphere::BoundingSphere;
 pub use closest::closest;
+pub use contact_point::ContactPoint;
 pub use error::{GeometryError, PosedPair};
 pub use hull::{Face, Hull};
 pub use least::{LeastDistance, ShapeSet};
@@ -47,7 +52,6 @@ pub use link_shape::{LinkShape, link_shape, shape_of};
 pub use manifold::{Manifold, manifold};
 pub(crate) use manifold::{Points, touching_points};
 pub use mesh::{Mesh, MeshDefect};
-pub use patch::ContactPoint;
 pub use pose::Pose;
 pub use proximity::Proximity;
 pub use shape::Shape;

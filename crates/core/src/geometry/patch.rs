@@ -1,31 +1,19 @@
 //! Common part of two features, as seen along the normal, and its contact points.
 
+use super::contact_point::{ContactPoint, TILT, witness};
 use super::feature::Feature;
+use super::gradient::face_points;
 use super::polygon::{Point, clip, weights};
 use super::projection::Projection;
 use super::proximity::Proximity;
 use crate::spatial::Vec3;
 
-/// Slope between two surfaces above which the far side of a patch has no weight. While the weights change,
-/// the forces at the points are not derived from a potential: with a slope of 0.1, the energy balance of
-/// collisions of polyhedra would be wrong by up to 10 % of the loss.
-const TILT: f64 = 0.02;
-
-/// Pair of opposite points at which two shapes touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactPoint {
-    /// Point of the first shape, m.
-    pub point_a: Vec3<f64>,
-    /// Point of the second shape, m: `point_a − depth normal`.
-    pub point_b: Vec3<f64>,
-    /// Depth of the overlap at this point, m; negative where the shapes are separated.
-    pub depth: f64,
-    /// Part of the stiffness of the contact that acts at this point; the weights of a contact sum to 1.
-    pub weight: f64,
-}
-
 /// Returns the contact points of two features: the witness points unless both have an extent.
 pub(super) fn contact_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Vec<ContactPoint> {
+    let is_plane = |feature: &Feature| matches!(feature, Feature::Face { .. } | Feature::Plane);
+    if is_plane(a) && is_plane(b) {
+        return face_points(proximity, a, b).unwrap_or_else(|| vec![witness(proximity, 1.0)]);
+    }
     let plane = Projection::new(proximity);
     let found = match (a, b) {
         (Feature::Segment { ends: p, radius: r }, Feature::Segment { ends: q, radius: s })
@@ -39,20 +27,13 @@ pub(super) fn contact_points(proximity: &Proximity, a: &Feature, b: &Feature) ->
     found.unwrap_or_else(|| vec![witness(proximity, 1.0)])
 }
 
-/// Returns the contact point that the witness points form.
-pub(super) fn witness(proximity: &Proximity, weight: f64) -> ContactPoint {
-    let Proximity { distance, point_a, point_b, .. } = *proximity;
-    ContactPoint { point_a, point_b, depth: -distance, weight }
-}
-
 /// Returns `(1 − s²)²`, and 0 from `s = 1` on.
 fn taper(s: f64) -> f64 {
     let left = (1.0 - s * s).max(0.0);
     if s < 1.0 { left * left } else { 0.0 }
 }
 
-/// Returns the contact points of a face with a face, a line or a plane; `None` if the features have no common
-/// part.
+/// Returns the contact points of a line and a face or a plane; `None` without a common part.
 fn overlap(plane: &Projection, proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Vec<ContactPoint>> {
     let corners = match (plane.corners(a), plane.corners(b)) {
         (Some(a), Some(b)) if b.len() > 2 => clip(&a, &b),
@@ -75,12 +56,8 @@ fn overlap(plane: &Projection, proximity: &Proximity, a: &Feature, b: &Feature) 
     let reached = if size > 0.0 { taper(short / (TILT * size)) } else { 0.0 };
     let mut points = Vec::with_capacity(corners.len() + 1);
     for i in (0..corners.len()).filter(|i| reached * weights[*i] > 0.0) {
-        points.push(ContactPoint {
-            point_a: plane.lift(corners[i], height_a[i]),
-            point_b: plane.lift(corners[i], height_b[i]),
-            depth: depths[i],
-            weight: reached * weights[i],
-        });
+        let ends = [height_a[i], height_b[i]].map(|height| plane.lift(corners[i], height));
+        points.push(ContactPoint::new(proximity, ends, depths[i], reached * weights[i]));
     }
     if reached < 1.0 {
         points.push(witness(proximity, 1.0 - reached));
@@ -191,12 +168,8 @@ fn lines(
         let weight = 0.5 * taper(aside / band) * taper((-proximity.distance - depth).max(0.0) / band);
         lost -= weight;
         if weight > 0.0 {
-            points.push(ContactPoint {
-                point_a,
-                point_b: proximity.normal.scale_add(-depth, point_a),
-                depth,
-                weight,
-            });
+            let ends = [point_a, proximity.normal.scale_add(-depth, point_a)];
+            points.push(ContactPoint::new(proximity, ends, depth, weight));
         }
     }
     if lost > 0.0 {

@@ -1,33 +1,36 @@
-//! Convex polygons in a plane: intersection and weights of the corners.
+//! Convex polygons in a plane: intersection, and weights of the corners by area.
 
-/// Point in the plane, as coordinates in m.
-pub(super) type Point = [f64; 2];
+use super::dual::Number;
 
-fn cross(o: Point, a: Point, b: Point) -> f64 {
+/// Point of the plane, m.
+pub(super) type Point<N = f64> = [N; 2];
+
+fn cross<N: Number>(o: Point<N>, a: Point<N>, b: Point<N>) -> N {
     (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
 }
 
-fn between(a: Point, b: Point, t: f64) -> Point {
-    [t.mul_add(b[0] - a[0], a[0]), t.mul_add(b[1] - a[1], a[1])]
+fn between<N: Number>(a: Point<N>, b: Point<N>, t: N) -> Point<N> {
+    [t * (b[0] - a[0]) + a[0], t * (b[1] - a[1]) + a[1]]
 }
 
-/// Returns the intersection of a convex polygon, or of a segment of two corners, with a convex polygon. Both have their
-/// corners counterclockwise.
+/// Returns the intersection of a convex polygon, or of a segment of two corners, with a convex polygon.
+/// Both have their corners counterclockwise.
 ///
 /// Source: Sutherland and Hodgman, Communications of the ACM 17(1), 1974.
-pub(super) fn clip(subject: &[Point], window: &[Point]) -> Vec<Point> {
+pub(super) fn clip<N: Number>(subject: &[Point<N>], window: &[Point<N>]) -> Vec<Point<N>> {
     let is_closed = subject.len() > 2;
     let mut corners = subject.to_vec();
     for (k, from) in window.iter().enumerate() {
         let to = window[(k + 1) % window.len()];
-        let height: Vec<f64> = corners.iter().map(|p| cross(*from, to, *p)).collect();
+        let height: Vec<N> = corners.iter().map(|p| cross(*from, to, *p)).collect();
+        let is_inside = |i: usize| height[i].value() >= 0.0;
         let mut kept = Vec::with_capacity(corners.len() + 1);
         for i in 0..corners.len() {
-            if height[i] >= 0.0 {
+            if is_inside(i) {
                 kept.push(corners[i]);
             }
             let next = (i + 1) % corners.len();
-            if (next > i || is_closed) && (height[i] >= 0.0) != (height[next] >= 0.0) {
+            if (next > i || is_closed) && is_inside(i) != is_inside(next) {
                 kept.push(between(corners[i], corners[next], height[i] / (height[i] - height[next])));
             }
         }
@@ -36,12 +39,13 @@ pub(super) fn clip(subject: &[Point], window: &[Point]) -> Vec<Point> {
     corners
 }
 
-/// Returns weights of the corners of a convex polygon or a segment. They sum to 1, and the weighted mean of the corners is
-/// the centroid.
+/// Returns weights of the corners of a convex polygon or a segment. They sum to 1, and the weighted mean of
+/// the corners is the centroid.
 ///
-/// With the polygon cut into triangles from its centroid, of areas `A_i` from corner `i` to `i + 1` and `A` in total, the
-/// weight is `w_i = (A_{i−1} + A_i)/2A`. For any function that is linear on the polygon, `Σ w_i f_i` is its mean. A corner
-/// that splits into two passes its weight on to them, so the weights of a patch that changes its shape are continuous.
+/// With the polygon cut into triangles from its centroid, of areas `A_i` from corner `i` to `i + 1` and `A`
+/// in total, the weight is `w_i = (A_{i−1} + A_i)/2A`. For any function that is linear on the polygon, `Σ
+/// w_i f_i` is its mean. A corner that splits into two passes its weight on to them, so the weights of a
+/// patch that changes its shape are continuous.
 pub(super) fn weights(corners: &[Point]) -> Vec<f64> {
     let count = corners.len();
     let next = |i: usize| corners[(i + 1) % count];

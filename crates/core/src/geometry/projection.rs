@@ -52,7 +52,7 @@ impl Projection {
             Feature::Segment { ends, .. } if !self.is_steep(*ends) => {
                 Some(ends.iter().map(|p| self.project(*p)).collect())
             }
-            Feature::Face { corners, normal } if normal.dot(self.normal).abs() > STEEP => {
+            Feature::Face { corners, normal, .. } if normal.dot(self.normal).abs() > STEEP => {
                 let mut corners: Vec<_> = corners.iter().map(|p| self.project(*p)).collect();
                 if normal.dot(self.normal) < 0.0 {
                     corners.reverse();
@@ -68,7 +68,9 @@ impl Projection {
     pub(super) fn height(&self, feature: &Feature, p: Point, other: f64) -> f64 {
         let foot = self.lift(p, 0.0);
         match feature {
-            Feature::Face { corners, normal } => (corners[0] - foot).dot(*normal) / self.normal.dot(*normal),
+            Feature::Face { corners, normal, .. } => {
+                (corners[0] - foot).dot(*normal) / self.normal.dot(*normal)
+            }
             Feature::Segment { ends: [from, to], .. } => {
                 let along = *to - *from;
                 let level = self.normal.scale_add(-along.dot(self.normal), along);

@@ -6,7 +6,8 @@ use crate::spatial::Vec3;
 /// Signed distance of two shapes, with witness points and normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proximity {
-    /// Distance, m; where the shapes overlap, minus the length of the shortest translation that separates them.
+    /// Distance, m; where the shapes overlap, minus the length of the shortest translation that separates
+    /// them.
     pub distance: f64,
     /// Point on the surface of the first shape, m.
     pub point_a: Vec3<f64>,
@@ -24,7 +25,12 @@ impl Proximity {
         Self { point_a: self.point_b, point_b: self.point_a, normal: -self.normal, ..self }
     }
 
-    /// Returns the same distance in common axes, given the pose of its present axes.
+    /// Returns the middle of the witness points, m.
+    pub(crate) fn center(&self) -> Vec3<f64> {
+        (self.point_a + self.point_b) * 0.5
+    }
+
+    /// Returns the same distance in common axes, given the pose of the present axes.
     #[must_use]
     pub(super) fn in_common(self, axes: &Pose) -> Self {
         Self {

@@ -114,6 +114,15 @@ impl Shape {
         }
     }
 
+    /// Returns true if all surfaces are plane.
+    pub(crate) fn is_polyhedral(&self) -> bool {
+        match self {
+            Self::HalfSpace | Self::Box { .. } | Self::Hull(_) => true,
+            Self::Compound(pieces) => pieces.iter().all(|(piece, _)| piece.is_polyhedral()),
+            _ => false,
+        }
+    }
+
     /// Returns true if the shape is convex and bounded.
     pub fn is_convex_body(&self) -> bool {
         !matches!(self, Self::Torus { .. } | Self::HalfSpace | Self::Compound(_))

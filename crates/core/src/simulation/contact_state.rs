@@ -6,18 +6,22 @@ use serde::{Deserialize, Serialize};
 /// Integrals of a contact over the time during which it acts.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContactState {
-    /// Sliding displacement of the second side relative to the first, in axes of the first side, m.
+    /// Elastic part of the sliding displacement of the second side relative to the first, in axes of the
+    /// first side, m: all of it while the contact sticks.
     pub(super) slip: Vec3<f64>,
-    /// Angle by which the second side has turned about the normal relative to the first, rad.
+    /// The same of the angle by which the second side turns about the normal relative to the first, rad.
     pub(super) turn: f64,
     /// Energy that the normal force has taken from the motion, J: dissipated, or stored elastically.
     pub(super) normal_work: f64,
+    /// Energy that the law of the normal force dissipates while the pieces press on each other, J. It is
+    /// the work without the elastic energy, but for errors of the integrator.
+    pub(super) normal_loss: f64,
     /// Energy that friction has taken from the motion, J: dissipated, or stored in the bristles.
     pub(super) friction_work: f64,
     /// Impulse on the second side, W axes, N s.
     pub(super) impulse: Vec3<f64>,
-    /// Angular impulse on the second side, W axes, N m s: the integral of the moments about the point at which
-    /// the links of the contact touched last.
+    /// Angular impulse on the second side, W axes, N m s: the integral of the moments about the point at
+    /// which the links of the contact touched last.
     pub(super) angular_impulse: Vec3<f64>,
 }
 
@@ -32,6 +36,7 @@ impl ContactState {
             slip: zero,
             turn: 0.0,
             normal_work: 0.0,
+            normal_loss: 0.0,
             friction_work: 0.0,
             impulse: zero,
             angular_impulse: zero,
@@ -44,6 +49,7 @@ impl ContactState {
             slip: rate.slip.scale_add(h, self.slip),
             turn: rate.turn.mul_add(h, self.turn),
             normal_work: rate.normal_work.mul_add(h, self.normal_work),
+            normal_loss: rate.normal_loss.mul_add(h, self.normal_loss),
             friction_work: rate.friction_work.mul_add(h, self.friction_work),
             impulse: rate.impulse.scale_add(h, self.impulse),
             angular_impulse: rate.angular_impulse.scale_add(h, self.angular_impulse),

@@ -3,7 +3,7 @@
 use super::mode::{Mode, Phase};
 use super::side::{Side, SideMotion};
 use super::touching::{Loading, Touching};
-use crate::contact::{Bristle, ContactError, Friction, FrictionForce};
+use crate::contact::{Bristle, BristleDamping, ContactError, Friction, FrictionForce};
 use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
@@ -115,12 +115,17 @@ impl Touching {
         let Some(friction) = friction else { return [AT_REST; 2] };
         let Mode { bristle, twist, speeds, mobility, .. } = &self.mode;
         let sliding = match &loading.friction {
-            Some(found) => continued(bristle, found, loading.sliding, speeds[0]),
+            Some(found) => {
+                continued(bristle, found, loading.sliding, speeds[0], friction.damping_for(mobility[1]))
+            }
             None => self.begun(&friction, loading, loading.sliding.norm(), mobility[1], rounding),
         };
         let Some(torsion) = friction.torsion() else { return [sliding, AT_REST] };
         let twisting = match &loading.torsion {
-            Some(found) => continued(twist, found, Vec3::new(loading.spin, 0.0, 0.0), speeds[1]),
+            Some(found) => {
+                let rate = Vec3::new(loading.spin, 0.0, 0.0);
+                continued(twist, found, rate, speeds[1], torsion.damping_for(mobility[2]))
+            }
             None => self.begun(&torsion, loading, loading.spin.abs(), mobility[2], rounding),
         };
         [sliding, twisting]
@@ -142,17 +147,24 @@ impl Touching {
         let growth = law.normal.tangent_stiffness(loading.depth) * loading.rate;
         let limit = friction.static_coefficient * law.normal.force(loading.depth, loading.rate).max(0.0);
         let is_without_force = loading.depth <= rounding && law.normal.force(0.0, loading.rate) <= 0.0;
-        let is_slipping = friction.damping_for(mobility) * speed > limit
+        let is_slipping = friction.damping_for(mobility).sticking * speed > limit
             || (is_without_force && friction.stiffness * speed > friction.static_coefficient * growth);
         Bristle { is_slipping, ..AT_REST }
     }
 }
 
-/// Returns the bristles at the end of the last step, which they began in the state `before`. `speed` is the
-/// magnitude that the velocity `rate`, m/s, had at the start of that step.
-fn continued(before: &Bristle, found: &FrictionForce, rate: Vec3<f64>, speed: f64) -> Bristle {
+/// Returns the bristles that were `before` at the start of the last step. `speed` is the magnitude that the
+/// velocity `rate` had at that time.
+fn continued(
+    before: &Bristle,
+    found: &FrictionForce,
+    rate: Vec3<f64>,
+    speed: f64,
+    damping: BristleDamping,
+) -> Bristle {
     let is_slipping = if before.is_slipping {
-        found.bristle.is_slipping && found.margin > REACHED * speed
+        let least = if damping.slipping > 0.0 { REACHED } else { REACHED * speed };
+        found.bristle.is_slipping && found.margin > least
     } else {
         found.margin <= REACHED && found.force.dot(rate) <= 0.0
     };

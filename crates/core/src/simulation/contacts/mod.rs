@@ -68,6 +68,9 @@ pub(crate) struct Contacts {
     steps: ContactSteps,
     /// Largest permitted energy error of the next step, J; infinite without contacts between faces or edges.
     pub(super) energy_error: f64,
+    /// Work of the normal forces that is neither stored nor dissipated, J, at the start of the step and at
+    /// the last margin.
+    pub(super) open_energies: [f64; 2],
     /// True if changes between sticking and slipping do not end a step.
     pub(super) ignores_slip: bool,
     /// Touches of the declared contacts.
@@ -111,6 +114,7 @@ impl Contacts {
                         sides,
                         law,
                         may_start_overlapping,
+                        is_conservative: steps.is_conservative,
                         mode,
                         is_held,
                         last,
@@ -214,9 +218,9 @@ impl Contacts {
                 touching.last = Some(touching.evaluate(&touching.motions(frames, trees, state), own)?);
             }
             let Some(loading) = &touching.last else { continue };
-            if loading.force.norm() > 0.0 {
+            if loading.force.norm() > 0.0 || loading.moment.norm() > 0.0 {
                 let [a, b] = &touching.sides;
-                let moment = loading.normal * loading.moment();
+                let moment = loading.total_moment();
                 a.add_wrench(trees, &state.trees, [-loading.force, -moment], loading.point);
                 b.add_wrench(trees, &state.trees, [loading.force, moment], loading.point);
             }
@@ -243,7 +247,7 @@ impl Contacts {
         trees: &[Tree<'_, S>],
         state: &mut State<S>,
     ) -> Result<f64, ContactError> {
-        let (mut longest, mut energy) = (f64::INFINITY, 0.0);
+        let (mut longest, mut energy, mut open) = (f64::INFINITY, 0.0, 0.0);
         self.samples.fill(Sample::FAR);
         self.frames.forget();
         self.keep(&state.contacts);
@@ -263,6 +267,7 @@ impl Contacts {
             }
             longest = longest.min(touching.longest_step(*steps, &motions, &loading, *has_engine));
             energy += touching.energy(&loading);
+            open += touching.open_energy(&loading, own);
             samples[touching.contact].add(touching, &motions, &loading);
             touching.last = Some(loading);
         }
@@ -276,6 +281,7 @@ impl Contacts {
             self.begun.clone_from(&state.contacts);
         }
         self.energy_error = if energy > 0.0 { self.steps.energy_error * energy } else { f64::INFINITY };
+        self.open_energies = [open; 2];
         self.update_touches(t);
         if longest >= end - t {
             return Ok(end);
@@ -322,7 +328,7 @@ impl Contacts {
         trees: &[Tree<'_, S>],
         state: &State<S>,
     ) -> Result<f64, ContactError> {
-        let mut least = f64::INFINITY;
+        let (mut least, mut open) = (f64::INFINITY, 0.0);
         let Self { list, near, frames, ignores_slip, .. } = self;
         frames.forget();
         for (&number, own) in near.iter().zip(&state.contacts) {
@@ -331,11 +337,13 @@ impl Contacts {
                 continue;
             }
             let loading = touching.evaluate(&touching.motions(frames, trees, state), own)?;
+            open += touching.open_energy(&loading, own);
             let [depth, normal, friction] = touching.margins(&loading);
             let slack = touching.mode.slack;
             let friction = if *ignores_slip { f64::INFINITY } else { friction + slack[2] };
             least = least.min(depth + slack[0]).min(normal + slack[1]).min(friction);
         }
+        self.open_energies[1] = open;
         Ok(least)
     }
 }

@@ -25,9 +25,9 @@ pub(in crate::simulation) struct Mode {
     pub(super) bristle: Bristle,
     /// Twist of the bristles about the normal at the start of the step, rad, in the first component.
     pub(super) twist: Bristle,
-    /// Angle by which the second side has turned about the normal, at the start of the step, rad.
+    /// Elastic angle about the normal at the start of the step, rad.
     pub(super) turn: f64,
-    /// Sliding displacement at the start of the step, in axes of the first side, m.
+    /// Elastic sliding displacement at the start of the step, in axes of the first side, m.
     pub(super) slip: Vec3<f64>,
     /// Normal at the start of the step, in axes of the first side.
     pub(super) normal: Vec3<f64>,

@@ -2,57 +2,110 @@
 
 use super::side::SideMotion;
 use crate::contact::NormalLaw;
-use crate::geometry::ContactPoint;
-use crate::spatial::Vec3;
+use crate::geometry::{ContactPoint, Proximity};
+use crate::spatial::{Force, Motion, Vec3};
 
-/// Resultant of the normal forces at the points of a contact.
+/// Resultant of the normal forces at the points of a contact, and of the forces that change their weights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pressure {
     /// Point at which the resultant acts, m, in W.
     pub(super) point: Vec3<f64>,
-    /// Magnitude of the resultant, N.
+    /// Sum of the normal forces, N.
     pub(super) force: f64,
+    /// Force on the second side, N, W axes: along the normal for a single point, and for several points
+    /// tilted by as much as the surfaces.
+    pub(super) on_b: Vec3<f64>,
+    /// Moment on the second side about `point`, N m, W axes.
+    pub(super) moment: Vec3<f64>,
     /// Power taken from the motion, W.
     pub(super) power: f64,
-    /// Elastic energy of all points, J.
+    /// Power dissipated, W.
+    pub(super) loss: f64,
+    /// Elastic energy, J.
     pub(super) elastic: f64,
 }
 
 impl Pressure {
-    /// Computes the resultant `N = Σ w_i F(x_i, ẋ_i)` of the forces at points with the weights `w_i`. It acts
-    /// at `Σ w_i F_i p_i/N`, about which the forces have no moment, since all are parallel to the normal.
+    /// Computes the forces that belong to the elastic energy `U = Σ w_i u(x_i)` of points with the depths
+    /// `x_i` and the weights `w_i`. For a displacement `ξ` of the second side,
+    ///
+    /// `−f = Σ w_i F(x_i, ẋ_i) ∂x_i/∂ξ + Σ u(x_i) ∂w_i/∂ξ`,
+    ///
+    /// which is the gradient of `U` for an elastic law. The sum of the normal forces, `N = Σ w_i F_i`, acts
+    /// at `Σ w_i F_i p_i/N`.
     ///
     /// A single point may pull: its force is continued beyond lift-off, which ends the step. Pieces that
-    /// separate without force (`is_pressing` false) and points that would pull dissipate their elastic energy.
+    /// separate without force (`is_pressing` false) and points that would pull dissipate their elastic
+    /// energy.
     pub(super) fn of(
         law: &NormalLaw,
         points: &[ContactPoint],
+        proximity: &Proximity,
+        motions: &[SideMotion; 2],
+        is_pressing: bool,
+    ) -> Self {
+        if let [point] = points {
+            return Self::at_point(law, point, proximity.normal, motions, is_pressing);
+        }
+        let (center, [a, b]) = (proximity.center(), motions);
+        let twist = Motion::new(
+            b.velocity_at(center) - a.velocity_at(center),
+            b.angular_velocity - a.angular_velocity,
+        );
+        let (mut at, mut mean) = (Vec3::zero(), Vec3::zero());
+        let (mut force, mut loss, mut elastic) = (0.0, 0.0, 0.0);
+        let mut wrench = Force::zero();
+        for point in points {
+            let depth = point.depth;
+            let rate = twist.dot(point.depth_gradient);
+            let own = if is_pressing && depth > 0.0 { law.force(depth, rate).max(0.0) } else { 0.0 };
+            let (share, energy) = (point.weight * own, law.elastic_energy(depth));
+            elastic += point.weight * energy;
+            force += share;
+            loss += (share - point.weight * law.elastic_force(depth.max(0.0))) * rate;
+            let arm = middle(point) - center;
+            at += arm * share;
+            mean += arm * point.weight;
+            if is_pressing {
+                wrench += point
+                    .depth_gradient
+                    .scale_add(-share, point.weight_gradient.scale_add(-energy, Force::zero()));
+            }
+        }
+        let arm = if force > 0.0 { at * (1.0 / force) } else { mean };
+        Self {
+            point: center + arm,
+            force,
+            on_b: wrench.linear,
+            moment: wrench.angular - arm.cross(wrench.linear),
+            power: -twist.dot(wrench),
+            loss: if is_pressing { loss } else { 0.0 },
+            elastic,
+        }
+    }
+
+    fn at_point(
+        law: &NormalLaw,
+        point: &ContactPoint,
         normal: Vec3<f64>,
         [a, b]: &[SideMotion; 2],
         is_pressing: bool,
     ) -> Self {
-        let middle = |point: &ContactPoint| (point.point_a + point.point_b) * 0.5;
-        let mut sum = Self { point: Vec3::zero(), force: 0.0, power: 0.0, elastic: 0.0 };
-        for point in points {
-            let (at, depth) = (middle(point), point.depth);
-            let rate = -normal.dot(b.velocity_at(at) - a.velocity_at(at));
-            let force = match points {
-                _ if !is_pressing => 0.0,
-                [_] => law.force(depth, rate),
-                _ if depth > 0.0 => law.force(depth, rate).max(0.0),
-                _ => 0.0,
-            };
-            let share = point.weight * force;
-            sum.force += share;
-            sum.point += at * share;
-            sum.power += share * rate;
-            sum.elastic += point.weight * law.elastic_energy(depth);
+        let at = middle(point);
+        let rate = -normal.dot(b.velocity_at(at) - a.velocity_at(at));
+        let force = if is_pressing { law.force(point.depth, rate) } else { 0.0 };
+        Self {
+            point: at,
+            force,
+            on_b: normal * force,
+            moment: Vec3::zero(),
+            power: force * rate,
+            loss: if is_pressing { (force - law.elastic_force(point.depth)) * rate } else { 0.0 },
+            elastic: law.elastic_energy(point.depth),
         }
-        sum.point = match points {
-            [only] => middle(only),
-            _ if sum.force > 0.0 => sum.point * (1.0 / sum.force),
-            _ => points.iter().fold(Vec3::zero(), |all, point| all + middle(point) * point.weight),
-        };
-        sum
     }
+}
+
+fn middle(point: &ContactPoint) -> Vec3<f64> {
+    (point.point_a + point.point_b) * 0.5
 }

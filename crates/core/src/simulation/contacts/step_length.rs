@@ -3,7 +3,7 @@
 use super::mode::{Mode, Phase};
 use super::side::SideMotion;
 use super::touching::{Loading, Touching};
-use crate::contact::{ContactLaw, ContactSteps, Friction};
+use crate::contact::{Bristle, ContactLaw, ContactSteps, Friction};
 use crate::geometry::Shape;
 use std::f64::consts::PI;
 
@@ -26,6 +26,8 @@ struct Rates {
     frequencies: [f64; 2],
     /// Rates of decay of the motions along and across the normal, 1/s.
     decays: [f64; 2],
+    /// Rate at which slipping bristles approach the cone, 1/s.
+    relaxation: f64,
 }
 
 impl Rates {
@@ -40,15 +42,24 @@ impl Rates {
             law.friction.and_then(|friction| friction.torsion()).filter(|_| !mode.twist.is_slipping);
         let rates = |friction: Option<Friction>, mobility: f64| {
             let own = |friction: Friction| {
-                [(friction.stiffness * mobility).sqrt(), friction.damping_for(mobility) * mobility]
+                [(friction.stiffness * mobility).sqrt(), friction.damping_for(mobility).sticking * mobility]
             };
             friction.map_or([0.0; 2], own)
         };
         let [sliding, twisting] = [rates(friction, tangential), rates(torsion, turning)];
+        let relaxation = |friction: Friction, bristle: &Bristle, mobility: f64| {
+            let damping = friction.damping_for(mobility).slipping;
+            if bristle.is_slipping && damping > 0.0 { friction.stiffness / damping } else { 0.0 }
+        };
+        let relaxations = law.friction.map_or(0.0, |friction| {
+            let twist = friction.torsion().map_or(0.0, |torsion| relaxation(torsion, &mode.twist, turning));
+            relaxation(friction, &mode.bristle, tangential).max(twist)
+        });
         Self {
             depth,
             frequencies: [(law.normal.tangent_stiffness(depth) * normal).sqrt(), sliding[0].max(twisting[0])],
             decays: [law.normal.tangent_damping(depth) * normal, sliding[1].max(twisting[1])],
+            relaxation: relaxations,
         }
     }
 
@@ -93,7 +104,8 @@ impl Touching {
                 let rates = Rates::of(law, &self.mode, loading);
                 let lively = steps.count as f64 * self.mode.activity.powf(0.25);
                 let count = lively.max(LEAST_STEPS.min(steps.count as f64));
-                let h = PI / (count * rates.fastest());
+                // slipping bristles follow the cone: their steps need only be stable
+                let h = (PI / (count * rates.fastest())).min(1.0 / rates.relaxation);
                 let is_smooth =
                     !steps.is_graded || law.normal.exponent() == 1.0 || law.normal.exponent() >= SMOOTH;
                 let fraction = if is_smooth {

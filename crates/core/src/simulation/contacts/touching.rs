@@ -20,6 +20,8 @@ pub(super) struct Touching {
     pub(super) law: Option<ContactLaw>,
     /// True if the pieces may overlap at the start.
     pub(super) may_start_overlapping: bool,
+    /// True if the forces at several points are the gradient of their elastic energy.
+    pub(super) is_conservative: bool,
     pub(super) mode: Mode,
     /// True if a connection of an external engine holds both links.
     pub(super) is_held: bool,
@@ -42,6 +44,8 @@ pub(in crate::simulation) struct Loading {
     pub(super) pressure: Option<Pressure>,
     /// Force on the second side, N.
     pub(super) force: Vec3<f64>,
+    /// Moment on the second side about the point, without that of torsional friction, N m.
+    pub(super) moment: Vec3<f64>,
     /// Sliding velocity of the second side relative to the first, in axes of the first side, m/s.
     pub(super) sliding: Vec3<f64>,
     /// Normal in axes of the first side.
@@ -70,8 +74,10 @@ impl Touching {
     #[inline]
     pub(super) fn geometry(&self, [a, b]: &[SideMotion; 2]) -> Result<(Proximity, Points), ContactError> {
         let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
-        touching_points(first, &a.shape, second, &b.shape)
-            .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })
+        let (proximity, points) = touching_points(first, &a.shape, second, &b.shape)
+            .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
+        let points = if self.is_conservative { points } else { points.fixed(&proximity) };
+        Ok((proximity, points))
     }
 
     /// Returns the force in `phase` for pieces with this distance and these contact points.
@@ -87,7 +93,7 @@ impl Touching {
         let is_pressing = phase == Phase::Pressing;
         let law = self.law.as_ref().filter(|_| is_pressing || phase == Phase::Separating);
         let pressure =
-            law.map(|law| Pressure::of(&law.normal, points.as_slice(), normal, motions, is_pressing));
+            law.map(|law| Pressure::of(&law.normal, points.as_slice(), proximity, motions, is_pressing));
         let witness = (proximity.point_a + proximity.point_b) * 0.5;
         // both forces act at one point, so that no moment remains
         let point = pressure.map_or(witness, |pressure| pressure.point);
@@ -100,6 +106,7 @@ impl Touching {
             point,
             pressure,
             force: Vec3::zero(),
+            moment: Vec3::zero(),
             sliding: a.frame.rot.transpose_mul(across(relative(point))),
             normal_a: a.frame.rot.transpose_mul(normal),
             friction: None,
@@ -107,7 +114,7 @@ impl Touching {
             torsion: None,
         };
         if let (Some(law), Some(pressure), true) = (law, pressure, is_pressing) {
-            loading.force = normal * pressure.force;
+            (loading.force, loading.moment) = (pressure.on_b, pressure.moment);
             self.add_friction(law, state, a, &mut loading);
         }
         loading
@@ -139,6 +146,16 @@ impl Touching {
         loading.torsion = Some(torsion.after(&self.mode.twist, moved, spin, normal, damping));
     }
 
+    /// Returns the work of the normal force of polyhedra that press on each other that is neither stored
+    /// nor dissipated, J: an error of the integrator, or of a jump of the elastic energy.
+    pub(super) fn open_energy(&self, loading: &Loading, state: &ContactState) -> f64 {
+        let is_exact = self.is_conservative
+            && self.mode.phase == Phase::Pressing
+            && self.sides.iter().all(|side| side.shape.is_polyhedral());
+        let pressure = loading.pressure.filter(|_| is_exact);
+        pressure.map_or(0.0, |pressure| state.normal_work - state.normal_loss - pressure.elastic)
+    }
+
     /// Returns the distances from the next changes of mode, each negative beyond the change: that of the gap
     /// or depth, m, that of the normal force and that of friction.
     pub(super) fn margins(&self, loading: &Loading) -> [f64; 3] {
@@ -164,26 +181,32 @@ impl Loading {
         self.pressure.map_or(0.0, |pressure| pressure.force.max(0.0))
     }
 
-    /// Returns the moment about the normal on the second side, N m.
-    pub(super) fn moment(&self) -> f64 {
+    /// Returns the moment of torsional friction about the normal on the second side, N m.
+    fn torque(&self) -> f64 {
         self.torsion.map_or(0.0, |torsion| torsion.force.x)
+    }
+
+    /// Returns the moment on the second side about the point, N m.
+    pub(super) fn total_moment(&self) -> Vec3<f64> {
+        self.normal.scale_add(self.torque(), self.moment)
     }
 
     /// Returns the power that friction takes from the motion, W.
     pub(super) fn friction_power(&self) -> f64 {
         let friction = self.friction.map_or(0.0, |friction| friction.force.dot(self.sliding));
-        -friction - self.moment() * self.spin
+        -friction - self.torque() * self.spin
     }
 
     /// Returns the time derivative of the state of the contact, with moments about `center` in W.
     pub(super) fn rates(&self, center: Vec3<f64>) -> ContactRate {
         ContactRate {
-            slip: self.sliding,
-            turn: self.spin,
+            slip: self.friction.map_or(self.sliding, |friction| friction.elastic_rate),
+            turn: self.torsion.map_or(self.spin, |torsion| torsion.elastic_rate.x),
             normal_work: self.pressure.map_or(0.0, |pressure| pressure.power),
+            normal_loss: self.pressure.map_or(0.0, |pressure| pressure.loss),
             friction_work: self.friction_power(),
             impulse: self.force,
-            angular_impulse: (self.point - center).cross(self.force) + self.normal * self.moment(),
+            angular_impulse: (self.point - center).cross(self.force) + self.total_moment(),
         }
     }
 }

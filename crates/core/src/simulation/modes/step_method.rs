@@ -35,6 +35,8 @@ pub(crate) struct StepMethod<S> {
     ignores_slip: bool,
     /// Number of consecutive idle steps.
     pub(crate) idle_steps: usize,
+    /// True if the elastic energy has jumped in the last step.
+    has_jumped: bool,
     time_step: f64,
 }
 
@@ -46,6 +48,7 @@ impl<S: Real> StepMethod<S> {
             settled: state.clone(),
             ignores_slip: false,
             idle_steps: 0,
+            has_jumped: false,
             time_step: settings.time_step,
         }
     }
@@ -120,8 +123,12 @@ impl<S: Real> StepMethod<S> {
             self.settled.copy_from(state);
             equations.project_momentum(&mut self.settled);
             let [now, scale] = equations.energy_balance(&self.settled);
-            let open = (now - balance).lane(0).abs();
-            if open <= permitted + ROUNDING * scale.lane(0) || end - start <= shortest {
+            let [before, after] = equations.contacts.open_energies;
+            let permitted = permitted + ROUNDING * scale.lane(0);
+            let is_stored = (after - before).abs() <= permitted;
+            let is_balanced = (now - balance).lane(0).abs() <= permitted && (is_stored || self.has_jumped);
+            if is_balanced || end - start <= shortest {
+                self.has_jumped = !is_stored;
                 return Ok(end);
             }
             end = 0.5 * (start + end);
