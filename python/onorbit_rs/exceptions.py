@@ -230,8 +230,7 @@ class ControlError(OnOrbitError, ValueError):
 
 
 class SimulationError(OnOrbitError, ArithmeticError):
-    """A run diverged, cannot continue or has ended; ``trace`` contains the rows recorded before a divergence.
-    """
+    """A run diverged, cannot continue or has ended; ``trace`` has the rows before a divergence."""
 
     time: Any = None
     q: Any = None

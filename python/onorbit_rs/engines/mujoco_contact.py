@@ -46,8 +46,7 @@ class Touch:
         return force
 
     def force(self, depth: Floats, rate: Floats) -> Floats:
-        """Return the normal force, N, at the depths, m, and their rates of increase, m/s; 0 without overlap.
-        """
+        """Return the normal force, N, at depths, m, that increase at the rates, m/s; 0 without overlap."""
         if isinstance(self.law, HuntCrossley):
             force = self.elastic(depth) * (1.0 + self.law.dissipation * rate)
         else:

@@ -82,7 +82,9 @@ def ledger_of(
 
     The recorded work of a system is that of motors, environment and contacts, less the losses in joints. What
     the contacts took is stored as elastic energy or dissipated, so the work of the others is
-    `W - W_0 + Σ (U + D) - Σ (U_0 + D_0)`. The last entry is the sum, with this work subtracted.
+    `W - W_0 + Σ (U + D) - Σ (U_0 + D_0)`, with the recorded work `W`, the elastic energy `U` and the
+    dissipated energy `D` of each contact; `0` denotes the first row. The last entry is the sum, with this
+    work subtracted.
     """
     times = [np.asarray(trace[name].time) for name in systems]
     rows = shared_rows(times)

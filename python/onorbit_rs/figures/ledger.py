@@ -37,8 +37,10 @@ _INTERVALS = 300
 def ledger(trace: Trace) -> Figure:
     """Draw momentum, energy and work on the left; on the right, the balances that should remain zero.
 
-    `P - ∫ΣF dt`, `L_com - ∫ΣT dt` and `K - W` are constant in W. The work `W` on the robot is the work of
-    motors and external wrenches minus the energy dissipated in damping, friction and stops.
+    In W, `P - ∫ΣF dt`, `L_com - ∫ΣT dt` and `K - W` are constant: linear momentum and angular momentum about
+    the centre of mass less the impulses of the external forces and torques, and kinetic energy less work. The
+    work `W` on the robot is the work of motors and external wrenches minus the energy dissipated in damping,
+    friction and stops.
     """
     time, label = clock(trace)
     momentum, impulse = np.asarray(trace.momentum), np.asarray(trace.impulse)

@@ -97,7 +97,9 @@ def goes_far(trace: Trace, model: Model) -> bool:
 
 
 def set_window(axes: Axes, points: Floats, across: int) -> None:
-    """Set limits around the points, with the same scale in both panels."""
+    """Set the limits of a panel around the points (k, 3) in L: along track to the right, entry ``across``
+    upward. The scale is the same in both panels.
+    """
     low, high = points.min(axis=0), points.max(axis=0)
     sides = high - low
     height = 1.15 * float(max(sides[1] / _SIDES, sides[0], sides[2]))

@@ -72,14 +72,12 @@ def largest_fractions(values: Floats, limits: Sequence[float | None]) -> Floats:
 
 
 def rate_fractions(trace: Trace, model: Model) -> Floats:
-    """Return the largest rate of each joint as a fraction of its limit, (n,); 0 for joints without a limit.
-    """
+    """Return the largest rate of each joint, relative to its limit, (n,); 0 without a limit."""
     return largest_fractions(np.asarray(trace.v)[:, JOINTS_V], [joint.velocity for joint in model.joints])
 
 
 def effort_fractions(trace: Trace, model: Model) -> Floats:
-    """Return the largest effort of each joint as a fraction of its limit, (n,); 0 for joints without a limit.
-    """
+    """Return the largest effort of each joint relative to its limit, (n,); 0 without a limit."""
     return largest_fractions(np.asarray(trace.tau), [joint.effort for joint in model.joints])
 
 

@@ -33,7 +33,8 @@ def add_system_topics(
 ) -> None:
     """Subscribe to the topics of a system: commands of its external controls, and wrenches on its links.
 
-    ``frames`` maps each link and frame to its name in ``/tf``, beginning with the root link.
+    ``prefix`` begins the names of the topics. ``frames`` maps each link and frame to its name in ``/tf``,
+    beginning with the root link; ``controls`` maps each external control to its joints.
     """
     for control, name in ros_names(controls, "control").items():
         to = {"system": system, "control": control}
@@ -53,7 +54,7 @@ def _values(to: Entry, joints: list[str]) -> Callable[[Any], list[Entry]]:
 
 
 def _finite(what: str, values: Any, joints: list[str]) -> list[float]:
-    """Return the numbers of a field; raise an error unless there is one finite number per joint."""
+    """Return the numbers of a field; raise a RefusedError unless there is one finite number per joint."""
     numbers = np.asarray(values, dtype=np.float64)
     if len(numbers) != len(joints):
         raise RefusedError(
@@ -68,7 +69,7 @@ def _finite(what: str, values: Any, joints: list[str]) -> list[float]:
 
 
 def _order(names: list[str], joints: list[str]) -> list[int]:
-    """Return the index in a message of each joint of a control; the message must name each joint once."""
+    """Return the index of each joint in a message; raise a RefusedError unless it names each joint once."""
     if sorted(names) != sorted(joints):
         raise RefusedError(
             f"the message names the joints {', '.join(names) or 'none'}; it must name each joint of the "
@@ -99,7 +100,7 @@ def _seconds(time: Any) -> float:
 
 
 def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[[Any], list[Entry]]:
-    """Return the function that converts a ``JointState``, which may command several controls."""
+    """Return the function that converts a ``JointState`` to one entry per control whose joints it names."""
 
     def convert(content: Any) -> list[Entry]:
         names, entries = list(content.name), []

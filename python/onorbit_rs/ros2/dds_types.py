@@ -25,7 +25,7 @@ _BASE: dict[str, Any] = {
 
 @cache
 def declared(kind: str) -> Any:
-    """Return the declaration of a type such as ``sensor_msgs/msg/JointState``."""
+    """Return the CycloneDDS class that declares a type such as ``sensor_msgs/msg/JointState``."""
     package, folder, name = kind.split("/")
     fields = {field: _field(description) for field, description in STORE.fielddefs[kind][1]}
     return make_idl_struct(f"{name}_", f"{package}.{folder}.dds_.{name}_", fields)

@@ -60,7 +60,7 @@ def check_network(network: str) -> None:
 
 @contextmanager
 def dds_errors(task: str, advice: str) -> Iterator[None]:
-    """Convert errors of CycloneDDS in the block to :class:`Ros2Error`: the task failed, with a reason."""
+    """Convert errors of CycloneDDS in the block to a :class:`Ros2Error` with task, reason and advice."""
     try:
         yield
     except DDSException as error:

@@ -38,7 +38,7 @@ class LiveRows:
         return rows
 
     def keep_last(self, count: int) -> None:
-        """Drop rows that :meth:`take` has returned from the memory of the run, if there are many.
+        """Drop rows that :meth:`take` has returned from the memory of the run, above twice ``count`` of them.
 
         The first row and at least the last ``count`` remain.
         """
@@ -51,7 +51,7 @@ class LiveRows:
         return rows_of_columns(self._stepper.present(), self._models)
 
     def take_last(self, trace: Trace | WorldTrace) -> dict[str, Rows]:
-        """Return the rows of the final trace of the run that have not been read."""
+        """Return the rows of the final trace that :meth:`take` and :meth:`take_present` have not returned."""
         return self._after(rows_of_trace(trace, self._models, self._counts))
 
     def _after(self, rows: dict[str, Rows]) -> dict[str, Rows]:

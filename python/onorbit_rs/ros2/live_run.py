@@ -28,8 +28,8 @@ class LiveRun:
     models : mapping of str to Model
         Robots by the name of the system.
     tick : float
-        Simulated time between two readings of the topics, s: the time between two rows, or about 1 ms if this
-        is less.
+        Simulated time between two readings of the topics, s: the time between two rows, at most about 1 ms,
+        but at least one time step.
     end : float
         Time beyond which the run is not advanced, s.
     log : CommandLog
@@ -42,7 +42,8 @@ class LiveRun:
         """Start the run.
 
         A wrench ends ``wrench_timeout``, s, after its last command (None: never). The first row and the last
-        ``keep_rows``, up to twice as many, remain in memory (None: all rows).
+        ``keep_rows``, up to twice as many, remain in memory (None: all rows). Raises InputError if either is
+        invalid.
         """
         is_count = isinstance(keep_rows, int) and not isinstance(keep_rows, bool) and keep_rows >= 1
         if keep_rows is not None and not is_count:

@@ -26,7 +26,9 @@ LOOPBACK = f"""<CycloneDDS><Domain id="any">
 <MaxAutoParticipantIndex>{PARTICIPANTS}</MaxAutoParticipantIndex>
 <SPDPInterval>500 ms</SPDPInterval><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
 </Domain></CycloneDDS>"""
-"""A node that only listens to multicast is found only if the announcements are frequent."""
+"""Only 127.0.0.1 is used. A node that only listens to multicast is found only if the announcements are
+frequent.
+"""
 
 
 def check(domain: int) -> None:

@@ -56,7 +56,7 @@ class Node:
     Attributes
     ----------
     duration : float or None
-        Duration of the scenario, s; None for a simulation without one.
+        Duration of the scenario of :meth:`of_scenario`, s; None for a node of a simulation.
     domain : int
         DDS domain that the node has joined.
     """
@@ -153,7 +153,7 @@ class Node:
 
     @classmethod
     def of_scenario(cls, scenario: Any, **options: Any) -> Node:
-        """Return the node of a scenario, with the options of :class:`Node`.
+        """Return the node of a scenario, with the options and errors of :class:`Node`.
 
         Parameters
         ----------
@@ -183,9 +183,11 @@ class Node:
 
     @property
     def jitter(self) -> dict[str, float]:
-        """Delays of the ticks in pace ``real_time``, s, their number, and the fraction that was missed.
+        """Delays of the ticks in pace ``real_time``.
 
-        Empty in another pace.
+        ``late_median_s``, ``late_99_s`` (quantile of 99 %) and ``late_max_s`` are delays in wall-clock time,
+        s; ``missed`` is the fraction of the ticks late by more than a tick, ``slipped_s`` the time by which
+        the run has fallen behind for good, s, and ``ticks`` the number of ticks. Empty in another pace.
         """
         return self._clock.report()
 

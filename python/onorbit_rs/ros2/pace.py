@@ -16,15 +16,15 @@ _BEHIND_S = 0.1
 _LONGEST_SPIN_S = 3e-4
 """Longest time before a tick in which the processor is kept busy, s."""
 _SPIN_PER_TICK = 0.3
-"""Longest such time as a fraction of the tick."""
+"""Longest time before a tick in which the processor is kept busy, as a fraction of the tick."""
 _LONGEST_SLEEP_S = 0.05
 """Longest time before a tick that is due later, s, in which the node does not read its topics."""
 _BUSY_S = 0.1
-"""Time after a missed tick without such loops, s, since they make Linux prefer other programs."""
+"""Simulated time after a missed tick, s, without busy loops, which make Linux prefer other programs."""
 _PROBES = 20
 """Number of sleeps with which the delay of the operating system is measured."""
 _PROBE_S = 5e-4
-"""Length of such a sleep, s."""
+"""Length of each sleep of the measurement, s."""
 
 
 @dataclass
@@ -98,7 +98,7 @@ class RealTime:
         self.restart(t - left)
 
     def wait(self, t: float) -> None:
-        """Wait until simulated time ``t``, s, is due, and count the delay."""
+        """Wait until simulated time ``t``, s, is due; count the delay, which is not caught up above 0.1 s."""
         while not self.approach(t):
             pass
         while (ahead := self.ahead(t)) > 0.0:
@@ -111,7 +111,7 @@ class RealTime:
             self._calm_at = t + _BUSY_S
 
     def report(self) -> dict[str, float]:
-        """Return the delays, s, and the fraction of ticks late by more than a tick; empty without ticks."""
+        """Return the entries of :attr:`Node.jitter <onorbit_rs.ros2.Node.jitter>`; empty without ticks."""
         late = self._late
         if not late.count:
             return {}

@@ -71,7 +71,7 @@ class Publisher:
                     writer.write(data[k].tobytes())
 
     def events(self, records: Iterable[EventRecord]) -> None:
-        """Publish events; captures and releases are also printed."""
+        """Publish events; ``tell`` is called with the text of captures and releases, not of touches."""
         for record in records:
             self._event(record.time, message_of_event(record))
             if record.kind not in OF_CONTACT:  # there may be thousands of touches

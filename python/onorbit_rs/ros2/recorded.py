@@ -53,7 +53,7 @@ def recorded(source: Source, models: Models | None = None) -> Recorded:
     Raises
     ------
     InputError
-        If the models of a trace are missing or are not those of its systems.
+        If the models of a trace are missing or are not those of its systems, or models are given for a run.
     DtypeError
         If ``source`` has another type.
     OnOrbitError
@@ -119,7 +119,7 @@ def _read(folder: Path) -> Run:
 
 
 def _by_name(trace: Trace | WorldTrace, models: Models | None) -> Mapping[str, Model]:
-    """Return the models of a trace by the name of the system."""
+    """Return the models of a trace by the name of the system; raise an InputError if one is missing."""
     systems = list(getattr(trace, "names", ["robot"]))
     if isinstance(models, Model) and len(systems) == 1:
         return {systems[0]: models}

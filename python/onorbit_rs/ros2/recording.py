@@ -87,7 +87,7 @@ class Recording:
                 raise _DiscardedError
 
     def close(self) -> None:
-        """Complete the file and give it its name; a second call has no effect."""
+        """Complete the file and give it its name, replacing an existing file; a second call has no effect."""
         if not self._is_closed:
             self._is_closed = True
             with self._open:

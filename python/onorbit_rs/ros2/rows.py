@@ -32,7 +32,7 @@ class Rows:
     columns: Mapping[str, Floats]
     """Values (T, width) by the name of the column."""
     wrenches: Mapping[str, Floats] = field(default_factory=dict)
-    """Wrenches (T, 6 bodies) of each recorded effect on the bodies at their centres of mass, W axes."""
+    """By effect, (T, 6 bodies): force, N, and torque, N m, at each body's centre of mass, in axes of W."""
 
     @classmethod
     def at_distinct_times(cls, columns: Mapping[str, Floats], wrenches: Mapping[str, Floats]) -> Rows:

@@ -11,7 +11,7 @@ from contextlib import contextmanager
 _YOUNG = 700
 """Number of new objects after which Python, too, looks for garbage among them."""
 _SLACK_S = 5e-4
-"""Time until the next tick, s, in which such a collection ends."""
+"""Time until the next tick, s, in which a collection among new objects ends."""
 _TOO_MANY = 50 * _YOUNG
 """Number of new objects after which a collection does not wait for slack."""
 

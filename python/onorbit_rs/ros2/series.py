@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Series:
-    """A topic with one message per row of a system."""
+    """A topic with one message per row of a system; ``values`` fills the fields of ``template``."""
 
     name: str
     system: str

@@ -14,7 +14,7 @@ _SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 
 @contextmanager
 def noted_stop() -> Iterator[Callable[[], bool]]:
-    """Yield a function that returns True after a signal whose handler raises ``KeyboardInterrupt``.
+    """Yield a function that returns True after a SIGINT, SIGTERM or SIGHUP that has a handler in Python.
 
     In the main thread, the first such signal is only noted, so that it does not interrupt a message that is
     being published; a second signal is handled as before the block. In another thread, signals are handled as

@@ -107,7 +107,7 @@ def _has_local_frame(rows: Rows) -> bool:
 
 
 def clock(system: str) -> Series:
-    """Return the topic of the simulated time."""
+    """Return the topic of the simulated time, with a message for each row of a system."""
     template = Template(lambda marks: message("rosgraph_msgs/msg/Clock", clock=marks.time))
     return Series("/clock", system, template, lambda rows: {})
 
@@ -137,7 +137,7 @@ def _orbit_pose(rows: Rows) -> dict[str, Floats]:
 
 
 def _orbit_twist(rows: Rows, orbit: Orbit | None) -> dict[str, Floats]:
-    """Return the velocity of L's origin, m/s, and the rate of L, rad/s; without the orbit, `r × v / r²`."""
+    """Return velocity of L's origin, m/s, and rate of L, rad/s, in ``eci``; without orbit, `r × v / r²`."""
     r, v = rows["reference_position_eci"], rows["reference_velocity_eci"]
     if orbit is not None:
         rot_il, rate_l = orbit.lvlh(np.ascontiguousarray(rows.time))

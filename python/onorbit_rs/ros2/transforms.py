@@ -84,8 +84,9 @@ class SystemFrames:
     def poses(self, rows: Rows) -> Floats:
         """Return the poses (T, 1 + n, 7) of the base and of the child links of the n joints.
 
-        The pose of a child link at position q is `T₀ trans(c) exp(q) trans(−c)`, with the axis through the
-        anchor `c`.
+        The pose of a child link in its parent is `T₀ trans(c) exp(q) trans(−c)` at joint position `q`: `T₀`
+        is the pose at zero, `trans` a translation, and `exp(q)` the motion about or along the axis through
+        the anchor `c`.
         """
         q = rows["q"][:, JOINTS_Q]
         found = np.empty((len(q), 1 + q.shape[1], 7))
@@ -98,7 +99,9 @@ class SystemFrames:
         return found
 
     def _shift(self, q: Floats) -> Floats:
-        """Return the displacement, m, of the origin of each child link, which rotates about its anchor."""
+        """Return the displacement, m, in the parent, of the origin of each child link that turns about an
+        anchor.
+        """
         u, c = self._axis, np.where(self._turns[:, None], self._anchor, 0.0)
         across = np.cross(u, c)
         # c − exp(θ u) c = −sin θ u × c − (1 − cos θ) u × (u × c)

@@ -25,7 +25,7 @@ class WrenchTimeouts:
         self._ends: dict[tuple[str, str], float] = {}
 
     def note(self, entries: Iterable[Mapping[str, Any]], t: float) -> None:
-        """Start the timeout of each wrench among the commands given at a simulated time, s."""
+        """Start the timeout of each non-zero wrench among the commands given at a simulated time, s."""
         for entry in entries:
             if self._timeout is None or "body" not in entry:
                 continue

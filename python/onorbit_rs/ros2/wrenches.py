@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def wrench_topics(
     system: str, prefix: str, model: Model, frames: Mapping[str, str], first: Rows
 ) -> list[Series]:
-    """Return a topic for each effect and link, with the wrench at the link's origin, in the link's axes."""
+    """Return a topic per recorded effect and link: the wrench at the link's origin, in the link's axes."""
     effects = ros_names(first.wrenches, "effect")
     if not effects:
         return []  # without a warning about links
@@ -53,7 +53,7 @@ def _values(effect: str, link: tuple[int, Body], model: Model) -> Callable[[Rows
     com = np.array(body.com)
 
     def values(rows: Rows) -> dict[str, Floats]:
-        """Return `f = Rᵀ f_W` and `t = Rᵀ t_W + c × f` from the wrench at the centre of mass c."""
+        """Return `f = Rᵀ f_W` and `t = Rᵀ t_W + c × f` from the wrench at the mass centre c; R: link to W."""
         rot_wl = np.asarray(model.frame_pose(np.ascontiguousarray(rows["q"]), body.name))[:, :3, :3]
         wrench = rows.wrenches[effect].reshape(len(rows), -1, 6)[:, index]
         force = np.einsum("tji,tj->ti", rot_wl, wrench[:, LINEAR])

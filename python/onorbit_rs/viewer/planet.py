@@ -102,7 +102,7 @@ def has_sun(earth: Earth | None) -> bool:
 
 
 def send_planet(recording: rr.RecordingStream, rows: TraceRows, setting: Setting) -> None:
-    """Send the rotation of the Earth and of its night side."""
+    """Send the rotation of the Earth and of its night side; do nothing without an Earth or a planet."""
     earth = setting.earth
     if earth is None or setting.orbit is None or setting.orbit.mu is None:
         return
@@ -150,7 +150,9 @@ def send_spacecraft(
 
 
 def path_around_planet(orbit: Orbit | None, points: int = 361) -> Floats | None:
-    """Return positions (k, 3), m, along a closed orbit or custom path; None without such an orbit."""
+    """Return positions (k, 3), m, inertial axes, along one revolution of an orbit with a period, or along a
+    custom path; None for any other orbit, without a planet, or if the orbit decays in its first revolution.
+    """
     if orbit is None or orbit.mu is None:
         return None
     period = getattr(orbit, "period", None)

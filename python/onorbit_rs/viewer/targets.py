@@ -22,7 +22,7 @@ PathFrame = Literal["world", "lvlh", "base"]
 
 
 def path_frame(scenario: Scenario) -> PathFrame:
-    """Return the frame of the first reference of a tool; W if it is the frame of a moving target."""
+    """Return the frame of the first reference of a tool if this is L or the base; otherwise W."""
     frames: tuple[PathFrame, ...] = ("lvlh", "base")
     first = next((reference.frame for reference in task_references(scenario)), None)
     return next((frame for frame in frames if frame == first), "world")

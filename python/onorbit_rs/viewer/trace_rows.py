@@ -94,7 +94,7 @@ class TraceRows:
         return TraceRows(*({name: values[chosen] for name, values in part.items()} for part in parts))
 
     def last(self) -> TraceRows:
-        """Return the last row."""
+        """Return the last row of the columns, without wrenches, tracking errors and contacts."""
         return TraceRows({name: values[-1:] for name, values in self.columns.items()})
 
     def after(self, earlier: TraceRows) -> TraceRows:

@@ -45,6 +45,8 @@ def net_force(wrenches: Floats) -> Floats:
 def torque_about_center(rows: TraceRows, centers: Floats, wrenches: Floats) -> Floats:
     """Return `Σ (rₖ - r) × Fₖ + Tₖ` in W, (T, 3), N m: the torque about the robot's centre of mass `r`.
 
+    Body `k` has its centre of mass at `rₖ`, where the force `Fₖ` and the torque `Tₖ` act.
+
     Parameters
     ----------
     rows : TraceRows

@@ -49,7 +49,10 @@ class Shape:
 
 
 def extent(model: Model, robot: list[Shape], q: Floats) -> tuple[Floats, float]:
-    """Return centre (3,) in W, m, and diameter, m, of a sphere around a robot in all ``q`` (k, nq)."""
+    """Return centre (3,) in W, m, and diameter, m, of a sphere around a robot in all ``q`` (k, nq).
+
+    The diameter is at least 0.1 m.
+    """
     corners = corners_of(model, robot, q)
     center = (corners.min(axis=0) + corners.max(axis=0)) / 2.0
     return center, max(2.0 * float(np.linalg.norm(corners - center, axis=1).max()), 0.1)
@@ -101,7 +104,8 @@ def box_of_inertia(mass: float, inertia: Floats) -> tuple[Floats, Floats]:
 
     The edges are at least 1 cm long.
 
-    `I_x = m (b² + c²) / 12` and its permutations give `a² = 6 (I_y + I_z - I_x) / m`.
+    With mass `m`, edges `a`, `b`, `c` and principal moments `I_x`, `I_y`, `I_z`, `I_x = m (b² + c²) / 12` and
+    its permutations give `a² = 6 (I_y + I_z - I_x) / m`.
     """
     moments, axes = np.linalg.eigh(inertia)
     axes[:, 2] *= np.sign(np.linalg.det(axes))

@@ -21,7 +21,7 @@ AROUND = 32
 
 
 def revolved(visual: Visual) -> Shape:
-    """Return a cone or a torus as a mesh."""
+    """Return the mesh of a cone or a torus, in the pose of the visual on its link."""
     first, second = visual.size
     if visual.kind == "cone":
         # each corner twice, so that the normals of base and side differ there

@@ -57,7 +57,7 @@ def aligned_rows(a: Recorded, b: Recorded) -> tuple[Rows, Rows, Floats, list[str
 
 
 def _one_row_per_instant(columns: Rows) -> Rows:
-    """Return the last row of each instant, with the tool pose as position and quaternion."""
+    """Return the last row of each instant, with quaternions of base and tool and the position of the tool."""
     time = columns["time"]
     last = np.flatnonzero(np.append(np.diff(time) > 0.0, True))
     rows = {name: values[last] for name, values in columns.items() if len(values) == len(time)}
@@ -87,7 +87,10 @@ def _equal_instants(time_a: Floats, time_b: Floats) -> tuple[NDArray[np.intp], N
 
 
 def _interpolated(rows: Rows, at: Floats) -> Rows:
-    """Return rows at times ``at``: quaternions by slerp, orbits by cubics, torques held, others linear."""
+    """Return rows at times ``at``: quaternions by slerp, orbits by cubics, torques held, others linear.
+
+    Cubics add the column ``hermite_error``, their error, m.
+    """
     time = rows["time"]
     if len(time) == 1:
         return {name: np.repeat(values, len(at), axis=0) for name, values in rows.items()}
@@ -115,14 +118,21 @@ def _interpolated(rows: Rows, at: Floats) -> Rows:
 def _hermite(
     first: Floats, second: Floats, rate_a: Floats, rate_b: Floats, s: Floats, step: Floats
 ) -> Floats:
-    """Return cubic Hermite interpolation; the error of a linear one is `v² h² / 8 r`, 16 km for 120 s."""
+    """Return cubic Hermite interpolation at fractions ``s`` of the steps ``step``, s.
+
+    On an orbit of radius `r` and speed `v`, linear interpolation over a step `h` errs by `v² h² / 8 r`, 16 km
+    for 120 s.
+    """
     weight = s * s * (3.0 - 2.0 * s)
     rates = s * (1.0 - s) * ((1.0 - s) * rate_a - s * rate_b)
     return first + weight * (second - first) + step * rates
 
 
 def _hermite_error(position: Floats, velocity: Floats, s: Floats, step: Floats) -> Floats:
-    """Return twice the cubic's error, m: `s² (1 − s)² h⁴ |r⁗| / 24` with `|r⁗| = v⁴ / r³` of a circle."""
+    """Return twice the cubic's error, m: `s² (1 − s)² h⁴ |r⁗| / 24` at a fraction `s` of a step `h`.
+
+    The fourth derivative is that of a circular orbit, `|r⁗| = v⁴ / r³`.
+    """
     radius, speed = (np.linalg.norm(rows, axis=1) for rows in (position, velocity))
     fourth = speed**4 / np.maximum(radius, 1.0) ** 3
     error: Floats = 2.0 * ((s * (1.0 - s) * step**2) ** 2)[:, 0] * fourth / 24.0
@@ -130,7 +140,7 @@ def _hermite_error(position: Floats, velocity: Floats, s: Floats, step: Floats) 
 
 
 def _slerp(first: Floats, second: Floats, s: Floats) -> Floats:
-    """Return the spherical linear interpolation `(sin (1 − s)θ a + sin sθ b) / sin θ`."""
+    """Return `(sin (1 − s)θ a + sin sθ b) / sin θ`, slerp at `s` of quaternions `a`, `b` with angle `θ`."""
     second = np.where(np.sum(first * second, axis=1, keepdims=True) < 0.0, -second, second)
     angle = angle_between(first, second)[:, None] / 2.0
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -60,8 +60,9 @@ def differences_in_quantities(
 ) -> tuple[list[tuple[str, str, Floats, float, float]], list[str]]:
     """Return name, unit, difference (T,), scale and error of each quantity, and notes on missing quantities.
 
-    The scale is the largest value; for inertial positions it is the robot's distance from its reference,
-    because the much larger orbital radius would hide differences. The error is that of interpolation.
+    The scale is the largest value, and 0 for attitudes, whose differences are angles; for inertial positions
+    it is the robot's largest distance from its reference, because the much larger orbital radius would hide
+    differences. The error is that of rounding and interpolation for inertial positions, otherwise 0.
     """
     found, missing = [], []
     for name, unit, column, pick in _QUANTITIES:

@@ -37,10 +37,10 @@ class Difference:
     """Time of the largest difference, s."""
     final: float
     allowed: float
-    """Allowed difference: the tolerance times the scale (at least 1), plus the interpolation error.
+    """Allowed difference: the tolerance times the scale (at least 1).
 
-    The scale is the largest finite value of both runs; for inertial positions, the largest distance from
-    the reference.
+    The scale is the largest finite value of both runs; 0 for attitudes; for inertial positions, the largest
+    distance from the reference, to which the error of rounding and interpolation is added.
     """
     parts_at: float | None
     """First time at which the difference exceeds ``allowed``, s; None if this never happens."""
@@ -62,7 +62,9 @@ class Comparison(Verdict):
         return min((d.parts_at for d in self.differences if d.parts_at is not None), default=None)
 
     def __getitem__(self, name: str) -> Difference:
-        """Return the difference in the named quantity, such as ``base attitude``."""
+        """Return the difference in a quantity such as ``base attitude``; raises a CompareError if it is
+        missing.
+        """
         return entry({one.name: one for one in self.differences}, name, "compared quantity")
 
     def __str__(self) -> str:

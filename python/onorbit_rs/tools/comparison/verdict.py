@@ -14,7 +14,7 @@ Entry = TypeVar("Entry")
 
 @dataclass(frozen=True)
 class Verdict(ABC):
-    """Whether run ``b`` agrees with run ``a`` within a tolerance."""
+    """Whether run ``b`` agrees with run ``a`` within a tolerance; ``a`` and ``b`` are their names."""
 
     a: str
     b: str

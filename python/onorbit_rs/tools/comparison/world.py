@@ -52,7 +52,9 @@ class WorldComparison(Verdict):
     systems: Mapping[str, Comparison]
     """Comparison of each system, by name."""
     events: tuple[EventDifference, ...]
-    """Differences of the events, five quantities each, six for a lift-off."""
+    """Differences of the events: five quantities each, six for a lift-off, or the time if only one run has
+    it.
+    """
     notes: tuple[str, ...]
     """Notes on differing settings and on events that were not compared."""
 
@@ -63,7 +65,7 @@ class WorldComparison(Verdict):
         return min([*systems, *(event.time for event in self.events if not event.agrees)], default=None)
 
     def __getitem__(self, name: str) -> Comparison:
-        """Return the comparison of a system."""
+        """Return the comparison of a system; raises a CompareError for another name."""
         return entry(self.systems, name, "system of the runs")
 
     def __str__(self) -> str:
@@ -131,7 +133,7 @@ Pair = tuple["EventRecord | None", "EventRecord | None"]
 
 
 def _pairs(a: Sequence[Named], b: Sequence[Named]) -> Iterator[tuple[str, Pair]]:
-    """Yield the name of each event and its records in both runs, in the order of the first run."""
+    """Yield each event's name and its records in both runs (None without one), in the first run's order."""
     by_name = [dict(records) for records in (a, b)]
     for name in dict.fromkeys([*by_name[0], *by_name[1]]):
         yield name, (by_name[0].get(name), by_name[1].get(name))

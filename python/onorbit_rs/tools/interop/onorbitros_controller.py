@@ -26,7 +26,7 @@ def is_of_task(part: dict[str, Any]) -> bool:
 
 
 def joints_of(part: dict[str, Any]) -> list[str]:
-    """Return the joints that a controller lists."""
+    """Return the joints that a controller lists; empty if it lists none."""
     joints = part.get("joints", [part["joint"]] if "joint" in part else [])
     return [str(name) for name in joints] if isinstance(joints, list) else []
 

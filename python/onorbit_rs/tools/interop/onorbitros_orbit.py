@@ -111,7 +111,10 @@ def _element(source: Source, name: str, key: str | None) -> float:
 
 
 def _since_perigee(source: Source, a_m: float) -> float:
-    """Return ``n (time_start - time_pass_perigee)``, rad, which OnOrbitROS adds to the mean anomaly."""
+    """Return ``n (time_start - time_pass_perigee)``, rad, which OnOrbitROS adds to the mean anomaly.
+
+    `n` is the mean motion. Without both dates, the result is 0.
+    """
     dates = {name: _date(source, name) for name in _DATES}
     keys = [key for key in source.data if key.split("/")[0] in _DATES]
     start, perigee = dates["time_start"], dates["time_pass_perigee"]

@@ -68,7 +68,7 @@ def joint_names(source: Source) -> list[str]:
 
 
 def _gains_of(source: Source, key: str, joint: str) -> dict[str, float]:
-    """Return the gains of a joint; missing gains are zero, as in ROS Control."""
+    """Return ``p``, ``i``, ``d`` and ``i_clamp`` of a joint; missing ones are zero, as in ROS Control."""
     table = source.data[key]
     if key == "gains" and isinstance(table, dict):
         table = table.get(joint)

@@ -68,7 +68,7 @@ class Source:
         return scenario_error(message, self.file, self.lines.get(at), dotted(at))
 
     def refuse_unknown(self, known: Sequence[str]) -> None:
-        """Raise an error for keys unknown to OnOrbitROS; with ``keep_going``, add a note instead."""
+        """Raise a ScenarioError for keys that are not ``known``; with ``keep_going``, add a note instead."""
         for key in self.data:
             if key in known:
                 continue
@@ -79,7 +79,9 @@ class Source:
             self.note(key, "no meaning", f"not a key of OnOrbitROS{hint}")
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Return the value of ``key``, which may be arithmetic, or ``default`` if it is not given."""
+        """Return the value of ``key``, which may be arithmetic, or ``default`` if it is not given; raises a
+        ScenarioError for another value.
+        """
         if default is not None and key not in self.data:
             return default
         try:

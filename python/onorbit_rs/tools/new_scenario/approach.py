@@ -25,7 +25,9 @@ _HANDLES = (r"grapple", r"handle", r"grasp", r"dock", r"berth")
 _FACING = 0.3
 """Smallest cosine of the angle between the tool axis and the line from the handle to the target."""
 _SEPARATION, _RECOIL = 0.02, 0.1
-"""Speed of the craft after the release, m/s, unless the arm would recoil faster than ``_RECOIL``, m/s."""
+"""Relative speed of the craft after the release, m/s, unless the arm would recoil faster than ``_RECOIL``,
+m/s.
+"""
 GAP_M = 0.1
 """Distance of the captured frame from the tool at the start, m."""
 _IDENTITY = np.eye(3)
@@ -46,7 +48,7 @@ class Approach:
     angle: float
     """Angle between the tool and the captured frame, rad."""
     impulse: float
-    """Impulse of the spring at the release, N s."""
+    """Impulse of the spring at the release, N s, if the approach is the fastest of those tried."""
 
 
 def find_handle(model: Model) -> str:
@@ -118,7 +120,10 @@ def approach(chaser: Model, tool: str, q: Floats, target: Model, handle: str, q_
 
 
 def _effective_mass(model: Model, frame: str, q: Floats, axis: Floats) -> float:
-    """Return the effective mass `1 / (aᵀ J M⁻¹ Jᵀ a)`, kg, of a frame's motion along the axis `a` in W."""
+    """Return the effective mass `1 / (aᵀ J M⁻¹ Jᵀ a)`, kg, of a frame's motion along the axis `a` in W.
+
+    `J` is the linear part of the frame's Jacobian, `M` the mass matrix.
+    """
     row = axis @ np.asarray(model.frame_jacobian(q, frame))[POSITION]
     return 1.0 / float(row @ np.linalg.solve(np.asarray(model.mass_matrix(q)), row))
 

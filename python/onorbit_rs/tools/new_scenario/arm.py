@@ -72,9 +72,9 @@ def find_arm(model: Model, tool: str | None = None) -> Arm | None:
 def find_fingers(model: Model) -> tuple[set[str], set[str]]:
     """Return the bodies that are parts of fingers, and the bodies that carry fingers (palms).
 
-    A finger is a branch of at most ``FINGER_JOINTS`` joints, shorter than its arm and with fewer joints. A
-    palm carries only fingers: two or more, or a single finger whose name contains finger or gripper. The
-    base is never a palm.
+    A finger is a branch of at most ``FINGER_JOINTS`` joints, with at most ``FINGER_FRACTION`` of the length
+    of its arm and with fewer joints. A palm carries only fingers: two or more, or a single one whose names
+    indicate a finger. The base is never a palm.
     """
     chains = _chains(model)
     branches: dict[str, list[Joint]] = {}

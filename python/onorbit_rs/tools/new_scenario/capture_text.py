@@ -36,7 +36,7 @@ class CapturePlan:
     handle: str
     approach: Approach
     home: dict[str, float] = field(default_factory=dict)
-    """Nonzero initial positions of the chaser's joints by name, rad or m."""
+    """Initial positions of the chaser's joints by name, rad or m; zero if missing, as in ``target_home``."""
     target_home: dict[str, float] = field(default_factory=dict)
     chaser_joints: int = 0
     target_joints: int = 0

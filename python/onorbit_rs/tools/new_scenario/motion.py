@@ -67,7 +67,7 @@ def start_positions(model: Model, arm: Arm | None, weight: Weight | None = None)
 
 
 def within(joint: Joint, value: float) -> float:
-    """Return the position nearest to ``value``, rad or m, that keeps a distance from the limits.
+    """Return the position of a joint nearest to ``value``, rad or m, that keeps a distance from its limits.
 
     The distance is 5 % of the range, and at most 0.05 rad or m.
     """
@@ -76,8 +76,7 @@ def within(joint: Joint, value: float) -> float:
 
 
 def at_rest(joint: Joint) -> float:
-    """Return the position of a held joint, rad or m: zero, or the nearest allowed position if zero is not
-    allowed.
+    """Return the position of a held joint, rad or m: zero, or else that nearest to it, see :func:`within`.
 
     For a prismatic joint that cannot be at zero, the middle of its range is returned.
     """
@@ -98,7 +97,11 @@ def _limits(joint: Joint) -> tuple[float, float]:
 
 
 def fastest_damper(model: Model) -> tuple[str, float]:
-    """Return the name of the joint with the fastest damping, and its decay rate `b (M⁻¹)ii`, 1/s."""
+    """Return the name of the joint with the fastest damping, and its decay rate `b (M⁻¹)ii`, 1/s.
+
+    `b` is the damping of joint `i`, `M` the mass matrix at the neutral configuration. Without joints, the
+    name is empty and the rate 0.
+    """
     inverse = np.linalg.inv(np.asarray(model.mass_matrix(model.neutral())))
     rates = {
         joint.name: joint.damping * inverse[BASE_NV + row, BASE_NV + row]

@@ -21,9 +21,11 @@ GENTLE = 0.35
 
 
 def rotation_per_metre(model: Model, arm: Arm, q: Floats) -> Floats:
-    """Return the base rotation per tool displacement along the axes of W, (3, 3), rad/m.
+    """Return the base rotation, in base axes, per tool displacement along the axes of W, (3, 3), rad/m.
 
-    With the joint rates `q̇ = Jg⁺ ẋ` and zero momentum, the twist of the base is `-Mbb⁻¹ Mbm q̇`.
+    With the tool velocity `ẋ`, the generalized Jacobian `Jg`, the joint rates `q̇ = Jg⁺ ẋ` and zero momentum,
+    the twist of the base is `-Mbb⁻¹ Mbm q̇`; `Mbb` and `Mbm` are the base and coupling blocks of the mass
+    matrix.
     """
     columns = [list(model.joint_names).index(name) for name in arm.joints]
     jacobian = np.asarray(model.free_floating(q, np.zeros(model.nv), arm.tool).jacobian)[:, columns]

@@ -65,7 +65,7 @@ class Source:
         return {"bus": {"urdf": bus, "package_paths": packages} if packages else bus, "arms": [mounted]}
 
     def _frame(self, bus: Model) -> str:
-        """Return the frame of the bus to which the robot is attached."""
+        """Return the bus frame to which the robot is attached; raise a FrameError if it is ambiguous."""
         if self.at is not None:
             return self.at
         if len(bus.frame_names) == 1:

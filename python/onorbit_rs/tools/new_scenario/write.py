@@ -70,7 +70,7 @@ def draft(
     Raises
     ------
     OnOrbitError
-        If the robot cannot be read or lacks the frame, or if every trial run fails.
+        If the robot cannot be read or lacks the frame, no joint moves the frame, or every trial run fails.
     """
     source = Source(source) if isinstance(source, str) else source
     with warnings.catch_warnings():
@@ -111,7 +111,10 @@ _NO_ROOM = "position limits leave no range of motion"
 
 
 def _kinds(model: Model, arm: Arm | None, plan: Plan) -> Iterator[Iterable[Plan]]:
-    """Yield plans of each kind: lines of the tool, joint motions, small joint motions, all joints held."""
+    """Yield plans of each kind: lines of the tool, joint motions, small joint motions, all joints held.
+
+    Without an arm, the only plan is a free motion of the robot. Lines require an arm of six joints.
+    """
     if arm is None:
         yield [replace(plan, duration_s=60.0, time_step_s=1e-2)]
         return

@@ -65,14 +65,18 @@ def with_inertia_alone(text: str) -> str:
 
 
 def rates(model: oo.Model, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
-    """Return SPART's ``(u̇0, u̇m)`` with `r̈0 = R (v̇ + ẇ × c + w × (v + w × c))`, `c` the base's mass centre."""
+    """Return SPART's ``(u̇0, u̇m)`` with `r̈0 = R (v̇ + ẇ × c + w × (v + w × c))` in `u̇0`.
+
+    `r̈0` is the acceleration of the base's mass centre in W, `c` its position in the base, `R` the attitude
+    of the base, `v` and `w` its twist in body axes.
+    """
     com, w = np.array(model.bodies[0].com), v[ANGULAR]
     inner = a[LINEAR] + np.cross(a[ANGULAR], com) + np.cross(w, v[LINEAR] + np.cross(w, com))
     return np.concatenate([a[ANGULAR], matrix_from_quaternion(q[QUATERNION]) @ inner]), a[JOINTS_V]
 
 
 def forces(model: oo.Model, q: Array, tau: Array) -> tuple[Array, Array]:
-    """Return SPART's ``(tau0, taum)``; ``tau0``: moment about the base's mass centre, then force."""
+    """Return SPART's ``(tau0, taum)``; ``tau0``: moment about the base's mass centre, base axes; force, W."""
     com = np.array(model.bodies[0].com)
     moment = tau[ANGULAR] - np.cross(com, tau[LINEAR])
     return np.concatenate([moment, matrix_from_quaternion(q[QUATERNION]) @ tau[LINEAR]]), tau[JOINTS_V]

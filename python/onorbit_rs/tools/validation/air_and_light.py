@@ -37,7 +37,7 @@ def circle_or_ellipse(name: str) -> oo.Kepler:
 
 
 def after_24_days(orbit: oo.Orbit, **settings: Any) -> Any:
-    """Return the position after 24 days, m."""
+    """Return the inertial position of a ball under radiation pressure after 24 days, m."""
     body = oo.Model.rigid_body(300.0, 100.0 * np.eye(3))
     ball = oo.Cannonball(16.0, reflectivity=REFLECTIVITY)
     light = oo.RadiationPressure(surfaces=ball, flux=FLUX, **({"earth_radius": RADIUS} | settings))
@@ -79,7 +79,7 @@ BALLOON_NODE = np.array([-0.035, -0.07, -0.1])  # degrees, after 200, 400 and 60
 def balloon(days: int) -> Any:
     """Return the changes of eccentricity, and of inclination, node and periapsis, degrees, every 200 days.
 
-    The balloon satellite has C_R A/m = 4 m²/kg.
+    The balloon satellite has an area per mass, times its reflectivity, of 4 m²/kg.
     """
     orbit = oo.Kepler(
         semi_major_axis=10_085.44e3, eccentricity=0.025422, inclination=np.radians(88.3924),

@@ -19,7 +19,7 @@ SEEDS = range(12)
 
 
 def rigid(name: str, mass: float, inertia: Sequence[float], q: Sequence[float], v: Any) -> oo.System:
-    """Return a rigid spacecraft at the position ``q``, with identity attitude and velocity ``v``."""
+    """Return a rigid spacecraft at ``q`` (3,), m, in W, with identity attitude and velocity ``v`` (6,)."""
     model = oo.Model.rigid_body(mass, np.diag(inertia))
     return oo.System(name, model, [*q, 0.0, 0.0, 0.0, 1.0], v)
 
@@ -53,7 +53,7 @@ def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecor
 
 
 def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
-    """Return the momentum (6,) about a point in W, and the sum of the magnitudes of the links' momenta."""
+    """Return the momentum (6,) about a point in W, and the sums (2,) of the magnitudes over the links."""
     total, scales = np.zeros(6), np.zeros(2)
     for body in craft.model.bodies:
         pose = craft.model.frame_pose(craft.q, body.name)
@@ -218,7 +218,8 @@ SPRING = [3.0, 0.0, 1.0, 0.0, 0.5, 0.0]  # N s and N m s, in the axes of the cap
 def spring() -> tuple[float, float, float, float]:
     """Return the errors of the changes of both velocities, of the energy gained and of momentum at a release.
 
-    Two rigid craft at rest: `Δv = ±J/m`, `Δω = ±I⁻¹ (L + r × J)`.
+    Two rigid craft of masses `m` and inertias `I` at rest: the impulse `J` and the angular impulse `L` at the
+    point `r`, relative to each mass centre, give `Δv = ±J/m`, `Δω = ±I⁻¹ (L + r × J)`.
     """
     systems = [rigid("a", *FIRST, [0, 0, 0], np.zeros(6)), rigid("b", *SECOND, POSITION, np.zeros(6))]
     events: list[oo.Capture | oo.Release] = [

@@ -52,7 +52,9 @@ def jacobi(model: oo.Model, orbit: oo.Kepler, trace: oo.Trace, rows: slice) -> A
 
     `Σ ½m|ρ̇−n×ρ|² + ½n²ρ_z²m − m n²R²X + ½(ω−n)·I(ω−n) − ½n·In + (3μ/2r³) r̂·I r̂` with `X = (s−1)²(s+2)/2s`,
     `s² = 1 + (2R u + ρ²)/R²`, `u = R̂·ρ`. Tidal and centrifugal potential are combined, which avoids
-    cancellation.
+    cancellation. The sum is over links of mass `m`, inertia `I`, rate `ω` and position `ρ` from the
+    reference; the reference orbit has radius `R`, direction `R̂` and rate `n`, with `ρ_z` along `n`. The link
+    is at the distance `r` from the Earth in the direction `r̂`.
     """
     q, v, t = trace.q[rows], trace.v[rows], trace.time[rows]
     r, velocity = orbit.state(t)
@@ -101,6 +103,8 @@ SLIDER_MASS, FRICTION, SPEED = 2.0, 3.0, 1.5  # kg, N, m/s
 
 def stopped_by_friction() -> tuple[float, float]:
     """Return the error of a slider's stopping distance `v²/2a`, and its motion after the stop, m.
+
+    `v` is the initial speed, `a` the deceleration by friction.
 
     The slider moves on a base that is a million times heavier.
     """

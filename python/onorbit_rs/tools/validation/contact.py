@@ -77,7 +77,7 @@ def impact(normal: NormalLaw) -> Impact:
 
 
 def restitution() -> list[float]:
-    """Return the largest error of the restitution for each exponent."""
+    """Return the largest error of the restitution for each exponent of the force law, 1 and 1.5."""
     return [
         worst(
             abs(impact(oo.HuntCrossley(k, n, dissipation=p / SPEED)).restitution - e)
@@ -90,7 +90,8 @@ def restitution() -> list[float]:
 def unequal() -> list[float]:
     """Return the largest errors of both velocities after impacts of unequal balls at 0.1 and 0.2 m/s.
 
-    The velocities are `v (m1 - e m2)/(m1 + m2)` and `v m1 (1 + e)/(m1 + m2)`.
+    For masses `m1` and `m2`, the initial speed `v` of the first ball and the restitution `e`, the velocities
+    are `v (m1 - e m2)/(m1 + m2)` and `v m1 (1 + e)/(m1 + m2)`; the errors are relative to `v`.
     """
     errors = []
     for first, second in PAIRS:
@@ -110,7 +111,7 @@ def row() -> list[float]:
 
 
 def elastic() -> list[float]:
-    """Return the error of the restitution without dissipation for each exponent, at 0.2 m/s."""
+    """Return the errors of the restitution without dissipation for exponents 1 and 1.5, at 0.2 m/s."""
     traces = (balls(oo.HuntCrossley(k, n), (BALLS, BALLS), 2.0 * CLOSING) for n, k in LAWS)
     return [abs(float(t["b"].v[-1, 0] - t["a"].v[-1, 0]) / (2.0 * SPEED) - 1.0) for t in traces]
 

@@ -19,7 +19,7 @@ STARTS = {
 
 
 def box(name: str) -> oo.Model:
-    """Return a uniform box."""
+    """Return a uniform box with the size and mass of a name."""
     x, y, z = SIZES[name]
     moments = MASSES[name] / 12.0 * np.array([y * y + z * z, x * x + z * z, x * x + y * y])
     return body(f'<box size="{x} {y} {z}"/>', MASSES[name], moments)
@@ -87,7 +87,7 @@ def records() -> tuple[float, float]:
 
 
 def acts_at(trace: oo.WorldTrace, name: str) -> Array:
-    """Return the points (T, 3) at which the contact acts on a box, m."""
+    """Return the points (T, 3) in W at which the contact acts on a box, m."""
     return trace.contacts["touch"].point
 
 

@@ -89,6 +89,8 @@ def _between(time: Array, values: Array, start: float, end: float) -> tuple[Arra
 def oblique(across: float) -> tuple[float, float]:
     """Return speed along the floor and circumferential speed after an impact, relative to the normal speed.
 
+    ``across`` is the ratio of tangential and normal speed before the impact.
+
     The contact is so stiff that the depth is 1e-4 of the radius, and the bristles are stiffer than the normal
     force: the closed form is the limit of a rigid contact, whose lever is the radius and which stores no
     tangential energy.

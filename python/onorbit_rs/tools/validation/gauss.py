@@ -96,9 +96,11 @@ def project(
 def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: bool = True) -> Impact:
     """Return the closest velocities without relative twist, in the metric of the kinetic energy.
 
-    `v⁺ = v⁻ − M⁻¹ Jᵀ Λ J v⁻`, `Λ = (J M⁻¹ Jᵀ)⁻¹`, energy lost `½ (J v⁻)ᵀ Λ (J v⁻)`, impulse on the second
-    robot `−Λ J v⁻`. Two options give wrong results for negative controls: with a `gap`, the impulse on the
-    first robot acts at another point; without `joints`, it changes the velocities of the bases only.
+    With the mass matrix `M` of both robots, the Jacobian `J` of the relative twist and the velocities `v⁻`
+    before the capture: `v⁺ = v⁻ − M⁻¹ Jᵀ Λ J v⁻`, `Λ = (J M⁻¹ Jᵀ)⁻¹`, energy lost `½ (J v⁻)ᵀ Λ (J v⁻)`,
+    impulse on the second robot `−Λ J v⁻`. Two options give wrong results for negative controls: with a `gap`,
+    the impulse on the first robot acts at another point; without `joints`, it changes the velocities of the
+    bases only.
     """
     crafts = (first, second)
     before, rows = np.concatenate([first.v, second.v]), relative_twist(crafts, 0, 1)

@@ -12,7 +12,7 @@ from onorbit_rs.tools.validation.case import Case, Gate
 
 
 class Flight(NamedTuple):
-    """Motion from ``r0, v0`` to ``r, v`` in ``dt``; km, km/s and s; the precision is in m and m/s."""
+    """Motion from ``r0, v0`` to ``r, v`` in ``dt``; km, km/s, s, ``mu`` in km³/s²; precision in m and m/s."""
 
     source: str
     mu: float

@@ -32,8 +32,9 @@ SPIN = np.array([0.3, 0.0, 1.1])  # rad/s
 def top() -> tuple[float, float]:
     """Return the errors of the top's rate, rad/s, and of the direction of its axis, rad, after 100 s.
 
-    In body axes, the angular velocity rotates about the symmetry axis at `λ = (C/A - 1) ω₃`; in inertial
-    axes, the symmetry axis rotates about the angular momentum at `|L|/A`.
+    With the moments of inertia `C` about the symmetry axis and `A` across it, the angular velocity rotates in
+    body axes about the symmetry axis at `λ = (C/A - 1) ω₃`, where `ω₃` is its component along that axis; in
+    inertial axes, the symmetry axis rotates about the angular momentum `L` at `|L|/A`.
     """
     a, _, c = TOP
     body = oo.Model.rigid_body(1.0, np.diag(TOP))

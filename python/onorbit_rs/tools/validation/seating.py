@@ -22,7 +22,8 @@ def pulled() -> tuple[float, float, float, float]:
     """Return the errors of the final positions, of the energy halfway, of momentum and of work.
 
     Two bodies are pulled together along the line through their centres of mass; the common centre of mass
-    stays at rest. Halfway, the relative speed `v` is 15/8 of its mean: `T = ½ m1 m2/(m1 + m2) v²`.
+    stays at rest. Halfway, the relative speed `v` is 15/8 of its mean, and the kinetic energy of the masses
+    `m1` and `m2` is `½ m1 m2/(m1 + m2) v²`.
     """
     systems = [rigid("a", MASSES[0], [9, 9, 9], [0, 0, 0], np.zeros(6)),
                rigid("b", MASSES[1], [1, 1, 1], [2, 0, 0], np.zeros(6))]  # fmt: skip
@@ -48,7 +49,8 @@ def pulled() -> tuple[float, float, float, float]:
 def turned() -> tuple[float, float]:
     """Return the errors of the final attitude of the first body and of the relative attitude.
 
-    The bodies share a rotation `θ` about the common axis according to their inertias: `θ1 = −θ I2/(I1 + I2)`.
+    The bodies share a rotation `θ` about the common axis according to their moments of inertia `I1` and `I2`
+    about it: the first turns by `θ1 = −θ I2/(I1 + I2)`.
     """
     first, second = INERTIAS
     systems = [rigid("a", 50.0, [4, 4, first], [0, 0, 0], np.zeros(6)),

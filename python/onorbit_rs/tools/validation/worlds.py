@@ -126,7 +126,12 @@ GAP, SPEED, HELD, REACH = 1.7, 0.3, 0.25, 0.5  # m, m/s, s, m
 
 
 def latch() -> tuple[float, float]:
-    """Return the errors of the time at which a latch closes, `(d − r)/v + t_held`, and of the energy lost."""
+    """Return the errors of the time, s, at which a latch closes, `(d − r)/v + t_held`, and of the energy
+    lost, J.
+
+    `d` is the initial distance, `v` the closing speed, `r` the latch's reach, `t_held` the time that it
+    waits.
+    """
     systems = [
         rigid("a", 40.0, [3, 4, 5], [0, 0, 0], np.zeros(6)),
         rigid("b", 20.0, [1, 2, 2], [GAP, 0, 0], [-SPEED, 0, 0, 0, 0, 0]),
