@@ -81,8 +81,8 @@ impl ExternalCommand {
         matches!(self, Self::Setpoint(Setpoint { position: None, velocity: None, .. }))
     }
 
-    /// Returns the positions that the joints are to hold after the command; `None` if the command has no
-    /// positions.
+    /// Returns the positions that the joints are to hold after the command, `(k,)`, rad or m; `None` if the
+    /// command has no positions.
     pub(super) fn last_position(&self) -> Option<&[f64]> {
         match self {
             Self::Setpoint(setpoint) => setpoint.position.as_deref(),

@@ -78,7 +78,8 @@ fn remove_joint<S: Real>(m: &mut [S], nv: usize, i: usize) {
     m[i * nv + i] = S::of(1.0);
 }
 
-/// Factorizes `M = L D Lᵀ` in place, with `L` below the diagonal and `D⁻¹` on the diagonal.
+/// Factorizes `M = L D Lᵀ` in place, with `L` below the diagonal and `D⁻¹` on the diagonal. Pivots below the
+/// rounding error of the diagonal entry are replaced by it.
 #[inline(always)]
 fn factorize<S: Real>(m: &mut [S], nv: usize) {
     for i in 0..nv {
@@ -103,7 +104,7 @@ fn factorize<S: Real>(m: &mut [S], nv: usize) {
     }
 }
 
-/// Solves `L D Lᵀ x = b` in place.
+/// Solves `L D Lᵀ x = b` with the factors in `m`; `x` holds `b` on entry.
 #[inline(always)]
 fn substitute<S: Real>(m: &[S], nv: usize, x: &mut [S]) {
     for i in 0..nv {

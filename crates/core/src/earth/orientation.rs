@@ -72,7 +72,7 @@ impl Orientation {
         pole(self.epoch.centuries(t))
     }
 
-    /// Returns the Earth rotation angle `θ`, rad, and its rate, rad/s.
+    /// Returns the Earth rotation angle `θ`, rad, and its rate, rad/s, at `t`, s.
     fn rotation_angle(&self, t: f64) -> (f64, f64) {
         let (ut1_minus_tai, rate) = self.parameters.ut1_minus_tai(t);
         (self.angle + ROTATION_RATE * (t + ut1_minus_tai), ROTATION_RATE * (1.0 + rate))
@@ -106,7 +106,7 @@ impl Orientation {
         Matrix3::new(cx, 0.0, x, x * y, cy, -cx * y, -cy * x, y, cx * cy)
     }
 
-    /// Returns the mean sidereal time of 1982 minus the Earth rotation angle, rad.
+    /// Returns the mean sidereal time of 1982 minus the Earth rotation angle at `t`, s, in rad.
     ///
     /// Source: Aoki and others, Astronomy and Astrophysics 105, 1982, eq. 14.
     fn sidereal_excess(&self, t: f64) -> f64 {

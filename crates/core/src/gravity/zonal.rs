@@ -16,8 +16,9 @@ pub(super) const EARTH: [f64; 5] = [
     5.406_665_762_838_132e-7,
 ];
 
-/// Part of a planet's field that is symmetric about the planet's z axis: `U = -(μ/r) Σ Jn (R/r)ⁿ Pn(u)` with
-/// `u = z/r`.
+/// Part of a planet's field that is symmetric about the planet's z axis: the potential `U = -(μ/r) Σ Jn
+/// (R/r)ⁿ Pn(u)` with `u = z/r`, the Legendre polynomials `Pn`, the gravitational parameter `μ`, m³/s², and
+/// the reference radius `R`, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zonal {
     pub(super) mu: f64,

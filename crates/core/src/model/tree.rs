@@ -162,7 +162,8 @@ impl Model {
         &self.collisions
     }
 
-    /// Returns, for each collision shape of the link of a frame that was not read, the reason.
+    /// Returns the reason for each collision shape that was not read, of the link whose frame has the index
+    /// `frame`; empty for a frame that is not a link.
     pub fn skipped_collisions(&self, frame: usize) -> &[String] {
         let name = &self.frames[frame].name;
         let link = self.description.links.iter().find(|link| link.name == *name);

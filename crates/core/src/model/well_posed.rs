@@ -45,8 +45,9 @@ fn massless_chain(model: &Model) -> Vec<String> {
     model.joints.iter().take(count).map(|joint| joint.name.clone()).collect()
 }
 
-/// Marks in `is_resisted` the motions whose pivot is larger than rounding error. To be independent of the
-/// dynamics algorithms, uses dense 6 × 6 inertias in body axes.
+/// Marks in `is_resisted`, `(nv,)`, the motions whose pivot is larger than rounding error in the
+/// configuration with the joint positions `angle(j)`, rad or m. To be independent of the dynamics algorithms,
+/// uses dense 6 × 6 inertias in body axes.
 fn eliminate(model: &Model, angle: impl Fn(usize) -> f64, is_resisted: &mut [bool]) {
     let mut composite: Vec<_> = model.nodes.iter().map(inertia_about_origin).collect();
     let mut articulated = composite.clone();
@@ -88,7 +89,8 @@ fn scale(inertia: &Matrix6<f64>, k: usize) -> f64 {
     inertia.fixed_view::<3, 3>(start, start).amax()
 }
 
-/// Returns `[[m 1, −m c×], [m c×, I − m c× c×]]`, linear before angular.
+/// Returns `[[m 1, −m c×], [m c×, I − m c× c×]]`, linear before angular, with the mass `m`, centre of mass
+/// `c` and inertia `I` about it of a body, in body axes.
 fn inertia_about_origin(node: &Node) -> Matrix6<f64> {
     let c = node.com.to_nalgebra().cross_matrix();
     let about_origin = node.about_com.to_nalgebra() - c * c * node.mass;

@@ -24,11 +24,12 @@ pub struct PathPoints {
     pub times: Vec<f64>,
     /// Positions from the planet's centre, m.
     pub positions: Vec<Vector3<f64>>,
-    /// Velocities, m/s.
+    /// Velocities, m/s; `None` if they are to follow from the positions.
     pub velocities: Option<Vec<Vector3<f64>>>,
-    /// Accelerations, m/s².
+    /// Accelerations, m/s², which require velocities; `None` if they are to follow from the other points.
     pub accelerations: Option<Vec<Vector3<f64>>>,
-    /// Attitudes: unit quaternions x, y, z, w from axes of the path's frame to `I`.
+    /// Attitudes: unit quaternions x, y, z, w from axes of the path's frame to `I`; `None` for the axes of
+    /// the LVLH frame.
     pub attitudes: Option<Vec<Vector4<f64>>>,
 }
 

@@ -88,7 +88,8 @@ impl PoseSpline {
     }
 }
 
-/// Returns the times of the waypoints, s, starting at zero; `time_for` returns the duration of each piece.
+/// Returns the times of the waypoints, s, starting at zero, or an error for a piece without duration, whose
+/// points coincide; `time_for` returns the duration of the piece between two points.
 pub(super) fn rest_times<P>(
     points: &[P],
     time_for: impl Fn(&P, &P) -> f64,

@@ -15,9 +15,9 @@ const SMALL: f64 = 1e-6;
 ///
 /// The last stage of a Runge-Kutta step is evaluated at a prediction of the state at the end of the step, and
 /// the first stage of the next step at that state itself. With the step length `h`, `h |Δq̈|/6` is the
-/// difference between the rate and an embedded third-order solution. For an oscillation with `z = ω h`, this
-/// difference is `z⁴/72` of the amplitude of the rate, and the error of a step is `z⁵/120` of it, which
-/// equals `1.75 (z⁴/72)^(5/4)`.
+/// difference between the rate and an embedded third-order solution. For an oscillation with the angular
+/// frequency `ω` and `z = ω h`, this difference is `z⁴/72` of the amplitude of the rate, and the error of a
+/// step is `z⁵/120` of it, which equals `1.75 (z⁴/72)^(5/4)`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct AccelerationJumps {
     /// Joint accelerations in the last stage of the previous step, rad/s² (m/s²).

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 /// Progress of one event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EventState {
-    /// Time at which the event happened, s. Releasing frames that are not connected has no effect, but counts
-    /// as well.
+    /// Time at which the event happened, s; `None` until then. Releasing frames that are not connected has no
+    /// effect, but counts as well.
     pub(super) happened: Option<f64>,
     /// Time at which the event is due, s; `None` while it is unknown.
     pub(super) due: Option<f64>,

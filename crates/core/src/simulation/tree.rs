@@ -206,8 +206,8 @@ impl<'a, S: Real> Tree<'a, S> {
         LoadedSystem { q, frame_velocity: self.frame_velocity, data: &mut self.data }
     }
 
-    /// Computes the time derivatives of a state whose kinematics and loads are in `data`; `is_loaded` is true
-    /// if there are external loads.
+    /// Computes the time derivatives of a state whose kinematics and loads are in `data`, and writes them to
+    /// `rate`; `is_loaded` is true if there are external loads.
     pub(crate) fn rates(&mut self, state: &TreeState<S>, is_loaded: bool, rate: &mut TreeRate<S>) {
         let (q, v) = (&state.q[..], &state.v[..]);
         if let Some(clock) = state.clock {

@@ -41,7 +41,8 @@ pub struct ControllerSet<'a, S> {
     /// Pseudo-inverse for one task, used by the laws that command efforts.
     inverse: PseudoInverse<f64>,
     commands: Vec<JointCommand>,
-    /// Desired accelerations, rad/s² (m/s²), of the joints whose friction a law compensates.
+    /// Desired accelerations, `(n,)`, rad/s² (m/s²), of the joints whose friction a law compensates; `None`
+    /// for the other joints.
     desired_accelerations: Vec<Option<f64>>,
     compensates_environment: bool,
     /// True if a joint has Coulomb friction.
@@ -143,7 +144,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     }
 
     /// Returns the desired accelerations of the last update, rad/s² (m/s²), of the joints whose Coulomb
-    /// friction a law compensates. The drives of these joints add the friction torque.
+    /// friction a law compensates, `(n,)`; `None` for the other joints. The drives of these joints add the
+    /// friction torque.
     pub fn desired_accelerations(&self) -> &[Option<f64>] {
         &self.desired_accelerations
     }

@@ -62,7 +62,7 @@ pub struct Certificate {
     /// group.
     pub attitude_consistency: Option<f64>,
     /// Difference between the attitudes after a step and after two half steps, summed over the run, rad; for
-    /// an adaptive integrator, the sum of its own error estimates. `None` if errors of steps are not
+    /// an adaptive integrator, the sum of the error estimates of its steps. `None` if errors of steps are not
     /// estimated.
     pub attitude_step_doubling_rad: Option<f64>,
     /// Difference between the positions and rates after a step and after two half steps, summed over the run,
