@@ -140,7 +140,7 @@ class ModelError(OnOrbitError, ValueError):
 
 
 class FrameError(OnOrbitError, KeyError):
-    """Unknown name of a frame, link, body or joint."""
+    """Unknown, missing or unsuitable name of a frame, link, body or joint; ``known`` has the valid names."""
 
     name: Any = None
     kind: Any = None

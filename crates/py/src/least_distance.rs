@@ -93,7 +93,7 @@ fn shape_set(items: &[Bound<'_, PyAny>]) -> PyResult<ShapeSet> {
     Ok(ShapeSet::new(items.iter().map(read).collect::<PyResult<Vec<_>>>()?))
 }
 
-/// Reads poses, whose last two dimensions are rows of homogeneous matrices.
+/// Reads poses from homogeneous matrices (..., 4, 4), with positions in m.
 fn poses_of(values: &Rows<'_>) -> PyResult<Vec<Pose>> {
     let pose = |m: &[f64]| {
         let column = |j: usize| Vec3::new(m[j], m[4 + j], m[8 + j]);

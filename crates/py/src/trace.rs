@@ -158,9 +158,10 @@ macro_rules! getters {
             }
 
             /// Outcomes of the goals, as dicts: ``name`` (of the control), ``outcome`` (``succeeded``,
-            /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``), ``time``, s,
-            /// ``component``, the joint (or ``position`` or ``attitude``) whose error was too large, and
-            /// ``error``, that error, m or rad.
+            /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``), ``time`` of the
+            /// decision, s (None if unfinished), ``component``, the joint (or ``position`` or ``attitude``)
+            /// whose error was too large, and ``error``, that error, m or rad, per second for rates (both
+            /// None unless a tolerance was violated).
             #[getter]
             fn results<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
                 let all = self.trace.results.iter().map(|result| {

@@ -87,6 +87,7 @@ class Prepared:
     """Empty for a keep-out zone."""
     side_b: list[Link]
     permitted: list[list[bool]] = field(repr=False)
+    """Whether each pair of a link of ``side_a`` and a link of ``side_b`` is compared."""
 
 
 def prepare(models: Models, watch: Watch) -> Prepared:

@@ -17,7 +17,7 @@ A closing terminal sends SIGHUP twice, from the shell and from the kernel.
 
 
 class _Handler:
-    """Signal handler that raises ``KeyboardInterrupt`` with the name of the signal."""
+    """Signal handler that raises ``KeyboardInterrupt`` with the name of the signal, unless it is repeated."""
 
     def __init__(self) -> None:
         self._last = -REPEATS_S

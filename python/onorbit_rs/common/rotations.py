@@ -100,7 +100,7 @@ def roll_pitch_yaw(quat_xyzw: ArrayLike) -> Floats:
 
 
 def angle_between(quat_xyzw: ArrayLike, other_xyzw: ArrayLike) -> Floats:
-    """Return the angle (...), rad, from 0 to π, between two attitudes."""
+    """Return the angle (...), rad, from 0 to π, between attitudes given as unit quaternions (..., 4)."""
     a, b = np.asarray(quat_xyzw), np.asarray(other_xyzw)
     b = np.where(np.sum(a * b, axis=-1, keepdims=True) < 0.0, -b, b)
     # accurate for small angles, unlike the arc cosine of the dot product

@@ -40,7 +40,7 @@ def mark_events(
 
 
 def _joined(events: Sequence[EventMark]) -> list[tuple[float, str]]:
-    """Return the times, s, and names of the events; names that would overlap are joined."""
+    """Return the times, s, and names of the events; names that would overlap are joined at the first."""
     if not events:
         return []
     least = _LEAST_APART * max(event.time for event in events)

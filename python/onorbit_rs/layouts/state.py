@@ -86,7 +86,8 @@ def check_unit(name: str, vectors: Floats, what: str = "the quaternion") -> None
 
 
 def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
-    """Return the indices in the model of the joints ``names``, which are in the order of the other engine.
+    """Return the indices in the model of the joints ``names``, which are in the order of the other engine;
+    None means the order of the model.
 
     Raises
     ------

@@ -150,7 +150,7 @@ class ContactMarks:
 
 
 def _all(world: WorldRows, held_s: float) -> Iterator[tuple[str, Marks]]:
-    """Yield the marks of each contact that acts."""
+    """Yield the name and the marks of each recorded contact."""
     (force, _), (point, _) = (COLUMNS["contacts"].parts[part] for part in ("force", "point"))
     times = world.all_times["time"]
     for rows in world.systems.values():

@@ -123,7 +123,7 @@ def flight_view(bodies: list[Body], contents: list[str] | None = None) -> rrb.Vi
 
 
 def _farthest(bodies: list[Body]) -> float:
-    """Return the greatest distance from the reference, m."""
+    """Return the greatest distance of the bodies from the reference, m; 0 without bodies."""
     return max((float(np.linalg.norm(body.points, axis=1).max()) for body in bodies), default=0.0)
 
 

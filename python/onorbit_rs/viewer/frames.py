@@ -121,7 +121,7 @@ def send_follow(
 
 
 def _joint_transform(joint: Joint, values: Floats) -> tuple[Floats, Floats]:
-    """Return translation and quaternion of the child link in the parent link, per row or constant."""
+    """Return translation, m, and quaternion, xyzw, of the child in the parent link, per row or constant."""
     pose, axis = np.array(joint.pose), np.array(joint.axis)
     quat = quaternion_from_matrix(pose[:3, :3])
     if joint.kind == "prismatic":

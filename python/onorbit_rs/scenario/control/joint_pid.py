@@ -56,7 +56,7 @@ class JointPidController(JointLaw):
         )
 
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
-        """Yield the gains whose largest stable value depends on the control period."""
+        """Yield the gains whose largest stable value depends on the control period; none for ``effort``."""
         if self.interface == "effort":
             return
         joints, of_joints = mobility.joint_count(self), mobility.of_joints(self)

@@ -85,7 +85,9 @@ class RadiationPressureEffect(SurfaceEffect):
     flux: Annotated[Flux, NotNegative] = 1361.0
     """Solar flux at 1 au, W/m²."""
     shadow: bool = True
+    """Whether the shadow of the Earth (umbra and penumbra) is modelled."""
     earth_radius: Annotated[Length, Positive] | None = None
+    """Radius of the Earth used for its shadow, m. Default: that of the engine."""
 
     def build(self, _model: _core.Model | None, _folder: Path) -> _core.Effect:
         """Return the engine's effect object."""

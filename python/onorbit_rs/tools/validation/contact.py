@@ -105,7 +105,9 @@ def unequal() -> list[float]:
 
 
 def row() -> list[float]:
-    """Return the relative errors of the velocities of three equal balls after two elastic impacts."""
+    """Return the errors of the velocities of three equal balls after two elastic impacts, relative to the
+    initial speed.
+    """
     trace = balls(oo.HuntCrossley(HERTZ), (BALLS, BALLS, LAST), SPEED)
     return [abs(trace[name].v[-1, 0] / SPEED - end) for name, end in (("a", 0.0), ("b", 0.0), ("c", 1.0))]
 

@@ -54,7 +54,7 @@ def pressed(sphere: oo.System, friction: oo.Friction, *loads: oo.BodyWrench, las
 
 
 def resting(model: oo.Model, velocity: tuple[float, ...] = (0, 0, 0, 0, 0, 0)) -> oo.System:
-    """Return a sphere of 1 kg on the floor."""
+    """Return a sphere of 1 kg on the floor, at the depth at which its weight is balanced."""
     return at("sphere", model, [0.0, 0.0, RADIUS - G / STIFF], velocity)
 
 

@@ -26,7 +26,7 @@ TWO_SECONDS = {"peak torques": ([0.8014, 0.9838, 0.3073, 0.3446], 0.6e-4, "N m")
 
 
 def reach(duration: float, expected: dict[str, Any]) -> list[float]:
-    """Simulate a reach of 0.5 m along x with RK4 at 1 ms; return the largest errors."""
+    """Simulate a reach of 0.5 m along x, RK4 at 1 ms; return the largest error of each expected quantity."""
     model, q = humanoid()
     line = oo.LineParabola(
         model.frame_pose(q, "tool"), displacement=[0.5, 0, 0], height=[0, 0, 0.4], duration=duration

@@ -21,7 +21,7 @@ TOOL = "tool"
 
 @dataclass(frozen=True)
 class Part:
-    """A link and its parent joint (None for the base); the inertia is about ``com``, in link axes."""
+    """A link and its parent joint (None for the base), in SI; the inertia is about ``com``, in link axes."""
 
     name: str
     mass: float
@@ -179,7 +179,7 @@ def _text(numbers: list[float] | tuple[float, ...]) -> str:
 def deviation(ours: Any, theirs: Any) -> float:
     """Return the largest difference divided by the largest entry of ``theirs``.
 
-    If all entries of ``theirs`` are zero, the result is 0 or infinite.
+    If all entries of ``theirs`` are zero, the result is 0, infinite or NaN.
     """
     ours, theirs = np.asarray(ours), np.asarray(theirs)
     assert ours.shape == theirs.shape, (ours.shape, theirs.shape)
