@@ -58,11 +58,13 @@ pub struct FrictionForce {
     pub force: Vec3<f64>,
     /// Bristles after the displacement.
     pub bristle: Bristle,
-    /// Rate of the deflection of the bristles, m/s: the sliding velocity without its plastic part.
+    /// Rate of the deflection of the bristles, m/s: the sliding velocity without its plastic part. For
+    /// slipping bristles without damping, the sliding velocity itself.
     pub elastic_rate: Vec3<f64>,
-    /// Distance from the next change between sticking and slipping, negative beyond it: `1 − |σ z + c v|/(μ
-    /// N)` while the contact sticks, and `|σ z + c v|/(μ N) − 1` while it slips; for slipping bristles
-    /// without damping, the cosine of the angle between bristles and velocity.
+    /// Distance from the next change between sticking and slipping, negative beyond it, with the symbols of
+    /// [`Friction::after`]: `1 − |σ z + c v|/(μ N)` while the contact sticks, and `|σ z + c v|/(μ N) − 1`
+    /// while it slips; for slipping bristles without damping that are on the cone, the cosine of the angle
+    /// between bristles and velocity.
     pub margin: f64,
 }
 
@@ -71,10 +73,12 @@ impl Friction {
     /// the elastic displacement `moved`, m, from the bristles `start`: the integral of
     /// [`FrictionForce::elastic_rate`]. All vectors are tangential.
     ///
-    /// With the trial force `f = σ z + c v`, a contact sticks while `|f| ≤ μ N`: `ż = v` and `F = −f`.
-    /// Beyond the cone, `F = −μ N f/|f|`, and the bristles carry this force, `σ z + c ż = μ N f/|f|`. The
-    /// velocity `v − ż` is that of the slip, parallel to the force. Force and deflection are continuous
-    /// where the contact begins or ceases to slip, but for the difference of static and kinetic friction.
+    /// With the deflection `z`, the velocity `v = rate`, the normal force `N`, the stiffness `σ` and damping
+    /// `c` of the bristles, and the coefficient `μ`, kinetic if `start` slips and otherwise static, the trial
+    /// force is `f = σ z + c v`. A contact sticks while `|f| ≤ μ N`: `ż = v` and `F = −f`. Beyond this cone,
+    /// `F = −μ N f/|f|`, and bristles that slip carry this force, `σ z + c ż = μ N f/|f|`. The velocity `v −
+    /// ż` is that of the slip, parallel to the force. Force and deflection are continuous where the contact
+    /// begins or ceases to slip, but for the difference of static and kinetic friction.
     ///
     /// Without damping, slipping bristles have the length `μ N/σ` and turn towards the velocity, `ḋ = (1 −
     /// d dᵀ) v/|z|`. For a constant velocity, the angle `φ` between both obeys `tan φ/2 = tan φ₀/2
@@ -109,7 +113,8 @@ impl Friction {
         FrictionForce { force: direction * -limit, bristle, elastic_rate: rate - direction * plastic, margin }
     }
 
-    /// Returns the friction of slipping bristles without damping.
+    /// Returns the friction of slipping bristles without damping, after the displacement `moved`, m. Inside
+    /// the cone they stick with `damping`, N s/m. The other arguments are those of [`Friction::after`].
     fn on_cone(
         &self,
         start: &Bristle,
@@ -134,7 +139,8 @@ impl Friction {
         FrictionForce { force: direction * -limit, bristle, elastic_rate: rate, margin }
     }
 
-    /// Returns the damping of a contact with the reciprocal effective mass `mobility`, 1/kg.
+    /// Returns the damping of a contact with the reciprocal effective mass `mobility`, 1/kg; 0 if none is
+    /// given and `mobility` is 0.
     pub fn damping_for(&self, mobility: f64) -> BristleDamping {
         // c = 2 ζ √(σ m)
         let with_ratio = |ratio: f64| {

@@ -51,7 +51,7 @@ pub(super) struct ExternalMemory {
     pending: Option<(f64, ExternalCommand)>,
     current: ExternalCommand,
     /// Time at which the current command times out, s. The deadline of a pending command is set when the
-    /// command begins.
+    /// command begins; `None` without a timeout.
     deadline: Option<f64>,
 }
 

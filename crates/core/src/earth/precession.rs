@@ -57,7 +57,8 @@ fn nutation(t: f64, arguments: &[f64; 5]) -> [f64; 2] {
     sum.map(|x| x * 1e-6 * ARC_SECOND)
 }
 
-/// Returns the coordinates `X, Y` of the celestial intermediate pole in GCRF and the CIO locator `s`, rad.
+/// Returns the coordinates `X, Y` of the celestial intermediate pole in GCRF and the CIO locator `s`, rad, at
+/// `t`, Julian centuries of TT from J2000.0.
 ///
 /// `X` and `Y` are the first two elements of the last row of `R₁(-ε_A - Δε) R₃(-ψ̄ - Δψ) R₁(φ̄) R₃(γ̄)`.
 ///

@@ -38,8 +38,8 @@ pub(super) fn moon(t: f64) -> Vector3<f64> {
     from_ecliptic(t, x[2] + x[4] + longitude * ARC_SECOND, latitude * ARC_SECOND, distance * 1e3)
 }
 
-/// Converts a position given in the mean ecliptic and equinox of date to GCRF axes; angles are in rad, the
-/// distance is in m.
+/// Converts a position given in the mean ecliptic and equinox of date to GCRF axes, m; angles are in rad, the
+/// distance is in m. The date is `t`, Julian centuries of TT from J2000.0.
 fn from_ecliptic(t: f64, longitude: f64, latitude: f64, distance: f64) -> Vector3<f64> {
     let [gamma, phi, psi, _] = precession(t);
     let (s, c) = longitude.sin_cos();

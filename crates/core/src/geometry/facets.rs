@@ -58,8 +58,9 @@ pub(super) struct Facet<N> {
 }
 
 impl<N: Number> Facet<N> {
-    /// Returns the face of a feature; `None` for other features. `place` and `turn` give points and
-    /// directions as numbers, `other` is the normal of the other face.
+    /// Returns the face of a feature; `None` for features without a face. `plane` is the point and the normal
+    /// of a half-space, `place` and `turn` give points and directions as numbers, and `other` is the normal
+    /// of the other face.
     pub(super) fn of(
         feature: &Feature,
         plane: (Vec3<f64>, Vec3<f64>),
@@ -115,7 +116,8 @@ pub(super) struct Patch<N> {
     pub(super) width: N,
 }
 
-/// Returns the common part of two faces; `None` without one.
+/// Returns the common part of two faces; `None` without one, for two half-spaces, and for faces whose normals
+/// are almost the same.
 pub(super) fn patch<N: Number>(a: &Facet<N>, b: &Facet<N>) -> Option<Patch<N>> {
     let along = unit(less(a.normal, b.normal))?;
     let cosine = dot(along, a.normal);
@@ -210,11 +212,12 @@ fn angle<N: Number>(before: Point<N>, p: Point<N>, after: Point<N>) -> N {
 }
 
 /// Returns weights of the corners of a convex polygon. They sum to 1, and the weighted mean of the corners
-/// is the centroid.
+/// is the centroid, unless the polygon is almost a line or a factor is raised to [`LEAST`].
 ///
-/// They are the angles `α_i/2π` at the corners, with a factor that is linear in the place, `1 + b (p_i −
-/// p̄)`. A corner that splits into two passes its angle on to both, and a point on a straight edge has
-/// none.
+/// They are `α_i/2π`, with the angle `α_i` by which the boundary turns at the corner `p_i`, times a factor
+/// that is linear in the place, `1 + b (p_i − p̄)`, with the mean `p̄ = Σ p_i α_i/2π` and the vector `b` that
+/// yields the centroid. A corner that splits into two passes its angle on to both, and a point on a straight
+/// edge has none.
 fn by_angle<N: Number>(corners: &[Point<N>]) -> Vec<N> {
     let count = corners.len();
     let around = |i: usize| [corners[(i + count - 1) % count], corners[i], corners[(i + 1) % count]];
@@ -260,8 +263,9 @@ fn normalized<N: Number>(weights: Vec<N>) -> Vec<N> {
 /// Returns the weights of the corners of a patch: that by its angle, for each corner that no other corner
 /// exceeds in depth by a slope of [`TILT`] or more.
 ///
-/// `w_i ∝ a_i g(s_i)` with `g(s) = (1 − s²)²` below `s = 1` and 0 above, and the largest slope
-/// `s_i = max over j of (x_j − x_i)/(TILT (|p_i − p_j| + r))`.
+/// `w_i ∝ a_i g(s_i)` with the weight by angle `a_i`, `g(s) = (1 − s²)²` below `s = 1` and 0 above, and the
+/// largest slope `s_i = max over j of (x_j − x_i)/(TILT (|p_i − p_j| + r))` between the corners `p` with the
+/// depths `x`; `r` is [`SPREAD`] times the perimeter.
 fn tilted<N: Number>(corners: &[Point<N>], depths: &[N]) -> Vec<N> {
     let base = by_angle(corners);
     let reach = perimeter(corners) * N::of(SPREAD);

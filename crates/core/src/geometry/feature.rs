@@ -30,7 +30,7 @@ pub(super) enum Feature {
         corners: Vec<Vec3<f64>>,
         /// Outward unit normal.
         normal: Vec3<f64>,
-        /// Centre and radius of the disc of which the polygon is a part.
+        /// Centre and radius, m, of the disc that the polygon approximates; `None` for a polygon.
         disc: Option<(Vec3<f64>, f64)>,
     },
     /// Boundary plane of a half-space.

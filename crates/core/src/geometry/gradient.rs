@@ -55,8 +55,8 @@ pub(super) fn face_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Op
     Some(points)
 }
 
-/// Returns the part of the weight that a patch has: 1 if it is wider than deep, `x² (3 − 2x)` for smaller
-/// ratios `x`.
+/// Returns the part of the weight that a patch has: 1 if it is wider than deep or the shapes are apart, `x²
+/// (3 − 2x)` for smaller ratios `x` of `width` to `depth`, m.
 ///
 /// The edges of a narrow patch are as deep as the patch is wide. Seen along the bisector of the faces it
 /// may then vanish while the shapes still overlap, and the witness points remain.
@@ -72,7 +72,8 @@ fn values(p: Vector<Dual>) -> Vec3<f64> {
     Vec3::new(p[0].value, p[1].value, p[2].value)
 }
 
-/// Returns the common part of two faces, relative to the middle of the witness points.
+/// Returns the common part of two faces, relative to the middle of the witness points, with derivatives by
+/// the displacement of the second shape; `None` for other features and without a common part.
 fn common<N: Number>(proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Patch<N>> {
     let normal = proximity.normal;
     let place_a = |p: Vec3<f64>| fixed(p - proximity.center());
@@ -107,11 +108,11 @@ fn moving<N: Number>(v: Vec3<f64>, is_point: bool) -> Vector<N> {
     ]
 }
 
-/// Returns the depth of the shapes, which changes as the distance of the supporting planes at the witness
-/// points.
+/// Returns the depth of the shapes, m, with its derivatives: it changes as the distance of the supporting
+/// planes at the witness points.
 ///
-/// On a face, these are at the deepest corner: where an edge lies level on the face, any point of the edge
-/// may be the witness.
+/// On a face, the witness points are taken at the `deepest` corner: where an edge lies level on the face, any
+/// point of the edge may be the witness.
 fn depth_at(proximity: &Proximity, [a, b]: [&Feature; 2], deepest: &Corner<Dual>) -> Dual {
     let Proximity { distance, normal, .. } = *proximity;
     let is_on = |feature, side: f64| normal.cross(face_normal(feature, normal * side)).norm() < PARALLEL;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContactState {
     /// Elastic part of the sliding displacement of the second side relative to the first, in axes of the
-    /// first side, m: all of it while the contact sticks.
+    /// first side, m: all of it while the contact sticks, or slips without damping.
     pub(super) slip: Vec3<f64>,
     /// The same of the angle by which the second side turns about the normal relative to the first, rad.
     pub(super) turn: f64,

@@ -13,7 +13,7 @@ pub use world::to_world;
 use super::OrbitError;
 use nalgebra::Vector3;
 
-/// Returns an error if an array has the wrong length.
+/// Returns an error if an array has the wrong length; `arrays` holds names, expected and actual lengths.
 fn check(arrays: &[(&'static str, usize, usize)]) -> Result<(), OrbitError> {
     match arrays.iter().find(|(_, expected, got)| expected != got) {
         Some(&(name, expected, got)) => Err(OrbitError::WrongLength { name, expected, got }),

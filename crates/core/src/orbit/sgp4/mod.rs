@@ -92,7 +92,8 @@ impl Sgp4 {
         60.0 * TAU / self.elements.mean_motion
     }
 
-    /// Returns position (m) and velocity (m/s) at `t`, or an error if the position is below the surface.
+    /// Returns position (m) and velocity (m/s) in TEME axes at `t`, s after the epoch of the elements, or an
+    /// error if the position is below the surface or `t` is more than a hundred years from that epoch.
     fn above_surface(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         if finite("time", t)?.abs() > LONGEST_TIME {
             return Err(OrbitError::TimeOutOfRange { time: t, epoch: 0.0, limit: LONGEST_TIME });

@@ -27,12 +27,13 @@ pub(super) struct Pressure {
 
 impl Pressure {
     /// Computes the forces that belong to the elastic energy `U = Σ w_i u(x_i)` of points with the depths
-    /// `x_i` and the weights `w_i`. For a displacement `ξ` of the second side,
+    /// `x_i` and the weights `w_i`, with the force `F` and the elastic energy `u` of the law. For a
+    /// displacement `ξ` of the second side, the wrench `f` on it is given by
     ///
     /// `−f = Σ w_i F(x_i, ẋ_i) ∂x_i/∂ξ + Σ u(x_i) ∂w_i/∂ξ`,
     ///
     /// which is the gradient of `U` for an elastic law. The sum of the normal forces, `N = Σ w_i F_i`, acts
-    /// at `Σ w_i F_i p_i/N`.
+    /// at `Σ w_i F_i p_i/N`, with the middles `p_i` of the points of both sides.
     ///
     /// A single point may pull: its force is continued beyond lift-off, which ends the step. Pieces that
     /// separate without force (`is_pressing` false) and points that would pull dissipate their elastic

@@ -147,7 +147,8 @@ impl Touching {
     }
 
     /// Returns the work of the normal force of polyhedra that press on each other that is neither stored
-    /// nor dissipated, J: an error of the integrator, or of a jump of the elastic energy.
+    /// nor dissipated, J: an error of the integrator, or of a jump of the elastic energy. It is 0 for other
+    /// pieces and in other phases.
     pub(super) fn open_energy(&self, loading: &Loading, state: &ContactState) -> f64 {
         let is_exact = self.is_conservative
             && self.mode.phase == Phase::Pressing
