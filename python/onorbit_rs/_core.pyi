@@ -260,6 +260,24 @@ class Model:
         threads: int | None = None,
         out: _Array | None = None,
     ) -> _Array: ...
+    @property
+    def loops(self) -> list[Loop]: ...
+    def with_loops(self, loops: Sequence[Loop]) -> Model: ...
+    def constrained_forward_dynamics(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        tau: ArrayLike,
+        loops: Sequence[Loop] | None = None,
+        *,
+        external: _External | None = None,
+        threads: int | None = None,
+    ) -> tuple[_Array, _Array]: ...
+    def loop_errors(
+        self, q: ArrayLike, *, threads: int | None = None, out: _Array | None = None
+    ) -> _Array: ...
+    def closed_configuration(self, q: ArrayLike) -> _Array: ...
+    def closed_velocity(self, q: ArrayLike, v: ArrayLike) -> _Array: ...
     def inverse_dynamics_derivatives(
         self,
         q: ArrayLike,
@@ -348,6 +366,8 @@ class Joint:
     def static_friction(self) -> float: ...
     @property
     def rotor_inertia(self) -> float: ...
+    @property
+    def mimic(self) -> tuple[str, float, float] | None: ...
 
 @final
 class Body:
@@ -441,6 +461,41 @@ class FreeFloatingDerivatives:
     def velocity_dq(self) -> _Array: ...
 
 @final
+class Loop:
+    def __new__(
+        cls,
+        name: str,
+        kind: Literal["weld", "revolute", "spherical", "prismatic", "distance"],
+        frame_a: str,
+        frame_b: str,
+        *,
+        pose_a: ArrayLike | None = None,
+        pose_b: ArrayLike | None = None,
+        length: float | None = None,
+        project: bool = False,
+    ) -> Loop: ...
+    def __eq__(self, other: object) -> bool: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def kind(self) -> Literal["weld", "revolute", "spherical", "prismatic", "distance"]: ...
+    @property
+    def frame_a(self) -> str: ...
+    @property
+    def frame_b(self) -> str: ...
+    @property
+    def pose_a(self) -> list[list[float]]: ...
+    @property
+    def pose_b(self) -> list[list[float]]: ...
+    @property
+    def length(self) -> float | None: ...
+    @property
+    def project(self) -> bool: ...
+    @property
+    def rows(self) -> int: ...
+
+@final
 class ModelBuilder:
     def __new__(
         cls,
@@ -472,7 +527,9 @@ class ModelBuilder:
         velocity: float | None = None,
         effort: float | None = None,
         static_friction: float | None = None,
+        mimic: str | tuple[str, float, float] | None = None,
     ) -> None: ...
+    def close(self, loop: Loop) -> None: ...
     def add_frame(
         self, name: str, link: str, *, xyz: ArrayLike | None = None, rpy: ArrayLike | None = None
     ) -> None: ...
@@ -1099,6 +1156,7 @@ class System:
         reference_start_tolerance: ArrayLike | None = None,
         surfaces: Surface | Mapping[str, Surface] | None = None,
         knows: Sequence[str] | None = None,
+        loops: Sequence[Loop] | None = None,
     ) -> System: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
@@ -1278,6 +1336,7 @@ class World:
         contacts: Sequence[Contact] | None = None,
         events: Sequence[Capture | Release] | None = None,
         rereference_beyond: float = 1e5,
+        loops: Sequence[Loop] | None = None,
     ) -> World: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property

@@ -41,6 +41,11 @@ def print_info(model: Model, console: Console) -> None:
         if any(joint.damping or joint.static_friction or joint.rotor_inertia for joint in model.joints):
             console.print("\n[bold]losses and rotors[/bold]: N m s/rad, N m, kg m² (N s/m, N, kg)")
             console.print(_losses(model))
+        for joint in model.joints:
+            if joint.mimic is not None:
+                console.print(text(_mimic(joint.name, *joint.mimic)))
+    for loop in model.loops:
+        console.print(text(f"loop {loop.name}: {loop.kind} between {loop.frame_a} and {loop.frame_b}"))
     if model.warnings:
         console.print(f"\n[bold yellow]warnings[/bold yellow] ({len(model.warnings)}):")
         for warning in model.warnings:
@@ -91,6 +96,11 @@ def _losses(model: Model) -> Table:
         amounts = (joint.damping, joint.friction, joint.static_friction, joint.rotor_inertia)
         table.add_row(text(joint.name), *(f"{amount:.5g}" for amount in amounts))
     return table
+
+
+def _mimic(joint: str, leader: str, ratio: float, offset: float) -> str:
+    """Return the equation of a mimic joint, such as ``mimic joint: right = -1 left + 0.2``."""
+    return f"mimic joint: {joint} = {ratio:g} {leader}" + (f" + {offset:g}" if offset else "")
 
 
 def _table(*columns: str) -> Table:

@@ -40,10 +40,18 @@ def describe(model: Model) -> dict[str, Any]:
                 "velocity": joint.velocity, "effort": joint.effort, "damping": joint.damping,
                 "friction": joint.friction, "static_friction": joint.static_friction,
                 "rotor_inertia": joint.rotor_inertia,
+                "mimic": joint.mimic and dict(zip(("joint", "ratio", "offset"), joint.mimic, strict=True)),
             }
             for joint in model.joints
         ],
         "frames": [{"name": frame.name, "body": frame.body, "pose": frame.pose} for frame in model.frames],
+        "loops": [
+            {
+                "name": closing.name, "kind": closing.kind, "between": [closing.frame_a, closing.frame_b],
+                "poses": [closing.pose_a, closing.pose_b], "length": closing.length,
+            }
+            for closing in model.loops
+        ],
         "warnings": model.warnings,
     }  # fmt: skip
 

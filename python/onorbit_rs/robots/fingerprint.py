@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Model
+    from onorbit_rs._core import Loop, Model
 
 DIGITS = 9
 """Decimal places of lengths, m, and rotation matrices, so that rounding does not change the fingerprint.
@@ -23,8 +23,8 @@ An inertia is divided by its largest entry. Masses, limits and losses have twelv
 def fingerprint(model: Model) -> str:
     """Return sixteen hexadecimal digits that depend on the content of a robot, not on its path.
 
-    The digits depend on bodies, joints, named frames and visual shapes, but not on colours or on the content
-    of mesh files.
+    The digits depend on bodies, joints, closed loops, named frames and visual shapes, but not on colours or
+    on the content of mesh files.
     """
     content = {
         "bodies": [
@@ -35,7 +35,8 @@ def fingerprint(model: Model) -> str:
              *map(_exact, (joint.lower, joint.upper, joint.velocity, joint.effort, joint.damping,
                            joint.friction, joint.rotor_inertia)),
              *([_exact(joint.static_friction)] if joint.static_friction != joint.friction else []),
-             *([_rounded(joint.anchor)] if any(joint.anchor) else []))
+             *([_rounded(joint.anchor)] if any(joint.anchor) else []),
+             *([_mimic(*joint.mimic)] if joint.mimic is not None else []))
             for joint in model.joints
         ],
         "frames": sorted((frame.name, frame.body, _rounded(frame.pose)) for frame in model.frames),
@@ -44,6 +45,7 @@ def fingerprint(model: Model) -> str:
              PurePath(visual.filename).name if visual.filename else None)
             for visual in model.visuals
         ],
+        **({"loops": [_loop(closing) for closing in model.loops]} if model.loops else {}),
     }  # fmt: skip
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()[:16]
 
@@ -51,6 +53,16 @@ def fingerprint(model: Model) -> str:
 def has_changed(model: Model, recorded: Any) -> bool:
     """Return whether the robot's fingerprint has changed; False for older runs without a fingerprint."""
     return isinstance(recorded, str) and recorded != fingerprint(model)
+
+
+def _mimic(leader: str, ratio: float, offset: float) -> list[Any]:
+    return [leader, _exact(ratio), _exact(offset)]
+
+
+def _loop(closing: Loop) -> list[Any]:
+    """Return the joint of a closed loop. Whether the start is projected does not change the robot."""
+    poses = [_rounded(closing.pose_a), _rounded(closing.pose_b)]
+    return [closing.name, closing.kind, closing.frame_a, closing.frame_b, *poses, _exact(closing.length)]
 
 
 def _exact(number: float | None) -> str | None:

@@ -16,6 +16,7 @@ from onorbit_rs.scenario.engine import build_engine
 from onorbit_rs.scenario.environment.earth import build_earth
 from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.locations import dotted, located, scenario_error
+from onorbit_rs.scenario.loops import closed_start
 from onorbit_rs.scenario.orbit import NumericalOrbit
 from onorbit_rs.scenario.reference.frame import moving_frame
 from onorbit_rs.scenario.reference.start import Start
@@ -76,6 +77,7 @@ def build(scenario: Scenario, *, runs_code: bool = True) -> Built:
     around = build_environment(scenario, model)
     with located(scenario, "initial"):
         q, v = scenario.initial.build(model, around.orbit)
+    q, v = closed_start(scenario, model, q, v)
     built = build_around(scenario, model, (q, v), around, runs_code=runs_code)
     for message in built.warnings:
         warnings.warn(message, stacklevel=2)

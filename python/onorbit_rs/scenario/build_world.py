@@ -28,6 +28,7 @@ from onorbit_rs.scenario.environment.surfaces import build_surfaces
 from onorbit_rs.scenario.events import split_path
 from onorbit_rs.scenario.initial import Neighbour
 from onorbit_rs.scenario.locations import located
+from onorbit_rs.scenario.loops import closed_start
 from onorbit_rs.scenario.settings import ControlSettings
 from onorbit_rs.scenario.watches import build_watches
 from onorbit_rs.scenario.world import WorldScenario
@@ -127,6 +128,7 @@ def _initial_states(
             neighbour = Neighbour(models[other], *states[other])
         with located(alone, "initial"):
             q, v = initial.build(models[name], around.orbit, neighbour)
+        q, v = closed_start(alone, models[name], q, v)
         if (part := scenario.systems[name].orbit) is not None and around.orbit is not None:
             with located(scenario, "systems", name, "orbit"):
                 q[POSITION], velocity = to_world(around.orbit, part.build(alone.folder), earth=around.earth)

@@ -19,6 +19,7 @@ from onorbit_rs.robots.wording import Wording, worded
 from onorbit_rs.scenario.errors import invalid, shortened
 from onorbit_rs.scenario.fields import FilePath, Inertia, Length3, Mass, Positive
 from onorbit_rs.scenario.locations import dotted, located
+from onorbit_rs.scenario.loops import add_loops
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.pose import Pose
 
@@ -214,7 +215,7 @@ class Robot(PlainRobot):
         for index, extra in enumerate(scenario.collision):
             with located(scenario, "collision", index):
                 model = extra.add_to(model, scenario.folder)
-        return model
+        return add_loops(scenario, model)
 
     def _build_tree(self, scenario: Scenario) -> _core.Model:
         """Return the robot with its arms, without the collision shapes of the scenario."""

@@ -17,6 +17,7 @@ from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
 from onorbit_rs.scenario.environment.surfaces import RobotSurfaces
 from onorbit_rs.scenario.errors import inconsistent
 from onorbit_rs.scenario.initial import InitialState
+from onorbit_rs.scenario.loops import Loop, check_loops
 from onorbit_rs.scenario.orbit import AnyOrbit
 from onorbit_rs.scenario.part import Part
 from onorbit_rs.scenario.reference import Reference
@@ -66,6 +67,8 @@ class Scenario(RobotKeys, Document):
     ``Scenario(robot="humanoid_torso", simulation={"duration": "5 s"})``.
     """
 
+    loops: list[Loop] = Field(default_factory=list)
+    """Closed loops of the robot. Default: the robot is a tree."""
     simulation: SimulationSettings
 
     _in_world: InWorld | None = PrivateAttr(default=None)
@@ -113,6 +116,8 @@ class Scenario(RobotKeys, Document):
         check_control(self, context.get("events", []), context.get("systems", []))
         check_engine(self)
         check_names(self)
+        if self._in_world is None and "systems" not in context:
+            check_loops(self.loops, [])
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
                 if not isinstance(effect, BodyWrenchEffect):
@@ -136,6 +141,8 @@ class InWorld(NamedTuple):
     """Names of the events of the world, after which a control may start."""
     systems: list[str]
     """Names of the other systems, in whose frames references may be given."""
+    loops: list[int]
+    """Index of each loop of the system in the loops of the world."""
 
     def location(self, at: Location) -> Location:
         """Return the location in the world's file of an entry of the system's scenario."""
@@ -145,4 +152,6 @@ class InWorld(NamedTuple):
             return ("systems", self.system, *at[1:])
         if len(at) > 1 and at[0] == "environment" and isinstance(at[1], int):
             return ("environment", self.effects[at[1]], *at[2:])
+        if len(at) > 1 and at[0] == "loops" and isinstance(at[1], int):
+            return ("loops", self.loops[at[1]], *at[2:])
         return at

@@ -59,7 +59,11 @@ def about_start(scenario: Scenario) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        with located(scenario, "initial" if error.name in ("q", "v") else "simulation"):
+        names = [loop.name for loop in scenario.loops]
+        at: tuple[str | int, ...] = ("initial" if error.name in ("q", "v") else "simulation",)
+        if error.name in names:
+            at = ("loops", names.index(error.name))
+        with located(scenario, *at):
             raise
 
 

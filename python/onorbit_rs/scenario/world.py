@@ -18,6 +18,7 @@ from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
 from onorbit_rs.scenario.errors import inconsistent
 from onorbit_rs.scenario.events import Event, ItsName, check_events
 from onorbit_rs.scenario.locations import scenario_error
+from onorbit_rs.scenario.loops import Loop, check_loops
 from onorbit_rs.scenario.materials import MaterialPair, check_materials, look_up
 from onorbit_rs.scenario.orbit import StartOrbit
 from onorbit_rs.scenario.schema import InWorld, RobotKeys, Scenario
@@ -38,8 +39,10 @@ class System(RobotKeys, ControlSettings):
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        if key in ("actuators", "sensors", "estimators", "loops"):
+        if key in ("actuators", "sensors", "estimators"):
             return "; it is not available yet"
+        if key == "loops":
+            return "; it belongs beside 'systems', with frames written SYSTEM/FRAME"
         return super()._hint(key, free)
 
 
@@ -52,12 +55,12 @@ class WorldScenario(Document):
     materials: dict[str, MaterialPair] = Field(default_factory=dict)
     """Coefficients of friction by pair, such as ``rubber-aluminium``, for ``materials`` of contacts."""
     events: list[Event] = Field(default_factory=list)
+    loops: list[Loop] = Field(default_factory=list)
+    """Closed loops of the robots. Default: every robot is a tree."""
     simulation: WorldSettings
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        if key == "loops":
-            return "; it is not available yet"
         if key in ControlSettings.model_fields:
             return "; it belongs in each entry of 'systems'"
         return super()._hint(key, free)
@@ -83,9 +86,13 @@ class WorldScenario(Document):
             control = {key: getattr(system, key) for key in ControlSettings.model_fields}
             effects = self._effects_on(name)
             own["environment"] = list(effects.values())
+            others = [other for other in self.systems if other != name]
+            loops = {index: loop.of_system(name) for index, loop in enumerate(self.loops)}
+            loops = {index: loop for index, loop in loops.items() if loop is not None}
+            own["loops"] = list(loops.values())
             data = shared | own | {"simulation": settings | control}
             found[name] = Scenario.of_system(
-                InWorld(name, [*effects], events, [other for other in self.systems if other != name]),
+                InWorld(name, [*effects], events, others, [*loops]),
                 data,
                 self._file,
                 self._lines,
@@ -136,6 +143,7 @@ class WorldScenario(Document):
         look_up(self.contacts, self.materials)
         check_names(self)
         check_events(self.events, names)
+        check_loops(self.loops, names)
         check_world_engine(self)
         return self
 

@@ -4,11 +4,11 @@ use crate::dynamics::derivatives::{
     Derivatives, forward_dynamics_derivatives, free_floating_derivatives, inverse_dynamics_derivatives,
 };
 use crate::dynamics::{
-    Data, FrameWrench, FreeFloating, bias_forces, center_of_mass, forward_dynamics, frame_jacobian,
-    frame_pose, frame_velocity, free_floating, inverse_dynamics, kinematics, kinetic_energy, mass_matrix,
-    momentum, positions,
+    ClosedLoops, Data, FrameWrench, FreeFloating, bias_forces, center_of_mass, closure_errors,
+    constrained_forward_dynamics, forward_dynamics, frame_jacobian, frame_pose, frame_velocity,
+    free_floating, inverse_dynamics, kinematics, kinetic_energy, mass_matrix, momentum, positions,
 };
-use crate::model::{Model, difference, integrate};
+use crate::model::{Closure, Model, difference, integrate};
 use crate::spatial::{Force, Real, pose_rows};
 
 /// Largest number of outputs that a kernel has.
@@ -31,6 +31,11 @@ pub enum Kernel {
     InverseDynamics,
     /// `q, v, tau` → `(nv,)` generalized accelerations, m/s² and rad/s².
     ForwardDynamics,
+    /// `q, v, tau` → `(nv,)` generalized accelerations with closed loops and mimic joints, and their `(m,)` constraint
+    /// forces, N and N m.
+    ConstrainedForwardDynamics,
+    /// `q` → `(m,)` errors of closed loops and mimic joints, m and rad.
+    LoopErrors,
     /// `q, v, a` → derivatives `∂τ/∂q`, `∂τ/∂v`, `∂τ/∂a` of the generalized forces `τ`, each `(nv, nv)`. Here
     /// and below, `∂/∂q` is the derivative with respect to `δ` of `q ⊕ δ`.
     InverseDynamicsDerivatives,
@@ -59,9 +64,12 @@ impl Kernel {
     /// Returns the names of the inputs.
     pub fn inputs(self) -> &'static [&'static str] {
         match self {
-            Self::FramePose(_) | Self::FrameJacobian(_) | Self::MassMatrix | Self::CenterOfMass => &["q"],
+            Self::FramePose(_) | Self::FrameJacobian(_) | Self::MassMatrix => &["q"],
+            Self::CenterOfMass | Self::LoopErrors => &["q"],
             Self::InverseDynamics | Self::InverseDynamicsDerivatives => &["q", "v", "a"],
-            Self::ForwardDynamics | Self::ForwardDynamicsDerivatives => &["q", "v", "tau"],
+            Self::ForwardDynamics | Self::ForwardDynamicsDerivatives | Self::ConstrainedForwardDynamics => {
+                &["q", "v", "tau"]
+            }
             Self::FreeFloatingDerivatives(_) => &["q", "v", "joint_acceleration"],
             Self::Integrate => &["q", "dv"],
             Self::Difference => &["q", "q2"],
@@ -81,7 +89,10 @@ impl Kernel {
     /// Returns true if the kernel divides by the inertia at the joints, in which case its first output is not
     /// finite if the mass matrix is singular.
     pub(super) fn divides(self) -> bool {
-        matches!(self, Self::ForwardDynamics | Self::ForwardDynamicsDerivatives)
+        matches!(
+            self,
+            Self::ForwardDynamics | Self::ForwardDynamicsDerivatives | Self::ConstrainedForwardDynamics
+        )
     }
 
     /// Returns the index of the kernel's frame, if it has one.
@@ -105,6 +116,7 @@ impl Kernel {
     /// Returns the row widths of the outputs and the number of outputs.
     pub(super) fn widths(self, model: &Model) -> ([usize; OUTPUTS], usize) {
         let (nq, nv, n) = (model.nq(), model.nv(), model.joint_count());
+        let m = || model.closures().iter().map(Closure::rows).sum();
         let used: &[usize] = match self {
             Self::FramePose(_) => &[16],
             Self::FrameVelocity(_) | Self::Momentum => &[6],
@@ -112,6 +124,8 @@ impl Kernel {
             Self::MassMatrix => &[nv * nv],
             Self::BiasForces | Self::InverseDynamics | Self::ForwardDynamics | Self::Difference => &[nv],
             Self::KineticEnergy => &[1],
+            Self::ConstrainedForwardDynamics => &[nv, m()],
+            Self::LoopErrors => &[m()],
             Self::CenterOfMass => &[3],
             Self::FreeFloating(_) => &[n * n, n, n, 6 * n, 6],
             Self::InverseDynamicsDerivatives | Self::ForwardDynamicsDerivatives => &[nv * nv; 3],
@@ -131,7 +145,7 @@ impl Kernel {
         inputs: &[Vec<S>],
         out: &mut [Vec<S>],
     ) {
-        let KernelData { data, reduced, derivatives, external } = kernel_data;
+        let KernelData { data, reduced, derivatives, external, loops } = kernel_data;
         let q = &inputs[0];
         match self {
             Self::FramePose(frame) => {
@@ -162,6 +176,18 @@ impl Kernel {
             Self::ForwardDynamics => {
                 forward_dynamics(model, data, q, &inputs[1], &inputs[2], external, &mut out[0])
             }
+            Self::ConstrainedForwardDynamics => {
+                let (v, tau, a) = (&inputs[1], &inputs[2], &mut out[0]);
+                constrained_forward_dynamics((model, data, loops), q, v, tau, external, a);
+                out[1].copy_from_slice(loops.forces());
+            }
+            Self::LoopErrors => S::enter(
+                #[inline(always)]
+                || {
+                    closure_errors(model, data, loops, q);
+                    out[0].copy_from_slice(loops.errors());
+                },
+            ),
             Self::Momentum => {
                 kinematics(model, data, q, &inputs[1]);
                 let h = momentum(data, q);
@@ -214,6 +240,7 @@ pub(super) struct KernelData<S> {
     pub(super) reduced: FreeFloating<S>,
     pub(super) derivatives: Derivatives<S>,
     pub(super) external: Vec<FrameWrench<S>>,
+    pub(super) loops: ClosedLoops<S>,
 }
 
 impl<S: Real> KernelData<S> {
@@ -223,6 +250,7 @@ impl<S: Real> KernelData<S> {
             reduced: FreeFloating::new(model),
             derivatives: Derivatives::new(model),
             external: Vec::new(),
+            loops: ClosedLoops::new(model, model.closures()),
         }
     }
 }

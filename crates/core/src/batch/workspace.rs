@@ -35,9 +35,11 @@ impl<S: Real> Workspace<S> {
     }
 
     /// Returns true if the workspace can be used for this robot, because it was allocated for a robot with
-    /// the same number of bodies and the same base.
+    /// the same number of bodies, the same base and the same closures.
     pub(super) fn fits(&self, model: &Model) -> bool {
-        self.kernel_data.data.bodies.len() == model.nodes().len() && self.base == base_of(model)
+        self.kernel_data.data.bodies.len() == model.nodes().len()
+            && self.base == base_of(model)
+            && self.kernel_data.loops.closures() == model.closures()
     }
 
     /// Computes the states in `range`, at most one per lane. Returns true if inputs and outputs are valid; if

@@ -33,7 +33,7 @@ pub use free_floating::{
 pub use jacobian::{frame_acceleration, frame_drift, frame_jacobian};
 pub(crate) use kinematics::base_rotation;
 pub use kinematics::{FramePose, frame_pose, frame_velocity, kinematics, positions};
-pub use loops::{ClosedLoops, close_loops, closure_errors, constrained_forward_dynamics};
+pub use loops::{ClosedLoops, close_loops, close_velocity, closure_errors, constrained_forward_dynamics};
 pub(crate) use loops::{constrained_recursion, project_configuration, project_velocity};
 pub use momentum::{
     Momentum, center_of_mass, composite_momentum, kinetic_energy, momentum, projected_base_twist,

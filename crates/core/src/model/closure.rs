@@ -7,7 +7,7 @@ use crate::spatial::{Mat3, Vec3};
 use nalgebra::Isometry3;
 
 /// Constraint on the motion of a model: a closed loop or a mimic joint.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Closure {
     /// Name of the loop or of the mimic joint.
     pub name: String,
@@ -18,7 +18,8 @@ pub struct Closure {
 }
 
 /// Equation of a [`Closure`].
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant)] // a model has few constraints
 pub enum Constraint {
     /// Joint between two frames.
     Frames {

@@ -45,7 +45,7 @@ pub struct Node {
 }
 
 /// Named frame fixed to a body.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Name of a link, or of a frame that was added to a link.
     pub name: String,

@@ -1,5 +1,6 @@
 //! Robots built link by link.
 
+use super::closed_loop::{PyLoop, mimic_in};
 use super::{Any, PyModel};
 use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
@@ -90,6 +91,9 @@ impl PyModelBuilder {
     /// static_friction : float, optional
     ///     Largest torque or force that static friction can hold, N m or N; at least ``friction``, which is
     ///     the default.
+    /// mimic : str or (str, float, float), optional
+    ///     Leading joint, or leading joint, ratio and offset (rad or m): the joint is constrained to ratio times
+    ///     the position of its leader plus offset. Default ratio and offset: 1 and 0.
     ///
     /// Raises
     /// ------
@@ -100,7 +104,7 @@ impl PyModelBuilder {
     #[pyo3(signature = (
         name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
         damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,
-        static_friction=None,
+        static_friction=None, mimic=None,
     ))]
     fn add_link(
         &mut self,
@@ -123,6 +127,7 @@ impl PyModelBuilder {
         velocity: Option<f64>,
         effort: Option<f64>,
         static_friction: Option<f64>,
+        mimic: Option<Any<'_, '_>>,
     ) -> PyResult<()> {
         let axis = vector(axis, "axis", [0.0, 0.0, 1.0])?;
         let kind = match kind {
@@ -141,8 +146,9 @@ impl PyModelBuilder {
             _ => Some((lower.unwrap_or(f64::NEG_INFINITY), upper.unwrap_or(f64::INFINITY))),
         };
         let limits = Limits { position, velocity, effort };
+        let mimic = mimic.map(mimic_in).transpose()?;
         let plain = Joint::new(joint, kind, pose(xyz, rpy)?);
-        let joint = Joint { limits, damping, friction, static_friction, rotor_inertia, ..plain };
+        let joint = Joint { limits, damping, friction, static_friction, rotor_inertia, mimic, ..plain };
         let link = Link::new(name, inertial(py, mass, com, inertia)?);
         self.builder.add(parent, joint, link).map_err(|error| error.into_python(py))?;
         Ok(())
@@ -176,6 +182,25 @@ impl PyModelBuilder {
     ) -> PyResult<()> {
         let pose = pose(xyz, rpy)?;
         self.builder.add_frame(name, link, pose).map_err(|error| error.into_python(py))?;
+        Ok(())
+    }
+
+    /// Close a loop between two frames.
+    ///
+    /// Parameters
+    /// ----------
+    /// loop : Loop
+    ///     Joint between two links or frames that were added before.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If a frame does not exist.
+    /// ModelError
+    ///     If another loop has this name, or both frames are the same.
+    #[pyo3(signature = (r#loop))]
+    fn close(&mut self, py: Python<'_>, r#loop: &PyLoop) -> PyResult<()> {
+        self.builder.close(r#loop.closing.clone()).map_err(|error| error.into_python(py))?;
         Ok(())
     }
 

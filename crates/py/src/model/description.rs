@@ -1,6 +1,6 @@
 //! Descriptions of joints, bodies, frames and shapes of a robot.
 
-use onorbit_core::model::{Axis, Frame, Geometry, Model, Visual};
+use onorbit_core::model::{Axis, Constraint, Frame, Geometry, Model, Visual};
 use onorbit_core::spatial::{Mat3, Vec3};
 use pyo3::prelude::*;
 
@@ -42,6 +42,9 @@ pub(super) struct PyJoint {
     static_friction: f64,
     /// Rotor inertia reflected to the joint, kg m² or kg.
     rotor_inertia: f64,
+    /// Leading joint, ratio and offset (rad or m) of a mimic joint, or None. The position of the joint is ratio
+    /// times that of its leader plus offset.
+    mimic: Option<(String, f64, f64)>,
 }
 
 /// Body of a model: a link together with all links that are fixed to it.
@@ -158,9 +161,20 @@ pub(super) fn joints(model: &Model) -> Vec<PyJoint> {
             friction: joint.friction,
             static_friction: joint.static_friction,
             rotor_inertia: node.rotor_inertia,
+            mimic: mimic(model, j),
         }
     };
     model.joints().iter().enumerate().map(joint).collect()
+}
+
+/// Returns leading joint, ratio and offset of a mimic joint.
+fn mimic(model: &Model, joint: usize) -> Option<(String, f64, f64)> {
+    model.closures().iter().find_map(|closure| match closure.constraint {
+        Constraint::Mimic { joint: own, leader, ratio, offset } if own == joint => {
+            Some((model.joints()[leader].name.clone(), ratio, offset))
+        }
+        _ => None,
+    })
 }
 
 /// Returns the descriptions of the bodies, base first.

@@ -3,6 +3,7 @@
 
 pub(crate) mod attach;
 mod builder;
+pub(crate) mod closed_loop;
 mod collision;
 mod construction;
 mod convex_pieces;
@@ -12,6 +13,7 @@ mod file;
 mod free_floating;
 mod kinematics;
 mod link_change;
+mod loop_dynamics;
 mod momentum;
 mod part;
 mod properties;
@@ -47,6 +49,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyBody>()?;
     m.add_class::<PyFrame>()?;
     m.add_class::<builder::PyModelBuilder>()?;
+    m.add_class::<closed_loop::PyLoop>()?;
     m.add_function(wrap_pyfunction!(attach::attach, m)?)
 }
 

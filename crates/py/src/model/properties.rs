@@ -3,7 +3,7 @@
 use super::description::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use super::{Array, PyModel};
 use crate::arrays::array_of;
-use onorbit_core::model::neutral;
+use onorbit_core::model::{Constraint, neutral};
 use onorbit_core::number_text::count;
 use pyo3::prelude::*;
 
@@ -101,8 +101,15 @@ impl PyModel {
 
     fn __repr__(&self) -> String {
         let m = &self.model;
+        let mimics =
+            m.closures().iter().filter(|closure| matches!(closure.constraint, Constraint::Mimic { .. }));
+        let constraints: String = [("loop", m.description().loops().len()), ("mimic joint", mimics.count())]
+            .into_iter()
+            .filter(|(_, number)| *number > 0)
+            .map(|(what, number)| format!("{}, ", count(number, what)))
+            .collect();
         format!(
-            "<Model '{}': {}, {}, {:.6} kg>",
+            "<Model '{}': {}, {}, {constraints}{:.6} kg>",
             m.name(),
             count(m.nodes().len(), "body"),
             count(m.joint_count(), "joint"),

@@ -1,6 +1,7 @@
 //! Worlds of several systems.
 
 use super::event::{events_in, events_of, names_of};
+use super::loops::close_systems;
 use super::system::PySystem;
 use crate::arrays::list_of;
 use crate::contact::{PyContact, contacts_in, contacts_of};
@@ -8,6 +9,7 @@ use crate::earth::PyEarth;
 use crate::environment::{PyEffect, effects};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, raise};
 use crate::model::PyModel;
+use crate::model::closed_loop::loops_in;
 use crate::orbit::PyOrbit;
 use crate::pickling::{ConstructorCall, Reduced};
 use crate::reference::Around;
@@ -40,6 +42,8 @@ use std::sync::Arc;
 ///     Contacts between links.
 /// events : list of Capture and Release, optional
 ///     Events that connect and separate systems.
+/// loops : list of Loop, optional
+///     Closed loops of the robots; both frames of a loop are ``SYSTEM/FRAME`` of the same system.
 /// rereference_beyond : float
 ///     Distance of a system from the reference orbit, m, beyond which integration continues about a new
 ///     reference orbit. Systems that events may connect or that may touch keep the
@@ -68,7 +72,7 @@ impl PyWorld {
     #[new]
     #[pyo3(signature = (
         systems, *, orbit=None, earth=None, gravity_mode="true", environment=None, contacts=None, events=None,
-        rereference_beyond=1e5,
+        rereference_beyond=1e5, loops=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -80,13 +84,15 @@ impl PyWorld {
         contacts: Option<&Bound<'_, PyAny>>,
         events: Option<&Bound<'_, PyAny>>,
         rereference_beyond: f64,
+        loops: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let systems = list_of(systems, "systems", "systems, such as [oo.System(…)]")?;
+        let systems = list_of::<PySystem>(systems, "systems", "systems, such as [oo.System(…)]")?;
+        let systems = close_systems(py, &systems, &loops.map_or(Ok(Vec::new()), loops_in)?)?;
         let contacts = contacts.map_or(Ok(Vec::new()), contacts_in)?;
         let events = events.map_or(Ok(Vec::new()), events_in)?;
         let environment = effects(environment)?.into_iter().map(Bound::unbind).collect();
         let world = Self {
-            systems: systems.into_iter().map(Bound::unbind).collect(),
+            systems,
             orbit,
             earth,
             gravity_mode: gravity_mode.to_owned(),

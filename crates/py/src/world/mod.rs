@@ -3,6 +3,7 @@
 mod declared;
 mod event;
 mod event_record;
+mod loops;
 mod robot_settings;
 mod system;
 mod systems;

@@ -4,8 +4,10 @@ use super::robot_settings::{RobotSettings, initial_state};
 use crate::arrays::names_in;
 use crate::environment::SurfaceAssignment;
 use crate::model::PyModel;
+use crate::model::closed_loop::{loops_in, with_loops};
 use crate::pickling::{ConstructorCall, Reduced, deep_copy};
 use crate::reference::Around;
+use onorbit_core::model::Loop;
 use onorbit_core::world::System;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -45,6 +47,8 @@ use std::sync::Arc;
 ///     Names of other systems whose models the controllers know. While such a system is connected to this
 ///     one, laws that use a model use the model of the connected tree, in which the joints of the other
 ///     system have no motor torque.
+/// loops : list of Loop, optional
+///     Closed loops of the robot, in addition to those of the model.
 ///
 /// Raises
 /// ------
@@ -56,7 +60,7 @@ pub(crate) struct PySystem {
     /// Name of the system.
     #[pyo3(get)]
     pub(super) name: String,
-    /// Model of the robot.
+    /// Model of the robot with its loops.
     #[pyo3(get)]
     pub(super) model: Py<PyModel>,
     q: Vec<f64>,
@@ -74,6 +78,7 @@ impl PySystem {
     #[pyo3(signature = (
         name, model, q, v, *, controller=None, reference=None, tool=None, control_period=None, enforce_limits=false,
         restitution=0.0, reference_start_tolerance=None, surfaces=None, knows=None,
+        loops=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -90,7 +95,12 @@ impl PySystem {
         reference_start_tolerance: Option<Py<PyAny>>,
         surfaces: Option<&Bound<'_, PyAny>>,
         knows: Option<&Bound<'_, PyAny>>,
+        loops: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let model = match loops.map(loops_in).transpose()? {
+            Some(loops) if !loops.is_empty() => Py::new(py, with_loops(model.bind(py), loops)?)?,
+            _ => model,
+        };
         let names = |knows| names_in(knows, "knows", "names of other systems", "target");
         let knows = knows.map_or(Ok(Vec::new()), names)?;
         let given_surfaces = deep_copy(surfaces)?.map(Bound::unbind);
@@ -109,12 +119,8 @@ impl PySystem {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
-        let keywords = PyDict::new(py);
-        self.settings.write_to(&keywords)?;
-        keywords.set_item("surfaces", &self.given_surfaces)?;
-        keywords.set_item("knows", &self.knows)?;
         let arguments = (&self.name, &self.model, &self.q, &self.v);
-        ConstructorCall::new("System", arguments, &keywords)?.reduce(py)
+        ConstructorCall::new("System", arguments, &self.keywords(py)?)?.reduce(py)
     }
 
     fn __repr__(&self) -> String {
@@ -123,6 +129,23 @@ impl PySystem {
 }
 
 impl PySystem {
+    /// Returns the arguments of the constructor other than the first four.
+    fn keywords<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let keywords = PyDict::new(py);
+        self.settings.write_to(&keywords)?;
+        keywords.set_item("surfaces", &self.given_surfaces)?;
+        keywords.set_item("knows", &self.knows)?;
+        Ok(keywords)
+    }
+
+    /// Returns the same system with further loops of its robot.
+    pub(super) fn with_loops(&self, py: Python<'_>, loops: Vec<Loop>) -> PyResult<Py<Self>> {
+        let model = Py::new(py, with_loops(self.model.bind(py), loops)?)?;
+        let arguments = (&self.name, model, &self.q, &self.v);
+        let system = py.get_type::<Self>().call(arguments, Some(&self.keywords(py)?))?;
+        Ok(system.cast_into::<Self>()?.unbind())
+    }
+
     /// Returns the system of the core, whose references and controls may refer to the objects in `around`.
     pub(super) fn system(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<System> {
         let model = self.model.get();

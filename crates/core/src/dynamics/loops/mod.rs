@@ -13,7 +13,7 @@ mod rows;
 
 pub use constrained::constrained_forward_dynamics;
 pub(crate) use constrained::constrained_recursion;
-pub use projection::{close_loops, closure_errors};
+pub use projection::{close_loops, close_velocity, closure_errors};
 pub(crate) use projection::{project_configuration, project_velocity};
 
 use crate::dynamics::Data;
@@ -23,7 +23,7 @@ use response::Scratch;
 use rows::Row;
 
 /// Constraints of a model with their workspace.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct ClosedLoops<S> {
     closures: Vec<Closure>,
     /// Rows of `J`; those of one closure follow each other.

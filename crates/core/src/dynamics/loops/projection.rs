@@ -163,3 +163,18 @@ pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<
     }
     closure_errors(model, data, loops, q);
 }
+
+/// Changes the velocity `v`, `(nv,)`, to the nearest one, in the metric of the kinetic energy, that satisfies the
+/// constraints of `loops` at a configuration `q`, `(nq,)`, that satisfies them. No momentum changes.
+pub fn close_velocity(
+    model: &Model,
+    data: &mut Data<f64>,
+    loops: &mut ClosedLoops<f64>,
+    q: &[f64],
+    v: &mut [f64],
+) {
+    let mut scratch = vec![0.0; model.nv()];
+    factorize(model, data, q, None, &mut scratch);
+    kinematics(model, data, q, v);
+    project_velocity(model, data, loops, v, None);
+}

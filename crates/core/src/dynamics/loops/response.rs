@@ -30,6 +30,13 @@ pub(super) struct Scratch<S> {
     pub(super) dense: Vec<S>,
 }
 
+impl<S: Clone> Clone for Scratch<S> {
+    fn clone(&self) -> Self {
+        // the columns are allocated again at their first use
+        Self { single: self.single.clone(), columns: Box::new(()), dense: self.dense.clone() }
+    }
+}
+
 impl<S: Real> Scratch<S> {
     pub(super) fn new(bodies: usize, dense: usize) -> Self {
         Self { single: vec![Term::default(); bodies], columns: Box::new(()), dense: vec![S::of(0.0); dense] }

@@ -1,0 +1,166 @@
+"""Closed loops of a scenario, and initial states that close them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from onorbit_rs import _core
+from onorbit_rs.common.coordinates import JOINTS_Q, JOINTS_V
+from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.exceptions import InputError
+from onorbit_rs.scenario.errors import inconsistent
+from onorbit_rs.scenario.fields import Length, Positive
+from onorbit_rs.scenario.locations import located
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.pose import Pose
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs.scenario.joint_values import JointValue
+    from onorbit_rs.scenario.schema import Scenario
+
+    Floats = NDArray[np.float64]
+
+ACCEPTED = 1e-6
+"""Largest error of a loop or a mimic joint at the start, m or rad (per second), that is not an error."""
+
+
+class Loop(Part):
+    """Joint between two frames of one robot that closes a kinematic loop; its axis is z."""
+
+    synonyms: ClassVar = {"frames": "between", "type": "kind", "distance": "length"}
+
+    name: str
+    """Name, unique among the loops."""
+    kind: Literal["weld", "revolute", "spherical", "prismatic", "distance"]
+    """Type of the joint; ``distance`` keeps the distance of the two origins."""
+    between: Annotated[list[str], Field(min_length=2, max_length=2)]
+    """The two frames, on different bodies; in a scenario with ``systems``, ``SYSTEM/FRAME`` of one system."""
+    pose_a: Pose | None = None
+    """Pose of the joint in the first frame. Default: that of the frame."""
+    pose_b: Pose | None = None
+    """Pose of the joint in the second frame. Default: that of the frame."""
+    length: Annotated[Length, Positive] | None = None
+    """Distance of the origins for ``kind: distance``. Default: the distance with all joint positions zero."""
+    project: bool = False
+    """Whether the run starts in the nearest configuration that closes the loop. If false, a start that does
+    not close the loop is an error."""
+
+    def of_system(self, system: str) -> Loop | None:
+        """Return the loop with the names of its frames in the robot of ``system``, None if it has another."""
+        if self.between[0].partition("/")[0] != system:
+            return None
+        return self.model_copy(update={"between": [path.partition("/")[2] for path in self.between]})
+
+    def build(self) -> _core.Loop:
+        """Return the loop as an object of the engine."""
+        poses = [None if pose is None else pose.transform() for pose in (self.pose_a, self.pose_b)]
+        return _core.Loop(
+            self.name, self.kind, *self.between, pose_a=poses[0], pose_b=poses[1], length=self.length,
+            project=self.project,
+        )  # fmt: skip
+
+
+def check_loops(loops: Sequence[Loop], systems: Sequence[str]) -> None:
+    """Raise an error for a name given twice, or for frames that are not on one system of a world.
+
+    ``systems`` are the names of the systems; empty for a scenario of one robot.
+    """
+    names = [loop.name for loop in loops]
+    for index, loop in enumerate(loops):
+        at = ("loops", index)
+        if loop.name in names[:index]:
+            raise inconsistent((*at, "name"), f"two loops are named {loop.name!r}; give each its own name")
+        if loop.between[0] == loop.between[1]:
+            message = f"a loop of {loop.between[0]!r} with itself; give frames of two different bodies"
+            raise inconsistent((*at, "between"), message)
+        if systems:
+            for side, path in enumerate(loop.between):
+                _check_path((*at, "between", side), path, systems)
+            ends = [path.partition("/")[0] for path in loop.between]
+            if ends[0] != ends[1]:
+                message = (
+                    f"connects two systems, {ends[0]!r} and {ends[1]!r}; give frames of one system, or "
+                    f"connect the systems at the start by an event: {{name: {loop.name}, "
+                    f"when: {{at: 0 s}}, do: {{capture: [{', '.join(loop.between)}]}}}}"
+                )
+                raise inconsistent((*at, "between"), message)
+
+
+def _check_path(at: tuple[str | int, ...], path: str, systems: Sequence[str]) -> None:
+    system, _, frame = path.partition("/")
+    if not frame:
+        message = f"{path!r} is not a frame of a system; write SYSTEM/FRAME, such as {systems[0]}/tool"
+        raise inconsistent(at, message)
+    if system not in systems:
+        raise inconsistent(at, f"no system is named {system!r}{did_you_mean(system, systems)}")
+
+
+def add_loops(scenario: Scenario, model: _core.Model) -> _core.Model:
+    """Return the robot with the loops of its scenario."""
+    for index, loop in enumerate(scenario.loops):
+        with located(scenario, "loops", index):
+            closing = loop.build()
+        with located(scenario, "loops", index, "between"):
+            model = model.with_loops([closing])
+    return model
+
+
+def closed_start(scenario: Scenario, model: _core.Model, q: Floats, v: Floats) -> tuple[Floats, Floats]:
+    """Return the initial state with mimic joints that follow their leaders and with projected loops closed.
+
+    A loop without ``project`` must be closed; otherwise the simulation raises an error.
+    """
+    initial = scenario.initial
+    with located(scenario, "initial", "joints"):
+        q[JOINTS_Q] = followed("position", initial.joints, q[JOINTS_Q], model)
+    with located(scenario, "initial", "joint_rates"):
+        v[JOINTS_V] = followed("rate", initial.joint_rates, v[JOINTS_V], model)
+    loops = model.loops
+    if any(loop.project for loop in loops):
+        errors, start = np.asarray(model.loop_errors(q)), 0
+        for loop in loops:
+            end = start + loop.rows
+            if not loop.project and np.linalg.norm(errors[start:end]) > ACCEPTED:
+                return q, v
+            start = end
+        with located(scenario, "loops"):
+            q = np.asarray(model.closed_configuration(q))
+    return q, v
+
+
+def followed(
+    what: str, given: list[JointValue] | dict[str, JointValue], values: Floats, model: _core.Model
+) -> Floats:
+    """Return joint positions or rates with those of mimic joints that are not given set from their leaders.
+
+    Raises
+    ------
+    InputError
+        If a given value differs from the one that the leader prescribes.
+    """
+    joints = list(model.joint_names)
+    followers = [(joints.index(joint.name), joint.mimic) for joint in model.joints if joint.mimic is not None]
+    values = values.copy()
+    for _ in followers:  # a chain of mimic joints requires several passes
+        for index, (leader, ratio, offset) in followers:
+            name, shift = joints[index], offset if what == "position" else 0.0
+            expected = ratio * values[joints.index(leader)] + shift
+            is_given = name in given if isinstance(given, dict) else bool(given)
+            if not is_given:
+                values[index] = expected
+    for index, (leader, ratio, offset) in followers:
+        shift = offset if what == "position" else 0.0
+        expected = ratio * values[joints.index(leader)] + shift
+        if abs(values[index] - expected) > ACCEPTED:
+            raise InputError(
+                f"the {what} of {joints[index]} is {values[index]:.6g}, but it mimics {leader}, which "
+                f"prescribes {expected:.6g} in SI units; correct it, or omit it in a mapping of joints",
+                name=joints[index],
+            )
+    return values
