@@ -107,6 +107,7 @@ __all__ = [
     "Kepler",
     "Line",
     "LineParabola",
+    "Loop",
     "Model",
     "ModelBuilder",
     "Nrlmsise00",
@@ -474,7 +475,7 @@ class Loop:
         length: float | None = None,
         project: bool = False,
     ) -> Loop: ...
-    def __eq__(self, other: object) -> bool: ...
+    def __eq__(self, other: object, /) -> bool: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
     @property
     def name(self) -> str: ...
