@@ -26,7 +26,7 @@ pub struct Friction {
     pub kinetic_coefficient: f64,
     /// Tangential stiffness `σ`, N/m.
     pub stiffness: f64,
-    /// Tangential damping `c` inside the cone, N s/m; `None` selects the damping for a ratio of 0.1.
+    /// Tangential damping `c` of the bristles, N s/m; `None` selects the damping for a ratio of 0.1.
     pub damping: Option<f64>,
     /// Coefficient of kinetic torsional friction, m: the largest moment about the normal per unit of normal
     /// force; 0 for contact at a point.

@@ -8,7 +8,7 @@ use crate::spatial::{Force, Vec3};
 /// contact.
 pub(super) const TILT: f64 = 0.02;
 
-/// Contact point.
+/// Pair of opposite points at which two shapes touch, with the gradients of its depth and weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     /// Point of the first shape, m.

@@ -91,8 +91,8 @@ impl ShapePose {
         Cylinder { radius, length, axis: self.axis(2), centre: self.pos }
     }
 
-    /// Adds a hemisphere, centred at `height` on the z axis, as faces. Its projected area is exact along z,
-    /// and within 2 % in other directions.
+    /// Adds a hemisphere, centred at `height`, m, on the z axis and bulging towards +z or −z (`end` 1 or −1),
+    /// as faces. Its projected area is exact along z, and within 2 % in other directions.
     fn add_dome(&self, radius: f64, height: f64, end: f64, parts: &mut Parts) {
         const RINGS: usize = 4;
         const SECTORS: usize = 12;

@@ -44,8 +44,8 @@ const FEW: usize = 16;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contacts {
     list: Vec<Touching>,
-    /// Numbers of the pairs whose states are those of the simulation, in ascending order: all pairs that are not
-    /// far apart.
+    /// Numbers of the pairs whose states are those of the simulation, in ascending order: all pairs that are
+    /// not far apart, or all pairs with an external engine.
     near: Vec<usize>,
     /// Buffer for pairs that may be near.
     candidates: Vec<usize>,
@@ -75,7 +75,7 @@ pub(crate) struct Contacts {
     pub(super) ignores_slip: bool,
     /// Touches of the declared contacts.
     touches: Vec<Touch>,
-    /// Declared contacts at the start of the step.
+    /// Sums over the pieces of each declared contact at the start of the step.
     samples: Vec<Sample>,
     /// Touch-downs and lift-offs that have not yet been taken, with the systems of the group.
     pub(super) happened: Vec<EventRecord>,
@@ -239,8 +239,8 @@ impl Contacts {
     }
 
     /// Determines the modes for the step from `t` to `end`, s, and returns the end of the step, which is
-    /// earlier than `end` while bodies touch. The states of contacts in `state` become those of the near pairs.
-    /// Requires the kinematics of `state` in the trees.
+    /// earlier than `end` while bodies touch. The states of contacts in `state` become those of the near
+    /// pairs. Requires the kinematics of `state` in the trees.
     pub(super) fn begin<S: Real>(
         &mut self,
         (t, end): (f64, f64),
@@ -376,8 +376,8 @@ fn on_both(pieces: &[ContactSide], others: &[ContactSide]) -> Vec<bool> {
     pieces.iter().map(|piece| others.contains(&key(piece))).collect()
 }
 
-/// Returns the distance from the origin of a frame to the farthest point of a shape at `pose` in the frame, m;
-/// infinity for a half-space.
+/// Returns the distance from the origin of a frame to the farthest point of a shape at `pose` in the frame,
+/// m; infinity for a half-space.
 fn reach(shape: &Shape, pose: &Pose) -> f64 {
     let BoundingSphere { center, radius } = shape.bounding_sphere();
     if radius.is_finite() { pose.to_common(center).norm() + radius } else { f64::INFINITY }
