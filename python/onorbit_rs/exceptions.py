@@ -342,7 +342,7 @@ class Ros2Error(OnOrbitError, RuntimeError):
 
 
 class RunInterrupted(_Fields, KeyboardInterrupt):
-    """Ctrl-C during a run; ``trace`` contains the rows recorded before the interruption."""
+    """Ctrl-C or other ``KeyboardInterrupt`` at ``time``, s, of a run; ``trace`` has the rows before it."""
 
     time: Any = None
     trace: Any = None

@@ -24,7 +24,7 @@ use pyo3::types::{PyDict, PyMappingProxy, PySlice, PyTuple};
 /// condition : str
 ///     Condition under which the quantity is recorded.
 /// parts : mapping of str to tuple of slice and str
-///     Slice of the last axis and unit of each part; empty for a column without parts.
+///     By the name of each part, the slice of the last axis and the unit; empty for a column without parts.
 #[pyclass(name = "Column", frozen, module = "onorbit_rs")]
 pub(crate) struct PyColumn(&'static Column);
 
@@ -76,7 +76,7 @@ impl PyColumn {
         self.0.condition.text()
     }
 
-    /// Slice of the last axis and unit of each part; empty for a column without parts.
+    /// By the name of each part, the slice of the last axis and the unit; empty for a column without parts.
     #[getter]
     fn parts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyMappingProxy>> {
         let parts = PyDict::new(py);

@@ -122,7 +122,7 @@ fn trajectory(
     })
 }
 
-/// Reads a wrench, given in the axes `frame`.
+/// Reads a wrench, given in the axes `frame`; a missing force or torque is zero.
 fn wrench(
     py: Python<'_>,
     force: Optional<'_, '_>,

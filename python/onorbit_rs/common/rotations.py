@@ -89,7 +89,10 @@ def quaternion_from_roll_pitch_yaw(angles: ArrayLike) -> Floats:
 
 
 def roll_pitch_yaw(quat_xyzw: ArrayLike) -> Floats:
-    """Return the angles (..., 3), rad, about the fixed x, then y, then z axis; singular at pitch ±90 deg."""
+    """Return the angles (..., 3), rad, about the fixed x, then y, then z axis, of unit quaternions (..., 4).
+
+    The angles are singular at a pitch of ±90°.
+    """
     x, y, z, w = np.moveaxis(np.asarray(quat_xyzw, dtype=np.float64), -1, 0)
     # the entries of R in its first column and last row
     r00, r10, r20 = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)

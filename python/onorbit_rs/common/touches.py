@@ -27,7 +27,7 @@ Touch = tuple[float, float]
 
 
 def touches_of(events: Iterable[TimedEvent], end_s: float) -> dict[str, list[Touch]]:
-    """Return the touches of each contact in order of time; one without a lift-off lasts until ``end_s``."""
+    """Return start and end, s, of each contact's touches in order; ``end_s`` if there is no lift-off."""
     found: dict[str, list[Touch]] = {}
     for event in events:
         if event.kind == "touch_down":

@@ -53,7 +53,9 @@ def read(key: str) -> list[Floats] | None:
 
 
 def write(key: str, pieces: list[Floats]) -> None:
-    """Write pieces to the cache under this key; without write access, do nothing."""
+    """Write pieces, each as its corners (k, 3), to the cache under this key; without write access, do
+    nothing.
+    """
     home = folder()
     if home is None:
         return

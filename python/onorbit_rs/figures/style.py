@@ -159,7 +159,9 @@ def others_of(count: int) -> str:
 
 
 def thin(time: Floats, values: Floats) -> tuple[Floats, Floats]:
-    """Return the end points of a line and at most :data:`MOST_POINTS` extremes, from equal intervals."""
+    """Return the end points of a line and at most :data:`MOST_POINTS` extremes, from equal intervals; a line
+    with fewer points is returned whole.
+    """
     if len(time) <= MOST_POINTS:
         return time, values
     intervals = np.array_split(np.arange(len(time)), MOST_POINTS // 2)

@@ -138,7 +138,9 @@ def names_in(joints: Any, attribute: str) -> bool:
 
 
 def no_floating_base(engine: str) -> InputError:
-    """Return the error for a model that does not start with a free joint."""
+    """Return the error for a model of another engine without a free first joint, or with several rates per
+    joint.
+    """
     return InputError(
         f"the first joint of the {engine} model must be a free joint (floating base), and every other joint "
         "must have one degree of freedom; give such a model, or the list of joint names",

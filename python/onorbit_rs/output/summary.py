@@ -109,7 +109,7 @@ def _tracking(trace: Trace) -> Summary:
 
 
 def _controls(trace: Trace, built: Built) -> Summary:
-    """Return the largest errors of each of several controllers, and the outcomes of their goals."""
+    """Return the largest errors and the outcomes of the goals of ``controllers``; empty if there is none."""
     scenario = built.scenario
     if scenario.controllers is None:
         return {}
@@ -140,7 +140,7 @@ def _motion(trace: Trace, built: Built) -> Summary:
 
 
 def _losses(trace: Trace, built: Built) -> Summary:
-    """Return the energy lost in the joints, and the joints beyond their limits."""
+    """Return the energy lost in the joints, and the joints beyond their limits; empty without joints."""
     if np.asarray(trace.q).shape[1] == BASE_NQ:
         return {}
     losses: Summary = {}

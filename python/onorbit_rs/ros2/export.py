@@ -65,7 +65,9 @@ def export_mcap(
     Raises
     ------
     InputError
-        If the models of a trace are missing.
+        If the models of a trace are missing or are not those of its systems, or models are given for a run.
+    DtypeError
+        If ``run`` has another type.
     OutputFolderError
         If the file cannot be written.
     OnOrbitError

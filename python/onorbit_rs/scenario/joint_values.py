@@ -88,7 +88,7 @@ JointRates = Annotated[_Joints, _joints_reader(units.ANGULAR_RATE, units.SPEED),
 def joint_values(
     name: str, given: list[JointValue] | dict[str, JointValue], default: Floats, model: Model
 ) -> Floats:
-    """Return the values in the order of the model's joints; joints that are not given get the default.
+    """Return the values (n,), SI, in the order of the model's joints; joints not given get the default.
 
     Raises
     ------

@@ -72,7 +72,7 @@ class View(ABC):
             self._show_columns(columns, events)
 
     def finish(self, trace: Trace | WorldTrace | None) -> None:
-        """Show the remaining rows and disconnect from the viewer."""
+        """Show the remaining rows of the trace, unless it is None, and disconnect from the viewer."""
         with self._loses_view():
             if trace is not None:
                 self._show_rest(trace)

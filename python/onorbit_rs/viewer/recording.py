@@ -136,7 +136,7 @@ def send_static(
     notes: str = "",
     is_live: bool = False,
 ) -> Viewpoint:
-    """Send the layout and log the static entities, which depend on the first rows only."""
+    """Send the layout, log the static entities, which depend on the first rows only; return the viewpoint."""
     viewpoint = Viewpoint.of(rows, setting)
     views = layout(rows, setting, viewpoint, plots, duration_s, has_notes=bool(notes), is_live=is_live)
     send_blueprint(recording, views)

@@ -65,7 +65,7 @@ def _planes(points: Floats, faces: Indices) -> tuple[Floats, Floats]:
 
 
 def _heights(points: Floats, normal: Floats, offset: Floats) -> Floats:
-    """Return the heights (f, k), m, of points (k, 3) over planes."""
+    """Return the heights (f, k), m, of points (k, 3) over planes `normal · x = offset`."""
     heights: Floats = normal @ points.T - offset[:, None]
     return heights
 

@@ -147,13 +147,16 @@ class OverTimeError(Exception):
 
 
 def _trace(plan: Plan, ends: float) -> Trace:
-    """Return the trace of a plan; raise ``OverTimeError`` if the run would end after ``ends``."""
+    """Return the trace of a plan; raise ``OverTimeError`` if it would end after ``perf_counter() = ends``, s."""
     built = build(Scenario(**yaml.safe_load(draft_text(plan, "trial"))))
     return built.simulation.run(plan.duration_s, progress=clock(ends))
 
 
 def clock(ends: float) -> Callable[[float, float], None]:
-    """Return the progress callback that raises ``OverTimeError`` if the run would end after ``ends``."""
+    """Return the progress callback that raises ``OverTimeError`` if the run would end after ``ends``, s.
+
+    ``ends`` is a wall-clock time of ``perf_counter``.
+    """
     began = perf_counter()
 
     def check(reached_s: float, total_s: float) -> None:
