@@ -51,7 +51,10 @@ def new_console(at_least: int = 0) -> Console:
 
 
 def new_table(*header: str) -> Table:
-    """Return a table without borders; numbers are right-aligned, and only the first column may wrap."""
+    """Return a table without borders; only the first column may wrap.
+
+    Columns are right-aligned, unless their header is empty or ``unit``.
+    """
     table = Table(show_header=bool(header), box=None, padding=(0, 2, 0, 0), header_style="dim")
     for number, name in enumerate(header):
         justify: JustifyMethod = "left" if name in ("", "unit") else "right"

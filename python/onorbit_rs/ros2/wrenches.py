@@ -24,7 +24,10 @@ if TYPE_CHECKING:
 def wrench_topics(
     system: str, prefix: str, model: Model, frames: Mapping[str, str], first: Rows
 ) -> list[Series]:
-    """Return a topic per recorded effect and link: the wrench at the link's origin, in the link's axes."""
+    """Return a topic per recorded effect and link: the wrench at the link's origin, in the link's axes.
+
+    Without recorded wrenches, the list is empty.
+    """
     effects = ros_names(first.wrenches, "effect")
     if not effects:
         return []  # without a warning about links

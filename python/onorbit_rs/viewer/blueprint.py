@@ -118,7 +118,7 @@ def playback_speed(duration_s: float) -> float:
 
 
 def near_path(rows: TraceRows, setting: Setting, viewpoint: Viewpoint) -> rrb.View | None:
-    """Return a close-up view of the tool's path; None if the tool keeps its pose."""
+    """Return a close-up view of the tool's path; None if the path is very short."""
     points, frame = on_path(rows, rows["reference_pose"][:, :3, 3], setting)
     low, high = points.min(axis=0), points.max(axis=0)
     length = float(np.linalg.norm(high - low))

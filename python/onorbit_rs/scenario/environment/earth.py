@@ -62,7 +62,8 @@ def build_earth(
 ) -> _core.Earth | None:
     """Return the Earth of a run in the axes of its orbit; None if neither ``earth`` nor an epoch is given.
 
-    Without ``epoch``, an orbit of an element set gives the epoch.
+    Without ``epoch``, the epoch is that of an :class:`onorbit_rs.Sgp4` orbit, unless it is before 1972, when
+    leap seconds began.
 
     SGP4's positions are in TEME, which in 2024 differs from GCRF by a rotation of 0.33 deg (37 km on the
     Earth's surface).

@@ -64,8 +64,8 @@ def find_handle(model: Model) -> str:
 def pointing(model: Model, frame: str) -> Floats:
     """Return the axis of a frame that points away from the robot, (3,), in axes of the frame.
 
-    The result is the coordinate axis nearest to the line from the last joint, or from the centre of mass if
-    no joint moves the frame, to the frame; it is z if the line has length zero.
+    In the neutral configuration, the result is the coordinate axis nearest to the line from the last joint,
+    or from the centre of mass if no joint moves the frame, to the frame; it is z if the line has length zero.
     """
     q = model.neutral()
     pose = np.asarray(model.frame_pose(q, frame))
