@@ -166,7 +166,10 @@ def link_name(name: str) -> str:
 
 
 def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:
-    """Return the principal moments of inertia, kg m², and the quaternion (wxyz) of their axes."""
+    """Return the principal moments of inertia, kg m², and the quaternion (wxyz) of their axes.
+
+    Raises a ModelError if the mass or a moment is not positive.
+    """
     moments, axes = np.linalg.eigh(np.array(body.inertia))
     if body.mass <= 0.0 or moments[0] <= 0.0:
         what = "no mass" if body.mass <= 0.0 else f"a principal moment of inertia of {moments[0]:g} kg m²"

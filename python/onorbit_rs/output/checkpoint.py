@@ -193,7 +193,10 @@ def _file_name(column: str) -> str:
 
 
 def _append(file: Path, content: bytes, *, after: int) -> None:
-    """Write rows at the byte offset ``after``, replacing invalid rows of a run that was killed."""
+    """Write rows at the byte offset ``after``, replacing invalid rows of a run that was killed.
+
+    Raises a CheckpointError if the file is shorter than ``after``.
+    """
     with open_to_change(file) as stream:
         if stream.seek(0, os.SEEK_END) < after:
             raise _refused(

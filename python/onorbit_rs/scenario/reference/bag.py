@@ -120,7 +120,10 @@ def _check_lengths(number: int, sample: Sample) -> None:
 
 
 def _distinct(samples: list[Sample]) -> list[Sample]:
-    """Return samples with increasing times; of samples with the same time and positions, the last is kept."""
+    """Return samples with increasing times; of samples with the same time and positions, the last is kept.
+
+    Raises a _BadRecordingError if times decrease or fewer than two samples remain.
+    """
     found: list[Sample] = []
     for number, sample in enumerate(samples, 1):
         if found and sample.time <= found[-1].time:

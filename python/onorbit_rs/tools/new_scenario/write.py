@@ -34,7 +34,9 @@ class Draft:
 
     text: str
     tool: str | None
+    """Tool frame; None if no joint moves a frame."""
     joints: list[str]
+    """Joints that move the tool; empty if the scenario only holds joints or the robot rotates freely."""
     model: Model
     q: Floats
     """Initial configuration (nq,)."""
