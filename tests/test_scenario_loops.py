@@ -173,3 +173,22 @@ def test_info_lists_loops_and_mimic_joints(tmp_path: Path, capsys: pytest.Captur
     shown = capsys.readouterr().out
     assert "mimic joint: right_crank = 1 left_crank" in shown
     assert "loop left: revolute between left_pin and left_rod_tip" in shown
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        (FOUR_BAR, "loop 'left', mimic joint 'right_crank'"),
+        (WORLD, "loop 'left', mimic joint 'right_crank'"),
+        (
+            "robot: parallel_gripper\nsimulation: {duration: 1 s, time_step: 10 ms}\n",
+            "mimic joint 'right_jaw'",
+        ),
+    ],
+)
+def test_mujoco_refuses_loops_and_mimic_joints(tmp_path: Path, text: str, names: str) -> None:
+    pytest.importorskip("mujoco")
+    lines = len(text.splitlines())
+    message = refused(write(tmp_path, f"{text}engine: mujoco\n"))
+    assert message.startswith(f"{lines + 1}: engine: engine mujoco does not support closed loops")
+    assert f"({names})" in message

@@ -76,6 +76,15 @@ def _time_constant(given: float | None, time_step: float) -> float:
     return value
 
 
+def _check_is_tree(model: Model) -> None:
+    """Raise an error for closed loops and mimic joints, which this engine would ignore."""
+    names = [f"loop '{loop.name}'" for loop in model.loops]
+    names += [f"mimic joint '{joint.name}'" for joint in model.joints if joint.mimic is not None]
+    if names:
+        message = f"engine mujoco does not support closed loops and mimic joints ({', '.join(names)})"
+        raise EngineError(f"{message}; omit them, or use engine: native", name="engine", got="mujoco")
+
+
 def world_model(
     models: Mapping[str, Model],
     *,
@@ -105,6 +114,7 @@ def world_model(
     moments: dict[str, Floats] = {}
     built: dict[str, tuple[Model, dict[str, Any]]] = {}
     for name, model in models.items():
+        _check_is_tree(model)
         bodies, own = _add_robot(
             mujoco, spec, model, name, time_step=time_step, enforce_limits=name in with_stops
         )
