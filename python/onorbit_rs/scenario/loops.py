@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 ACCEPTED = 1e-6
-"""Largest error of a loop or a mimic joint at the start, m or rad (per second), that is not an error."""
+"""Largest deviation of a loop or a mimic joint accepted at the start, m or rad, for rates per second."""
 
 
 class Loop(Part):
@@ -52,7 +52,7 @@ class Loop(Part):
     not close the loop is an error."""
 
     def of_system(self, system: str) -> Loop | None:
-        """Return the loop with the names of its frames in the robot of ``system``, None if it has another."""
+        """Return the loop with the names of its frames in the robot of ``system``; None for others."""
         if self.between[0].partition("/")[0] != system:
             return None
         return self.model_copy(update={"between": [path.partition("/")[2] for path in self.between]})
@@ -67,7 +67,7 @@ class Loop(Part):
 
 
 def check_loops(loops: Sequence[Loop], systems: Sequence[str]) -> None:
-    """Raise an error for a name given twice, or for frames that are not on one system of a world.
+    """Raise an error for a name or a frame given twice, or for frames that are not on one system of a world.
 
     ``systems`` are the names of the systems; empty for a scenario of one robot.
     """
@@ -114,7 +114,15 @@ def add_loops(scenario: Scenario, model: _core.Model) -> _core.Model:
 def closed_start(scenario: Scenario, model: _core.Model, q: Floats, v: Floats) -> tuple[Floats, Floats]:
     """Return the initial state with mimic joints that follow their leaders and with projected loops closed.
 
-    A loop without ``project`` must be closed; otherwise the simulation raises an error.
+    ``q`` and ``v`` may be overwritten. If a loop without ``project`` is open, no loop is closed, and the
+    simulation raises an error.
+
+    Raises
+    ------
+    InputError
+        If a given value of a mimic joint differs from the one that its leader prescribes.
+    ConvergenceError
+        If the loops cannot all be closed.
     """
     initial = scenario.initial
     with located(scenario, "initial", "joints"):
@@ -137,7 +145,7 @@ def closed_start(scenario: Scenario, model: _core.Model, q: Floats, v: Floats) -
 def followed(
     what: str, given: list[JointValue] | dict[str, JointValue], values: Floats, model: _core.Model
 ) -> Floats:
-    """Return joint positions or rates with those of mimic joints that are not given set from their leaders.
+    """Return joint ``values`` (n,), positions or rates; mimic joints that are not given follow their leaders.
 
     Raises
     ------

@@ -44,7 +44,7 @@ const KINDS: [(&str, LoopKind); 5] = [
 /// Raises
 /// ------
 /// ModelError
-///     If the kind is unknown, a pose is invalid, or a length is given with another kind.
+///     If the kind is unknown, a pose is invalid, or a length is given with a kind other than ``distance``.
 #[pyclass(name = "Loop", frozen, module = "onorbit_rs", eq)]
 #[derive(Clone, PartialEq)]
 pub(crate) struct PyLoop {
@@ -128,7 +128,7 @@ impl PyLoop {
         rows(&self.closing.poses[1])
     }
 
-    /// Given distance of the origins, m, or None.
+    /// Distance of the origins, m; None for the default.
     #[getter]
     fn length(&self) -> Option<f64> {
         self.closing.length
@@ -140,7 +140,8 @@ impl PyLoop {
         self.closing.project
     }
 
-    /// Number of scalar constraints: 6, 5, 3, 5 or 1.
+    /// Number of scalar constraints: 6 for ``weld``, 5 for ``revolute`` and ``prismatic``, 3 for
+    /// ``spherical``, 1 for ``distance``.
     #[getter]
     fn rows(&self) -> usize {
         self.closing.kind.rows()
@@ -183,7 +184,7 @@ pub(crate) fn with_loops(model: &Bound<'_, PyModel>, loops: Vec<Loop>) -> PyResu
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Reads a mimic: the name of the leader, or the name with ratio and offset.
+/// Reads a mimic: the name of the leader, or (name, ratio, offset in rad or m); any other value is an error.
 pub(super) fn mimic_in(mimic: Any<'_, '_>) -> PyResult<Mimic> {
     let read = mimic.extract().map(|leader| (leader, 1.0, 0.0)).or_else(|_| mimic.extract());
     let (leader, ratio, offset) = read.map_err(|_| {

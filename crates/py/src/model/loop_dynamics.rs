@@ -49,8 +49,9 @@ impl PyModel {
     /// Return the acceleration under the constraints of closed loops and mimic joints, and the constraint
     /// forces.
     ///
-    /// The acceleration is ``M⁻¹ (tau - c + Σ Jᵀ F + Jᵀ λ)`` with ``J a + J̇ v = 0``; without constraints it is
-    /// that of :meth:`forward_dynamics`. The forces of redundant constraints are zero.
+    /// The acceleration is ``a = M⁻¹ (tau - h + Jᵀ λ)`` with ``J a + J̇ v = 0``, the mass matrix ``M``, the
+    /// bias forces ``h`` of :meth:`bias_forces` and the Jacobian ``J`` of the constraints. Without
+    /// constraints, it is that of :meth:`forward_dynamics`. The forces of redundant constraints are zero.
     ///
     /// Parameters
     /// ----------
@@ -72,9 +73,17 @@ impl PyModel {
     /// a : (nv,) or (B, nv) array
     ///     Acceleration, m/s² and rad/s².
     /// forces : (m,) or (B, m) array
-    ///     Constraint forces ``λ``, N and N m, in the order of :meth:`loop_errors`. Those of a loop act on its
-    ///     second body in the axes of the joint on its first frame; the force of a distance acts along the line from the
-    ///     first to the second origin; that of a mimic joint is its torque.
+    ///     Constraint forces ``λ``, N and N m, in the order of :meth:`loop_errors`. Those of a loop act on
+    ///     its second body, in the axes of the joint on its first frame; the force of a distance acts along
+    ///     the line from the first to the second origin; that of a mimic joint is its torque, or its force if
+    ///     it is prismatic.
+    ///
+    /// Raises
+    /// ------
+    /// FrameError, ModelError
+    ///     If a frame of ``loops`` does not exist, both are on one body, or a name is already used.
+    /// ShapeError
+    ///     If an array has the wrong shape.
     #[pyo3(signature = (q, v, tau, loops=None, *, external=None, threads=None))]
     fn constrained_forward_dynamics<'py>(
         slf: &Bound<'py, Self>,
@@ -136,6 +145,8 @@ impl PyModel {
     /// ------
     /// ConvergenceError
     ///     If the loops cannot all be closed near ``q``.
+    /// InputError, ShapeError
+    ///     If ``q`` is not finite, its quaternion is not a unit quaternion, or its shape is wrong.
     fn closed_configuration<'py>(&self, q: Any<'_, 'py>) -> PyResult<Array<'py>> {
         let py = q.py();
         let mut closed = self.configuration(q)?;

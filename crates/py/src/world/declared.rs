@@ -42,17 +42,16 @@ use std::sync::Arc;
 ///     Contacts between links.
 /// events : list of Capture and Release, optional
 ///     Events that connect and separate systems.
-/// loops : list of Loop, optional
-///     Closed loops of the robots; both frames of a loop are ``SYSTEM/FRAME`` of the same system.
 /// rereference_beyond : float
 ///     Distance of a system from the reference orbit, m, beyond which integration continues about a new
-///     reference orbit. Systems that events may connect or that may touch keep the
-///     reference orbit.
+///     reference orbit. Systems that events may connect or that may touch keep their reference orbit.
+/// loops : list of Loop, optional
+///     Closed loops of the robots; both frames of a loop are ``SYSTEM/FRAME`` of the same system.
 ///
 /// Raises
 /// ------
 /// WorldError
-///     If a system, a contact or an event is invalid.
+///     If a system, a contact, an event or a loop is invalid.
 /// InputError, OrbitError, EarthError, GravityError, EffectError, ControlError
 ///     As for ``Simulation``.
 #[pyclass(name = "World", frozen, module = "onorbit_rs")]

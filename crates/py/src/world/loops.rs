@@ -5,7 +5,8 @@ use crate::errors::{fields, raise};
 use onorbit_core::model::Loop;
 use pyo3::prelude::*;
 
-/// Returns the systems with the loops, whose frames are given as ``SYSTEM/FRAME``, added to their robots.
+/// Returns the systems with the loops, whose frames are given as ``SYSTEM/FRAME``, added to their robots. A
+/// loop whose frames are not on one of the systems is an error.
 pub(super) fn close_systems(
     py: Python<'_>,
     systems: &[Bound<'_, PySystem>],
