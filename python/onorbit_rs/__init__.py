@@ -64,6 +64,7 @@ from onorbit_rs._core import (
     Line,
     LineParabola,
     Loop,
+    LoopTrace,
     Model,
     ModelBuilder,
     Nrlmsise00,
@@ -158,6 +159,7 @@ __all__ = [
     "Line",
     "LineParabola",
     "Loop",
+    "LoopTrace",
     "MinimumDistance",
     "Model",
     "ModelBuilder",
@@ -257,7 +259,15 @@ def _reduced_contact(contact: ContactTrace) -> tuple[Any, ...]:
     return reduced_contact(contact)
 
 
+def _reduced_loop(loop: LoopTrace) -> tuple[Any, ...]:
+    """Return the pickled form of the recorded forces of a closed loop."""
+    from onorbit_rs.output.saved_loop import reduced_loop
+
+    return reduced_loop(loop)
+
+
 copyreg.pickle(Trace, _reduced)
+copyreg.pickle(LoopTrace, _reduced_loop)
 copyreg.pickle(ContactTrace, _reduced_contact)
 copyreg.pickle(WorldTrace, _reduced_world)
 

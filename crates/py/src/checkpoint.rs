@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
 use crate::world::Systems;
 use onorbit_core::number_text::{count, short};
 use onorbit_core::simulation::{
-    self, CONTACTS, NamedColumn, SimulationError, Stepper, TRACKING, Trace, WRENCHES,
+    self, CONTACTS, LOOPS, NamedColumn, SimulationError, Stepper, TRACKING, Trace, WRENCHES,
 };
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -83,6 +83,7 @@ impl PyCheckpoint {
                 (&TRACKING, &mut rows.tracking),
                 (&WRENCHES, &mut rows.wrenches),
                 (&CONTACTS, &mut rows.contacts),
+                (&LOOPS, &mut rows.loops),
             ];
             for (kind, named) in kinds {
                 if let Some(name) = kind.owner_of(name) {

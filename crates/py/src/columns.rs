@@ -4,6 +4,22 @@ use onorbit_core::simulation::{Column, Length, Part, columns};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMappingProxy, PySlice, PyTuple};
 
+/// Returns the columns of a part of an array (T, k) that `column` describes: (T,) if the part has one column,
+/// otherwise (T, k).
+pub(crate) fn part_of<'py>(
+    column: &Column,
+    values: &Bound<'py, PyAny>,
+    name: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (py, part) = (values.py(), column.parts.iter().find(|part| part.name == name));
+    let (start, end) = part.map_or((0, 1), |part| (part.start, part.end.unwrap_or(part.start + 1)));
+    let rows = PySlice::full(py);
+    if end == start + 1 {
+        return values.get_item((rows, start));
+    }
+    values.get_item((rows, PySlice::new(py, start as isize, end as isize, 1)))
+}
+
 /// Description of one recorded quantity: an entry of ``onorbit_rs.COLUMNS``.
 ///
 /// Attributes

@@ -20,6 +20,7 @@ mod model;
 mod orbit;
 mod output;
 mod pickling;
+mod recorded_loop;
 mod reference;
 mod run_failure;
 mod shared_run;
@@ -86,6 +87,7 @@ fn _core(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<stepper::PyStepper>()?;
     m.add_class::<trace::PyTrace>()?;
     contact::add_classes(m)?;
+    m.add_class::<recorded_loop::PyLoopTrace>()?;
     world::add_classes(m)?;
     columns::add(m)?;
     m.add_class::<checkpoint::PyCheckpoint>()?;

@@ -2,11 +2,12 @@
 
 use crate::contact::PyContactTrace;
 use crate::interrupt::abandonable;
+use crate::recorded_loop::PyLoopTrace;
 use numpy::ndarray::ArrayView;
 use numpy::{IxDyn, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
 use onorbit_core::number_text::{count, short};
-use onorbit_core::simulation::{COLUMNS, CONTACTS, Condition, Trace, WRENCHES, certify};
+use onorbit_core::simulation::{COLUMNS, CONTACTS, Condition, LOOPS, Trace, WRENCHES, certify};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -146,6 +147,18 @@ macro_rules! getters {
                 for column in &this.get().trace.contacts {
                     let values = view(this, &column.values, &row)?.into_pyobject(this.py())?.unbind();
                     all.set_item(&column.name, PyContactTrace::new(values.into_any()))?;
+                }
+                Ok(all)
+            }
+
+            /// Forces of the closed loops whose first frame belongs to the system, by the name of the loop or of the
+            /// capture that closes it.
+            #[getter]
+            fn loops<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
+                let (all, row) = (PyDict::new(this.py()), LOOPS.row_shape(&this.get().model));
+                for column in &this.get().trace.loops {
+                    let values = view(this, &column.values, &row)?.into_pyobject(this.py())?.unbind();
+                    all.set_item(&column.name, PyLoopTrace::new(values.into_any()))?;
                 }
                 Ok(all)
             }

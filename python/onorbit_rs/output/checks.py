@@ -17,6 +17,7 @@ CHECKS = {
     "attitude_step_doubling_rad": "rad",
     "joint_step_doubling_rel": "relative",
     "position_step_doubling_rel": "relative",
+    "loop_opening": "m or rad",
 }
 """Unit of every check that a certificate can have; checks that do not apply to a run are omitted."""
 

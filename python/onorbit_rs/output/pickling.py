@@ -47,15 +47,17 @@ class PickledTrace(SavedTrace):
 
 
 def arrays_of(trace: Trace) -> dict[str, Any]:
-    """Return the columns of a trace by path, including those of every control, effect and contact, but
+    """Return the columns of a trace by path, including those of every control, effect, contact and loop, but
     without ``rereferenced``.
     """
     arrays = {name: np.asarray(getattr(trace, name)) for name in trace.columns()}
     contacts = {name: contact.values for name, contact in trace.contacts.items()}
+    loops = {name: loop.values for name, loop in trace.loops.items()}
     for name, by_owner in (
         ("tracking", trace.tracking),
         ("wrenches", trace.wrenches),
         ("contacts", contacts),
+        ("loops", loops),
     ):
         arrays |= {path_of(name, owner): np.asarray(rows) for owner, rows in by_owner.items()}
     return arrays

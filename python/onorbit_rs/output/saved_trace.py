@@ -12,6 +12,7 @@ from onorbit_rs._core import COLUMNS
 from onorbit_rs.common.coordinates import BASE_NQ
 from onorbit_rs.output.columns import row_shape, split_path
 from onorbit_rs.output.saved_contact import SavedContact
+from onorbit_rs.output.saved_loop import SavedLoop
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ class SavedTrace:
         return self.arrays.get(name)
 
     def columns(self) -> list[str]:
-        """Return the names of the columns, apart from ``tracking``, ``wrenches`` and ``contacts``."""
+        """Return the names of the columns that have no owner, such as a control or a contact."""
         return [path for path in self.arrays if split_path(path)[1] is None and path != "rereferenced"]
 
     @property
@@ -49,6 +50,11 @@ class SavedTrace:
     def contacts(self) -> dict[str, SavedContact]:
         """Contacts of which the system is the first side, by their names."""
         return {name: SavedContact(values) for name, values in self._by_owner("contacts").items()}
+
+    @property
+    def loops(self) -> dict[str, SavedLoop]:
+        """Closed loops whose first frame belongs to the system, by their names."""
+        return {name: SavedLoop(values) for name, values in self._by_owner("loops").items()}
 
     def _by_owner(self, wanted: str) -> dict[str, Any]:
         found = ((*split_path(path), values) for path, values in self.arrays.items())

@@ -77,6 +77,8 @@ pub enum Condition {
     Wrenches,
     /// The system is the first side of a contact.
     Contacts,
+    /// The system has closed loops, or a capture by it may close one.
+    Loops,
 }
 
 impl Condition {
@@ -92,6 +94,7 @@ impl Condition {
             Self::Controls => "with a list of controls",
             Self::Wrenches => "with record_wrenches",
             Self::Contacts => "for the system of the first link of a contact",
+            Self::Loops => "for the system of the first frame of a closed loop",
         }
     }
 }
@@ -112,7 +115,7 @@ pub struct Part {
 pub struct Column {
     /// Name of the attribute of a trace.
     pub name: &'static str,
-    /// Name in files; `*` stands for the name of a control, of an effect or of a contact.
+    /// Name in files; `*` stands for the name of a control, an effect, a contact or a loop.
     pub path: &'static str,
     /// Length of each axis.
     pub shape: &'static [Length],
@@ -140,12 +143,12 @@ impl Column {
         self.shape[1..].iter().map(|length| length.of(model)).product()
     }
 
-    /// Returns the path of the column of one control, effect or contact.
+    /// Returns the path of the column of one control, effect, contact or loop.
     pub fn path_of(&self, owner: &str) -> String {
         self.path.replace('*', owner)
     }
 
-    /// Returns the name of the control, effect or contact whose column has this path, if there is one.
+    /// Returns the name of the control, effect, contact or loop whose column has this path, if there is one.
     pub fn owner_of<'a>(&self, path: &'a str) -> Option<&'a str> {
         self.path.strip_suffix('*').and_then(|prefix| path.strip_prefix(prefix))
     }
@@ -175,6 +178,13 @@ const CONTACT: &[Part] = &[
     part("impulse", 14, Some(17)),
     part("touches", 17, Some(18)),
     part("largest_force", 18, Some(19)),
+];
+
+const LOOP: &[Part] = &[
+    part("force", 0, Some(3)),
+    part("moment", 3, Some(6)),
+    part("point", 6, Some(9)),
+    part("opening", 9, Some(11)),
 ];
 
 /// Converts one axis of a shape in the table to a [`Length`].
@@ -325,6 +335,19 @@ pub static CONTACTS: Column = column!(
      normal force."
 );
 
+/// Forces of the closed loops, one column per loop.
+pub static LOOPS: Column = column!(
+    loops,
+    "loop_*",
+    (T, 11),
+    "N; N m; m; m and rad",
+    "W",
+    Loops,
+    LOOP,
+    "Force of a loop on its second frame, and moment about the point of the loop in that frame; this point; distance \
+     and angle by which the loop is open."
+);
+
 /// Times at which the run changed to a new reference orbit.
 pub static REREFERENCED: Column = column!(
     rereferenced,
@@ -340,5 +363,5 @@ pub static REREFERENCED: Column = column!(
 
 /// Returns the descriptions of all recorded quantities.
 pub fn columns() -> impl Iterator<Item = &'static Column> {
-    COLUMNS.iter().chain([&TRACKING, &WRENCHES, &CONTACTS, &REREFERENCED])
+    COLUMNS.iter().chain([&TRACKING, &WRENCHES, &CONTACTS, &LOOPS, &REREFERENCED])
 }

@@ -94,7 +94,7 @@ impl<S: Scalar> RunState<'_, S> {
                 (weld.pose, has_ended) = (seating.pose, true);
             }
         }
-        if has_ended { self.keep_balance(|run| run.recompile(t)) } else { Ok(()) }
+        if has_ended { self.keep_balance(|run| run.recompile(t)).map(|_| ()) } else { Ok(()) }
     }
 
     /// Calls `change`, which assembles new trees, and corrects the ledger so that the totals of the group do
@@ -142,8 +142,8 @@ impl<S: Scalar> RunState<'_, S> {
         let pose = RigidPose { rotation, position };
         let seating = seat.map(|Seat { duration, pose }| Seating { start: t, duration, pose });
         self.connections.add(Weld { capture: number, by, of, pose, seating });
-        self.recompile(t)?;
-        Ok(self.audit(&Applied {
+        let impulses = self.recompile(t)?;
+        let mut record = self.audit(&Applied {
             number,
             kind: EventKind::Capture,
             time: t,
@@ -152,7 +152,14 @@ impl<S: Scalar> RunState<'_, S> {
             pushed: &captured,
             point: pose_of.pos_w,
             spring_work: 0.0,
-        }))
+        });
+        if closes_loop {
+            // both systems belong to the same tree, whose momentum does not change
+            let name = self.connections.active.welds.last().map(Weld::loop_name);
+            let own = impulses.into_iter().find(|(closing, _)| Some(closing) == name.as_ref());
+            record.impulse = own.map_or([0.0; 6], |(_, impulse)| impulse);
+        }
+        Ok(record)
     }
 
     /// Removes a connection. Then applies `impulse`, N s and N m s, to the system of the captured frame, and

@@ -40,6 +40,7 @@ mod known;
 mod latch;
 mod local_reference;
 mod look_ahead;
+mod loop_rows;
 mod members;
 mod modes;
 mod mover;
@@ -77,7 +78,7 @@ pub use certificate::{Certificate, Check, PairChecks, certify};
 pub use checkpoint::Checkpoint;
 pub use checkpoint_error::CheckpointError;
 pub use columns::{
-    COLUMNS, CONTACTS, Column, Condition, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns,
+    COLUMNS, CONTACTS, Column, Condition, LOOPS, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns,
 };
 pub use distance::FarSystem;
 pub use engine::{BodyWeld, ContactOutput, Engine, Exchange, StepInput, StepOutput};

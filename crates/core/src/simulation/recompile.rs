@@ -16,6 +16,7 @@ use crate::model::{BASE_NQ, Model};
 use crate::spatial::{Force, Real, Scalar, Vec3};
 use crate::world::{
     Action, Assembly, Balance, FrameIndex, GivenJoint, Member, Moving, When, connected_velocity,
+    loop_impulses,
 };
 use std::borrow::Cow;
 
@@ -32,11 +33,13 @@ impl<'a, S: Scalar> RunState<'a, S> {
     /// preserve their momenta. Requires the kinematics of the state, relative to W, in the trees, and the
     /// states of the parts; afterwards the new trees hold their kinematics. With an external engine, the
     /// connections are passed to the engine, and each system remains a tree.
-    pub(super) fn recompile(&mut self, t: f64) -> Result<(), SimulationError> {
+    ///
+    /// Returns the impulses of the closed loops of the new trees; see [`loop_impulses`].
+    pub(super) fn recompile(&mut self, t: f64) -> Result<Vec<(String, [f64; 6])>, SimulationError> {
         if self.mover.is_external() {
             self.pass_welds();
             self.find_latches();
-            return Ok(());
+            return Ok(Vec::new());
         }
         self.conclude_trees();
         let assemblies = self.connections.assemble()?;
@@ -49,6 +52,7 @@ impl<'a, S: Scalar> RunState<'a, S> {
             states: std::mem::take(&mut self.state.trees).into_iter().map(Some).collect(),
             parts: members.parts.into_iter().map(Some).collect(),
             places: members.places,
+            impulses: Vec::new(),
         };
         let mut new = Members::alone(old.places.len());
         for Assembly { model, members, given } in assemblies {
@@ -67,7 +71,8 @@ impl<'a, S: Scalar> RunState<'a, S> {
         }
         self.equations.members = new;
         follow_centers(&self.equations.trees, &mut self.state.trees);
-        self.resize()
+        self.resize()?;
+        Ok(old.impulses)
     }
 
     /// Allocates all buffers whose dimensions depend on the trees.
@@ -152,6 +157,8 @@ struct Old<'a, S> {
     places: Vec<Place>,
     /// Number of parts of each tree.
     sizes: Vec<usize>,
+    /// Impulses of the closed loops of new trees, by the names of the loops.
+    impulses: Vec<(String, [f64; 6])>,
 }
 
 impl<'a, S: Scalar> Old<'a, S> {
@@ -231,7 +238,8 @@ fn join<'a, S: Scalar>(
     let parts = members.iter().zip(&loose).zip(&states);
     let moving: Vec<_> =
         parts.map(|((member, one), [q, v])| Moving { member, model: &one.own.model, q, v }).collect();
-    let v = connected_velocity(&model, &q, &moving, &rates);
+    let (v, loops) = connected_velocity(&model, &q, &moving, &rates);
+    old.impulses.extend(loop_impulses(&model, &q, &loops));
     let modes = loose.iter().zip(&members).map(|(one, member)| (&one.own.modes, &member.joints[..]));
     let modes = JointModes::joined(model.joint_count(), given, modes);
     let mut tree = Tree::with_modes(Cow::Owned(model), modes);

@@ -1,7 +1,7 @@
 //! Recorder, which adds rows to the trace of one system.
 
 use super::checkpoint_error::CheckpointError;
-use super::columns::{COLUMNS, CONTACTS, Column, Condition, WRENCHES};
+use super::columns::{COLUMNS, CONTACTS, Column, Condition, LOOPS, WRENCHES};
 use super::engine::ContactOutput;
 use super::environment_loads::EnvironmentLoads;
 use super::error::SimulationError;
@@ -30,6 +30,8 @@ pub(super) struct RecordOptions {
     pub(super) effects: Vec<String>,
     /// Names of the contacts that the trace of the system records.
     pub(super) contacts: Vec<String>,
+    /// Names of the closed loops that the trace of the system records.
+    pub(super) loops: Vec<String>,
     /// True if the run has an orbit.
     pub(super) has_orbit: bool,
     /// True if a controller compensates Coulomb friction.
@@ -50,7 +52,7 @@ impl RecordOptions {
             Condition::Reference => self.has_reference,
             Condition::Orbit => self.has_orbit,
             Condition::Carried => self.records_residual,
-            Condition::Controls | Condition::Wrenches | Condition::Contacts => false,
+            Condition::Controls | Condition::Wrenches | Condition::Contacts | Condition::Loops => false,
         };
         if is_recorded { column.row_width(model) } else { 0 }
     }
@@ -94,10 +96,11 @@ impl Recorder {
             options.effects.iter().map(|name| column(name, WRENCHES.row_width(model))).collect();
         let contacts: Vec<_> =
             options.contacts.iter().map(|name| column(name, CONTACTS.row_width(model))).collect();
+        let loops: Vec<_> = options.loops.iter().map(|name| column(name, LOOPS.row_width(model))).collect();
         let widths = COLUMNS.iter().map(|column| options.width(column, model));
-        let named = tracking.iter().chain(&wrenches).chain(&contacts);
+        let named = tracking.iter().chain(&wrenches).chain(&contacts).chain(&loops);
         let widths: Vec<usize> = widths.chain(named.map(|column| column.width)).collect();
-        let mut trace = Trace { rows_suffice, tracking, wrenches, contacts, ..Trace::default() };
+        let mut trace = Trace { rows_suffice, tracking, wrenches, contacts, loops, ..Trace::default() };
         // All columns in one block, which is freed at once. It shows that the memory suffices, and glibc then
         // keeps the freed memory of a trace for the next run, which would otherwise wait for new pages.
         black_box(reserved(rows, widths.iter().sum())?);
@@ -197,6 +200,14 @@ impl Recorder {
         }
     }
 
+    /// Adds rows of the closed loops, by name, to the last row; loops that are not closed have zeros.
+    pub(super) fn record_loops(&mut self, rows: &[(String, [f64; 11])]) {
+        for column in &mut self.trace.loops {
+            let row = rows.iter().find(|(name, _)| *name == column.name);
+            column.values.extend_from_slice(row.map_or(&[0.0; 11], |(_, row)| row));
+        }
+    }
+
     /// Replaces the force and the power in the last row of the contact with this name.
     pub(super) fn record_contact_force(&mut self, name: &str, done: &ContactOutput) {
         let part = |name: &str| CONTACTS.parts.iter().find(|part| part.name == name).map(|part| part.start);
@@ -270,9 +281,9 @@ impl Recorder {
             };
             columns.iter().map(empty).collect()
         };
-        let [tracking, wrenches, contacts] =
-            [&trace.tracking, &trace.wrenches, &trace.contacts].map(|of| named(of));
-        let mut row = Trace { tracking, wrenches, contacts, ..Trace::default() };
+        let [tracking, wrenches, contacts, loops] =
+            [&trace.tracking, &trace.wrenches, &trace.contacts, &trace.loops].map(|of| named(of));
+        let mut row = Trace { tracking, wrenches, contacts, loops, ..Trace::default() };
         for (((_, to), (_, from)), width) in row.columns_mut().zip(trace.columns()).zip(&self.widths) {
             to.extend_from_slice(&from[from.len() - width..]);
         }

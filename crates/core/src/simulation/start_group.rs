@@ -12,6 +12,7 @@ use super::events::Events;
 use super::external_engine::ExternalEngine;
 use super::group_balance::GroupBalance;
 use super::integrator::{Integrator, Stages, StepSettings};
+use super::loop_rows::recorded_loops;
 use super::modes::StepMethod;
 use super::mover::Mover;
 use super::recompile::follow_centers;
@@ -102,7 +103,8 @@ impl Shared {
         let moving_frames = moving_frames_of(numbers, &systems);
         let (mut trees, mut members, mut models) = (Vec::new(), Vec::new(), Vec::new());
         for (number, system) in systems.into_iter().enumerate() {
-            let (model, tree, run) = self.run_system((number, numbers), system, (rows, rows_suffice))?;
+            let (model, tree, run) =
+                self.run_system((number, numbers), (system, &events.list), (rows, rows_suffice))?;
             models.push(model);
             trees.push(tree);
             members.push(run);
@@ -161,7 +163,7 @@ impl Shared {
     fn run_system<'a, S: Scalar>(
         &self,
         (number, numbers): (usize, &[usize]),
-        system: &'a mut System,
+        (system, events): (&'a mut System, &[Event]),
         (rows, rows_suffice): (usize, bool),
     ) -> Result<(&'a Model, Tree<'a, S>, RunSystem<'a, S>), SimulationError> {
         let System { model, controls, tool, reference, stops, knows, .. } = system;
@@ -171,6 +173,7 @@ impl Shared {
         let mut options = self.record_options(model, controls, *tool, reference.is_some());
         let own = self.contacts.iter().filter(|contact| contact.first_system() == Some(number));
         options.contacts = own.map(|contact| contact.name.clone()).collect();
+        options.loops = recorded_loops(number, model, events);
         let recorder = Recorder::new(rows, (number, model), options, controls, rows_suffice)?;
         let tracked = (*tool, reference.as_ref());
         let mut controllers = Controllers::new(controls, tracked, model, self.time_step, !knows.is_empty())?;
@@ -222,6 +225,7 @@ impl Shared {
             has_orbit: self.orbit.is_some(),
             compensates_friction: compensates_friction && model.has_friction() && !self.has_engine,
             contacts: Vec::new(),
+            loops: Vec::new(),
             records_residual: self.gravity.is_some() && self.gravity_mode == GravityMode::Carried,
         }
     }

@@ -1,7 +1,7 @@
 //! Trace of a run.
 
 use super::certificate::PairChecks;
-use super::columns::{CONTACTS, Column, TRACKING, WRENCHES};
+use super::columns::{CONTACTS, Column, LOOPS, TRACKING, WRENCHES};
 use crate::control::Outcome;
 use crate::model::{BASE_NQ, Model};
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,9 @@ macro_rules! define_trace {
             /// Distances and forces of the contacts of which the system is the first side, one column per
             /// contact; see [`CONTACTS`].
             pub contacts: Vec<NamedColumn>,
+            /// Forces of the closed loops whose first frame belongs to the system, one column per loop; see
+            /// [`LOOPS`].
+            pub loops: Vec<NamedColumn>,
             /// Outcomes of the goals of the controls.
             pub results: Vec<GoalResult>,
             /// Times at which the run changed to a new reference orbit, s; see
@@ -52,16 +55,18 @@ macro_rules! define_trace {
 
         impl Trace {
             /// Returns all columns with their paths, including empty columns: first the fields, then the
-            /// columns of the controls, of the effects and of the contacts.
+            /// columns of the controls, the effects, the contacts and the loops.
             pub fn columns(&self) -> impl Iterator<Item = (Cow<'static, str>, &Vec<f64>)> {
                 let tracking = self.tracking.iter().map(|column| (column.path(&TRACKING), &column.values));
                 let wrenches = self.wrenches.iter().map(|column| (column.path(&WRENCHES), &column.values));
                 let contacts = self.contacts.iter().map(|column| (column.path(&CONTACTS), &column.values));
+                let loops = self.loops.iter().map(|column| (column.path(&LOOPS), &column.values));
                 [$((Cow::Borrowed(stringify!($name)), &self.$name)),+]
                     .into_iter()
                     .chain(tracking)
                     .chain(wrenches)
                     .chain(contacts)
+                    .chain(loops)
             }
 
             /// Returns the columns of [`Trace::columns`] as mutable references.
@@ -72,11 +77,13 @@ macro_rules! define_trace {
                     self.wrenches.iter_mut().map(|column| (column.path(&WRENCHES), &mut column.values));
                 let contacts =
                     self.contacts.iter_mut().map(|column| (column.path(&CONTACTS), &mut column.values));
+                let loops = self.loops.iter_mut().map(|column| (column.path(&LOOPS), &mut column.values));
                 [$((Cow::Borrowed(stringify!($name)), &mut self.$name)),+]
                     .into_iter()
                     .chain(tracking)
                     .chain(wrenches)
                     .chain(contacts)
+                    .chain(loops)
             }
         }
     };
@@ -84,10 +91,10 @@ macro_rules! define_trace {
 
 crate::trace_columns!(define_trace);
 
-/// Column of one control, effect or contact.
+/// Column of one control, effect, contact or loop.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NamedColumn {
-    /// Name of the control, effect or contact.
+    /// Name of the control, effect, contact or loop.
     pub name: String,
     /// Number of values per row.
     pub width: usize,
@@ -96,7 +103,7 @@ pub struct NamedColumn {
 }
 
 impl NamedColumn {
-    /// Returns the path of the column, which contains the name of the control, effect or contact.
+    /// Returns the path of the column, which contains the name of its control, effect, contact or loop.
     fn path(&self, column: &Column) -> Cow<'static, str> {
         Cow::Owned(column.path_of(&self.name))
     }

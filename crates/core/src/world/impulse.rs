@@ -22,7 +22,7 @@ pub struct Moving<'a> {
 }
 
 /// Returns the velocity `(nv,)` of a tree at `q` immediately after its systems have been rigidly connected;
-/// the first system is the root. `given` are the indices and the rates, rad/s (m/s), of the joints with
+/// the first system is the root. Returns the closed loops of the tree as well, whose forces are then impulses. `given` are the indices and the rates, rad/s (m/s), of the joints with
 /// prescribed motion.
 ///
 /// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
@@ -38,7 +38,7 @@ pub fn connected_velocity(
     q: &[f64],
     systems: &[Moving<'_>],
     given: &[(usize, f64)],
-) -> Vec<f64> {
+) -> (Vec<f64>, ClosedLoops<f64>) {
     let mut data = Data::<f64>::new(tree);
     positions(tree, &mut data, q);
     let rot_bw = base_rotation(q).transpose();
@@ -69,7 +69,21 @@ pub fn connected_velocity(
     let mut loops = ClosedLoops::new(tree, tree.closures());
     constrained_recursion(tree, &mut data, &mut loops, (&at_rest, &momentum), locked, &mut v);
     (Vec3::from_slice(&v) + rot_bw * common).write(&mut v);
-    v
+    (v, loops)
+}
+
+/// Returns, for each closed loop of a tree at `q`, its name and its impulse on its second frame, N s and N m s, in
+/// the axes of W about the point of the loop in that frame. `loops` are those of [`connected_velocity`].
+pub fn loop_impulses(tree: &Model, q: &[f64], loops: &ClosedLoops<f64>) -> Vec<(String, [f64; 6])> {
+    let (mut data, rot_wb) = (Data::<f64>::new(tree), base_rotation::<f64>(q));
+    positions(tree, &mut data, q);
+    let impulse = |closure: usize| {
+        let (_, wrench) = loops.wrench(closure, &data);
+        let mut impulse = [0.0; 6];
+        Force::new(rot_wb * wrench.linear, rot_wb * wrench.angular).write(&mut impulse);
+        (loops.closures()[closure].name.clone(), impulse)
+    };
+    (0..loops.closures().len()).map(impulse).collect()
 }
 
 /// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i` with the mass matrix `M` and the Jacobian `J` of

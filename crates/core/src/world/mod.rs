@@ -18,7 +18,7 @@ pub use check::{check_events, check_names};
 pub use error::WorldError;
 pub use event::{Action, Envelope, Event, FrameIndex, RigidPose, Seat, Seating, Weld, When};
 pub use groups::{groups, systems_of};
-pub use impulse::{Moving, connected_velocity, impulse_response};
+pub use impulse::{Moving, connected_velocity, impulse_response, loop_impulses};
 pub use knowledge::{IdleKnowledge, idle_knowledge};
 pub use layout::{Layout, SystemPlace};
 pub use seating::GivenJoint;

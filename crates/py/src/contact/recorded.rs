@@ -1,9 +1,9 @@
 //! Recorded distances and forces of a contact.
 
+use crate::columns::part_of;
 use onorbit_core::number_text::count;
 use onorbit_core::simulation::CONTACTS;
 use pyo3::prelude::*;
-use pyo3::types::PySlice;
 
 /// Recorded distances and forces of a contact, with one row per time of the trace.
 ///
@@ -20,18 +20,6 @@ impl PyContactTrace {
     pub(crate) fn new(values: Py<PyAny>) -> Self {
         Self { values }
     }
-
-    /// Returns the columns of a part: an array (T,) if the part has one column, otherwise (T, k).
-    fn part<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let part = CONTACTS.parts.iter().find(|part| part.name == name);
-        let (start, end) = part.map_or((0, 1), |part| (part.start, part.end.unwrap_or(part.start + 1)));
-        let rows = PySlice::full(py);
-        let values = self.values.bind(py);
-        if end == start + 1 {
-            return values.get_item((rows, start));
-        }
-        values.get_item((rows, PySlice::new(py, start as isize, end as isize, 1)))
-    }
 }
 
 #[pymethods]
@@ -39,67 +27,67 @@ impl PyContactTrace {
     /// Smallest distance of the two sides, (T,), m; where they overlap, the negative depth.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "gap")
+        part_of(&CONTACTS, self.values.bind(py), "gap")
     }
 
     /// Force on the second side, (T, 3), N, axes of W.
     #[getter]
     fn force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "force")
+        part_of(&CONTACTS, self.values.bind(py), "force")
     }
 
     /// Point midway between the nearest points of both sides, at which the force acts, (T, 3), m, in W.
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "point")
+        part_of(&CONTACTS, self.values.bind(py), "point")
     }
 
     /// Unit normal from the first side to the second, (T, 3), axes of W.
     #[getter]
     fn normal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "normal")
+        part_of(&CONTACTS, self.values.bind(py), "normal")
     }
 
     /// Sliding speed at ``point``, (T,), m/s.
     #[getter]
     fn slip<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "sliding_speed")
+        part_of(&CONTACTS, self.values.bind(py), "sliding_speed")
     }
 
     /// Power that the contact takes from the motion, to store or dissipate it, (T,), W.
     #[getter]
     fn power<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "power")
+        part_of(&CONTACTS, self.values.bind(py), "power")
     }
 
     /// Elastic energy stored in the contact, (T,), J.
     #[getter]
     fn elastic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "elastic")
+        part_of(&CONTACTS, self.values.bind(py), "elastic")
     }
 
     /// Energy that the contact has dissipated since the start, (T,), J.
     #[getter]
     fn dissipated<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "dissipated")
+        part_of(&CONTACTS, self.values.bind(py), "dissipated")
     }
 
     /// Impulse on the second side since the start, (T, 3), N s, axes of W.
     #[getter]
     fn impulse<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "impulse")
+        part_of(&CONTACTS, self.values.bind(py), "impulse")
     }
 
     /// Number of touches since the start, (T,).
     #[getter]
     fn touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "touches")
+        part_of(&CONTACTS, self.values.bind(py), "touches")
     }
 
     /// Largest normal force since the start, (T,), N. It includes the steps between two rows.
     #[getter]
     fn largest_force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.part(py, "largest_force")
+        part_of(&CONTACTS, self.values.bind(py), "largest_force")
     }
 
     fn __len__(&self, py: Python<'_>) -> PyResult<usize> {

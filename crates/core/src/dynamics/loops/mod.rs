@@ -17,8 +17,9 @@ pub use projection::{close_loops, close_velocity, closure_errors};
 pub(crate) use projection::{project_configuration, project_velocity};
 
 use crate::dynamics::Data;
-use crate::model::{Closure, Model, Node};
-use crate::spatial::Real;
+use crate::dynamics::kinematics::frame_offset;
+use crate::model::{Closure, Constraint, Model, Node};
+use crate::spatial::{Force, Real, Vec3};
 use response::Scratch;
 use rows::Row;
 
@@ -78,6 +79,21 @@ impl<S: Real> ClosedLoops<S> {
     /// joint.
     pub fn forces(&self) -> &[S] {
         &self.force
+    }
+
+    /// Returns the point of a loop in its second frame, relative to the base origin, and the wrench on the second body
+    /// about this point, both in base axes, for the constraint forces computed last; zeros for a mimic joint.
+    /// Requires up-to-date poses in `data`.
+    pub(crate) fn wrench(&self, closure: usize, data: &Data<S>) -> (Vec3<S>, Force<S>) {
+        let Constraint::Frames { frames: [_, frame], .. } = &self.closures[closure].constraint else {
+            return (Vec3::zero(), Force::zero());
+        };
+        let offset = frame_offset(data, frame);
+        let mut wrench = Force::zero();
+        for i in self.range_of(closure) {
+            wrench = self.rows[i].forces[1].scale_add(self.force[i], wrench);
+        }
+        (data.bodies[frame.body].pos_b + offset, wrench.from_point(-offset))
     }
 
     /// Returns the magnitudes, m and rad (or N and N m for forces), of that part of `x`, `(m,)`, that belongs to a

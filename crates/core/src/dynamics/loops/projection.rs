@@ -21,7 +21,7 @@ const LONGEST: f64 = 0.5;
 impl<S: Real> ClosedLoops<S> {
     /// Computes the constraint errors `φ(q)`, `(m,)`, m and rad. Requires up-to-date poses in `data`.
     #[inline(always)]
-    pub(super) fn update_errors(&mut self, data: &Data<S>, q: &[S]) {
+    pub(crate) fn update_errors(&mut self, data: &Data<S>, q: &[S]) {
         let mut start = 0;
         for closure in &self.closures {
             let end = start + closure.rows();

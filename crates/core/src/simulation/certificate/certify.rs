@@ -5,6 +5,7 @@ use super::balance::Balance;
 use super::base_rows::BaseRows;
 use super::center_of_mass::CenterOfMass;
 use super::checks::{ATTITUDE, CENTER, Certificate, JOINT_STEP_DOUBLING, PairChecks};
+use super::loop_opening::loop_opening;
 use super::step_doubling::StepDoubling;
 use super::trace_row::{RowReader, TraceRow};
 use crate::model::Model;
@@ -59,5 +60,6 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         attitude_step_doubling_rad: trace.attitude_step_doubling,
         joint_step_doubling_rel: doubling.joints(),
         position_step_doubling_rel: doubling.origin(center.path()),
+        loop_opening: loop_opening(model, trace),
     }
 }

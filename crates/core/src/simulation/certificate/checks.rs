@@ -22,6 +22,8 @@ pub(super) const JOINT_STEP_DOUBLING: f64 = 5e-5;
 /// Largest position error of the base's origin estimated by step doubling that passes, relative to the length
 /// of the path of the centre of mass plus the robot's size.
 pub(super) const ORIGIN_STEP_DOUBLING: f64 = 1e-4;
+/// Largest distance, m, or angle, rad, by which a closed loop may be open.
+pub(super) const OPENING: f64 = 1e-11;
 /// Largest fraction of the commutator that may be missing from the attitude. The fraction is 1 for an
 /// integrator that does not integrate on the rotation group.
 pub(super) const ATTITUDE: f64 = 0.1;
@@ -72,6 +74,9 @@ pub struct Certificate {
     /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass
     /// plus the robot's size. `None` without step doubling.
     pub position_step_doubling_rel: Option<f64>,
+    /// Largest distance, m, or angle, rad, by which a closed loop is open or a mimic joint is away from its leader;
+    /// `None` without loops and mimic joints.
+    pub loop_opening: Option<f64>,
 }
 
 /// Results of the checks that compare successive steps, evaluated during the run; see [`Certificate`].
@@ -132,6 +137,7 @@ impl Certificate {
             ("attitude_step_doubling_rad", self.attitude_step_doubling_rad, STEP_DOUBLING),
             ("joint_step_doubling_rel", self.joint_step_doubling_rel, JOINT_STEP_DOUBLING),
             ("position_step_doubling_rel", self.position_step_doubling_rel, ORIGIN_STEP_DOUBLING),
+            ("loop_opening", self.loop_opening, OPENING),
         ];
         lines
             .into_iter()

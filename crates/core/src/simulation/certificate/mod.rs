@@ -7,6 +7,7 @@ mod center_of_mass;
 mod certify;
 mod checks;
 mod error_measures;
+mod loop_opening;
 mod step_doubling;
 mod stream;
 mod trace_row;
