@@ -4,7 +4,7 @@
 
 use onorbit_core::dynamics::{Data, frame_pose, positions};
 use onorbit_core::model::urdf::from_str;
-use onorbit_core::model::{Closure, Constraint, Geometry, Limits, Model, neutral};
+use onorbit_core::model::{Geometry, Limits, Model, neutral};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 const INERTIAL: &str =
@@ -305,40 +305,6 @@ fn a_planar_joint_moves_in_its_plane_and_about_its_normal() {
     let normal = nalgebra::Vector3::new(1.0, -2.0, 0.5).normalize();
     assert!(pose(&skew, &[0.4, -0.2, 1.0]).translation.vector.dot(&normal).abs() < 1e-15);
     assert!(skew.warnings()[0].to_string().contains("'j' is planar"));
-}
-
-#[test]
-fn a_mimic_joint_becomes_a_constraint() {
-    let joint = |name: &str, inside: &str| {
-        format!(
-            "<link name='{name}_link'>{INERTIAL}</link><joint name='{name}' type='continuous'>\
-             <parent link='a'/><child link='{name}_link'/>{inside}</joint>"
-        )
-    };
-    let chain = |mimic: &str| {
-        let inside = format!("<link name='a'>{INERTIAL}</link>{}{}", joint("leader", ""), joint("j", mimic));
-        from_str(&format!("<robot name='r'>{inside}</robot>"), None, &Default::default())
-    };
-    let mimic = |text: &str| {
-        let model = chain(text).unwrap();
-        assert!(model.warnings().is_empty());
-        match model.closures() {
-            [Closure { constraint: Constraint::Mimic { joint: 1, leader: 0, ratio, offset }, .. }] => {
-                (*ratio, *offset)
-            }
-            other => panic!("{other:?}"),
-        }
-    };
-    assert_eq!(mimic("<mimic joint='leader' multiplier='-2' offset='0.1'/>"), (-2.0, 0.1));
-    assert_eq!(mimic("<mimic joint='leader'/>"), (1.0, 0.0));
-    let wrong = |mimic: &str| chain(mimic).unwrap_err().to_string();
-    let unknown = wrong("<mimic joint='leadr'/>");
-    assert!(
-        unknown.contains("joint 'j' mimics joint 'leadr', which does not exist; did you mean"),
-        "{unknown}"
-    );
-    let circle = wrong("<mimic joint='j'/>");
-    assert!(circle.contains("'j' mimic each other in a circle"), "{circle}");
 }
 
 fn notes(model: &Model) -> Vec<String> {

@@ -1,10 +1,7 @@
 //! Constraints of a model: closed loops and mimic joints with their frames and joints as indices.
 
-use super::closed_loop::{Loop, LoopKind, Mimic, SHORTEST};
-use super::error::ModelError;
-use super::tree::{Frame, Model};
-use crate::spatial::{Mat3, Vec3};
-use nalgebra::Isometry3;
+use super::closed_loop::LoopKind;
+use super::frame::Frame;
 
 /// Constraint on the motion of a model: a closed loop or a mimic joint.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,97 +47,5 @@ impl Closure {
             Constraint::Frames { kind, .. } => kind.rows(),
             Constraint::Mimic { .. } => 1,
         }
-    }
-}
-
-impl Model {
-    /// Returns the constraints of the robot: first its closed loops in the order of their declaration, then
-    /// its mimic joints.
-    pub fn closures(&self) -> &[Closure] {
-        &self.closures
-    }
-
-    /// Returns the constraints for the loops and the mimic joints of the description, or an error for unknown
-    /// frames or leaders, loops within a body or of zero length, and joints that mimic each other.
-    pub(super) fn compile_closures(&self) -> Result<Vec<Closure>, ModelError> {
-        let description = self.description.clone();
-        let loops = description.loops.iter().map(|closing| self.compile_loop(closing));
-        let joints = description.joints.iter().map(|(_, joint)| joint);
-        let mimics = joints.filter_map(|joint| Some((&joint.name, joint.mimic.as_ref()?)));
-        loops.chain(mimics.map(|(name, mimic)| self.compile_mimic(name, mimic))).collect()
-    }
-
-    fn compile_loop(&self, closing: &Loop) -> Result<Closure, ModelError> {
-        let Loop { name, kind, frames, poses, length, project } = closing;
-        let [a, b] = [0, 1].map(|side| self.place(&frames[side], &poses[side]));
-        let compiled = [a?, b?];
-        if compiled[0].body == compiled[1].body {
-            return Err(ModelError::LoopWithinBody { name: name.clone(), frames: frames.clone() });
-        }
-        let length = match (kind, length) {
-            (LoopKind::Distance, Some(length)) => *length,
-            (LoopKind::Distance, None) => self.distance_at_zero(name, &compiled)?,
-            _ => 0.0,
-        };
-        let constraint = Constraint::Frames { kind: *kind, frames: compiled, length };
-        Ok(Closure { name: name.clone(), constraint, project: *project })
-    }
-
-    /// Returns a frame at `pose` in the frame `name`.
-    fn place(&self, name: &str, pose: &Isometry3<f64>) -> Result<Frame, ModelError> {
-        let Frame { body, rot_kf, pos_kf, .. } = &self.frames[self.frame(name)?];
-        let rotation: Mat3<f64> = (*pose.rotation.to_rotation_matrix().matrix()).into();
-        let offset: Vec3<f64> = pose.translation.vector.into();
-        let (rot_kf, pos_kf) = (*rot_kf * rotation, *rot_kf * offset + *pos_kf);
-        Ok(Frame { name: name.to_owned(), body: *body, rot_kf, pos_kf })
-    }
-
-    /// Returns the distance of the origins of two frames while all joint positions are zero, m.
-    fn distance_at_zero(&self, name: &str, frames: &[Frame; 2]) -> Result<f64, ModelError> {
-        let [a, b] = [0, 1].map(|side| self.origin_at_zero(&frames[side]));
-        let length = (b - a).norm();
-        if length >= SHORTEST {
-            return Ok(length);
-        }
-        let (what, expected) =
-            ("the distance at joint positions zero", "at least 1e-6 m; give the length of the loop");
-        Err(ModelError::OutOfRange { what, name: name.to_owned(), value: length, expected })
-    }
-
-    fn origin_at_zero(&self, frame: &Frame) -> Vec3<f64> {
-        let (mut position, mut body) = (frame.pos_kf, frame.body);
-        while body > 0 {
-            let node = &self.nodes[body];
-            (position, body) = (node.rot_pk * position + node.pos_pk, node.parent);
-        }
-        position
-    }
-
-    fn compile_mimic(&self, name: &str, mimic: &Mimic) -> Result<Closure, ModelError> {
-        let joint = self.joint(name)?;
-        let leader = self.joint(&mimic.leader).map_err(|_| ModelError::UnknownLeader {
-            joint: name.to_owned(),
-            leader: mimic.leader.clone(),
-            is_fixed: self.description.joints.iter().any(|(_, joint)| joint.name == mimic.leader),
-            candidates: self.joint_names().map(str::to_owned).collect(),
-        })?;
-        let (mut at, mut names) = (mimic, vec![name.to_owned()]);
-        while let Some(next) = self.mimic_of(&at.leader) {
-            names.push(at.leader.clone());
-            if names.len() > self.joints.len() || at.leader == name {
-                break;
-            }
-            at = next;
-        }
-        if at.leader == name {
-            return Err(ModelError::MimicCircle { joints: names });
-        }
-        let constraint = Constraint::Mimic { joint, leader, ratio: mimic.ratio, offset: mimic.offset };
-        Ok(Closure { name: name.to_owned(), constraint, project: false })
-    }
-
-    fn mimic_of(&self, joint: &str) -> Option<&Mimic> {
-        let (_, joint) = self.description.joints.iter().find(|(_, other)| other.name == *joint)?;
-        joint.mimic.as_ref()
     }
 }

@@ -3,9 +3,10 @@
 use super::align::rotation_to_axis;
 use super::description::{Description, Inertial, Joint, JointKind};
 use super::error::{ModelError, ModelWarning};
+use super::frame::Frame;
 use super::inertia_check::{is_definite, principal_moments, usable_inertia};
 use super::load_ratio::is_heavy_on_light;
-use super::tree::{Axis, Frame, JointProperties, Model, Node};
+use super::tree::{Axis, JointProperties, Model, Node};
 use crate::spatial::{Mat3, Sym3, Vec3};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::sync::Arc;

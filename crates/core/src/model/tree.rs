@@ -3,6 +3,7 @@
 use super::closure::Closure;
 use super::description::{Description, Limits, Visual};
 use super::error::ModelWarning;
+use super::frame::Frame;
 use crate::spatial::{Mat3, Sym3, Vec3};
 use std::sync::Arc;
 
@@ -42,19 +43,6 @@ pub struct Node {
     pub about_com: Sym3<f64>,
     /// Rotor inertia reflected to the joint, kg m² (kg for a prismatic joint).
     pub rotor_inertia: f64,
-}
-
-/// Named frame fixed to a body.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Frame {
-    /// Name of a link, or of a frame that was added to a link.
-    pub name: String,
-    /// Index of the body.
-    pub body: usize,
-    /// Rotation from frame axes to body axes.
-    pub rot_kf: Mat3<f64>,
-    /// Origin in body axes, m.
-    pub pos_kf: Vec3<f64>,
 }
 
 /// Parameters of a joint other than its geometry. The simulation uses them; the dynamics algorithms do not.
@@ -193,6 +181,12 @@ impl Model {
     #[inline(always)]
     pub fn is_heavy_on_light(&self) -> bool {
         self.is_heavy_on_light
+    }
+
+    /// Returns the constraints of the robot: first its closed loops in the order of their declaration, then
+    /// its mimic joints.
+    pub fn closures(&self) -> &[Closure] {
+        &self.closures
     }
 
     /// Returns the total mass, kg.
