@@ -16,7 +16,7 @@ pub struct Closure {
 
 /// Equation of a [`Closure`].
 #[derive(Clone, Debug, PartialEq)]
-#[allow(clippy::large_enum_variant)] // a model has few constraints
+#[allow(clippy::large_enum_variant)] // a robot has few constraints
 pub enum Constraint {
     /// Joint between two frames.
     Frames {

@@ -63,6 +63,9 @@ pub(super) struct Progress {
     pub(super) step_control: Option<StepControl>,
     /// Number of consecutive idle steps.
     pub(super) idle_steps: usize,
+    /// True if the elastic energy of contacts has jumped in the last step.
+    #[serde(default)]
+    pub(super) has_jumped: bool,
     /// Progress of each tree.
     pub(super) trees: Vec<TreeProgress>,
     /// Progress of each system.

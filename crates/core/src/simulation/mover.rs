@@ -140,18 +140,21 @@ impl<S: Scalar> Mover<'_, S> {
     }
 
     /// Returns the state from which [`Mover::restore`] returns to the current step: the adaptive step control
-    /// (`None` for other methods) and the number of consecutive idle steps.
-    pub(super) fn save(&self) -> (Option<StepControl>, usize) {
+    /// (`None` for other methods), the number of consecutive idle steps, and whether the elastic energy of contacts
+    /// has jumped in the last step.
+    pub(super) fn save(&self) -> (Option<StepControl>, usize, bool) {
         match self {
-            Self::Native(method) => (method.integration.control().cloned(), method.idle_steps),
-            Self::External(_) => (None, 0),
+            Self::Native(method) => {
+                (method.integration.control().cloned(), method.idle_steps, method.has_jumped)
+            }
+            Self::External(_) => (None, 0, false),
         }
     }
 
-    /// Restores the step control and the number of idle steps returned by [`Mover::save`].
-    pub(super) fn restore(&mut self, (control, idle_steps): (Option<StepControl>, usize)) {
+    /// Restores the state returned by [`Mover::save`].
+    pub(super) fn restore(&mut self, (control, idle_steps, has_jumped): (Option<StepControl>, usize, bool)) {
         if let Self::Native(method) = self {
-            method.idle_steps = idle_steps;
+            (method.idle_steps, method.has_jumped) = (idle_steps, has_jumped);
             if let Some(control) = control {
                 method.integration.set_control(control);
             }

@@ -1,13 +1,9 @@
 //! Bounding spheres of the pieces of every contact, which exclude pairs from the search for the smallest gap.
 
-use super::Contacts;
 use super::side::Side;
 use super::touching::Touching;
-use crate::contact::ContactError;
 use crate::geometry::{BoundingSphere, Pose};
-use crate::simulation::state::State;
-use crate::simulation::tree::Tree;
-use crate::spatial::{Real, Vec3};
+use crate::spatial::Vec3;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -55,7 +51,7 @@ impl Gaps {
     /// Writes `|c_b − c_a| − r_a − r_b`, less the rounding errors, for the pairs of a contact to `bounds`,
     /// with the centres `c` and radii `r` of the spheres of both pieces. `pose` returns the pose of a piece
     /// in W.
-    fn bound(&mut self, contact: usize, list: &[Touching], mut pose: impl FnMut(&Side) -> Pose) {
+    pub(super) fn bound(&mut self, contact: usize, list: &[Touching], mut pose: impl FnMut(&Side) -> Pose) {
         let Self { pairs, pieces, sides, centers, bounds } = self;
         let pieces = &pieces[contact];
         let center = |(pair, side, sphere): &(usize, usize, BoundingSphere)| {
@@ -75,39 +71,8 @@ impl Gaps {
 
     /// Returns the pair with the lowest finite bound, counted from the first pair of the contact for which
     /// `bounds` were written; `None` if all pairs are evaluated.
-    fn lowest(&self) -> Option<usize> {
+    pub(super) fn lowest(&self) -> Option<usize> {
         let open = (0..self.bounds.len()).filter(|at| self.bounds[*at].is_finite());
         open.min_by(|a, b| self.bounds[*a].total_cmp(&self.bounds[*b]))
-    }
-}
-
-impl Contacts {
-    /// Writes the lower bounds of the gaps of a contact, and returns an upper bound of the smallest gap, m.
-    /// Pairs with larger lower bounds do not have the smallest gap. Without a broad phase, every pair is to
-    /// be evaluated, and the upper bound is infinite.
-    pub(super) fn bound_gaps<S: Real>(
-        &mut self,
-        contact: usize,
-        trees: &[Tree<'_, S>],
-        state: &State<S>,
-    ) -> Result<f64, ContactError> {
-        let Self { list, near, states, gaps, frames, steps, .. } = self;
-        if !steps.has_broad_phase {
-            gaps.bounds.clear();
-            gaps.bounds.resize(gaps.pairs[contact].len(), f64::NEG_INFINITY);
-            return Ok(f64::INFINITY);
-        }
-        gaps.bound(contact, list, |side| frames.motion(side.number, trees, state).frame.compose(&side.pose));
-        let (first, mut least) = (gaps.pairs[contact].start, f64::INFINITY);
-        for &number in near.iter().filter(|number| gaps.pairs[contact].contains(*number)) {
-            if let Some(loading) = &list[number].last {
-                gaps.bounds[number - first] = f64::NEG_INFINITY;
-                least = least.min(-loading.depth);
-            }
-        }
-        let Some(at) = gaps.lowest().filter(|at| gaps.bounds[*at] <= least) else { return Ok(least) };
-        let (touching, own) = (&list[first + at], &states[first + at]);
-        let loading = touching.evaluate(&touching.motions(frames, trees, state), own)?;
-        Ok(least.min(-loading.depth))
     }
 }

@@ -2,6 +2,7 @@
 //! cuts, and the length of steps while bodies touch.
 
 mod begin;
+mod bound_gaps;
 mod broad_phase;
 mod external;
 mod follow;

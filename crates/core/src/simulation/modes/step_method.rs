@@ -36,7 +36,7 @@ pub(crate) struct StepMethod<S> {
     /// Number of consecutive idle steps.
     pub(crate) idle_steps: usize,
     /// True if the elastic energy has jumped in the last step.
-    has_jumped: bool,
+    pub(crate) has_jumped: bool,
     time_step: f64,
 }
 
@@ -55,7 +55,7 @@ impl<S: Real> StepMethod<S> {
 
     /// Resets the method at the start of another run.
     pub(crate) fn reset(&mut self) {
-        self.idle_steps = 0;
+        (self.idle_steps, self.has_jumped) = (0, false);
     }
 
     /// Applies the impacts at `state`. Requires its kinematics, with projected base twists, in `equations`,
