@@ -1156,6 +1156,7 @@ class System:
         enforce_limits: bool = False,
         restitution: float = 0.0,
         reference_start_tolerance: ArrayLike | None = None,
+        actuators: Sequence[Brake] | None = None,
         surfaces: Surface | Mapping[str, Surface] | None = None,
         knows: Sequence[str] | None = None,
         loops: Sequence[Loop] | None = None,
@@ -1210,6 +1211,55 @@ class Release:
     def name(self) -> str: ...
     @property
     def capture(self) -> str: ...
+
+@final
+class Brake:
+    def __new__(cls, name: str, joint: str, *, slip_torque: float = ..., engaged: bool = False) -> Brake: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def joint(self) -> str: ...
+    @property
+    def slip_torque(self) -> float: ...
+    @property
+    def engaged(self) -> bool: ...
+
+@final
+class Engage:
+    def __new__(
+        cls,
+        name: str,
+        brake: str,
+        *,
+        at: float | None = None,
+        after: str | None = None,
+        delay: float = 0.0,
+        on_command: bool = False,
+    ) -> Engage: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def brake(self) -> str: ...
+
+@final
+class Disengage:
+    def __new__(
+        cls,
+        name: str,
+        brake: str,
+        *,
+        at: float | None = None,
+        after: str | None = None,
+        delay: float = 0.0,
+        on_command: bool = False,
+    ) -> Disengage: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def brake(self) -> str: ...
 
 @final
 class HuntCrossley:
@@ -1350,7 +1400,7 @@ class World:
         gravity_mode: _GravityMode = "true",
         environment: Sequence[Effect] | None = None,
         contacts: Sequence[Contact] | None = None,
-        events: Sequence[Capture | Release] | None = None,
+        events: Sequence[Capture | Release | Engage | Disengage] | None = None,
         rereference_beyond: float = 1e5,
         loops: Sequence[Loop] | None = None,
     ) -> World: ...
@@ -1479,6 +1529,7 @@ class Simulation:
         restitution: float = 0.0,
         record_wrenches: bool = False,
         rereference_beyond: float = 1e5,
+        actuators: Sequence[Brake] | None = None,
         engine: _Engine | _WorldEngine | None = None,
     ) -> Simulation: ...
     @property

@@ -103,13 +103,13 @@ def _print_world(console: Console, summary: dict[str, Any], systems: dict[str, A
 
 
 def _print_events(console: Console, events: Sequence[dict[str, Any]]) -> None:
-    """Print a table of captures and releases."""
+    """Print a table of captures, releases and events of brakes."""
     if not events:
         return
     table = new_table("event", "kind", "time", "systems", "impulse", "energy lost")
     for event in events:
         impulse, lost = (_formatted(event[key], unit) for key, unit in _AUDIT)
-        names = ", ".join(event["systems"])
+        names = ", ".join(dict.fromkeys(event["systems"]))
         cells = (event["name"], event["kind"], _formatted(event["time_s"], "s"), names, impulse, lost)
         table.add_row(*map(text, cells))
     print_table(console, table)

@@ -167,6 +167,10 @@ def _what(event: Event) -> str:
         by, of = event.do.capture
         seated = "" if event.do.seat is None else f", and seats it in {event.do.seat:g} s"
         return f"{by} captures {of}{seated}"
+    if event.do.engage is not None:
+        return f"engages {event.do.engage}"
+    if event.do.disengage is not None:
+        return f"disengages {event.do.disengage}"
     words = f"releases {event.do.release}"
     if event.do.impulse is None:
         return words

@@ -4,3 +4,6 @@ from __future__ import annotations
 
 OF_CONTACT = frozenset({"touch_down", "lift_off"})
 """Kinds of the events of contacts. Their forces change velocities gradually, unlike captures and releases."""
+
+OF_BRAKE = frozenset({"engage", "disengage"})
+"""Kinds of the events of brakes, which concern one system."""

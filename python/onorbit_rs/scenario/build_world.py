@@ -164,11 +164,15 @@ def _system(
         alone, built.model, built.q, built.orbit, runs_code=runs_code, neighbours=neighbours
     )
     settings = alone.simulation.model_dump(include=set(ControlSettings.model_fields), exclude_none=True)
+    actuators = []
+    for index, actuator in enumerate(scenario.systems[name].actuators):
+        with located(scenario, "systems", name, "actuators", index):
+            actuators.append(actuator.build(built.model))
     with located(alone, "robot"):
         return _core.System(
             name, built.model, built.q, built.v, controller=controller, reference=reference,
             tool=alone.tracked_tool, surfaces=build_surfaces(alone.surfaces),
-            knows=scenario.systems[name].knows, **settings,
+            knows=scenario.systems[name].knows, actuators=actuators, **settings,
         )  # fmt: skip
 
 

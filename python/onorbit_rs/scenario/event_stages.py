@@ -55,8 +55,10 @@ def stages(scenario: WorldScenario) -> list[Stage]:
             remark = "after the end of the run"
         elif event.do.capture is not None:
             remark = _capture(event, found[-1].trees, welds, roots)
+        elif event.do.release is not None:
+            remark = _release(event.do.release, names, welds, roots)
         else:
-            remark = _release(str(event.do.release), names, welds, roots)
+            remark = "changes no tree: it concerns a brake"
         trees = _trees(names, welds, roots)
         seated = [weld for weld in welds if _elapsed(event, weld.capture, by_name) < weld.seat]
         joints = tuple(SEATING_JOINTS * sum(weld.by in tree for weld in seated) for tree in trees)

@@ -1,4 +1,4 @@
-"""Events of a scenario with several systems: captures and releases."""
+"""Events of a scenario with several systems: captures, releases, and brakes that are engaged or disengaged."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from onorbit_rs import _core
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
+from onorbit_rs.scenario.actuators import check_brake
 from onorbit_rs.scenario.errors import inconsistent, invalid, shortened
 from onorbit_rs.scenario.fields import NotNegative, Positive, Time
 from onorbit_rs.scenario.part import Part
@@ -104,10 +105,9 @@ class When(Part):
 
 
 class Action(Part):
-    """Action of an event: exactly one of ``capture`` and ``release``."""
+    """Action of an event: exactly one of ``capture``, ``release``, ``engage`` and ``disengage``."""
 
-    later: ClassVar = ("engage", "disengage")
-    """Keys that are planned but not available yet."""
+    kinds: ClassVar = ("capture", "release", "engage", "disengage")
 
     capture: Annotated[list[str], Field(min_length=2, max_length=2)] | None = None
     """Capturing and captured frame, both written ``SYSTEM/FRAME``."""
@@ -121,18 +121,17 @@ class Action(Part):
     impulse: Impulse | None = None
     """Impulse of a spring on the captured system at a release, N s and N m s, in axes of the capturing frame
     and at its origin; the opposite impulse acts on the other system."""
-
-    @classmethod
-    def _hint(cls, key: str, free: list[str]) -> str:
-        if key in cls.later:
-            return f"; {key!r} is not available yet. Known keys: {', '.join(cls.yaml_keys())}"
-        return super()._hint(key, free)
+    engage: str | None = None
+    """Brake that is engaged, written ``SYSTEM/BRAKE``."""
+    disengage: str | None = None
+    """Brake that is disengaged, written ``SYSTEM/BRAKE``."""
 
     @model_validator(mode="after")
     def _exactly_one(self) -> Self:
-        if (self.capture is None) == (self.release is None):
-            given = "none" if self.capture is None else "both"
-            raise invalid(f"give exactly one of 'capture' and 'release'; given: {given}")
+        given = [kind for kind in self.kinds if getattr(self, kind) is not None]
+        if len(given) != 1:
+            kinds = "'capture', 'release', 'engage' and 'disengage'"
+            raise invalid(f"give exactly one of {kinds}; given: {', '.join(given) or 'none'}")
         if self.impulse is not None and self.release is None:
             raise inconsistent("impulse", "'impulse' requires 'release'; add 'release' or omit 'impulse'")
         if self.seat is not None and self.capture is None:
@@ -145,24 +144,31 @@ class Action(Part):
 
 
 class Event(Part):
-    """Capture or release, with the condition at which it happens."""
+    """Action with the condition at which it happens."""
 
     name: ItsName
     when: When
     do: Action
 
-    def build(self) -> _core.Capture | _core.Release:
+    def build(self) -> _core.Capture | _core.Release | _core.Engage | _core.Disengage:
         """Return the event as an object of the engine."""
         values = self.when.arguments()
         if self.do.capture is not None:
             pose = None if self.do.pose is None else self.do.pose.transform()
             return _core.Capture(self.name, *self.do.capture, seat=self.do.seat, pose=pose, **values)
+        if self.do.engage is not None:
+            return _core.Engage(self.name, self.do.engage, **values)
+        if self.do.disengage is not None:
+            return _core.Disengage(self.name, self.do.disengage, **values)
         assert self.do.release is not None  # checked by Action
         return _core.Release(self.name, self.do.release, impulse=self.do.impulse, **values)
 
 
-def check_events(events: list[Event], systems: list[str]) -> None:
-    """Raise an error for unknown or duplicate names, and for events that wait for each other."""
+def check_events(events: list[Event], systems: list[str], brakes: dict[str, list[str]]) -> None:
+    """Raise an error for unknown or duplicate names, and for events that wait for each other.
+
+    ``brakes`` contains the names of the brakes of each system.
+    """
     names = [event.name for event in events]
     by_name = dict(zip(names, events, strict=True))
     for index, event in enumerate(events):
@@ -174,6 +180,10 @@ def check_events(events: list[Event], systems: list[str]) -> None:
             raise refuse("when", "after", message=f"no event is named {after!r}{did_you_mean(after, names)}")
         if event.do.capture is not None:
             _check_frames(event.do.capture, systems, refuse)
+            continue
+        _check_latch(event, refuse)
+        if event.do.release is None:
+            _check_brake(event.do, brakes, refuse)
         else:
             _check_release(event, by_name, refuse)
     for index, event in enumerate(events):
@@ -221,6 +231,16 @@ def _check_release(event: Event, by_name: dict[str, Event], refuse: Callable[...
         raise refuse("do", "release", message=f"event {name!r} is not a capture; give the name of a capture")
     if name not in by_name:
         raise refuse("do", "release", message=f"no event is named {name!r}{did_you_mean(name, captures)}")
+
+
+def _check_brake(action: Action, brakes: dict[str, list[str]], refuse: Callable[..., Exception]) -> None:
+    key = "engage" if action.disengage is None else "disengage"
+    problem = check_brake(str(getattr(action, key)), brakes)
+    if problem is not None:
+        raise refuse("do", key, message=problem)
+
+
+def _check_latch(event: Event, refuse: Callable[..., Exception]) -> None:
     if event.when.latch is not None:
         raise refuse(
             "when", "latch", message="'latch' applies only to captures; give 'at', 'after' or 'on_command'"

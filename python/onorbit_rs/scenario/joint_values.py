@@ -35,7 +35,8 @@ class JointValue(float):
     dimension: Dimension | None = None
 
 
-def _joint_value(value: object, allowed: tuple[Dimension, ...]) -> JointValue:
+def joint_value(value: object, allowed: tuple[Dimension, ...]) -> JointValue:
+    """Return the value of a joint, a quantity of one of the dimensions ``allowed``."""
     number = JointValue(parse_quantity(value, *allowed))
     fitting = [dimension for dimension in allowed if _has_dimension(value, dimension)]
     number.dimension = fitting[0] if len(fitting) == 1 else None
@@ -55,7 +56,7 @@ def _joints_reader(*allowed: Dimension) -> PlainValidator:
         if isinstance(value, dict):
             return {str(name): _named(str(name), entry, allowed) for name, entry in value.items()}
         if isinstance(value, list):
-            return [_joint_value(entry, allowed) for entry in value]
+            return [joint_value(entry, allowed) for entry in value]
         raise QuantityError(
             f"{shortened(value)} is not a set of joint values; give a list in the order of the robot's "
             "joints, or a mapping from joint names to values",
@@ -68,7 +69,7 @@ def _joints_reader(*allowed: Dimension) -> PlainValidator:
 
 def _named(name: str, value: object, allowed: tuple[Dimension, ...]) -> JointValue:
     try:
-        return _joint_value(value, allowed)
+        return joint_value(value, allowed)
     except QuantityError as error:
         raise QuantityError(f"{name}: {error}", text=error.text, expected=error.expected) from None
 

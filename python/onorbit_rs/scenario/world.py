@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.scenario.actuators import Brake, check_actuators
 from onorbit_rs.scenario.contact import Contact, check_contacts
 from onorbit_rs.scenario.document import Document
 from onorbit_rs.scenario.engine import check_world_engine
@@ -37,9 +38,12 @@ class System(RobotKeys, ControlSettings):
     """Other systems whose models the controllers know: while such a system is connected to this system,
     model-based control laws use the model of the connected tree. Default: the model of this system only."""
 
+    actuators: list[Brake] = Field(default_factory=list)
+    """Brakes of joints."""
+
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
-        if key in ("actuators", "sensors", "estimators"):
+        if key in ("sensors", "estimators"):
             return "; it is not available yet"
         if key == "loops":
             return "; it belongs beside 'systems', with frames written SYSTEM/FRAME"
@@ -47,7 +51,7 @@ class System(RobotKeys, ControlSettings):
 
 
 class WorldScenario(Document):
-    """Several systems on one reference orbit, with their contacts, captures and releases."""
+    """Several systems on one reference orbit, with their contacts and events."""
 
     systems: Annotated[dict[ItsName, System], Field(min_length=1)]
     contacts: list[Contact] = Field(default_factory=list)
@@ -138,11 +142,13 @@ class WorldScenario(Document):
             self._check_neighbour(name, system)
             self._check_start(name, system)
             self._check_knows(name, system)
+            check_actuators(name, system.actuators)
         check_contacts(self.contacts, names)
         check_materials(self.materials)
         look_up(self.contacts, self.materials)
         check_names(self)
-        check_events(self.events, names)
+        brakes = {name: [brake.brake for brake in self.systems[name].actuators] for name in names}
+        check_events(self.events, names, brakes)
         check_loops(self.loops, names)
         check_world_engine(self)
         return self

@@ -8,7 +8,7 @@ import numpy as np
 import rerun as rr
 
 from onorbit_rs.common.display_units import amount, digits
-from onorbit_rs.common.event_kinds import OF_CONTACT
+from onorbit_rs.common.event_kinds import OF_BRAKE, OF_CONTACT
 from onorbit_rs.viewer.axes import log_axes, log_name
 from onorbit_rs.viewer.font import shown
 from onorbit_rs.viewer.frames import FOLLOW, put_in
@@ -37,6 +37,7 @@ LOG, STATES = "events", "connections"
 COLORS = {
     "capture": (110, 220, 130), "release": (255, 190, 80),
     "touch_down": (235, 110, 110), "lift_off": (110, 180, 255),
+    "engage": (200, 140, 250), "disengage": (220, 200, 250),
 }  # fmt: skip
 _OTHER = (220, 220, 220)
 _FREE, _CONNECTED = "free", "connected"
@@ -157,9 +158,10 @@ def described(event: EventRecord, connection: Connection | None = None) -> str:
         )  # fmt: skip
         return f"{event.name}: {event.kind}{about}; {by} and {of}"
     linear, angular = np.asarray(event.momentum_error).tolist()
+    systems = of if event.kind in OF_BRAKE else f"{of} by {by}"
     return (
         f"{event.name}: {event.kind}, {energy_of(event.energy_lost)}, "
-        f"momentum errors {linear:.1e} and {angular:.1e}, impulse {impulse_of(event)}; {of} by {by}"
+        f"momentum errors {linear:.1e} and {angular:.1e}, impulse {impulse_of(event)}; {systems}"
     )
 
 

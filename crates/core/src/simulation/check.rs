@@ -9,7 +9,7 @@ use crate::contact::{Contact, ContactError};
 use crate::control::check_controls;
 use crate::environment::BodyIndex;
 use crate::model::{BASE_NQ, Model};
-use crate::world::{Action, Event, Seat, System, WorldError, check_events, check_names};
+use crate::world::{Action, Event, Seat, System, WorldError, check_brakes, check_events, check_names};
 
 /// Accepted time steps, s. A value outside this range was probably given in a wrong unit.
 const STEPS: std::ops::RangeInclusive<f64> = 1e-12..=1e9;
@@ -59,6 +59,7 @@ impl Simulation {
             earth.check_orbit(orbit.axes(), orbit.epoch())?;
         }
         check_names(&self.systems)?;
+        self.check_each(|system| Ok(check_brakes(system)?))?;
         check_events(&self.systems, &self.events)?;
         check_seats(&self.events, self.time_step)?;
         check_contacts(&self.contacts)?;
@@ -111,6 +112,10 @@ impl Simulation {
                 }
                 _ => {}
             }
+        }
+        if let Some(system) = self.systems.iter().find(|system| !system.brakes.is_empty()) {
+            let name = &system.brakes[0].name;
+            return cannot(name, "a brake", "remove the brake; friction of the joint can take its place");
         }
         match self.systems.iter().find(|system| !system.knows.is_empty()) {
             Some(system) => {

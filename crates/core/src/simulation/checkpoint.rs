@@ -89,6 +89,9 @@ pub(super) struct SystemProgress {
     /// Sum of the magnitudes of the work of each step, J.
     pub(super) work_done: f64,
     pub(super) settled: Option<Estimates>,
+    /// Whether each brake is engaged.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) engaged: Vec<bool>,
 }
 
 /// Connections and events of a group of systems.

@@ -8,6 +8,12 @@ use crate::spatial::Scalar;
 use crate::world::FrameIndex;
 
 impl<S: Scalar> RunState<'_, S> {
+    /// Checks that the checkpoint states for each brake whether it is engaged.
+    pub(super) fn check_brakes(&self, progress: &Progress) -> Result<(), CheckpointError> {
+        let pairs = progress.systems.iter().zip(&self.systems);
+        check_each(pairs.map(|(saved, run)| ("brakes", saved.engaged.len(), run.brakes.len())))
+    }
+
     /// Checks that connections and event records refer to existing systems, frames and events.
     pub(super) fn check_connections(&self, world: &WorldProgress) -> Result<(), CheckpointError> {
         let (count, active) = (self.systems.len(), &world.members.active);

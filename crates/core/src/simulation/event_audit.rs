@@ -10,8 +10,8 @@ use crate::world::{Balance, FrameIndex, energy, energy_of_change};
 
 /// State of a system, in `f64`.
 pub(super) struct Snapshot {
-    q: Vec<f64>,
-    v: Vec<f64>,
+    pub(super) q: Vec<f64>,
+    pub(super) v: Vec<f64>,
 }
 
 /// Capture or release that has been applied to the current state.

@@ -1,4 +1,4 @@
-//! Application of events at a cut: captures and releases.
+//! Application of events at a cut: captures and releases, and brakes that are engaged or disengaged.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -60,11 +60,14 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns true if an event changes anything. The release of frames that are not connected does not.
+    /// Returns true if an event changes anything. The release of frames that are not connected does not, nor does
+    /// engaging an engaged brake.
     fn has_effect(&self, number: usize) -> bool {
         match self.events.list[number].action {
             Action::Capture { .. } => true,
             Action::Release { capture, .. } => self.weld_of(capture).is_some(),
+            Action::Engage(brake) => !self.brake(brake).is_engaged,
+            Action::Disengage(brake) => self.brake(brake).is_engaged,
         }
     }
 
@@ -76,6 +79,8 @@ impl<S: Scalar> RunState<'_, S> {
         let record = self.keep_balance(|run| match run.events.list[number].action {
             Action::Capture { by, of, seat } => run.capture(number, [by, of], seat, t),
             Action::Release { capture, impulse } => run.release(number, capture, impulse, t),
+            Action::Engage(brake) => Ok(run.engage(number, brake, t)),
+            Action::Disengage(brake) => Ok(run.disengage(number, brake, t)),
         })?;
         self.ledger.work -= record.energy_lost;
         self.ledger.dissipated += record.energy_lost.max(0.0);
@@ -206,8 +211,9 @@ impl<S: Scalar> RunState<'_, S> {
             let (tree, frame) = self.frame_in_tree(place);
             let (moved, state) = (&mut self.equations.trees[tree], &mut self.state.trees[tree]);
             let [q, _] = state.values();
-            let given: Vec<usize> = moved.modes.given().iter().map(|given| given.joint).collect();
-            let change = impulse_response(&moved.model, &q, frame, impulse, &given);
+            let given = moved.modes.given().iter().map(|given| given.joint);
+            let locked: Vec<usize> = given.chain(moved.modes.held()).collect();
+            let change = impulse_response(&moved.model, &q, frame, impulse, &locked);
             moved.jump(state, &change);
         }
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;

@@ -4,6 +4,7 @@ mod acceleration_jumps;
 mod accuracy;
 mod attached;
 mod body_states;
+mod brake_events;
 mod certificate;
 mod check;
 mod check_references;

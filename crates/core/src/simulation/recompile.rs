@@ -238,7 +238,9 @@ fn join<'a, S: Scalar>(
     let parts = members.iter().zip(&loose).zip(&states);
     let moving: Vec<_> =
         parts.map(|((member, one), [q, v])| Moving { member, model: &one.own.model, q, v }).collect();
-    let (v, loops) = connected_velocity(&model, &q, &moving, &rates);
+    let held = held_joints(&loose, &members).map(|joint| (joint, 0.0));
+    let locked: Vec<(usize, f64)> = rates.iter().copied().chain(held).collect();
+    let (v, loops) = connected_velocity(&model, &q, &moving, &locked);
     old.impulses.extend(loop_impulses(&model, &q, &loops));
     let modes = loose.iter().zip(&members).map(|(one, member)| (&one.own.modes, &member.joints[..]));
     let modes = JointModes::joined(model.joint_count(), given, modes);
@@ -261,6 +263,12 @@ fn join<'a, S: Scalar>(
         new.parts.push(part);
     }
     (tree, state)
+}
+
+/// Returns the joints, in the tree of `members`, that brakes hold rigidly.
+fn held_joints<S: Real>(loose: &[Loose<'_, S>], members: &[Member]) -> impl Iterator<Item = usize> {
+    let pairs = loose.iter().zip(members);
+    pairs.flat_map(|(one, member)| one.own.modes.held().map(|joint| member.joints[joint]))
 }
 
 impl<S: Scalar> RunState<'_, S> {

@@ -45,11 +45,16 @@ pub enum EventKind {
     TouchDown,
     /// Links of a contact separated.
     LiftOff,
+    /// A brake was engaged.
+    Engage,
+    /// A brake was disengaged.
+    Disengage,
 }
 
 impl EventKind {
     /// All kinds of events.
-    pub const ALL: [Self; 4] = [Self::Capture, Self::Release, Self::TouchDown, Self::LiftOff];
+    pub const ALL: [Self; 6] =
+        [Self::Capture, Self::Release, Self::TouchDown, Self::LiftOff, Self::Engage, Self::Disengage];
 
     /// Returns the name that results and messages use for the kind.
     pub fn name(self) -> &'static str {
@@ -58,6 +63,8 @@ impl EventKind {
             Self::Release => "release",
             Self::TouchDown => "touch_down",
             Self::LiftOff => "lift_off",
+            Self::Engage => "engage",
+            Self::Disengage => "disengage",
         }
     }
 
@@ -77,13 +84,15 @@ pub struct EventRecord {
     /// Simulation time of the event, s.
     pub time: f64,
     /// Numbers of the two systems, beginning with the capturing system. For a contact, the numbers of the
-    /// systems whose links touched first, in the order of the sides.
+    /// systems whose links touched first, in the order of the sides. For a brake, twice the number of its system.
     pub systems: [usize; 2],
     /// Impulse on the second system and the systems connected to it, axes of W: linear, N s, then angular
     /// about `point`, N m s. For a lift-off, the impulse of the contact on the links of its second side since
-    /// the touch-down; for a touch-down, zero.
+    /// the touch-down; for a touch-down, zero. For a brake, the impulse with which it stops the link that its
+    /// joint moves, along or about the axis of the joint.
     pub impulse: [f64; 6],
-    /// Point at which the impulse acts, in W, m; for a contact, the point of contact.
+    /// Point at which the impulse acts, in W, m; for a contact, the point of contact; for a brake, the origin of
+    /// the link that its joint moves.
     pub point: [f64; 3],
     /// Kinetic energy lost, J; negative if a spring added energy. For a lift-off, the energy dissipated since
     /// the touch-down.

@@ -90,7 +90,12 @@ impl<S: Scalar> RunState<'_, S> {
         };
         let system = |run: &RunSystem<'_, S>| {
             let (rows, work_done) = (run.recorder.rows_recorded(), run.recorder.trace.work_done);
-            SystemProgress { rows, work_done, settled: run.settled.clone() }
+            SystemProgress {
+                rows,
+                work_done,
+                settled: run.settled.clone(),
+                engaged: run.brakes.iter().map(|brake| brake.is_engaged).collect(),
+            }
         };
         let mut state = self.state.map(|x| x.value());
         state.contacts = self.equations.contacts.all_states(&state.contacts);
@@ -118,6 +123,7 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Restores the state that [`RunState::progress`] returned, and removes the rows recorded since then.
     pub(super) fn restore(&mut self, progress: Progress) -> Result<(), SimulationError> {
+        self.restore_brakes(&progress.systems);
         self.restore_world(progress.world)?;
         self.state = progress.state.map(|x| S::of(*x));
         self.schedule.set_cursor(progress.cursor);
@@ -186,6 +192,8 @@ impl<S: Scalar> RunState<'_, S> {
         from.check(&self.layout, &self.schedule, &counts, self.events.list.len())?;
         self.check_connections(&from.progress.world)?;
         self.check_contacts(&from.progress)?;
+        self.check_brakes(&from.progress)?;
+        self.restore_brakes(&from.progress.systems);
         self.restore_members(from.progress.world.members.clone())?;
         self.check_members(&from.progress.world)?;
         from.check_trees(&self.state)?;

@@ -12,7 +12,7 @@ use super::tree_state::TreeState;
 use crate::model::Model;
 use crate::orbit::OrbitState;
 use crate::spatial::Scalar;
-use crate::world::Member;
+use crate::world::{Brake, Member};
 
 /// Controllers and recorder of one system.
 pub(super) struct RunSystem<'a, S> {
@@ -30,6 +30,8 @@ pub(super) struct RunSystem<'a, S> {
     pub(super) known_members: Vec<Member>,
     /// Error estimates of the previous trees that contained the system; `None` if its tree has never changed.
     pub(super) settled: Option<Estimates>,
+    /// Brakes, with their present engagement.
+    pub(super) brakes: Vec<Brake>,
 }
 
 impl<S: Scalar> RunSystem<'_, S> {

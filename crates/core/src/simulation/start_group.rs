@@ -166,7 +166,7 @@ impl Shared {
         (system, events): (&'a mut System, &[Event]),
         (rows, rows_suffice): (usize, bool),
     ) -> Result<(&'a Model, Tree<'a, S>, RunSystem<'a, S>), SimulationError> {
-        let System { model, controls, tool, reference, stops, knows, .. } = system;
+        let System { model, controls, tool, reference, stops, knows, brakes, .. } = system;
         let model: &'a Model = model;
         let stops = stops.filter(|_| !self.has_engine); // an external engine has its own stops
         let knows: Vec<usize> = knows.iter().filter_map(|&system| local(numbers, system)).collect();
@@ -181,8 +181,17 @@ impl Shared {
             controllers.set.assume_creeping_friction();
         }
         let (known_members, held, settled) = (Vec::new(), None, None);
-        let run = RunSystem { controllers, recorder, held, is_due: false, knows, known_members, settled };
-        Ok((model, Tree::new(Cow::Borrowed(model), stops), run))
+        let run = RunSystem {
+            controllers,
+            recorder,
+            held,
+            is_due: false,
+            knows,
+            known_members,
+            settled,
+            brakes: brakes.clone(),
+        };
+        Ok((model, Tree::new(Cow::Borrowed(model), stops).with_brakes(brakes), run))
     }
 
     /// Returns the settings of the integrator for systems that are integrated together.
@@ -333,6 +342,9 @@ fn events_of(numbers: &[usize], events: &[Event]) -> Events {
         match &mut event.action {
             Action::Capture { by, of, .. } => (*by, *of) = (place(*by), place(*of)),
             Action::Release { capture, .. } => *capture = event_number(*capture),
+            Action::Engage(brake) | Action::Disengage(brake) => {
+                brake.system = local(numbers, brake.system).unwrap_or(0);
+            }
         }
         event
     };

@@ -10,6 +10,7 @@ use crate::dynamics::{
 };
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Motion, Real, Vec3};
+use crate::world::Brake;
 use std::borrow::Cow;
 
 /// Equations of motion of one tree under constant joint torques and the external wrenches in `data`.
@@ -54,12 +55,26 @@ impl<'a, S: Real> Tree<'a, S> {
             scratch: vec![zero; model.nv()],
             frame_velocity: Vec3::zero(),
             mass: S::of(model.mass()),
-            modes,
             loops: ClosedLoops::new(&model, model.closures()),
             shares: Vec::new(),
-            is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0),
+            is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0)
+                || modes.has_brakes(),
+            modes,
             model,
         }
+    }
+
+    /// Adds brakes to the joints of the tree.
+    pub(super) fn with_brakes(mut self, brakes: &[Brake]) -> Self {
+        if brakes.is_empty() {
+            return self;
+        }
+        self.modes.allow_brakes();
+        self.is_lossy = true;
+        for brake in brakes.iter().filter(|brake| brake.is_engaged) {
+            self.modes.set_brake(brake.joint, brake.slip_torque);
+        }
+        self
     }
 
     /// Computes the kinematics of `state` and projects its base twist `v_b` onto its momentum: `v_b = Mbb⁻¹

@@ -1,7 +1,7 @@
 //! Checks of the systems and events of a world before a run.
 
 use super::error::WorldError;
-use super::event::{Action, Event, FrameIndex, RigidPose, Seat, When};
+use super::event::{Action, BrakeIndex, Event, FrameIndex, RigidPose, Seat, When};
 use super::system::System;
 use crate::model::{Model, Mount};
 use crate::reference::TimeLaw;
@@ -96,7 +96,7 @@ fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(
         Action::Release { capture, impulse } => {
             let reason = match events.get(*capture).map(|event| &event.action) {
                 Some(Action::Capture { .. }) => "",
-                Some(Action::Release { .. }) => "is not a capture; give the number of a capture",
+                Some(_) => "is not a capture; give the number of a capture",
                 None => "does not exist; give the number of a capture",
             };
             if !reason.is_empty() {
@@ -111,6 +111,16 @@ fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(
                 expected: "finite",
             };
             value.map_or(Ok(()), |value| Err(wrong(value)))
+        }
+        Action::Engage(BrakeIndex { system, brake }) | Action::Disengage(BrakeIndex { system, brake }) => {
+            let count = systems.len();
+            let owner = systems.get(*system);
+            let owner = owner.ok_or(WorldError::UnknownSystem { event: name(), system: *system, count })?;
+            let (brake, count, system) = (*brake, owner.brakes.len(), owner.name.clone());
+            match brake < count {
+                true => Ok(()),
+                false => Err(WorldError::UnknownBrake { event: name(), system, brake, count }),
+            }
         }
     }
 }

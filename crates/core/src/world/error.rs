@@ -65,6 +65,35 @@ pub enum WorldError {
         time = short(*time)
     )]
     SeatInLoop { event: String, time: f64, first: String, second: String },
+    #[error("two brakes of one system have the name '{name}'; give each brake a different name")]
+    BrakeTwice { name: String },
+    #[error(
+        "the brake '{name}' is on joint {joint}, but the robot has {known}; give one of these indices",
+        known = indices(*count, "joint")
+    )]
+    BrakeJoint { name: String, joint: usize, count: usize },
+    #[error(
+        "the brakes '{other}' and '{name}' are both on the joint '{joint}'; give each joint at most one brake"
+    )]
+    JointWithTwoBrakes { name: String, other: String, joint: String },
+    #[error(
+        "the slip torque of the brake '{name}' is {value} N m (N for a prismatic joint); it must be positive, and may \
+         be infinite",
+        value = short(*value)
+    )]
+    SlipTorque { name: String, value: f64 },
+    #[error(
+        "the brake '{name}' holds the joint '{joint}' from the start, but the joint starts with the rate {rate} rad/s \
+         (m/s for a prismatic joint); start with the rate 0, or engage the brake by an event",
+        rate = short(*rate)
+    )]
+    HeldJointMoves { name: String, joint: String, rate: f64 },
+    #[error(
+        "the event '{event}' refers to brake {brake} of the system '{system}', which has {known}; give one of these \
+         indices",
+        known = indices(*count, "brake")
+    )]
+    UnknownBrake { event: String, system: String, brake: usize, count: usize },
     #[error("the world has no event '{name}'; {known}")]
     NoSuchEvent { name: String, known: String },
     #[error("the event '{name}' cannot be triggered, because {reason}")]

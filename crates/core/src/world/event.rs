@@ -1,4 +1,4 @@
-//! Events that change how the systems of a world are connected.
+//! Events that change how the systems of a world are connected, and which joints their brakes hold.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +9,15 @@ pub struct FrameIndex {
     pub system: usize,
     /// Index of the frame in the model of the system.
     pub frame: usize,
+}
+
+/// Brake of a system, given by two indices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BrakeIndex {
+    /// Number of the system in the world.
+    pub system: usize,
+    /// Index among the brakes of the system.
+    pub brake: usize,
 }
 
 /// Event of a world: an action, and the condition under which it occurs. Each event happens at most once in a
@@ -84,6 +93,10 @@ pub enum Action {
         /// axes of the capturing frame. The opposite impulse acts on the other system.
         impulse: [f64; 6],
     },
+    /// Engages a brake.
+    Engage(BrakeIndex),
+    /// Disengages a brake.
+    Disengage(BrakeIndex),
 }
 
 /// Motion of a captured frame to its nominal pose, as imposed by latches and grapple fixtures.

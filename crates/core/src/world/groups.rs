@@ -34,12 +34,14 @@ impl Union {
 pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
     let (mut all, mut at) = (Vec::new(), number);
     for _ in 0..=events.len() {
-        let capture = match events[at].action {
+        let changed = match events[at].action {
             Action::Release { capture, .. } => capture,
-            Action::Capture { .. } => at,
+            _ => at,
         };
-        if let Action::Capture { by, of, .. } = events[capture].action {
-            all.extend([by.system, of.system]);
+        match events[changed].action {
+            Action::Capture { by, of, .. } => all.extend([by.system, of.system]),
+            Action::Engage(brake) | Action::Disengage(brake) => all.push(brake.system),
+            Action::Release { .. } => {}
         }
         match events[at].when {
             When::After { event, .. } => at = event,

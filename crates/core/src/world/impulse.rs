@@ -22,8 +22,9 @@ pub struct Moving<'a> {
 }
 
 /// Returns the velocity `(nv,)` of a tree at `q` immediately after its systems have been rigidly connected;
-/// the first system is the root. Returns the closed loops of the tree as well, whose forces are then impulses. `given` are the indices and the rates, rad/s (m/s), of the joints with
-/// prescribed motion.
+/// the first system is the root. Returns the closed loops of the tree as well, whose forces are then impulses.
+/// `given` are the indices and the rates, rad/s (m/s), of the joints with prescribed motion and, with rate 0, of
+/// the joints that brakes hold.
 ///
 /// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
 /// of the tree, less the impulses that close its loops, equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`,
@@ -88,22 +89,22 @@ pub fn loop_impulses(tree: &Model, q: &[f64], loops: &ClosedLoops<f64>) -> Vec<(
 
 /// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i` with the mass matrix `M` and the Jacobian `J` of
 /// `frame`, of a robot at `q` that is caused by an impulse `i` at the origin of the frame, N s and N m s in
-/// the axes of the frame. The rates of the joints `given`, whose motion is prescribed, do not change, and the
-/// response keeps loops closed; `M` and `J` are those of the remaining free coordinates.
+/// the axes of the frame. The rates of the joints `held`, whose motion is prescribed or which brakes hold, do not
+/// change, and the response keeps loops closed; `M` and `J` are those of the remaining free coordinates.
 pub fn impulse_response(
     model: &Model,
     q: &[f64],
     frame: usize,
     impulse: Force<f64>,
-    given: &[usize],
+    held: &[usize],
 ) -> Vec<f64> {
     let mut data = Data::<f64>::new(model);
     let (at_rest, mut change) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
     positions(model, &mut data, q);
     apply_external(model, &mut data, &[FrameWrench { frame, wrench: impulse }]);
     let mut locked = vec![false; model.joint_count()];
-    given.iter().for_each(|&joint| locked[joint] = true);
-    let locked = (!given.is_empty()).then_some((&locked[..], &[][..]));
+    held.iter().for_each(|&joint| locked[joint] = true);
+    let locked = (!held.is_empty()).then_some((&locked[..], &[][..]));
     let mut loops = ClosedLoops::new(model, model.closures());
     constrained_recursion(model, &mut data, &mut loops, (&at_rest, &at_rest), locked, &mut change);
     change

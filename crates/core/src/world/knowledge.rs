@@ -23,7 +23,7 @@ pub fn idle_knowledge(systems: &[System], events: &[Event]) -> Vec<IdleKnowledge
         .iter()
         .filter_map(|event| match event.action {
             Action::Capture { by, of, .. } => Some([by.system, of.system]),
-            Action::Release { .. } => None,
+            _ => None,
         })
         .collect();
     let mut found = Vec::new();

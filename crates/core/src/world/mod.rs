@@ -2,6 +2,7 @@
 
 mod assembly;
 mod audit;
+mod brake;
 mod check;
 mod error;
 mod event;
@@ -14,9 +15,10 @@ mod system;
 
 pub use assembly::{Assembly, BodyPlace, Member, assemble};
 pub use audit::{Balance, energy, energy_of_change};
+pub use brake::{Brake, check_brakes};
 pub use check::{check_events, check_names};
 pub use error::WorldError;
-pub use event::{Action, Envelope, Event, FrameIndex, RigidPose, Seat, Seating, Weld, When};
+pub use event::{Action, BrakeIndex, Envelope, Event, FrameIndex, RigidPose, Seat, Seating, Weld, When};
 pub use groups::{groups, systems_of};
 pub use impulse::{Moving, connected_velocity, impulse_response, loop_impulses};
 pub use knowledge::{IdleKnowledge, idle_knowledge};

@@ -1,5 +1,6 @@
 //! System of a world: one robot with its initial state and its controls.
 
+use super::brake::Brake;
 use crate::control::Control;
 use crate::model::Model;
 use crate::reference::{MovingFrame, TaskReference};
@@ -31,6 +32,8 @@ pub struct System {
     pub knows: Vec<usize>,
     /// Coefficient of restitution of rigid stops at the position limits of joints; `None` for no stops.
     pub stops: Option<f64>,
+    /// Brakes of joints.
+    pub brakes: Vec<Brake>,
 }
 
 impl System {
@@ -54,6 +57,7 @@ impl System {
             reference_start_tolerance: [0.05, 0.1],
             knows: Vec::new(),
             stops: None,
+            brakes: Vec::new(),
         }
     }
 }

@@ -19,10 +19,16 @@ impl IntoPython for WorldError {
             | Self::UnknownSystem { event, .. }
             | Self::UnknownFrame { event, .. }
             | Self::UnknownEvent { event, .. }
+            | Self::UnknownBrake { event, .. }
             | Self::Merged { event, .. }
             | Self::Number { event, .. }
             | Self::LatchWithoutCapture { event }
             | Self::SeatInLoop { event, .. } => event.clone(),
+            Self::BrakeTwice { name }
+            | Self::BrakeJoint { name, .. }
+            | Self::JointWithTwoBrakes { name, .. }
+            | Self::SlipTorque { name, .. }
+            | Self::HeldJointMoves { name, .. } => name.clone(),
             Self::OwnReferenceFrame { system } | Self::ReferenceFrame { system, .. } => system.clone(),
         };
         raise(py, "WorldError", &message, &fields!(py, "name": name))

@@ -72,6 +72,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Coefficient of restitution of the stops, 0 to 1.
 /// record_wrenches : bool
 ///     If True, ``trace.wrenches`` contains the wrench of every effect on every body.
+/// actuators : list of Brake, optional
+///     Brakes of joints. Events of a :class:`World` engage and disengage them.
 /// rereference_beyond : float
 ///     Distance of the base from the reference orbit, m, beyond which integration continues about a new,
 ///     freely falling reference orbit, unless a controller tracks a pose in W. ``trace.rereferenced`` holds
@@ -140,7 +142,7 @@ impl PySimulation {
         model, q=None, v=None, *, orbit=None, earth=None, gravity_mode="true", environment=None, controller=None, reference=None, tool=None,
         time_step=1e-3, control_period=None, integrator="rk4", record_every=1, reference_start_tolerance=None,
         tolerance=1e-9, enforce_limits=false, restitution=0.0, record_wrenches=false,
-        rereference_beyond=1e5, engine=None,
+        rereference_beyond=1e5, actuators=None, engine=None,
     ))]
     fn new(
         py: Python<'_>,
@@ -164,6 +166,7 @@ impl PySimulation {
         restitution: f64,
         record_wrenches: bool,
         rereference_beyond: f64,
+        actuators: Option<Py<PyAny>>,
         engine: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         let given = [
@@ -181,6 +184,7 @@ impl PySimulation {
             ("enforce_limits", enforce_limits),
             ("restitution", restitution != 0.0),
             ("rereference_beyond", rereference_beyond != 1e5),
+            ("actuators", actuators.is_some()),
         ];
         let mut own_orbit = orbit.map(|orbit| orbit.clone().unbind());
         let mut simulation = if let Ok(world) = model.cast::<PyWorld>() {
@@ -195,6 +199,7 @@ impl PySimulation {
                 enforce_limits,
                 restitution,
                 reference_start_tolerance,
+                actuators,
             };
             let mut simulation =
                 of_robot(model, (q, v), (orbit, earth, gravity_mode, environment), &settings)?;

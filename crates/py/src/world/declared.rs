@@ -17,7 +17,7 @@ use crate::simulation::{gravity_mode_named, set_environment};
 use onorbit_core::contact::Contact;
 use onorbit_core::number_text::short;
 use onorbit_core::simulation::Simulation;
-use onorbit_core::world::{WorldError, idle_knowledge};
+use onorbit_core::world::{System, WorldError, idle_knowledge};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -40,8 +40,8 @@ use std::sync::Arc;
 ///     Effects on the bodies of all systems; links are named ``SYSTEM/LINK``.
 /// contacts : list of Contact, optional
 ///     Contacts between links.
-/// events : list of Capture and Release, optional
-///     Events that connect and separate systems.
+/// events : list of Capture, Release, Engage and Disengage, optional
+///     Events that connect and separate systems, or engage and disengage brakes.
 /// rereference_beyond : float
 ///     Distance of a system from the reference orbit, m, beyond which integration continues about a new
 ///     reference orbit. Systems that events may connect or that may touch keep their reference orbit.
@@ -160,7 +160,9 @@ impl PyWorld {
         for (number, system) in self.systems.iter().enumerate() {
             systems[number].knows = known_systems(py, system.get(), &self.names())?;
         }
-        let events = events_of(py, &self.events, &names, &models)?;
+        let brakes = |system: &System| system.brakes.iter().map(|brake| brake.name.clone()).collect();
+        let brakes: Vec<_> = systems.iter().map(|system| (system.name.clone(), brakes(system))).collect();
+        let events = events_of(py, &self.events, &names, &models, &brakes)?;
         let contacts = contacts_of(py, &self.contacts, &models)?;
         if systems.is_empty() {
             return Err(WorldError::NoSystems.into_python(py));

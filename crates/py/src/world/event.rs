@@ -1,5 +1,6 @@
-//! Events of a world: captures and releases.
+//! Events of a world: captures, releases, and the reading of all kinds of events.
 
+use super::brake::{PyDisengage, PyEngage, brake_at};
 use crate::arrays::{fixed, list_of, text, wrong_entry};
 use crate::errors::{IntoPython, fields, raise};
 use crate::model::attach::isometry;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 
 /// Condition under which an event happens, as given in Python.
 #[derive(Clone)]
-struct Condition {
+pub(super) struct Condition {
     at: Option<f64>,
     after: Option<String>,
     delay: f64,
@@ -21,7 +22,7 @@ struct Condition {
 
 impl Condition {
     /// Creates the condition. Exactly one of `at`, `after`, `on_command` and `latch` must be given.
-    fn new(
+    pub(super) fn new(
         py: Python<'_>,
         name: &str,
         (at, after, delay, on_command): (Option<f64>, Option<String>, f64, bool),
@@ -43,7 +44,7 @@ impl Condition {
     }
 
     /// Writes the condition as keyword arguments of the event.
-    fn write_to(&self, keywords: &Bound<'_, PyDict>) -> PyResult<()> {
+    pub(super) fn write_to(&self, keywords: &Bound<'_, PyDict>) -> PyResult<()> {
         keywords.set_item("at", self.at)?;
         keywords.set_item("after", &self.after)?;
         keywords.set_item("delay", self.delay)?;
@@ -59,7 +60,7 @@ impl Condition {
     }
 
     /// Returns the condition as used by the core; `names` are the names of all events.
-    fn when(&self, py: Python<'_>, name: &str, names: &[String]) -> PyResult<When> {
+    pub(super) fn when(&self, py: Python<'_>, name: &str, names: &[String]) -> PyResult<When> {
         if let Some(envelope) = self.latch {
             return Ok(When::Latch(envelope));
         }
@@ -309,12 +310,13 @@ fn frame_path(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<String> {
     text(value, argument, "a frame as SYSTEM/FRAME (str), such as 'chaser/tool'")
 }
 
-/// Reads a list of captures and releases.
+/// Reads a list of events.
 pub(super) fn events_in(value: &Bound<'_, PyAny>) -> PyResult<Vec<Py<PyAny>>> {
-    const WHAT: &str = "captures and releases, such as [oo.Capture(…)]";
+    const WHAT: &str = "events, such as [oo.Capture(…)]";
     let events = list_of::<PyAny>(value, "events", WHAT)?;
     let is_event = |event: &&Bound<'_, PyAny>| {
-        event.is_instance_of::<PyCapture>() || event.is_instance_of::<PyRelease>()
+        let is_of_brake = event.is_instance_of::<PyEngage>() || event.is_instance_of::<PyDisengage>();
+        is_of_brake || event.is_instance_of::<PyCapture>() || event.is_instance_of::<PyRelease>()
     };
     match events.iter().find(|event| !is_event(event)) {
         Some(other) => Err(wrong_entry(other, "events", WHAT)),
@@ -328,12 +330,13 @@ pub(super) fn names_of(py: Python<'_>, events: &[Py<PyAny>]) -> PyResult<Vec<Str
 }
 
 /// Reads the events of a world; `names` are the names of the events, `systems` the names and models of the
-/// systems.
+/// systems, and `brakes` the names of the systems and of their brakes.
 pub(super) fn events_of(
     py: Python<'_>,
     events: &[Py<PyAny>],
     names: &[String],
     systems: &[(String, Arc<Model>)],
+    brakes: &[(String, Vec<String>)],
 ) -> PyResult<Vec<Event>> {
     let read = |event: &Py<PyAny>| {
         let event = event.bind(py);
@@ -342,6 +345,16 @@ pub(super) fn events_of(
             let (by, of) = (frame_at(py, name, frame_a, systems)?, frame_at(py, name, frame_b, systems)?);
             let (when, action) = (condition.when(py, name, names)?, Action::Capture { by, of, seat: *seat });
             return Ok(Event { name: name.clone(), when, action });
+        }
+        if let Ok(event) = event.cast::<PyEngage>() {
+            let PyEngage { name, brake, condition } = event.get();
+            let action = Action::Engage(brake_at(py, name, brake, brakes)?);
+            return Ok(Event { name: name.clone(), when: condition.when(py, name, names)?, action });
+        }
+        if let Ok(event) = event.cast::<PyDisengage>() {
+            let PyDisengage { name, brake, condition } = event.get();
+            let action = Action::Disengage(brake_at(py, name, brake, brakes)?);
+            return Ok(Event { name: name.clone(), when: condition.when(py, name, names)?, action });
         }
         let PyRelease { name, capture, condition, impulse } = event.cast::<PyRelease>()?.get();
         let (when, capture) = (condition.when(py, name, names)?, event_named(py, name, capture, names)?);

@@ -16,14 +16,14 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// ----------
 /// name : str
 ///     Name of the event, or of the contact.
-/// kind : {"capture", "release", "touch_down", "lift_off"}
+/// kind : {"capture", "release", "touch_down", "lift_off", "engage", "disengage"}
 ///     Kind of the event. A contact touches down when the first pieces of its links touch, and lifts off when
 ///     the last ones separate.
 /// time : float
 ///     Simulation time, s.
 /// systems : (str, str)
 ///     Names of the two systems, beginning with the capturing system; for a contact, those of the links that
-///     touched first, in the order of its sides.
+///     touched first, in the order of its sides; for a brake, twice the name of its system.
 /// impulse : (6,) array
 ///     Impulse on the second system and the systems connected to it: N s, then N m s about ``point``, axes of
 ///     W. For a lift-off, the impulse of the contact since its touch-down; for a touch-down, zero.
@@ -53,7 +53,7 @@ pub(crate) struct PyEventRecord {
     /// Simulation time, s.
     #[pyo3(get)]
     time: f64,
-    /// Names of the two systems, beginning with the capturing system.
+    /// Names of the two systems, beginning with the capturing system; for a brake, twice the name of its system.
     #[pyo3(get)]
     systems: (String, String),
     impulse: [f64; 6],
@@ -112,7 +112,7 @@ impl PyEventRecord {
         Ok(Self { name, kind, time, systems, impulse, point, energy_lost, momentum_error, peak_force })
     }
 
-    /// Kind of the event: ``capture``, ``release``, ``touch_down`` or ``lift_off``.
+    /// Kind of the event: ``capture``, ``release``, ``touch_down``, ``lift_off``, ``engage`` or ``disengage``.
     #[getter]
     fn kind(&self) -> &'static str {
         self.kind.name()
@@ -166,6 +166,9 @@ impl PyEventRecord {
             EventKind::TouchDown => format!("<{kind} '{name}' of {by} and {of} at t = {time} s>"),
             EventKind::LiftOff => {
                 format!("<{kind} '{name}' of {by} and {of} at t = {time} s: {lost} J lost>")
+            }
+            EventKind::Engage | EventKind::Disengage => {
+                format!("<{kind} '{name}' of {of} at t = {time} s: {lost} J lost>")
             }
             _ => format!("<{kind} '{name}' of {of} by {by} at t = {time} s: {lost} J lost>"),
         }

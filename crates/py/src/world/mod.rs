@@ -1,5 +1,6 @@
 //! Worlds of several systems.
 
+mod brake;
 mod declared;
 mod event;
 mod event_record;
@@ -21,6 +22,9 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<system::PySystem>()?;
     m.add_class::<event::PyCapture>()?;
     m.add_class::<event::PyRelease>()?;
+    m.add_class::<brake::PyBrake>()?;
+    m.add_class::<brake::PyEngage>()?;
+    m.add_class::<brake::PyDisengage>()?;
     m.add_class::<declared::PyWorld>()?;
     m.add_class::<systems::PySystemStepper>()?;
     m.add_class::<trace::PyWorldTrace>()?;

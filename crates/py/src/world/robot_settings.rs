@@ -1,5 +1,6 @@
-//! Settings of one robot: its controls, reference, tool, stops and initial state.
+//! Settings of one robot: its controls, reference, tool, stops, actuators and initial state.
 
+use super::brake::brakes_of;
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::control::{Robot, controls_of};
 use crate::model::PyModel;
@@ -20,10 +21,11 @@ pub(crate) struct RobotSettings {
     pub(crate) enforce_limits: bool,
     pub(crate) restitution: f64,
     pub(crate) reference_start_tolerance: Option<Py<PyAny>>,
+    pub(crate) actuators: Option<Py<PyAny>>,
 }
 
 impl RobotSettings {
-    /// Sets controls, reference, tool and stops of a system.
+    /// Sets controls, reference, tool, stops and actuators of a system.
     pub(crate) fn apply(
         &self,
         py: Python<'_>,
@@ -44,6 +46,9 @@ impl RobotSettings {
         } else if let Some(reference) = reference {
             system.reference = Some(reference::extract(reference, around)?);
         }
+        if let Some(actuators) = &self.actuators {
+            system.brakes = brakes_of(py, actuators.bind(py), &model.model)?;
+        }
         system.control_period = self.control_period;
         system.stops = self.enforce_limits.then_some(self.restitution);
         Ok(())
@@ -57,7 +62,8 @@ impl RobotSettings {
         keywords.set_item("control_period", self.control_period)?;
         keywords.set_item("enforce_limits", self.enforce_limits)?;
         keywords.set_item("restitution", self.restitution)?;
-        keywords.set_item("reference_start_tolerance", &self.reference_start_tolerance)
+        keywords.set_item("reference_start_tolerance", &self.reference_start_tolerance)?;
+        keywords.set_item("actuators", &self.actuators)
     }
 }
 

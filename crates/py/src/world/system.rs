@@ -40,6 +40,8 @@ use std::sync::Arc;
 ///     Coefficient of restitution of the stops, 0 to 1.
 /// reference_start_tolerance : (float, float), optional
 ///     Permitted initial deviation of the tool from its reference, m and rad; default: (0.05, 0.1).
+/// actuators : list of Brake, optional
+///     Brakes of joints.
 /// surfaces : Surface or dict of str to Surface, optional
 ///     Surfaces of the links, used by ``Drag`` and ``RadiationPressure`` effects that have no ``surfaces``;
 ///     the form is as for ``Drag``. Default: ``Faces()``.
@@ -77,7 +79,7 @@ impl PySystem {
     #[new]
     #[pyo3(signature = (
         name, model, q, v, *, controller=None, reference=None, tool=None, control_period=None, enforce_limits=false,
-        restitution=0.0, reference_start_tolerance=None, surfaces=None, knows=None,
+        restitution=0.0, reference_start_tolerance=None, actuators=None, surfaces=None, knows=None,
         loops=None,
     ))]
     fn new(
@@ -93,6 +95,7 @@ impl PySystem {
         enforce_limits: bool,
         restitution: f64,
         reference_start_tolerance: Option<Py<PyAny>>,
+        actuators: Option<Py<PyAny>>,
         surfaces: Option<&Bound<'_, PyAny>>,
         knows: Option<&Bound<'_, PyAny>>,
         loops: Option<&Bound<'_, PyAny>>,
@@ -114,6 +117,7 @@ impl PySystem {
             enforce_limits,
             restitution,
             reference_start_tolerance,
+            actuators,
         };
         Ok(Self { name, model, q, v, settings, surfaces, given_surfaces, knows })
     }

@@ -26,7 +26,7 @@ def rigid(name: str, mass: float, inertia: Sequence[float], q: Sequence[float], 
 
 def run(
     systems: Sequence[oo.System],
-    events: Sequence[oo.Capture | oo.Release],
+    events: Sequence[oo.Capture | oo.Release | oo.Engage | oo.Disengage],
     duration: float,
     *,
     orbit: oo.Orbit | None = None,

@@ -211,13 +211,11 @@ impl<'a> RowReader<'a> {
         row > 0 && (self.direction(row - 1, j) == 0.0) != (self.direction(row, j) == 0.0)
     }
 
-    /// Returns true if friction or a stop can hold the joint and the joint is at rest in the intervals before
-    /// and after a row.
+    /// Returns true if the joint is at rest in the intervals before and after a row. Whether friction, a stop or
+    /// a brake holds it or no effort acts on it, its acceleration does not jump.
     fn is_held(&self, row: usize, j: usize) -> bool {
-        let joint = &self.model.joints()[j];
-        let can_be_held = joint.static_friction > 0.0 || joint.limits.position.is_some();
         let rate = Trace::row(&self.trace.v, row, self.model.nv())[BASE_NV + j];
-        can_be_held && rate == 0.0 && self.direction(row - 1, j) == 0.0 && self.direction(row, j) == 0.0
+        rate == 0.0 && self.direction(row - 1, j) == 0.0 && self.direction(row, j) == 0.0
     }
 
     /// Computes the mass and the scales of momentum and length from the kinematics in `data`.

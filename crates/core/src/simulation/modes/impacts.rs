@@ -27,26 +27,34 @@ impl<S: Real> Tree<'_, S> {
         let n = self.model.joint_count();
         for round in 0..4 * n + 4 {
             let Some(j) = self.first_impact(state) else { break };
-            let rate = state.v[BASE_NV + j].lane(0);
-            let before = self.kinetic_energy(state);
             let e = if round < 2 * n && !is_endless { self.modes.restitution[j] } else { 0.0 };
-            let response = self.impulse_response(j, -rate.signum(), state);
-            let impulse = -(1.0 + e) * rate / response;
-            for (v, change) in state.v.iter_mut().zip(&self.scratch) {
-                *v += *change * S::of(impulse.abs());
-            }
-            state.v[BASE_NV + j] = S::of(-e * rate);
-            let lost = S::of(-0.5 * (1.0 - e) * impulse * rate);
-            state.dissipated += lost;
-            if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {
-                state.shares[share] += lost;
-            }
-            self.project_momentum(state);
-            // the drives of joints with prescribed motion do work as well, because they keep their rates during
-            // the impulse
-            state.work +=
-                if self.modes.given().is_empty() { -lost } else { self.kinetic_energy(state) - before };
+            self.strike(j, e, state);
         }
+    }
+
+    /// Reverses the rate of joint `j` by an impulse, with the coefficient of restitution `e`; 0 stops the joint.
+    /// Returns the impulse, N m s (N s), and the energy lost, J. Requires and updates the kinematics as
+    /// [`Tree::resolve_impacts`].
+    pub(in crate::simulation) fn strike(&mut self, j: usize, e: f64, state: &mut TreeState<S>) -> (f64, f64) {
+        let rate = state.v[BASE_NV + j].lane(0);
+        let before = self.kinetic_energy(state);
+        let response = self.impulse_response(j, -rate.signum(), state);
+        let impulse = -(1.0 + e) * rate / response;
+        for (v, change) in state.v.iter_mut().zip(&self.scratch) {
+            *v += *change * S::of(impulse.abs());
+        }
+        state.v[BASE_NV + j] = S::of(-e * rate);
+        let lost = -0.5 * (1.0 - e) * impulse * rate;
+        state.dissipated += S::of(lost);
+        if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {
+            state.shares[share] += S::of(lost);
+        }
+        self.project_momentum(state);
+        // the drives of joints with prescribed motion do work as well, because they keep their rates during the
+        // impulse
+        state.work +=
+            if self.modes.given().is_empty() { S::of(-lost) } else { self.kinetic_energy(state) - before };
+        (impulse, lost)
     }
 
     /// Returns the kinetic energy of `state`, whose kinematics are in `data`, J.
@@ -69,12 +77,14 @@ impl<S: Real> Tree<'_, S> {
         let stop = |i: usize| modes.stop(i, state.q[BASE_NQ + i].lane(0));
         let rests_at_stop = |i: usize| stop(i) != 0.0 && state.v[BASE_NV + i].lane(0) == 0.0;
         let mut locked: Vec<bool> =
-            (0..n).map(|i| i != j && (modes.is_given(i) || rests_at_stop(i))).collect();
+            (0..n).map(|i| i != j && (modes.is_given(i) || modes.is_held(i) || rests_at_stop(i))).collect();
         for _ in 0..=n {
             let held = Some((&locked[..], &[][..]));
             constrained_recursion(model, data, loops, (&at_rest, &impulse), held, &mut a);
             // a stop can only push, so a joint on which the stop would have to pull is released
-            let pulls = |i: &usize| locked[*i] && data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0;
+            let pulls = |i: &usize| {
+                locked[*i] && !modes.is_held(*i) && data.bodies[i + 1].holding_torque.lane(0) * stop(*i) > 0.0
+            };
             let Some(i) = (0..n).find(pulls) else { break };
             locked[i] = false;
         }

@@ -1,5 +1,6 @@
 //! Modes of the joints during a step, which result from Coulomb friction and the stops at position limits.
 
+use super::engaged_brakes::EngagedBrakes;
 use crate::model::{BASE_NQ, BASE_NV, JointProperties, Model};
 use crate::spatial::Real;
 use crate::world::GivenJoint;
@@ -39,9 +40,13 @@ pub(crate) struct JointModes {
     requested: Vec<Option<f64>>,
     /// Lower and upper position limit of each joint, rad (m); infinite without stops.
     limits: Vec<(f64, f64)>,
+    /// Brakes that are engaged.
+    brakes: EngagedBrakes,
     /// Coefficient of restitution of the stops of each joint.
     pub(super) restitution: Vec<f64>,
     is_active: bool,
+    /// True if the system has brakes, engaged or not.
+    has_brakes: bool,
     locked: Vec<bool>,
     any_locked: bool,
     /// Direction of slip, −1, 0 or 1, of each joint with friction.
@@ -79,8 +84,10 @@ impl JointModes {
             static_friction,
             requested: vec![None; n],
             limits,
+            brakes: EngagedBrakes::none(n),
             restitution: vec![restitution.unwrap_or(0.0); n],
             is_active,
+            has_brakes: false,
             locked: vec![false; n],
             any_locked: false,
             direction: vec![0.0; n],
@@ -102,8 +109,10 @@ impl JointModes {
             static_friction: zeros.clone(),
             requested: vec![None; count],
             limits: vec![free; count],
+            brakes: EngagedBrakes::none(count),
             restitution: zeros.clone(),
             is_active: false,
+            has_brakes: false,
             locked: vec![false; count],
             any_locked: false,
             direction: zeros.clone(),
@@ -115,10 +124,12 @@ impl JointModes {
                 all.friction[joint] = part.friction[own];
                 all.static_friction[joint] = part.static_friction[own];
                 all.requested[joint] = part.requested[own];
+                all.brakes.take(joint, &part.brakes, own);
                 (all.limits[joint], all.restitution[joint]) = (part.limits[own], part.restitution[own]);
                 (all.locked[joint], all.direction[joint]) = (part.locked[own], part.direction[own]);
             }
             all.is_active |= part.is_active;
+            all.has_brakes |= part.has_brakes;
         }
         all.lock_given();
         all
@@ -128,6 +139,34 @@ impl JointModes {
     fn lock_given(&mut self) {
         self.given.iter().for_each(|given| self.locked[given.joint] = true);
         self.any_locked = self.locked.contains(&true);
+    }
+
+    /// Prepares the modes of a system with brakes, which are then active even while no brake is engaged.
+    pub(in crate::simulation) fn allow_brakes(&mut self) {
+        (self.is_active, self.has_brakes) = (true, true);
+    }
+
+    /// Returns true if the system has brakes, engaged or not.
+    pub(in crate::simulation) fn has_brakes(&self) -> bool {
+        self.has_brakes
+    }
+
+    /// Engages the brake of joint `j` with this slip torque, N m (N), or disengages it (0). A brake with an
+    /// infinite slip torque locks the joint, which must be at rest by the start of the next step.
+    pub(in crate::simulation) fn set_brake(&mut self, j: usize, slip_torque: f64) {
+        self.brakes.set(j, slip_torque);
+        self.locked[j] = self.brakes.holds(j);
+        self.lock_given();
+    }
+
+    /// Returns true if a brake holds joint `j` rigidly.
+    pub(in crate::simulation) fn is_held(&self, j: usize) -> bool {
+        self.brakes.holds(j)
+    }
+
+    /// Returns the joints that brakes hold rigidly.
+    pub(in crate::simulation) fn held(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.locked.len()).filter(|&j| self.brakes.holds(j))
     }
 
     /// Returns true if the motion of joint `j` is prescribed.
@@ -181,7 +220,7 @@ impl JointModes {
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Returns true if any joint has friction or stops.
+    /// Returns true if any joint has friction, stops or a brake.
     pub(crate) fn is_active(&self) -> bool {
         self.is_active
     }
@@ -206,10 +245,10 @@ impl JointModes {
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Returns the kinetic friction in the direction of slip, N m (N), which is subtracted from the joint
-    /// torque.
+    /// Returns the kinetic friction of joint and brake in the direction of slip, N m (N), which is subtracted
+    /// from the joint torque.
     fn drag(&self, j: usize) -> f64 {
-        self.friction[j] * self.direction[j]
+        (self.friction[j] + self.brakes.torque(j)) * self.direction[j]
     }
 
     /// Returns the torques that the motors add during the step to compensate friction, `(n,)`, N m (N);
@@ -220,10 +259,10 @@ impl JointModes {
         self.requested.iter().zip(drag).map(|(requested, drag)| requested.map(|_| drag))
     }
 
-    /// Returns the kinetic friction less its compensation, N m (N), which is zero if a law compensates the
-    /// friction.
+    /// Returns the kinetic friction less its compensation, N m (N). If a law compensates the friction of the
+    /// joint, this is the friction of the brake.
     pub(in crate::simulation) fn remaining_drag(&self, j: usize) -> f64 {
-        if self.requested[j].is_some() { 0.0 } else { self.drag(j) }
+        if self.requested[j].is_some() { self.brakes.torque(j) * self.direction[j] } else { self.drag(j) }
     }
 
     /// Returns the accelerations requested for the joints whose friction a control law compensates, `(n,)`,
@@ -237,15 +276,18 @@ impl JointModes {
         &mut self.requested
     }
 
-    /// Returns true if the joint has any friction.
+    /// Returns true if the joint has any friction, or a brake that can slip.
     pub(super) fn has_friction(&self, j: usize) -> bool {
-        self.static_friction[j] > 0.0
+        self.static_friction[j] > 0.0 || self.brakes.torque(j) > 0.0
     }
 
-    /// Returns the largest torque with which friction can hold a joint at rest, N m (N); zero if the motor
-    /// compensates the friction, that is, if a law requests a nonzero acceleration.
+    /// Returns the largest torque with which friction and a brake that can slip hold a joint at rest, N m (N).
+    /// Without the friction of the joint if the motor compensates it, that is, if a law requests a nonzero
+    /// acceleration.
     pub(super) fn holding_friction(&self, j: usize) -> f64 {
-        if self.requested[j].is_some_and(|a| a != 0.0) { 0.0 } else { self.static_friction[j] }
+        let friction =
+            if self.requested[j].is_some_and(|a| a != 0.0) { 0.0 } else { self.static_friction[j] };
+        friction + self.brakes.torque(j)
     }
 
     pub(super) fn direction(&self, j: usize) -> f64 {
@@ -264,10 +306,10 @@ impl JointModes {
     }
 
     /// Returns the bounds of the torque with which friction and a stop hold a joint at rest: `−fs..fs`,
-    /// unbounded on the side on which a stop pushes. For a joint with prescribed motion, both bounds are
-    /// infinite.
+    /// unbounded on the side on which a stop pushes. For a joint with prescribed motion, or one that a brake
+    /// holds rigidly, both bounds are infinite.
     pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
-        if self.is_given(j) {
+        if self.is_given(j) || self.brakes.holds(j) {
             return (f64::NEG_INFINITY, f64::INFINITY);
         }
         let (f, stop) = (self.holding_friction(j), self.stop(j, q));
@@ -276,12 +318,12 @@ impl JointModes {
         (lowest, highest)
     }
 
-    /// Sets the initial guess of the modes: joints at rest that friction or a stop can hold are locked, and
+    /// Sets the initial guess of the modes: joints at rest that friction, a brake or a stop can hold are locked, and
     /// all other joints slip.
     pub(super) fn lock_joints_at_rest<S: Real>(&mut self, q: &[S], v: &[S]) {
         for j in 0..self.locked.len() {
             let (q, rate) = (q[BASE_NQ + j].lane(0), v[BASE_NV + j].lane(0));
-            let can_be_held = self.has_friction(j) || self.stop(j, q) != 0.0;
+            let can_be_held = self.has_friction(j) || self.brakes.holds(j) || self.stop(j, q) != 0.0;
             self.locked[j] = rate == 0.0 && can_be_held;
             self.direction[j] = if rate == 0.0 { 0.0 } else { rate.signum() };
         }

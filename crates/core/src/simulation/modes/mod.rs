@@ -1,6 +1,7 @@
 //! Modes of the joints (sticking, slipping or resting at a stop), and the instants within a step at which a
 //! mode changes.
 
+mod engaged_brakes;
 mod impacts;
 mod joint_friction;
 mod joint_modes;

@@ -1,0 +1,159 @@
+"""Brakes of joints: closed forms of a wheel, and Gauss's principle for random robots."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import onorbit_rs as oo
+from onorbit_rs.common.coordinates import BASE_NV
+from onorbit_rs.tools.validation.capture import random_craft, random_pair, run
+from onorbit_rs.tools.validation.case import Case, Gate, worst
+from onorbit_rs.tools.validation.gauss import Craft, mass_matrix, project, relative_twist
+from onorbit_rs.tools.validation.trees import Array
+
+BASE, WHEEL = 2.0, 0.5
+"""Moments of inertia of base and wheel about the axis of the wheel, kg m2."""
+SPIN = 2.0
+"""Initial rate of the wheel relative to the base, rad/s."""
+SLIP = 0.9
+"""Slip torque of the brake, N m."""
+SEEDS = range(3200, 3212)
+
+
+def wheel() -> oo.Model:
+    """Return a base with a wheel about its z axis, through the centres of mass of both."""
+    builder = oo.ModelBuilder("craft", base="base", mass=20.0, inertia=np.diag([BASE, BASE, BASE]))
+    builder.add_link(
+        "wheel", parent="base", joint="spin", kind="continuous", axis=[0, 0, 1],
+        mass=5.0, inertia=np.diag([WHEEL, WHEEL, WHEEL]),
+    )  # fmt: skip
+    return builder.build()
+
+
+class _Torque:
+    """Controller with a constant torque."""
+
+    def __init__(self, torque: float) -> None:
+        self.torque = torque
+
+    def update(self, t: float, state: oo.State) -> list[float]:  # noqa: ARG002
+        return [self.torque]
+
+
+def wheel_system(
+    spin: float, slip_torque: float = np.inf, torque: float | None = None
+) -> tuple[oo.System, oo.System]:
+    """Return the craft with the brake of its wheel, engaged if the wheel is at rest, and a bystander."""
+    brake = oo.Brake("brake", "spin", slip_torque=slip_torque, engaged=spin == 0.0)
+    q, v = np.zeros(8), np.zeros(7)
+    q[6], v[6] = 1.0, spin
+    controller = None if torque is None else _Torque(torque)
+    chaser = oo.System("chaser", wheel(), q, v, actuators=[brake], controller=controller)
+    far = [10.0, 0, 0, 0, 0, 0, 1.0]
+    return chaser, oo.System("target", oo.Model.rigid_body(1.0, np.eye(3)), far, np.zeros(6))
+
+
+def spinning_wheel(slip_torque: float = np.inf, **settings: Any) -> oo.WorldTrace:
+    """Return a run of 2 s in which the brake of the spinning wheel is engaged at 0.5 s."""
+    event = oo.Engage("stop", "chaser/brake", at=0.5)
+    return run(wheel_system(SPIN, slip_torque), [event], 2.0, **{"time_step": 0.01} | settings)
+
+
+def slowing() -> tuple[float, ...]:
+    """Return the errors of rate, angle, time at rest, energy and momentum of a wheel that a brake slows down."""
+    trace = spinning_wheel(slip_torque=SLIP)
+    chaser, reduced = trace["chaser"], BASE * WHEEL / (BASE + WHEEL)
+    stop = SPIN * reduced / SLIP
+    slowed = np.clip(chaser.time - 0.5, 0.0, stop)
+    rate = SPIN - SLIP / reduced * slowed
+    angle = SPIN * (np.minimum(chaser.time, 0.5) + slowed) - 0.5 * SLIP / reduced * slowed**2
+    return (
+        float(np.abs(chaser.v[:, 6] - rate).max()),
+        float(np.abs(chaser.q[:, 7] - angle).max()),
+        abs(float(chaser.dissipated[-1]) - 0.5 * reduced * SPIN**2),
+        float(np.abs(trace.momentum - trace.momentum[0]).max()),
+    )
+
+
+def _held(craft: Craft, seed: int) -> tuple[Craft, list[int]]:
+    """Return the robot with up to two random joints at rest, and these joints."""
+    rng = np.random.default_rng(seed)
+    count = min(2, craft.model.nv - BASE_NV)
+    joints = sorted(int(joint) for joint in rng.permutation(craft.model.nv - BASE_NV)[:count])
+    v = craft.v.copy()
+    v[[BASE_NV + joint for joint in joints]] = 0.0
+    return Craft(craft.model, craft.q, v, craft.frame), joints
+
+
+def _brakes(craft: Craft, joints: list[int], *, engaged: bool) -> list[oo.Brake]:
+    names = craft.model.joint_names
+    return [oo.Brake(names[joint], names[joint], engaged=engaged) for joint in joints]
+
+
+def _rows(joints: list[int], nv: int) -> Array:
+    rows = np.zeros((len(joints), nv))
+    rows[np.arange(len(joints)), [BASE_NV + joint for joint in joints]] = 1.0
+    return rows
+
+
+def capture_against_gauss(seed: int) -> tuple[float, float]:
+    """Return the error of a capture with rigid brakes, and that of the reference without the brakes.
+
+    Both are errors of the velocities, relative to the largest rate.
+    """
+    first, second = random_pair(seed)
+    (first, held_a), (second, held_b) = _held(first, seed), _held(second, seed + 1)
+    systems = [
+        oo.System(name, craft.model, craft.q, craft.v, actuators=_brakes(craft, held, engaged=True))
+        for name, craft, held in zip("ab", (first, second), (held_a, held_b), strict=True)
+    ]
+    event = oo.Capture("grasp", f"a/{first.frame}", f"b/{second.frame}", at=0.0)
+    trace = run(systems, [event], 1e-3, time_step=1e-3)
+    after = np.concatenate([trace[name].v[np.flatnonzero(trace[name].time == 0.0)[-1]] for name in "ab"])
+    crafts, before = (first, second), np.concatenate([first.v, second.v])
+    mass, twist = mass_matrix(crafts), relative_twist(crafts, 0, 1)
+    shift = first.model.nv
+    held = _rows(held_a + [shift + joint for joint in held_b], len(before))
+    expected = project(mass, np.vstack([twist, held]), before)[0]
+    control = project(mass, twist, before)[0]
+    size = np.abs(np.concatenate([before, expected])).max()
+    return float(np.abs(after - expected).max() / size), float(np.abs(after - control).max() / size)
+
+
+ENGAGE = {"velocity": 1e-12, "energy": 1e-12, "momentum": 1e-13, "impulse": 1e-12}
+"""Quantities of a rigid engagement and their largest errors."""
+
+
+def engage_against_gauss(seed: int) -> tuple[float, ...]:
+    """Return the errors when a rigid brake stops a moving joint while another one is held.
+
+    The quantities are those of :data:`ENGAGE`, each relative to its largest value.
+    """
+    craft, (held, *_) = _held(random_craft(seed), seed)
+    moving = next(j for j in range(craft.model.nv - BASE_NV) if craft.v[BASE_NV + j] != 0.0)
+    actuators = [*_brakes(craft, [held], engaged=True), *_brakes(craft, [moving], engaged=False)]
+    name = craft.model.joint_names[moving]
+    systems = [
+        oo.System("a", craft.model, craft.q, craft.v, actuators=actuators),
+        oo.System("far", oo.Model.rigid_body(1.0, np.eye(3)), [1e3, 0, 0, 0, 0, 0, 1.0], np.zeros(6)),
+    ]
+    trace = run(systems, [oo.Engage("stop", f"a/{name}", at=0.0)], 1e-3, time_step=1e-3)
+    after = trace["a"].v[np.flatnonzero(trace["a"].time == 0.0)[-1]]
+    mass, rows = mass_matrix([craft]), _rows([held, moving], len(craft.v))
+    expected, impulse = project(mass, rows, craft.v)
+    (record,) = trace.events
+    lost = 0.5 * (craft.v @ mass @ craft.v - expected @ mass @ expected)
+    size = np.linalg.norm(record.impulse)
+    return (
+        float(np.abs(after - expected).max() / np.abs(craft.v).max()),
+        abs(record.energy_lost - lost) / (0.5 * craft.v @ mass @ craft.v),
+        float(np.max(record.momentum_error)),
+        abs(float(size) / abs(impulse[1]) - 1.0),
+    )
+
+
+def cases() -> tuple[Case, ...]:
+    """Return the cases of brakes."""
+    return ()
