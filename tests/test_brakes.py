@@ -1,4 +1,4 @@
-"""Brakes: slip and hold against closed forms, and impulses against Gauss's principle."""
+"""Checks slipping and holding brakes against closed forms, and their impulses against Gauss's principle."""
 
 from __future__ import annotations
 

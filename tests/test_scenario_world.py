@@ -194,10 +194,10 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "release": ("release: grasp", "release: grap", r":23: events\[1\].do.release: .*'grasp'"),
     "release of a release": ("release: grasp", "release: let_go", r":23: .*is not a capture"),
     "same name": ("name: let_go", "name: grasp", r":21: events\[1\].name: two events"),
-    "brake": (
+    "two actions": (
         "do: {capture:",
         "do: {engage: brake, capture:",
-        r":20: events\[0\].do.engage: .*not available yet",
+        r":20: events\[0\].do: give exactly one of .*; given: capture, engage",
     ),
     "no time": ("do: {capture:", "do: {seat: 0 s, capture:", r":20: events\[0\].do.seat: .*must be"),
     "pose alone": (

@@ -18,6 +18,7 @@ from onorbit_rs.tools.validation import (
     against_spart,
     air_and_light,
     bodies,
+    brakes,
     capture,
     conservation,
     contact,
@@ -45,7 +46,7 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, capture, seating, contact, contact_boxes,
+        conservation, capture, seating, brakes, contact, contact_boxes,
         contact_friction, contact_grasp, worlds, order, against_pinocchio, against_mujoco,
         against_sgp4, against_spart,
     )

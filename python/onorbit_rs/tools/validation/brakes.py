@@ -62,7 +62,7 @@ def spinning_wheel(slip_torque: float = np.inf, **settings: Any) -> oo.WorldTrac
 
 
 def slowing() -> tuple[float, ...]:
-    """Return the errors of rate, angle, time at rest, energy and momentum of a wheel that a brake slows down."""
+    """Return the errors of rate, angle, energy and momentum of a wheel that a brake slows down."""
     trace = spinning_wheel(slip_torque=SLIP)
     chaser, reduced = trace["chaser"], BASE * WHEEL / (BASE + WHEEL)
     stop = SPIN * reduced / SLIP
@@ -154,6 +154,30 @@ def engage_against_gauss(seed: int) -> tuple[float, ...]:
     )
 
 
-def cases() -> tuple[Case, ...]:
-    """Return the cases of brakes."""
-    return ()
+def engaged() -> Array:
+    """Return the largest errors of rigid engagements of random robots."""
+    return worst(engage_against_gauss(seed) for seed in SEEDS)
+
+
+def captured() -> tuple[float]:
+    """Return the largest error of the velocities after captures with engaged brakes."""
+    return (float(worst(capture_against_gauss(seed)[0] for seed in SEEDS)),)
+
+
+CASES = (
+    Case(
+        "brakes", "a brake that slips stops a wheel", "q̇ = q̇0 − T t/I, E = ½ I q̇0², 1/I = 1/I1 + 1/I2",
+        (
+            Gate("rate", 1e-12, "rad/s"), Gate("angle", 1e-12, "rad"), Gate("energy dissipated", 1e-12, "J"),
+            Gate("momentum", 1e-13, "N s"),
+        ), slowing,
+    ),
+    Case(
+        "brakes", "12 random trees, a brake engaged in motion", "Gauss's principle with the rows of brakes",
+        tuple(Gate(name, gate) for name, gate in ENGAGE.items()), engaged,
+    ),
+    Case(
+        "brakes", "12 random pairs of trees, captured with engaged brakes",
+        "Gauss's principle with the rows of brakes", (Gate("velocity", 1e-12),), captured,
+    ),
+)  # fmt: skip
