@@ -11,10 +11,10 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.common.coordinates import BASE_NV
-from onorbit_rs.exceptions import InputError, EngineError, WorldError
+from onorbit_rs.exceptions import EngineError, InputError, WorldError
 from onorbit_rs.tools.validation import brakes
 from onorbit_rs.tools.validation.brakes import BASE, SLIP, SPIN, WHEEL, spinning_wheel
-from onorbit_rs.tools.validation.capture import random_pair
+from onorbit_rs.tools.validation.capture import random_pair, run
 
 
 def failed(trace: Any) -> list[Any]:
@@ -60,7 +60,7 @@ def test_a_rigid_brake_stops_the_wheel_at_once() -> None:
 def test_a_brake_begins_to_slip_at_its_slip_torque() -> None:
     def moved(torque: float, slip: float = SLIP) -> float:
         chaser, target = brakes.wheel_system(0.0, slip, torque=torque)
-        trace = oo.Simulation(oo.World([chaser, target]), time_step=0.01).run(1.0)
+        trace = run([chaser, target], [], 1.0, time_step=0.01)
         return float(np.abs(trace["chaser"].q[:, 7]).max())
 
     assert moved(SLIP * (1.0 - 1e-6)) == 0.0
@@ -106,7 +106,7 @@ def test_brakes_stay_engaged_through_captures_and_releases() -> None:
     grasp = oo.Capture("grasp", f"a/{first.frame}", f"b/{second.frame}", at=0.02)
     events = [grasp if event.name == "grasp" else event for event in EVENTS]
     world = oo.World(arm(), events=events)
-    trace = oo.Simulation(world, time_step=1e-3).run(0.1)
+    trace: Any = oo.Simulation(world, time_step=1e-3).run(0.1)
     a = trace["a"]
     assert [event.kind for event in trace.events] == [
         "engage", "capture", "disengage", "engage", "release", "disengage"
@@ -123,7 +123,7 @@ def test_brakes_stay_engaged_through_captures_and_releases() -> None:
         stepper = oo.Simulation(world, time_step=1e-3).start(duration=0.1)
         stepper.advance_to(until)
         saved = stepper.checkpoint()
-        resumed = oo.Simulation(world, time_step=1e-3).run(0.1, resume=saved)
+        resumed: Any = oo.Simulation(world, time_step=1e-3).run(0.1, resume=saved)
         assert np.array_equal(resumed["a"].q, a.q) and np.array_equal(resumed["b"].v, trace["b"].v)
         assert np.array_equal(resumed["a"].dissipated, a.dissipated)
 
@@ -131,7 +131,7 @@ def test_brakes_stay_engaged_through_captures_and_releases() -> None:
 def test_a_stepper_triggers_a_brake() -> None:
     chaser, target = brakes.wheel_system(SPIN)
     world = oo.World([chaser, target], events=[oo.Engage("stop", "chaser/brake", on_command=True)])
-    stepper = oo.Simulation(world, time_step=0.01).start(duration=1.0)
+    stepper: Any = oo.Simulation(world, time_step=0.01).start(duration=1.0)
     stepper.advance_to(0.333)
     stepper.trigger("stop")
     stepper.advance_to(1.0)
@@ -151,29 +151,31 @@ def test_a_brake_of_one_robot_holds_in_a_run_of_one_robot() -> None:
 def test_an_engaged_event_that_changes_nothing_is_not_recorded() -> None:
     chaser, target = brakes.wheel_system(0.0, SLIP)
     events = [oo.Engage("again", "chaser/brake", at=0.1)]
-    trace = oo.Simulation(oo.World([chaser, target], events=events), time_step=0.01).run(0.2)
+    trace = run([chaser, target], events, 0.2, time_step=0.01)
     assert trace.events == []
 
 
 def test_brakes_pickle() -> None:
     model = oo.robots.load("humanoid_dual_arm")
-    actuators = [
-        oo.Brake("b", model.joint_names[0], slip_torque=2.0, engaged=True),
-        oo.Brake("c", model.joint_names[1]),
-    ]
+    first, second = model.joint_names[:2]
+    actuators = [oo.Brake("b", first, slip_torque=2.0, engaged=True), oo.Brake("c", second)]
     q = np.zeros(model.nq)
     q[6] = 1.0
     craft = oo.System("a", model, q, np.zeros(model.nv), actuators=actuators)
-    events = [oo.Disengage("off", "a/b", at=0.01), oo.Engage("on", "a/c", after="off", delay=0.001)]
+    events: list[Any] = [
+        oo.Disengage("off", "a/b", at=0.01),
+        oo.Engage("on", "a/c", after="off", delay=0.001),
+    ]
     target = brakes.wheel_system(0.0)[1]
     world = pickle.loads(pickle.dumps(oo.World([craft, target], events=events)))
-    records = oo.Simulation(world, time_step=1e-3).run(0.02).events
+    trace: Any = oo.Simulation(world, time_step=1e-3).run(0.02)
+    records = trace.events
     assert [record.kind for record in records] == ["disengage", "engage"]
     assert pickle.loads(pickle.dumps(records[0])) == records[0]
     assert repr(records[0]) == "<disengage 'off' of a at t = 0.01 s: 0 J lost>"
     assert [repr(one) for one in (*events, actuators[1])] == [
         "<Disengage 'off': disengages a/b>", "<Engage 'on': engages a/c>",
-        f"<Brake 'c' of {model.joint_names[1]}>",
+        f"<Brake 'c' of {second}>",
     ]  # fmt: skip
 
 
@@ -182,7 +184,7 @@ def test_runs_in_steps_of_any_length_agree() -> None:
     assert all(np.abs(a - b).max() < 1e-11 for a, b in pairwise(ends))
 
 
-BAD = (
+BAD: tuple[tuple[list[oo.Brake], str, Any], ...] = (
     ([oo.Brake("b", "spinn")], "no joint|joint 'spinn'", None),
     ([oo.Brake("b", "spin"), oo.Brake("b", "spin")], "two brakes of one system have the name 'b'", None),
     ([oo.Brake("b", "spin"), oo.Brake("c", "spin")], "'b' and 'c' are both on the joint 'spin'", None),
@@ -212,7 +214,7 @@ def test_a_slip_torque_must_be_positive(torque: float) -> None:
 
 def test_an_external_engine_refuses_brakes() -> None:
     class Engine:
-        def step(self, *arguments: Any) -> None: ...
+        def step(self, *arguments: Any) -> Any: ...
 
     q = np.zeros(8)
     q[6] = 1.0

@@ -28,6 +28,7 @@ from onorbit_rs.tools.validation import (
     against_spart,
     air_and_light,
     bodies,
+    brakes,
     capture,
     conservation,
     contact,
@@ -75,6 +76,14 @@ def test_every_case_has_a_name_a_source_and_gates() -> None:
 # Negative controls: with a wrong constant or method, the named case must fail.
 
 J_SIGNS = [[1.02e8, 6.96e6, 5.48e6], [6.96e6, 0.91e8, -5.9e5], [5.48e6, -5.9e5, 1.64e8]]
+
+
+def without_first(joints: list[int], nv: int) -> Any:
+    """Returns the rows of the brakes without the first one."""
+    return OWN_ROWS(joints[1:], nv)
+
+
+OWN_ROWS = brakes.rows
 
 
 def of_wgs84(name: str) -> dict[str, Any]:
@@ -158,6 +167,9 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("capture", "joints that stick", capture, "impact", of_bases_only),
     ("capture", "a joint at its stop, restitution 0 and 0.5", capture, "impact_at_stop", without_stop),
     ("capture", "release with a spring", capture, "PUSH", [3.0, 0.0, 1.0, 0.0, 0.5, 1e-6]),
+    ("brakes", "a brake that slips stops a wheel", brakes, "TORQUE", 0.900001),
+    ("brakes", "12 random trees, a brake engaged in motion", brakes, "rows", without_first),
+    ("brakes", "12 random pairs of trees, captured with engaged brakes", brakes, "rows", without_first),
     ("capture", "a captured body is pulled by 1 m", seating, "SEAT", 3.001),
     ("capture", "a captured body is turned by 1.2 rad", seating, "TURNED", 2.001),
     ("contact", "restitution for d v0 from 0.01 to 10", contact, "CLOSING", 0.10001),

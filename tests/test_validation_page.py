@@ -25,6 +25,7 @@ TITLES = {
     "certificates": "Certificates of the bundled scenarios",
     "conservation": "Conservation",
     "capture": "Capture and release",
+    "brakes": "Brakes",
     "contact": "Contact",
     "world": "Worlds of several craft",
     "order": "Orders of convergence",

@@ -37,7 +37,7 @@ class Brake(Part):
     """Name, unique among the actuators of the system."""
     joint: str
     slip_torque: SlipTorque | None = None
-    """Largest torque, or force of a prismatic joint, that the brake holds. Default: the brake holds rigidly."""
+    """Largest torque, or force of a prismatic joint, that the brake holds. Default: it holds rigidly."""
     engaged: bool = False
     """Whether the brake is engaged at the start."""
 
@@ -49,7 +49,7 @@ class Brake(Part):
         FrameError
             If the robot has no moving joint of this name.
         QuantityError
-            If the slip torque is a force although the joint is revolute, or a torque although it is prismatic.
+            If the slip torque is a force on a revolute joint, or a torque on a prismatic joint.
         """
         slip = float("inf") if self.slip_torque is None else float(self.slip_torque)
         joint = {joint.name: joint for joint in model.joints}.get(self.joint)

@@ -1,4 +1,4 @@
-"""Events of a scenario with several systems: captures, releases, and brakes that are engaged or disengaged."""
+"""Events of a scenario with several systems: captures, releases, and changes of brakes."""
 
 from __future__ import annotations
 

@@ -19,6 +19,8 @@ SPIN = 2.0
 """Initial rate of the wheel relative to the base, rad/s."""
 SLIP = 0.9
 """Slip torque of the brake, N m."""
+TORQUE = SLIP
+"""Slip torque of the closed form, N m."""
 SEEDS = range(3200, 3212)
 
 
@@ -38,7 +40,7 @@ class _Torque:
     def __init__(self, torque: float) -> None:
         self.torque = torque
 
-    def update(self, t: float, state: oo.State) -> list[float]:  # noqa: ARG002
+    def update(self, t: float, state: oo.State) -> list[float]:
         return [self.torque]
 
 
@@ -65,10 +67,10 @@ def slowing() -> tuple[float, ...]:
     """Return the errors of rate, angle, energy and momentum of a wheel that a brake slows down."""
     trace = spinning_wheel(slip_torque=SLIP)
     chaser, reduced = trace["chaser"], BASE * WHEEL / (BASE + WHEEL)
-    stop = SPIN * reduced / SLIP
+    stop = SPIN * reduced / TORQUE
     slowed = np.clip(chaser.time - 0.5, 0.0, stop)
-    rate = SPIN - SLIP / reduced * slowed
-    angle = SPIN * (np.minimum(chaser.time, 0.5) + slowed) - 0.5 * SLIP / reduced * slowed**2
+    rate = SPIN - TORQUE / reduced * slowed
+    angle = SPIN * (np.minimum(chaser.time, 0.5) + slowed) - 0.5 * TORQUE / reduced * slowed**2
     return (
         float(np.abs(chaser.v[:, 6] - rate).max()),
         float(np.abs(chaser.q[:, 7] - angle).max()),
@@ -92,10 +94,11 @@ def _brakes(craft: Craft, joints: list[int], *, engaged: bool) -> list[oo.Brake]
     return [oo.Brake(names[joint], names[joint], engaged=engaged) for joint in joints]
 
 
-def _rows(joints: list[int], nv: int) -> Array:
-    rows = np.zeros((len(joints), nv))
-    rows[np.arange(len(joints)), [BASE_NV + joint for joint in joints]] = 1.0
-    return rows
+def rows(joints: list[int], nv: int) -> Array:
+    """Return the constraint rows of joints that brakes hold, (joints, nv)."""
+    held = np.zeros((len(joints), nv))
+    held[np.arange(len(joints)), [BASE_NV + joint for joint in joints]] = 1.0
+    return held
 
 
 def capture_against_gauss(seed: int) -> tuple[float, float]:
@@ -115,7 +118,7 @@ def capture_against_gauss(seed: int) -> tuple[float, float]:
     crafts, before = (first, second), np.concatenate([first.v, second.v])
     mass, twist = mass_matrix(crafts), relative_twist(crafts, 0, 1)
     shift = first.model.nv
-    held = _rows(held_a + [shift + joint for joint in held_b], len(before))
+    held = rows(held_a + [shift + joint for joint in held_b], len(before))
     expected = project(mass, np.vstack([twist, held]), before)[0]
     control = project(mass, twist, before)[0]
     size = np.abs(np.concatenate([before, expected])).max()
@@ -141,22 +144,22 @@ def engage_against_gauss(seed: int) -> tuple[float, ...]:
     ]
     trace = run(systems, [oo.Engage("stop", f"a/{name}", at=0.0)], 1e-3, time_step=1e-3)
     after = trace["a"].v[np.flatnonzero(trace["a"].time == 0.0)[-1]]
-    mass, rows = mass_matrix([craft]), _rows([held, moving], len(craft.v))
-    expected, impulse = project(mass, rows, craft.v)
+    mass, held_rows = mass_matrix([craft]), rows([held, moving], len(craft.v))
+    expected, impulse = project(mass, held_rows, craft.v)
     (record,) = trace.events
     lost = 0.5 * (craft.v @ mass @ craft.v - expected @ mass @ expected)
     size = np.linalg.norm(record.impulse)
     return (
         float(np.abs(after - expected).max() / np.abs(craft.v).max()),
-        abs(record.energy_lost - lost) / (0.5 * craft.v @ mass @ craft.v),
+        float(abs(record.energy_lost - lost) / (0.5 * craft.v @ mass @ craft.v)),
         float(np.max(record.momentum_error)),
-        abs(float(size) / abs(impulse[1]) - 1.0),
+        abs(float(size) / abs(impulse[-1]) - 1.0),
     )
 
 
-def engaged() -> Array:
+def engaged() -> tuple[float, ...]:
     """Return the largest errors of rigid engagements of random robots."""
-    return worst(engage_against_gauss(seed) for seed in SEEDS)
+    return tuple(worst(engage_against_gauss(seed) for seed in SEEDS))
 
 
 def captured() -> tuple[float]:
