@@ -24,6 +24,9 @@ CHECKS = {
 JOINTS = ("joint_step_doubling_rel",)
 """Checks that do not apply to a robot without joints."""
 
+LOOPS = ("loop_opening",)
+"""Checks that apply only to robots with closed loops or mimic joints, for which they are always evaluated."""
+
 SUSPECT = 0.1
 """Smallest ratio of the step-doubling error to its gate that suggests that the time step is too long."""
 

@@ -12,7 +12,7 @@ from onorbit_rs.common.coordinates import BASE_NQ, POSITION, QUATERNION
 from onorbit_rs.common.printable import json_value
 from onorbit_rs.common.rotations import angle_between
 from onorbit_rs.engines import versions
-from onorbit_rs.output.checks import CHECKS, GATE, JOINTS
+from onorbit_rs.output.checks import CHECKS, GATE, JOINTS, LOOPS
 from onorbit_rs.output.joints import (
     efforts_at_limit,
     joint_errors,
@@ -82,7 +82,8 @@ def _certificate(trace: Trace) -> Summary:
     gates = {GATE + name: gate for name, value, gate, _ in rows if value is not None}
     failed = [name for name, _, _, passed in rows if not passed]
     has_joints = np.shape(trace.q)[1] > BASE_NQ
-    absent = [name for name in CHECKS if name not in balances and (has_joints or name not in JOINTS)]
+    inapplicable = LOOPS if has_joints else JOINTS + LOOPS
+    absent = [name for name in CHECKS if name not in balances and name not in inapplicable]
     return (
         balances
         | {
