@@ -231,7 +231,7 @@ def test_a_log_of_one_robot_and_entries_of_a_program() -> None:
     both = [{"control": "control", "effort": np.zeros(7)}, {"control": "control", "position": np.zeros(7)}]
     with pytest.raises(oo.exceptions.ControlError, match="kp > 0"):
         log.apply(stepper, *both)  # none of them
-    with pytest.raises(oo.exceptions.InputError, match="several commands at once must be constant"):
+    with pytest.raises(oo.exceptions.InputError, match="without 'trajectory' can be given together"):
         log.apply(stepper, both[0], {"body": "bus", "torque": [0, 0, 1.0]})
     assert len(log) == 1 and log.entries[0] == {"control": "control", "effort": [1e-3] * 7, "time": 0.0}
     apply(stepper, {"body": "bus", "torque": (0, 0, 1.0)})

@@ -169,7 +169,7 @@ def test_a_limit_of_wall_clock_time_returns_early() -> None:
     stepper.advance_to(1e6, wall_s=0.05)
     assert time.perf_counter() - begin < 5.0
     assert 0.0 < stepper.time < 1e6
-    with pytest.raises(oo.exceptions.InputError, match="wall_s is -1 s; it must be finite and at least 0"):
+    with pytest.raises(oo.exceptions.InputError, match=r"wall_s is -1 s; it must be from 0 to 1\.8e19 s"):
         stepper.advance_to(1e6, wall_s=-1.0)
 
 

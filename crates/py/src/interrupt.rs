@@ -22,7 +22,7 @@ const STEPS: usize = 16;
 /// Converts an interval of wall-clock time, s; `name` is the name of the argument in messages.
 pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Duration> {
     Duration::try_from_secs_f64(seconds).map_err(|_| {
-        let message = format!("{name} is {} s; it must be finite and at least 0", short(seconds));
+        let message = format!("{name} is {} s; it must be from 0 to 1.8e19 s", short(seconds));
         raise(py, "InputError", &message, &fields!(py, "name": name, "got": seconds))
     })
 }

@@ -46,9 +46,9 @@ def _quantities(*dimensions: Dimension, above_zero: bool = False) -> BeforeValid
             names = ", ".join(dimension.name for dimension in dict.fromkeys(dimensions))
             raise invalid(f"must be a list of {len(dimensions)} quantities ({names}), not {shortened(value)}")
         numbers = [parse_quantity(entry, kind) for entry, kind in zip(value, dimensions, strict=True)]
-        for number in numbers:
+        for number, kind in zip(numbers, dimensions, strict=True):
             if above_zero and number <= 0.0:
-                message = f"a value is {number:g} in SI units; it must be above zero"
+                message = f"{kind.name} is {number:g} {kind.si}; it must be above zero"
                 raise QuantityError(message, text=number, expected="above zero")
         return numbers
 

@@ -69,7 +69,9 @@ def _check(stepper: Stepper, command: Command) -> None:
     if "control" not in command or "trajectory" in command:
         given = f"{dict(command)!r:.80}"
         raise invalid(
-            "", f"several commands at once must be constant commands to joints, not {given}; give it alone"
+            "",
+            "only commands with 'control' and without 'trajectory' can be given together; give this command "
+            f"alone: {given}",
         )
     give(stepper, command, check_only=True)
 

@@ -31,7 +31,8 @@ pub struct LocalAtmosphere {
     density: f64,
     /// Inverse of the scale height, 1/m.
     decay: f64,
-    /// Angular velocity of the Earth, axes of `I`, rad/s; its relative change is 1e-7 per day.
+    /// Angular velocity of the Earth at `time`, axes of `I`, rad/s; its relative change is less than 1e-6 per
+    /// day.
     pub(in crate::environment) earth_rate: Vector3<f64>,
 }
 

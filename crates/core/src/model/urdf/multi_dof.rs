@@ -42,29 +42,32 @@ pub(super) fn split(
             (parts, "is planar and is replaced by two prismatic joints and a revolute one")
         }
         MultiDof::Ball => {
-            let remark = "is a ball joint and is replaced by three revolute joints, singular at a pitch of \
-            ±90°";
+            let remark = "is a ball joint and is replaced by three revolute joints (singular at a pitch of \
+            ±90°)";
             (revolute.to_vec(), remark)
         }
         MultiDof::Floating => {
             let along = |axis: Vector3<f64>| JointKind::Prismatic(axis);
             let prismatic =
                 [("_x", along(Vector3::x())), ("_y", along(Vector3::y())), ("_z", along(Vector3::z()))];
-            let remark = "is floating and is replaced by three prismatic and three revolute joints, \
-            singular at a pitch of ±90°";
+            let remark = "is floating and is replaced by three prismatic and three revolute joints \
+            (singular at a pitch of ±90°)";
             ([prismatic, revolute].concat(), remark)
         }
     };
     let dropped = ["limit", "dynamics", "mimic"].into_iter().filter(|tag| joint.element.child(tag).is_some());
     let dropped: Vec<String> = dropped.map(|tag| format!("<{tag}>")).collect();
-    let suffix =
-        if dropped.is_empty() { String::new() } else { format!("; its {} is ignored", dropped.join(", ")) };
+    let suffix = match dropped.as_slice() {
+        [] => String::new(),
+        [tag] => format!("; its {tag} is ignored"),
+        tags => format!("; its {} are ignored", tags.join(" and ")),
+    };
     let mut placed = || std::mem::replace(&mut origin, Isometry3::identity());
     let joint = |(ending, kind)| Joint::new(&free(format!("{name}{ending}"), &is_taken), kind, placed());
     let joints: Vec<Joint> = parts.into_iter().map(joint).collect();
     if joints.len() > 1 {
         let names: Vec<String> = joints.iter().map(|joint| format!("'{}'", joint.name)).collect();
-        let note = format!("joint '{name}' {remark}, {}{suffix}", names.join(", "));
+        let note = format!("joint '{name}' {remark}: {}{suffix}", names.join(", "));
         warnings.push(ModelWarning::Note(note));
     }
     joints
