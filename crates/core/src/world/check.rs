@@ -1,9 +1,10 @@
-//! Checks of the systems and events of a world before a run.
+//! Checks of the systems, brakes and events of a world before a run.
 
+use super::brake::Brake;
 use super::error::WorldError;
 use super::event::{Action, BrakeIndex, Event, FrameIndex, RigidPose, Seat, When};
 use super::system::System;
-use crate::model::{Model, Mount};
+use crate::model::{BASE_NV, Model, Mount};
 use crate::reference::TimeLaw;
 
 /// Names that references use for frames or paths and that no system may have.
@@ -197,6 +198,39 @@ fn check_circles(events: &[Event]) -> Result<(), WorldError> {
                 break; // a cycle that does not contain `start`
             }
             at = event;
+        }
+    }
+    Ok(())
+}
+
+/// Checks the brakes of a system.
+///
+/// # Errors
+/// [`WorldError`] for a name given twice, a joint that does not exist or has two brakes, a slip torque that is not
+/// positive, and a joint that moves at the start although a brake holds it rigidly.
+pub fn check_brakes(system: &System) -> Result<(), WorldError> {
+    let (brakes, joints) = (&system.brakes, system.model.joints());
+    for (i, Brake { name, joint, slip_torque, is_engaged }) in brakes.iter().enumerate() {
+        let name = || name.clone();
+        if brakes[..i].iter().any(|before| before.name == brakes[i].name) {
+            return Err(WorldError::BrakeTwice { name: name() });
+        }
+        let Some(held) = joints.get(*joint).map(|joint| joint.name.clone()) else {
+            return Err(WorldError::BrakeJoint { name: name(), joint: *joint, count: joints.len() });
+        };
+        if let Some(before) = brakes[..i].iter().find(|before| before.joint == *joint) {
+            return Err(WorldError::JointWithTwoBrakes {
+                name: name(),
+                other: before.name.clone(),
+                joint: held,
+            });
+        }
+        if slip_torque.is_nan() || *slip_torque <= 0.0 {
+            return Err(WorldError::SlipTorque { name: name(), value: *slip_torque });
+        }
+        let rate = system.v.get(BASE_NV + joint).copied().unwrap_or(0.0);
+        if *is_engaged && slip_torque.is_infinite() && rate != 0.0 {
+            return Err(WorldError::HeldJointMoves { name: name(), joint: held, rate });
         }
     }
     Ok(())

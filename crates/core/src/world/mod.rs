@@ -15,8 +15,8 @@ mod system;
 
 pub use assembly::{Assembly, BodyPlace, Member, assemble};
 pub use audit::{Balance, energy, energy_of_change};
-pub use brake::{Brake, check_brakes};
-pub use check::{check_events, check_names};
+pub use brake::Brake;
+pub use check::{check_brakes, check_events, check_names};
 pub use error::WorldError;
 pub use event::{Action, BrakeIndex, Envelope, Event, FrameIndex, RigidPose, Seat, Seating, Weld, When};
 pub use groups::{groups, systems_of};
