@@ -45,8 +45,10 @@ def test_every_bundled_robot_gets_a_scenario_that_passes_its_certificate(robot: 
         assert not oo.robots.load(load(tmp_path / "mine.yaml").robot.bundled).joints
         return
     assert summary["joint_limits_exceeded"] == ""
-    if robot == "pusher":  # three joints cannot move a tool in six directions, so the draft moves the joints
-        assert summary["tracking_arm_joint_error_max_rad"] < 1e-3
+    if "control_arm_result" not in summary:
+        # too few joints to move a tool in six directions, so the draft moves or holds the joints
+        assert robot in ("pusher", "four_bar_gripper", "parallel_gripper")
+        assert all(error < 1e-3 for key, error in summary.items() if key.endswith("joint_error_max_rad"))
         return
     assert summary["control_arm_result"] == "succeeded"
     assert summary["tracking_position_error_max_m"] < 1e-3

@@ -212,7 +212,6 @@ INVALID: dict[str, tuple[str, str, str]] = {
         r":6: systems.chaser.knows\[0\]: .*did you mean 'target'",
     ),
     "knows itself": ("    tool: tool", "    knows: [chaser]", r":6: systems.chaser.knows\[0\]: .*itself"),
-    "loops": ("events:\n", "loops: []\nevents:\n", r":17: loops: .*not available yet"),
     "engine": (
         "systems:\n",
         "engine: mujoco\nsystems:\n",
@@ -267,16 +266,6 @@ def test_invalid_input_names_file_line_and_key(case: str, file: Path) -> None:
     assert old in PAIR
     file.write_text(PAIR.replace(old, new, 1))
     with pytest.raises(kind, match=r"pair\.yaml" + message):
-        built(file)
-
-
-def test_a_capture_that_closes_a_loop_is_located(file: Path) -> None:
-    again = "  - {name: again, when: {at: 0.4}, do: {capture: [chaser/tool, target/handle]}}\n"
-    first = (
-        PAIR[: PAIR.index("  - name: grasp")] + again.replace("again", "grasp").replace("0.4", "0.1") + again
-    )
-    file.write_text(first + "simulation: {duration: 0.5 s, time_step: 10 ms}\n")
-    with pytest.raises(WorldError, match=r"pair.yaml:\d+: events.*loop"):
         built(file)
 
 

@@ -128,10 +128,11 @@ def _travel(joint: Joint) -> float:
 
 
 def _chains(model: Model) -> dict[str, list[Joint]]:
-    """Return the joints from the base to each body."""
+    """Return the joints from the base to each body, without mimic joints, which follow others."""
     chains: dict[str, list[Joint]] = {}
     for joint in model.joints:  # a parent precedes its children
-        chains[joint.child] = [*chains.get(joint.parent, []), joint]
+        own = [joint] if joint.mimic is None else []
+        chains[joint.child] = chains.get(joint.parent, []) + own
     return chains
 
 

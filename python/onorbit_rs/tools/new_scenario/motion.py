@@ -61,7 +61,8 @@ def start_positions(model: Model, arm: Arm | None, weight: Weight | None = None)
     """Return initial positions of the arm's joints (see :func:`home`) and of joints that cannot be zero."""
     pose = {} if arm is None else home(model, arm, weight)
     for joint in model.joints:
-        if (arm is None or joint.name not in arm.joints) and at_rest(joint) != 0.0:
+        is_free = joint.mimic is None and (arm is None or joint.name not in arm.joints)
+        if is_free and at_rest(joint) != 0.0:
             pose[joint.name] = float(f"{at_rest(joint):.3g}")
     return pose
 
