@@ -162,10 +162,6 @@ INVALID: dict[str, tuple[Callable[[], object], str]] = {
         lambda: world(oo.Capture("grasp", "chaser/tool", "chaser/base_link", at=1.0)),
         "different systems|base_link",
     ),
-    "connected twice": (
-        lambda: world(GRASP, oo.Capture("again", "chaser/tool", "target/base", at=0.4)),
-        "connect the same systems twice",
-    ),
     "unknown capture": (lambda: world(oo.Release("let_go", "grip", at=1.0)), "unknown event 'grip'"),
     "release of a release": (
         lambda: world(GRASP, LET_GO, oo.Release("more", "let_go", at=2.0)),

@@ -72,12 +72,12 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Coefficient of restitution of the stops, 0 to 1.
 /// record_wrenches : bool
 ///     If True, ``trace.wrenches`` contains the wrench of every effect on every body.
-/// actuators : list of Brake, optional
-///     Brakes of joints. Events of a :class:`World` engage and disengage them.
 /// rereference_beyond : float
 ///     Distance of the base from the reference orbit, m, beyond which integration continues about a new,
 ///     freely falling reference orbit, unless a controller tracks a pose in W. ``trace.rereferenced`` holds
 ///     the times; recorded quantities still refer to W.
+/// actuators : list of Brake, optional
+///     Brakes of joints. Events of a :class:`World` engage and disengage them.
 /// engine : object, optional
 ///     External physics engine that replaces the native engine, such as ``onorbit_rs.engines.Mujoco``. It is
 ///     an object with a method ``step`` (see Notes).
