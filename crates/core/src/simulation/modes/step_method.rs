@@ -37,6 +37,8 @@ pub(crate) struct StepMethod<S> {
     pub(crate) idle_steps: usize,
     /// True if the elastic energy has jumped in the last step.
     pub(crate) has_jumped: bool,
+    /// Number of consecutive steps whose energy balance did not close at the shortest length.
+    pub(crate) unclosed: u32,
     time_step: f64,
 }
 
@@ -49,13 +51,14 @@ impl<S: Real> StepMethod<S> {
             ignores_slip: false,
             idle_steps: 0,
             has_jumped: false,
+            unclosed: 0,
             time_step: settings.time_step,
         }
     }
 
     /// Resets the method at the start of another run.
     pub(crate) fn reset(&mut self) {
-        (self.idle_steps, self.has_jumped) = (0, false);
+        (self.idle_steps, self.has_jumped, self.unclosed) = (0, false, 0);
     }
 
     /// Applies the impacts at `state`. Requires its kinematics, with projected base twists, in `equations`,
@@ -93,7 +96,9 @@ impl<S: Real> StepMethod<S> {
         }
         self.ignores_slip = self.idle_steps >= MOST_IDLE_STEPS;
         equations.contacts.ignores_slip = self.ignores_slip;
-        let fraction = self.locate(equations, state, (interval.0, end))?;
+        // a change that recurs at the same instant, such as a contact that opens and closes, must not stop the run
+        let is_stuck = self.idle_steps >= 2 * MOST_IDLE_STEPS;
+        let fraction = if is_stuck { 1.0 } else { self.locate(equations, state, (interval.0, end))? };
         let reached = if fraction < 1.0 { interval.0 + fraction * (end - interval.0) } else { end };
         let reached = match balance {
             Some(balance) => self.close_energy_balance(equations, state, (interval.0, reached), balance)?,
@@ -118,7 +123,10 @@ impl<S: Real> StepMethod<S> {
         balance: S,
     ) -> Result<f64, SimulationError> {
         let permitted = equations.contacts.energy_error;
-        let shortest = SHORTEST * (end - start);
+        // each failure makes the next attempt ten times less persistent, so that a run does not crawl where the
+        // balance cannot close, as where the elastic energy jumps in many steps
+        let shortest = (SHORTEST * 10.0_f64.powi(self.unclosed.min(4) as i32)) * (end - start);
+        let mut is_halved = false;
         loop {
             self.settled.copy_from(state);
             equations.project_momentum(&mut self.settled);
@@ -129,8 +137,14 @@ impl<S: Real> StepMethod<S> {
             let is_balanced = (now - balance).lane(0).abs() <= permitted && (is_stored || self.has_jumped);
             if is_balanced || end - start <= shortest {
                 self.has_jumped = !is_stored;
+                self.unclosed = match (is_balanced, is_halved) {
+                    (true, false) => 0,
+                    (true, true) => self.unclosed,
+                    (false, _) => self.unclosed + 1,
+                };
                 return Ok(end);
             }
+            is_halved = true;
             end = 0.5 * (start + end);
             self.repeat_step(equations, state, (start, end), 1.0)?;
         }
