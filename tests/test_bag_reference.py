@@ -220,7 +220,7 @@ def test_files_that_are_not_bags_are_refused(tmp_path: Path, monkeypatch: pytest
         with pytest.raises(ReadError, match=rf"mine\.yaml:6: reference: .*{name} .*damaged or truncated"):
             reference(tmp_path / name)
     (tmp_path / "table.csv").write_text("time\n0")
-    with pytest.raises(ReadError, match=r"end in one of .mcap, .db3, .bag, or it must be the folder"):
+    with pytest.raises(ReadError, match=r"end in one of .mcap, .db3, .bag, or it must be a folder"):
         reference(tmp_path / "table.csv")
     with pytest.raises(NotFoundError, match="no such file"):
         reference(tmp_path / "none.mcap")

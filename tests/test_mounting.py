@@ -276,7 +276,7 @@ def test_warnings_are_issued_once(files: Path) -> None:
         ({"bus": "bus.urdf", "arms": [{"urdf": "amr.urdf", "at": "plate"}]},
          "amr.urdf: there is no such file"),
         ({"bus": "bus.urdf", "arms": [{"urdf": "arm.urdf"}]}, "robot.arms[0].at: is missing"),
-        ({"bus": "bus.urdf", "arms": []}, "robot.arms: has 0 entries, expected at least 1"),
+        ({"bus": "bus.urdf", "arms": []}, "robot.arms: has 0 entries; give at least one"),
         ({"bus": "bus.urdf"}, "robot: 'bus' requires 'arms'; list at least one"),
         ({"bus": "bus.urdf", "arms": None}, "robot: 'bus' requires 'arms'; list at least one"),
         ({"urdf": "bus.urdf", "bus": None, "arms": [{"urdf": "arm.urdf", "at": "plate"}]},

@@ -105,12 +105,12 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "key of another kind": (
         LINE + ", height: [0, 0, 1]}\n",
         "5: reference.height",
-        ("of kind 'line'", "belongs to line_parabola"),
+        ("unknown key for kind 'line'", "a key of line_parabola"),
     ),
     "key of another orbit": (
         LAW + "orbit: {semi_major_axis: 6778 km, gravity_mode: carried}\n",
         "5: orbit.gravity_mode",
-        ("of kind 'kepler'", "sgp4, custom_path, fixed_frame"),
+        ("for kind 'kepler'", "it is a key of sgp4, custom_path, fixed_frame"),
     ),
     "key of the orbit beside it": (
         ORBIT + "gravity_mode: carried\n",
@@ -123,7 +123,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "gain by its other name": (
         JOINTS + "controller: {kind: joint_pid, kp: 5}\n",
         "3: controller.kp",
-        ("unknown key of kind 'joint_pid'; did you mean 'p'?",),
+        ("unknown key for kind 'joint_pid'; did you mean 'p'?",),
     ),
     "gain of one of several by its other name": (
         JOINTS + "controllers: [{name: a, kind: joint_pid, p: 1, kd: 5}]\n",
@@ -133,7 +133,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "two lines as a list": (
         LAW + "orbit:\n  kind: sgp4\n  tle:\n    - 1 25544U\n    - 2 25544\n",
         "7: orbit.tle",
-        ("must be a single text; write 'tle: |'", "'line1' and 'line2'"),
+        ("must be text, not a list; write 'tle: |'", "'line1' and 'line2'"),
     ),
     "air, misspelt": (
         ORBIT + "environment: [{kind: drag, atmosphere: exponantial}]\n",
@@ -148,7 +148,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "index, too few": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: [1, 2]}}]\n",
         "6: environment[0].atmosphere.ap",
-        ("ap is a list of length 2; give one number without a list, or a list of seven",),
+        ("ap is a list with 2 entries; give the daily value as one number, or NRLMSISE-00's list of seven",),
     ),
     "index, a word": (
         ORBIT + "environment: [{kind: drag, atmosphere: {kind: nrlmsise00, ap: high}}]\n",
@@ -207,7 +207,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no points": (
         LAW + "reference: {kind: waypoints, points: [], speed: 1}\n",
         "5: reference.points",
-        ("has 0 entries, expected at least 1",),
+        ("has 0 entries; give at least one",),
     ),
     "a quote left open": ("robot: 'humanoid\n" + RUN, "3", ("invalid YAML", "is a quote not closed?")),
     "a sign of YAML's": ("robot: @torso\n" + RUN, "1", ("'@'", "in quotes")),
@@ -234,7 +234,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "drift, a word": (
         ROBOT + "simulation: {duration: 1, rereference_beyond: always}\n",
         "2: simulation.rereference_beyond",
-        ("is not a length", "or 'never'"),
+        ("is not a length", "give a number in m, or", "; or write 'never'"),
     ),
     "a switch": (
         ROBOT + "simulation: {duration: 1, enforce_limits: perhaps}\n",
@@ -257,7 +257,7 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "one entry": (
         JOINTS + "initial: {position: [1]}\n",
         "3: initial.position",
-        ("has 1 entry, expected 3",),
+        ("has 1 entry; give 3",),
     ),
     "a step of no time": (
         ROBOT + "simulation: {duration: 1e-298, time_step: 1e-300}\n",

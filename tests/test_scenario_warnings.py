@@ -153,8 +153,8 @@ def test_check_and_run_print_the_warning_in_one_line(tmp_path: Any) -> None:
     assert done.returncode == 0
     (line,) = [line for line in done.stderr.splitlines() if "kd" in line]
     assert line.endswith(
-        "controller.kd corrects errors at a rate of 2 1/s, which times the control period of 5 s is 10; "
-        "errors grow if this product exceeds 2. Use a control_period below 1 s, or a smaller gain"
+        "controller.kd corrects errors at a rate of 2 1/s; with a control period of 5 s, the product of "
+        "both is 10, and errors grow if it exceeds 2; use a control_period below 1 s, or a smaller gain"
     )
 
 

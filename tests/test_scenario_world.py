@@ -182,7 +182,7 @@ INVALID: dict[str, tuple[str, str, str]] = {
     "negative latch": (
         "[5 cm, 2 deg]",
         "[-5 cm, 2 deg]",
-        r":19: .*within: a length is -0.05 m; it must be above zero",
+        r":19: .*within: -0.05 m is out of range; a length must be above zero",
     ),
     "unit": ("[5 cm, 2 deg]", "[5 cm, 2 cm]", r":19: .*within: '2 cm' is not an angle"),
     "impulse": ("2 N s", "2 N", r":23: events\[1\].do.impulse: '2 N' is not an impulse"),

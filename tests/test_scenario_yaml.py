@@ -59,7 +59,7 @@ def _line_of(text: str, part: str) -> int:
             "displacement: [0.5, 0, 0]",
             "displacement: [0.5, 0]",
             "reference.displacement",
-            "has 2 entries, expected 3",
+            "has 2 entries; give 3",
         ),
         ("eccentricity: 0.0005", "eccentricity: -0.1", "orbit.eccentricity", "zero or above"),
         ("joints: [0.5342", "joints: ['0.5 s'", "initial.joints", "not an angle or a length"),

@@ -127,7 +127,7 @@ def test_events_without_a_time_are_in_the_order_of_declaration() -> None:
 def test_a_capture_of_what_is_connected_is_pointed_out() -> None:
     latch = {"latch": {"within": [0.1, 0.1]}}
     found = stages(chain(("one", latch, capture("a", "b")), ("two", latch, capture("b", "a"))))
-    assert found[-1].remark == "stops the run: b and a are connected already"
+    assert found[-1].remark == "stops the run: b and a are already connected"
 
 
 def test_the_command_shows_systems_events_and_trees(tmp_path: Path) -> None:

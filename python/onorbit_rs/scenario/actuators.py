@@ -10,7 +10,7 @@ from onorbit_rs import _core
 from onorbit_rs.common.suggestions import did_you_mean, nearest
 from onorbit_rs.exceptions import FrameError, QuantityError
 from onorbit_rs.scenario import units
-from onorbit_rs.scenario.errors import inconsistent
+from onorbit_rs.scenario.errors import inconsistent, shortened
 from onorbit_rs.scenario.joint_values import JointValue, joint_value
 from onorbit_rs.scenario.part import Part
 
@@ -19,8 +19,8 @@ def _slip_torque(value: object) -> JointValue:
     number = joint_value(value, (units.TORQUE, units.FORCE))
     if number <= 0.0:
         raise QuantityError(
-            f"the slip torque is {number:g} in SI units; it must be above zero; omit it for a brake that "
-            "holds rigidly",
+            f"{shortened(value)} is out of range; the slip torque (or force) must be above zero; omit "
+            "'slip_torque' for a brake that holds rigidly",
             text=value,
             expected="above zero",
         )
@@ -82,7 +82,8 @@ def check_actuators(system: str, actuators: list[Brake]) -> None:
                 raise inconsistent((*at, "brake"), message)
             if before.joint == brake.joint:
                 message = (
-                    f"the joint {brake.joint!r} already has the brake {before.brake!r}; omit one of them"
+                    f"the joint {brake.joint!r} already has the brake {before.brake!r}; omit one of the "
+                    "brakes"
                 )
                 raise inconsistent((*at, "joint"), message)
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from onorbit_rs.common.counting import count
 from onorbit_rs.common.input_files import check_regular
 from onorbit_rs.common.suggestions import did_you_mean
 from onorbit_rs.exceptions import OnOrbitError, ReadError
@@ -57,7 +58,11 @@ def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
         check_regular(path, "bag")
         if path.suffix not in SUFFIXES:
             endings = ", ".join(SUFFIXES)
-            raise _error(path, f"its name must end in one of {endings}, or it must be the folder of a bag")
+            raise _error(
+                path,
+                f"its name must end in one of {endings}, or it must be a folder with the metadata.yaml of a "
+                "bag",
+            )
     with _opened(path) as reader:
         of_joints = {each.topic: each for each in reader.connections if each.msgtype in (STATES, TRAJECTORY)}
         chosen = of_joints[_choice(path, topic, list(of_joints), sorted(reader.topics))]
@@ -69,7 +74,11 @@ def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
     if chosen.msgtype == STATES:
         return chosen.topic, _samples_of_states(contents)
     if len(contents) != 1:
-        message = f"topic {chosen.topic} has {len(contents)} trajectories; a reference requires exactly one"
+        found = count(len(contents), "trajectory", "trajectories")
+        message = (
+            f"topic {chosen.topic} has {found}; a reference requires exactly one; give another 'topic' or "
+            "record a bag with one trajectory"
+        )
         raise _error(path, message)
     return chosen.topic, _samples_of_trajectory(contents[0][1])
 

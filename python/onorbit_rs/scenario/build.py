@@ -171,7 +171,10 @@ def check_record_every(scenario: Scenario) -> None:
     every, steps = scenario.simulation.record_every, scenario.simulation.steps
     if every > steps:
         at = ("simulation", "record_every")
-        message = f"{every} exceeds the number of steps, {steps}; give at most {steps} to record both ends"
+        message = (
+            f"{every} exceeds the number of steps, {steps}; give at most {steps}, so that both the start and "
+            "the end of the run are recorded"
+        )
         raise scenario_error(message, scenario.file, scenario.line_of(*at), dotted(scenario.location(*at)))
 
 

@@ -28,12 +28,15 @@ class CollisionShape(Part):
     @model_validator(mode="after")
     def _has_a_shape_or_pieces(self) -> Self:
         if self.shape is None and self.pieces is None:
-            raise invalid("adds nothing; give 'shape', or 'pieces' to divide the meshes of the link")
+            raise invalid("neither 'shape' nor 'pieces' is given; give one of them")
         if self.shape is not None and self.pieces is not None:
-            message = "divides the meshes of the robot's file; for an added mesh, write 'pieces' in 'shape'"
+            message = (
+                "'pieces' beside 'shape' would divide the meshes of the robot's file, not this shape; move "
+                "'pieces' into 'shape'"
+            )
             raise inconsistent("pieces", message)
         if self.pose is not None and self.shape is None:
-            raise inconsistent("pose", "is the pose of 'shape'; add 'shape' or omit 'pose'")
+            raise inconsistent("pose", "'pose' is the pose of 'shape'; add 'shape' or omit 'pose'")
         return self
 
     def add_to(self, model: _core.Model, folder: Path) -> _core.Model:

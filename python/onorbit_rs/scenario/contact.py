@@ -61,7 +61,7 @@ class HuntCrossley(Part):
     @model_validator(mode="after")
     def _has_one_loss(self) -> Self:
         if self.restitution is not None and not 0.0 < self.restitution <= 1.0:
-            message = f"{self.restitution:g} is outside its range; it must be more than 0 and at most 1"
+            message = f"{self.restitution:g} is out of range; it must be above 0 and at most 1"
             raise inconsistent("restitution", message)
         if self.restitution is not None and self.dissipation is not None:
             raise inconsistent(
@@ -119,7 +119,7 @@ class Friction(Part):
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
         if self.materials is not None and (self.static is not None or self.kinetic is not None):
-            message = "'materials' replaces 'static' and 'kinetic'; give the materials or the coefficients"
+            message = "give either 'materials' or the coefficients 'static' and 'kinetic', not both"
             raise inconsistent("materials", message)
         if self.static is None and self.materials is None:
             raise invalid("has no coefficients; give 'static', or 'materials', such as [copper, mild steel]")

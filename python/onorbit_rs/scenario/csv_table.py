@@ -90,5 +90,5 @@ def _numbers(row: list[str], width: int, where: str, path: Path) -> list[float]:
         return [float(cell) for cell in row]
     except ValueError as error:
         cell = str(error).partition(": ")[2]
-        message = f"{where}: {cell} is not a number; give a plain number in SI units"
+        message = f"{where}: {cell} is not a number; give a number in SI units, without a unit"
         raise ReadError(message, path=str(path)) from None

@@ -58,7 +58,7 @@ def stages(scenario: WorldScenario) -> list[Stage]:
         elif event.do.release is not None:
             remark = _release(event.do.release, names, welds, roots)
         else:
-            remark = "changes no tree: it concerns a brake"
+            remark = "no effect on the trees: the event sets a brake"
         trees = _trees(names, welds, roots)
         seated = [weld for weld in welds if _elapsed(event, weld.capture, by_name) < weld.seat]
         joints = tuple(SEATING_JOINTS * sum(weld.by in tree for weld in seated) for tree in trees)
@@ -110,7 +110,7 @@ def _capture(event: Event, trees: Sequence[Sequence[str]], welds: list[_Weld], r
     by, of = (split_path(path)[0] for path in event.do.capture or ())
     first, second = (next(tree for tree in trees if name in tree) for name in (by, of))
     if first == second:
-        return f"stops the run: {by} and {of} are connected already"
+        return f"stops the run: {by} and {of} are already connected"
     welds.append(_Weld(event.name, by, of, event.do.seat or 0.0))
     roots[:] = [root for root in roots if root not in (first[0], second[0])] + [first[0]]
     return ""
@@ -120,7 +120,7 @@ def _release(capture: str, names: Sequence[str], welds: list[_Weld], roots: list
     """Separate two systems; return the reason if nothing changes, otherwise an empty string."""
     weld = next((weld for weld in welds if weld.capture == capture), None)
     if weld is None:
-        return f"no effect: {capture} has not happened, or was released already"
+        return f"no effect: {capture} has not happened, or has already been released"
     welds.remove(weld)
     for name in (weld.by, weld.of):
         tree = next(tree for tree in _trees(names, welds, [*roots, name]) if name in tree)

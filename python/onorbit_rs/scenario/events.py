@@ -48,7 +48,7 @@ def _quantities(*dimensions: Dimension, above_zero: bool = False) -> BeforeValid
         numbers = [parse_quantity(entry, kind) for entry, kind in zip(value, dimensions, strict=True)]
         for number, kind in zip(numbers, dimensions, strict=True):
             if above_zero and number <= 0.0:
-                message = f"{kind.name} is {number:g} {kind.si}; it must be above zero"
+                message = f"{number:g} {kind.si} is out of range; {kind.name} must be above zero"
                 raise QuantityError(message, text=number, expected="above zero")
         return numbers
 

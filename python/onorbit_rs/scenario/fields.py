@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import (
-    AfterValidator,
     BeforeValidator,
     Field,
     PlainSerializer,
     SerializationInfo,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
 )
 
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
+from onorbit_rs.scenario.errors import shortened
 from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 
@@ -23,22 +25,20 @@ def _reader(*allowed: Dimension) -> BeforeValidator:
     return BeforeValidator(lambda value: parse_quantity(value, *allowed))
 
 
-def _positive(value: float) -> float:
-    if value <= 0.0:
-        raise QuantityError(
-            f"the value is {value:g} in SI units; it must be above zero", text=value, expected="above zero"
-        )
-    return value
+def _positive(value: Any, read: ValidatorFunctionWrapHandler) -> float:
+    number: float = read(value)
+    if number <= 0.0:
+        message = f"{shortened(value)} is out of range; it must be above zero"
+        raise QuantityError(message, text=value, expected="above zero")
+    return number
 
 
-def _not_negative(value: float) -> float:
-    if value < 0.0:
-        raise QuantityError(
-            f"the value is {value:g} in SI units; it must be zero or above",
-            text=value,
-            expected="zero or above",
-        )
-    return value
+def _not_negative(value: Any, read: ValidatorFunctionWrapHandler) -> float:
+    number: float = read(value)
+    if number < 0.0:
+        message = f"{shortened(value)} is out of range; it must be zero or above"
+        raise QuantityError(message, text=value, expected="zero or above")
+    return number
 
 
 def resolved_path(path: Path | str, info: SerializationInfo) -> str:
@@ -49,8 +49,8 @@ def resolved_path(path: Path | str, info: SerializationInfo) -> str:
 FilePath = Annotated[Path, PlainSerializer(resolved_path, when_used="json")]
 """Path of a file or folder; a relative path starts at the folder of the scenario."""
 
-Positive = AfterValidator(_positive)
-NotNegative = AfterValidator(_not_negative)
+Positive = WrapValidator(_positive)
+NotNegative = WrapValidator(_not_negative)
 
 Number = Annotated[float, _reader(units.NUMBER)]
 Mass = Annotated[float, _reader(units.MASS)]
@@ -92,7 +92,7 @@ def _drift(value: object) -> float | Literal["never"]:
     try:
         distance = parse_quantity(value, units.LENGTH)
     except QuantityError as error:
-        raise QuantityError(f"{error}, or 'never'", text=value, expected="a length, or never") from None
+        raise QuantityError(f"{error}; or write 'never'", text=value, expected="a length, or never") from None
     if distance < 1.0:
         message = f"{distance:g} m is too short; give at least 1 m, or 'never'"
         raise QuantityError(message, text=value, expected="at least 1 m")

@@ -77,7 +77,7 @@ def check_loops(loops: Sequence[Loop], systems: Sequence[str]) -> None:
         if loop.name in names[:index]:
             raise inconsistent((*at, "name"), f"two loops are named {loop.name!r}; give each its own name")
         if loop.between[0] == loop.between[1]:
-            message = f"a loop of {loop.between[0]!r} with itself; give frames of two different bodies"
+            message = f"both frames are {loop.between[0]!r}; give frames of two different bodies"
             raise inconsistent((*at, "between"), message)
         if systems:
             for side, path in enumerate(loop.between):
@@ -85,8 +85,8 @@ def check_loops(loops: Sequence[Loop], systems: Sequence[str]) -> None:
             ends = [path.partition("/")[0] for path in loop.between]
             if ends[0] != ends[1]:
                 message = (
-                    f"connects two systems, {ends[0]!r} and {ends[1]!r}; give frames of one system, or "
-                    f"connect the systems at the start by an event: {{name: {loop.name}, "
+                    f"the frames belong to two systems, {ends[0]!r} and {ends[1]!r}; give two frames of one "
+                    f"system, or connect the systems at the start by an event: {{name: {loop.name}, "
                     f"when: {{at: 0 s}}, do: {{capture: [{', '.join(loop.between)}]}}}}"
                 )
                 raise inconsistent((*at, "between"), message)
@@ -166,9 +166,12 @@ def followed(
         shift = offset if what == "position" else 0.0
         expected = ratio * values[joints.index(leader)] + shift
         if abs(values[index] - expected) > ACCEPTED:
+            unit = "m" if model.joints[index].kind == "prismatic" else "rad"
+            unit += "" if what == "position" else "/s"
             raise InputError(
-                f"the {what} of {joints[index]} is {values[index]:.6g}, but it mimics {leader}, which "
-                f"prescribes {expected:.6g} in SI units; correct it, or omit it in a mapping of joints",
+                f"the {what} of {joints[index]} is {values[index]:.6g} {unit}, but the joint mimics "
+                f"{leader}, which prescribes {expected:.6g} {unit}; correct the value, or give a mapping of "
+                f"joints without {joints[index]}",
                 name=joints[index],
             )
     return values

@@ -26,7 +26,7 @@ def check_materials(table: Mapping[str, MaterialPair]) -> None:
     """Raise an error for a kinetic coefficient that exceeds the static one."""
     for name, pair in table.items():
         if pair.kinetic is not None and pair.kinetic > pair.static:
-            message = f"{pair.kinetic:g} exceeds the static coefficient, {pair.static:g}; give at most that"
+            message = f"{pair.kinetic:g} exceeds the static coefficient; give at most {pair.static:g}"
             raise inconsistent(("materials", name, "kinetic"), message)
 
 

@@ -73,8 +73,8 @@ def of_kind(union: Any) -> BeforeValidator:
             others = [kind for kind, names in keys.items() if key in names]
             if key not in own and others:  # true only for a known kind
                 meant = parts[str(value["kind"])].synonyms.get(str(key))
-                hint = f"; did you mean {meant!r}?" if meant else f"; it belongs to {', '.join(others)}"
-                raise unknown_key(key, f" of kind '{value['kind']}'{hint}")
+                hint = f"; did you mean {meant!r}?" if meant else f"; it is a key of {', '.join(others)}"
+                raise unknown_key(key, f" for kind '{value['kind']}'{hint}")
         return value
 
     return BeforeValidator(read)

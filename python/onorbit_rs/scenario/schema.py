@@ -108,6 +108,8 @@ class Scenario(RobotKeys, Document):
         parts = {"orbit": get_args(AnyOrbit), "initial": [InitialState], "simulation": [SimulationSettings]}
         sections = [repr(name) for name, kinds in parts.items()
                     if key != "kind" and any(key in part.yaml_keys() for part in kinds)]  # fmt: skip
+        if key in ("contacts", "events", "materials"):
+            return "; it requires 'systems', so move the keys of the robot into an entry of 'systems'"
         return f"; it belongs in {' or '.join(sections)}" if sections else super()._hint(key, free)
 
     @model_validator(mode="after")

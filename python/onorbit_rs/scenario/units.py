@@ -183,9 +183,11 @@ def _example_units(dimension: Dimension) -> str:
 
 def _refused(value: object, why: str, allowed: tuple[Dimension, ...]) -> QuantityError:
     units = "; ".join(filter(None, (_example_units(dimension) for dimension in allowed)))
-    fix = (
-        f"give a number in SI units, or a number with a unit ({units})"
-        if units
-        else "give a number without a unit"
-    )
+    si = " or ".join(dict.fromkeys(dimension.si for dimension in allowed if dimension.si))
+    if not units:
+        fix = "give a number without a unit"
+    elif units == si:
+        fix = f"give a number, with or without the unit {si}"
+    else:
+        fix = f"give a number in {si}, or a number with a unit ({units})"
     return QuantityError(f"{shortened(value)} {why}; {fix}", text=value, expected=_any_of(allowed))

@@ -51,13 +51,13 @@ def _location_and_message(details: ErrorDetails, data: Any) -> tuple[Location, s
         known = [tag.strip(" '") for tag in context["expected_tags"].split(",")]
         return (*at, "kind"), f"unknown kind {context['tag']!r}{did_you_mean(context['tag'], known)}"
     if kind == "missing":
-        return at, "is missing" + _FORMS.get(at[-1] if at else "", "")
+        return at, "is missing; give " + _FORMS.get(at[-1] if at else "", "this key")
     return at, _message(kind, details, context)
 
 
 _FORMS: dict[str | int, str] = {
-    "robot": ": a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
-    "simulation": ": at least {duration: 10 s}",
+    "robot": "a bundled name (humanoid_torso), a URDF, or {rigid_body: {mass: ..., inertia: ...}}",
+    "simulation": "at least {duration: 10 s}",
 }
 """Suggested content of required sections, for messages about a missing section."""
 
@@ -84,7 +84,7 @@ def _message(kind: str, details: ErrorDetails, context: Mapping[str, Any]) -> st
     if kind in ("too_short", "too_long"):
         needed = context["min_length" if kind == "too_short" else "max_length"]
         got = count(context["actual_length"], "entry", "entries")
-        return f"has {got}, expected {'at least 1' if needed == 1 else needed}"
+        return f"has {got}; give {'at least one' if needed == 1 else needed}"
     if kind == "greater_than_equal":
         return f"{shortened(given)} is below the minimum, {context['ge']}"
     if kind == "less_than_equal":

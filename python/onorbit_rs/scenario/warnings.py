@@ -64,8 +64,9 @@ def _drift_from_reference(
     if drift > max(_SMALL_DRIFT, _size(flight)):
         yield (
             f"orbit: this {part.kind} reference is not in free fall in the gravity of a point mass, but the "
-            f"robot is, and will drift {_distance(drift)} from the reference in {duration:g} s: add a "
-            "gravity_field to the environment, or set gravity_mode: carried (or true, if this is intended)"
+            f"robot is, and will drift {_distance(drift)} from the reference in {duration:g} s; add a "
+            "gravity_field to the environment, or set gravity_mode: carried; if the drift is intended, set "
+            "gravity_mode: true"
         )
 
 

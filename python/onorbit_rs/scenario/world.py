@@ -44,7 +44,7 @@ class System(RobotKeys, ControlSettings):
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
         if key in ("sensors", "estimators"):
-            return "; it is not available yet"
+            return "; sensors and estimators are not available yet; omit the key"
         if key == "loops":
             return "; it belongs beside 'systems', with frames written SYSTEM/FRAME"
         return super()._hint(key, free)

@@ -134,7 +134,12 @@ class _NodeReader:
 def _read_text(path: Path) -> str:
     raw = read_head(path, MAX_BYTES + 1, "scenario")
     if len(raw) > MAX_BYTES:
-        raise _at(path, None, f"the file is larger than {MAX_BYTES} bytes, the limit for a YAML file")
+        raise _at(
+            path,
+            None,
+            f"the file is larger than {MAX_BYTES} bytes, the limit for a YAML file; "
+            "move tables of numbers into CSV files",
+        )
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError as error:

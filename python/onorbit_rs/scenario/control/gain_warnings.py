@@ -39,7 +39,7 @@ def gain_warnings(scenario: Scenario, model: Model, q: NDArray[np.float64]) -> I
             rate = float(np.abs(np.linalg.eigvals(matrix)).max(initial=0.0)) ** (1.0 / order)
             if rate * period > 2.0 * (1.0 + _ROUNDING):
                 yield (
-                    f"{where}.{name} corrects errors at a rate of {rate:.3g} 1/s, which times the control "
-                    f"period of {period:g} s is {rate * period:.3g}; errors grow if this product exceeds 2. "
-                    f"Use a control_period below {2.0 / rate:.2g} s, or a smaller gain"
+                    f"{where}.{name} corrects errors at a rate of {rate:.3g} 1/s; with a control period of "
+                    f"{period:g} s, the product of both is {rate * period:.3g}, and errors grow if it "
+                    f"exceeds 2; use a control_period below {2.0 / rate:.2g} s, or a smaller gain"
                 )

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator
 
 from onorbit_rs.exceptions import QuantityError
 from onorbit_rs.scenario import units
+from onorbit_rs.scenario.errors import shortened
 from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 
@@ -16,7 +17,7 @@ def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeV
 
     def row(value: object) -> list[float]:
         if not isinstance(value, list) or len(value) != 6:
-            raise QuantityError(f"{_GAIN_SHAPES}, not {value!r:.60}", text=value, expected="6 numbers")
+            raise QuantityError(f"{_GAIN_SHAPES}, not {shortened(value)}", text=value, expected="6 numbers")
         kinds = [linear] * 3 + [angular or linear] * 3
         return [parse_quantity(entry, kind) for entry, kind in zip(value, kinds, strict=True)]
 
@@ -26,7 +27,7 @@ def _gain_reader(linear: Dimension, angular: Dimension | None = None) -> BeforeV
         if any(isinstance(entry, list) for entry in value):
             if len(value) != 6:
                 raise QuantityError(
-                    f"{_GAIN_SHAPES}, not {value!r:.60}", text=value, expected="6 x 6 numbers"
+                    f"{_GAIN_SHAPES}, not {shortened(value)}", text=value, expected="6 x 6 numbers"
                 )
             return [row(entry) for entry in value]
         return row(value)
@@ -68,7 +69,8 @@ JointTolerance = Annotated[_PerJoint, _per_joint_reader(units.ANGLE, units.LENGT
 def _task_tolerance(value: object) -> list[float]:
     if not isinstance(value, list) or len(value) != 2:
         raise QuantityError(
-            f"the tolerance of a tool is {value!r:.60}; give a distance and an angle, as in [1 mm, 0.1 deg]",
+            f"the tolerance of a tool is {shortened(value)}; give a distance and an angle, such as "
+            "[1 mm, 0.1 deg]",
             text=value,
             expected="a length and an angle",
         )

@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BeforeValidator, Field
 
 from onorbit_rs import _core
+from onorbit_rs.common.counting import count
 from onorbit_rs.scenario.errors import invalid
 from onorbit_rs.scenario.fields import Angle, Density, FilePath, Length, NotNegative, Number, Positive
 from onorbit_rs.scenario.part import Part, of_kind
@@ -57,9 +58,10 @@ def _ap(value: object) -> float | list[float]:
     if not isinstance(value, list):
         return parse_quantity(value, NUMBER)
     if len(value) != 7:
-        length = len(value)
+        entries = count(len(value), "entry", "entries")
         raise invalid(
-            f"ap is a list of length {length}; give one number without a list, or a list of seven numbers"
+            f"ap is a list with {entries}; give the daily value as one number, or NRLMSISE-00's list of "
+            "seven values"
         )
     return [parse_quantity(entry, NUMBER) for entry in value]
 

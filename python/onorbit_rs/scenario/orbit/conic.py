@@ -37,7 +37,7 @@ class ConicOrbit(Part):
     """
 
     synonyms: ClassVar = {
-        "a": "semi_major_axis", "sma": "semi_major_axis", "altitude": "semi_major_axis",
+        "a": "semi_major_axis", "sma": "semi_major_axis",
         "p": "semi_latus_rectum",
         "e": "eccentricity", "ecc": "eccentricity", "i": "inclination", "inc": "inclination",
         "node": "raan", "right_ascension": "raan", "argp": "argument_of_periapsis",
@@ -59,6 +59,12 @@ class ConicOrbit(Part):
     velocity: Speed3 | None = None
     mu: Annotated[GravitationalParameter, Positive] = _core.MU_EARTH
     """Gravitational parameter, m³/s²; default: the Earth's."""
+
+    @classmethod
+    def _hint(cls, key: str, free: list[str]) -> str:
+        if key == "altitude":
+            return "; give 'semi_major_axis', the mean radius of the planet plus the mean altitude"
+        return super()._hint(key, free)
 
     def build(self, _folder: Path) -> _core.Orbit:
         """Return the conic as an orbit object of the engine."""

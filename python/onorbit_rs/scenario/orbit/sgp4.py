@@ -27,7 +27,7 @@ def _text_of_lines(value: Any) -> Any:
     """Return the value; if it is a list, raise an error that explains how to write two lines in YAML."""
     if isinstance(value, list):
         raise invalid(
-            "must be a single text; write 'tle: |' followed by the two indented lines, or give 'line1' "
+            "must be text, not a list; write 'tle: |' followed by the two indented lines, or give 'line1' "
             "and 'line2'"
         )
     return value
@@ -83,7 +83,7 @@ class Sgp4Orbit(Part):
         given = [name for name in names if getattr(self, name) is not None]
         if len(given) != 1:
             options = "'line1' and 'line2', 'tle', 'tle_file' or 'omm_file'"
-            raise invalid(f"give one element set, by {options}; given: {', '.join(given) or 'none'}")
+            raise invalid(f"give one element set, as {options}; given: {', '.join(given) or 'none'}")
         if self.satellite is not None and self.line1 is not None:
             raise invalid("'line1' and 'line2' define one satellite; omit 'satellite'")
         return self

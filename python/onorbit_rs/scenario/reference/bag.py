@@ -98,8 +98,8 @@ def _with(samples: Sequence[Sample], names: list[str]) -> list[Sample]:
             found.append(sample)
         elif len(missing) < len(names):
             raise _BadRecordingError(
-                f"message {number} lacks {', '.join(missing)}; a message must contain all followed joints, "
-                "or none of them"
+                f"message {number} lacks {', '.join(missing)}; each message must contain all followed joints "
+                "or none; omit the missing joints from 'joints'"
             )
     return found
 
@@ -131,7 +131,7 @@ def _distinct(samples: list[Sample]) -> list[Sample]:
             if not is_same:
                 raise _BadRecordingError(
                     f"times must increase, but message {number} is at {1e-9 * sample.time:.9g} s, after "
-                    f"{1e-9 * found[-1].time:.9g} s"
+                    f"{1e-9 * found[-1].time:.9g} s; sort the messages by time, or record the bag again"
                 )
             found.pop()
         found.append(sample)
