@@ -19,16 +19,21 @@ def pose(xyz: Any, rpy: Any) -> Any:
 
 
 def build(tree: Tree) -> Any:
-    """Builds the tree joint by joint; a fixed link's inertia is added to its parent joint.
+    """Returns the tree in Pinocchio; a fixed link's inertia is added to its parent joint."""
+    model = pin.Model()
+    model.gravity.linear = np.zeros(3)
+    add_tree(model, tree)
+    return model
+
+
+def add_tree(model: Any, tree: Tree, prefix: str = "") -> None:
+    """Adds a tree with its own free base joint by joint; `prefix` precedes all names.
 
     The order is depth first: Pinocchio's crba and Jacobians assume that a subtree is a contiguous range of
     joints and are silently wrong otherwise.
     """
-    model = pin.Model()
-    model.gravity.linear = np.zeros(3)
-    place = {
-        BASE: (model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root"), pin.SE3.Identity())
-    }
+    root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), f"{prefix}root")
+    place = {BASE: (root, pin.SE3.Identity())}
     armature: dict[str, float] = {}
     for part in depth_first(tree):
         if part.parent is not None:
@@ -40,19 +45,18 @@ def build(tree: Tree) -> Any:
             else:
                 slider = part.kind == "prismatic"
                 kind = pin.JointModelPrismaticUnaligned if slider else pin.JointModelRevoluteUnaligned
-                joint = model.addJoint(joint, kind(axis), placement, part.joint)
+                joint = model.addJoint(joint, kind(axis), placement, prefix + part.joint)
                 place[part.name] = (joint, pin.SE3.Identity())
-                armature[part.joint] = part.rotor_inertia
+                armature[prefix + part.joint] = part.rotor_inertia
         inertia = pin.Inertia(part.mass, np.array(part.com), np.array(part.inertia))
         model.appendBodyToJoint(place[part.name][0], inertia, place[part.name][1])
-        model.addBodyFrame(part.name, *place[part.name], 0)
+        model.addBodyFrame(prefix + part.name, *place[part.name], 0)
     joint, placement = place[tree.tool_link]
-    model.addBodyFrame(TOOL, joint, placement * pose(tree.tool_xyz, tree.tool_rpy), 0)
-    rotors = np.zeros(model.nv)
+    model.addBodyFrame(prefix + TOOL, joint, placement * pose(tree.tool_xyz, tree.tool_rpy), 0)
+    rotors = np.array(model.armature)
     for name, value in armature.items():
         rotors[model.joints[model.getJointId(name)].idx_v] = value
     model.armature = rotors
-    return model
 
 
 def depth_first(tree: Tree) -> Iterator[Part]:
