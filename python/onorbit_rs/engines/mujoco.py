@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Collection, Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -37,7 +38,8 @@ class Mujoco:
     ``rk4`` is the fourth-order Runge-Kutta method of MuJoCo 4, with the environment's wrenches evaluated at
     every stage. Momentum is not projected, so that its drift is of fourth order in the step.
     ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are
-    MuJoCo's soft constraints with their stiffest settings; the restitution of stops is close to zero. The
+    MuJoCo's soft constraints with their stiffest settings; the restitution of stops is close to zero. Closed
+    loops and mimic joints are equalities with the same settings; a prismatic loop is rejected. The
     connections of a world are welds, also soft: a capture removes the relative velocity within a few steps
     instead of at once. One simulation at a time may use an instance; a concurrent step is refused. MuJoCo's
     log settings, which are global to the process, are disabled during a step and restored after it.
@@ -65,7 +67,7 @@ class Mujoco:
     ------
     EngineError
         If MuJoCo is not installed, the integrator is not available with MuJoCo, the time constant is out of
-        range, or MuJoCo cannot represent a contact, such as one with torsional friction.
+        range, or MuJoCo cannot represent a contact, such as one with torsional friction, or a prismatic loop.
     ModelError
         If MuJoCo cannot represent the robot.
     """
@@ -90,19 +92,25 @@ class Mujoco:
         self._is_euler = integrator == "semi_implicit_euler"
         models = dict(model) if isinstance(model, Mapping) else {"": model}
         stops = enforce_limits if isinstance(enforce_limits, Collection) else [*models] * enforce_limits
-        self._model, touches = world_model(
-            models, time_step=time_step, with_stops=stops, weld_time_constant=weld_time_constant,
-            contacts=contacts,
-        )  # fmt: skip
-        self._contacts = Contacts(self._mujoco, self._model, touches)
-        self._data = self._mujoco.MjData(self._model)
-        self._shares = shares(self._model, models)
         self._is_world = isinstance(model, Mapping)
+        self._compile = partial(
+            world_model, models, time_step=time_step, with_stops=stops,
+            weld_time_constant=weld_time_constant, contacts=contacts,
+        )  # fmt: skip
+        self._build(len(models) - 1)
+        self._shares = shares(self._model, models)
         self._bodies, self._dofs, self._q_columns, self._v_columns = (
             np.concatenate([getattr(part, name) for part in self._shares])
             for name in ("bodies", "dofs", "q_columns", "v_columns")
         )
         self._lock = threading.Lock()
+
+    def _build(self, connections: int) -> None:
+        """Build MuJoCo's model with welds for a number of connections."""
+        self._connections = connections
+        self._model, touches = self._compile(connections=connections)
+        self._contacts = Contacts(self._mujoco, self._model, touches)
+        self._data = self._mujoco.MjData(self._model)
 
     @property
     def version(self) -> str:
@@ -240,8 +248,11 @@ class Mujoco:
         try:
             # numpy's warnings in a diverging run are redundant: the run raises an error
             with without_log(self._mujoco), np.errstate(all="ignore"):
-                connect(self._mujoco, self._model, self._data, self._shares, welds)
-                self._contacts.release_held(self._data)
+                if len(welds) > self._connections:  # captures that close loops
+                    self._build(len(welds))
+                slots = self._connections
+                connect(self._mujoco, self._model, self._data, self._shares, welds, slots)
+                self._contacts.release_held(self._data, slots)
                 return self._step(*interval, *state, wrenches)
         finally:
             self._lock.release()
@@ -302,7 +313,7 @@ class Mujoco:
                 got="mujoco",
             ) from error
         if self._is_world:
-            parts = exchanged(self._mujoco, self._model, data, self._shares, outer)
+            parts = exchanged(self._mujoco, self._model, data, self._shares, outer, self._connections)
             touching = self._contacts.output(data).ravel() if self.contacts else np.empty(0)
             return np.concatenate([qvel, data.qacc, parts, touching])
         force, arm = outer[:, :3], data.xipos[self._bodies] - data.subtree_com[self._bodies[0]]

@@ -1,4 +1,4 @@
-"""Converts robots to a MuJoCo model: bodies, joints, rotors and declared contacts, without gravity."""
+"""Converts robots to a MuJoCo model: bodies, joints, rotors, loops and declared contacts, without gravity."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.common.numbers import finite_float
+from onorbit_rs.engines.mujoco_common import HARDEST, link_name, path
 from onorbit_rs.engines.mujoco_contact import Touch, add_contacts
+from onorbit_rs.engines.mujoco_loops import add_loops, set_lengths
 from onorbit_rs.exceptions import EngineError, ModelError
 
 if TYPE_CHECKING:
@@ -18,9 +20,6 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Body, Contact, Joint, Model
 
     Floats = NDArray[np.float64]
-
-HARDEST = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""``solimp`` of friction and stops; a soft constraint leaves a fraction ``1 - d`` of the acceleration."""
 
 DAMPING_RATIO = 10.0
 """Damping ratio `ζ` of stops: a joint leaves a stop with a fraction `1 / (2ζ)²` of its approach rate."""
@@ -76,15 +75,6 @@ def _time_constant(given: float | None, time_step: float) -> float:
     return value
 
 
-def _check_is_tree(model: Model) -> None:
-    """Raise an error for closed loops and mimic joints, which this engine would ignore."""
-    names = [f"loop '{loop.name}'" for loop in model.loops]
-    names += [f"mimic joint '{joint.name}'" for joint in model.joints if joint.mimic is not None]
-    if names:
-        message = f"engine mujoco does not support closed loops and mimic joints ({', '.join(names)})"
-        raise EngineError(f"{message}; omit them, or use engine: native", name="engine", got="mujoco")
-
-
 def world_model(
     models: Mapping[str, Model],
     *,
@@ -92,13 +82,13 @@ def world_model(
     with_stops: Collection[str],
     weld_time_constant: float | None = None,
     contacts: Sequence[Contact] = (),
+    connections: int = 0,
 ) -> tuple[Any, list[Touch]]:
     """Return one ``mujoco.MjModel`` of several systems, and their contacts.
 
-    The names of links and joints are paths.
-    The model has one inactive weld for each possible connection: one fewer than the number of systems,
-    because connections may not close loops. ``with_stops`` names the systems with rigid stops. The errors are
-    those of :func:`mujoco_model`.
+    The names of links and joints are paths. The first equalities of the model are inactive welds, one for
+    each of ``connections``. ``with_stops`` names the systems with rigid stops. The errors are those of
+    :func:`mujoco_model`.
     """
     mujoco = import_mujoco()
     softness = _time_constant(weld_time_constant, time_step)
@@ -114,7 +104,6 @@ def world_model(
     moments: dict[str, Floats] = {}
     built: dict[str, tuple[Model, dict[str, Any]]] = {}
     for name, model in models.items():
-        _check_is_tree(model)
         bodies, own = _add_robot(
             mujoco, spec, model, name, time_step=time_step, enforce_limits=name in with_stops
         )
@@ -124,11 +113,14 @@ def world_model(
     if not touches:
         spec.option.disableflags |= int(bit.mjDSBL_CONTACT)
     bases = [link_name(path(name, model.body_names[0])) for name, model in models.items()]
-    for _ in bases[1:]:
+    for _ in range(connections):
         weld = spec.add_equality()
         weld.type, weld.objtype = mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY
         weld.name1, weld.name2, weld.active = bases[0], bases[1], False  # replaced by each connection
         weld.solref, weld.solimp = np.array([softness, 1.0]), np.array(HARDEST)
+    lengths: dict[str, float] = {}
+    for name, (model, bodies) in built.items():
+        lengths |= add_loops(mujoco, spec, name, model, bodies, time_step)
     try:
         compiled = spec.compile()
     except ValueError as error:
@@ -140,6 +132,7 @@ def world_model(
     for name, moment in moments.items():
         compiled.body(name).inertia[:] = moment
     mujoco.mj_setConst(compiled, mujoco.MjData(compiled))
+    set_lengths(compiled, lengths)
     return compiled, touches
 
 
@@ -163,16 +156,6 @@ def _add_robot(
             moving = _attach(mujoco, new, joint, time_step=time_step, enforce_limits=enforce_limits)
             moving.name = path(system, joint.name)
     return bodies, moments
-
-
-def path(system: str, name: str) -> str:
-    """Return the name of a link or joint in a world, ``SYSTEM/NAME``; the name itself for a single robot."""
-    return f"{system}/{name}" if system else name
-
-
-def link_name(name: str) -> str:
-    """Return the MuJoCo name of a body; the prefix avoids the reserved name ``world``."""
-    return f"link {name}"
 
 
 def _principal(mujoco: ModuleType, body: Body) -> tuple[Floats, Floats]:

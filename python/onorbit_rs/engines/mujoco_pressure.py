@@ -71,9 +71,9 @@ class Contacts:
         """Names of the contacts."""
         return [touch.name for touch in self._touches]
 
-    def release_held(self, data: Any) -> None:
-        """Remove the forces between bodies that an active weld holds together."""
-        active = np.flatnonzero(data.eq_active)
+    def release_held(self, data: Any, connections: int) -> None:
+        """Remove the forces between bodies that one of the ``connections`` holds together."""
+        active = np.flatnonzero(data.eq_active[:connections])
         ends = self._model.eq_obj1id[active], self._model.eq_obj2id[active]
         self._held = [{int(a), int(b)} for a, b in zip(*ends, strict=True)]
 

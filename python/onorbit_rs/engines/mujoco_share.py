@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.engines.mujoco_model import link_name, path
+from onorbit_rs.engines.mujoco_common import link_name, path
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -69,13 +69,15 @@ def shares(compiled: Any, models: Mapping[str, Model]) -> list[Share]:
     return found
 
 
-def connect(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], welds: Sequence[Weld]) -> None:
-    """Activate a weld for each connection, and deactivate the others.
+def connect(
+    mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], welds: Sequence[Weld], connections: int
+) -> None:
+    """Activate a weld for each connection, and deactivate the others of the first ``connections`` equalities.
 
     A weld keeps the captured points of both bodies together, and the axes of the second body at a constant
     rotation relative to those of the first.
     """
-    data.eq_active[:] = 0
+    data.eq_active[:connections] = 0
     for k, (by, of, points, rotation) in enumerate(welds):
         model.eq_obj1id[k], model.eq_obj2id[k] = (parts[system].bodies[body] for system, body in (by, of))
         quat = np.empty(4)
@@ -85,19 +87,24 @@ def connect(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], w
         data.eq_active[k] = 1
 
 
-def exchanged(mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], outer: Floats) -> Floats:
+def exchanged(
+    mujoco: ModuleType, model: Any, data: Any, parts: Sequence[Share], outer: Floats, connections: int
+) -> Floats:
     """Return the wrenches and powers on each system, and the environment's moment on all systems.
 
     For each system: the environment's force and its torque about the centre of mass, the power of motors and
     environment minus the power dissipated in the joints, the dissipated power, and the force, torque and
-    power of its welds and contacts. Then the moment of the environment's forces, acting at the centres of
-    mass of the systems, about the common centre of mass. Axes of W; N, N m and W.
+    power of its connections and contacts; closed loops and mimic joints count as joints. Then the moment of
+    the environment's forces, acting at the centres of mass of the systems, about the common centre of mass.
+    Axes of W; N, N m and W.
     """
     weld = np.zeros(model.nv)
-    if data.eq_active.any() or data.ncon:
+    if data.eq_active[:connections].any() or data.ncon:
         kinds = mujoco.mjtConstraint
-        between = kinds.mjCNSTR_EQUALITY, kinds.mjCNSTR_CONTACT_FRICTIONLESS, kinds.mjCNSTR_CONTACT_ELLIPTIC
-        is_weld = np.logical_or.reduce([data.efc_type == kind for kind in map(int, between)])
+        touching = kinds.mjCNSTR_CONTACT_FRICTIONLESS, kinds.mjCNSTR_CONTACT_ELLIPTIC
+        is_weld = np.logical_or.reduce([data.efc_type == kind for kind in map(int, touching)])
+        # the number of a row of an equality is that of the equality
+        is_weld |= (data.efc_type == int(kinds.mjCNSTR_EQUALITY)) & (data.efc_id < connections)
         mujoco.mj_mulJacTVec(model, data, weld, np.where(is_weld, data.efc_force, 0.0))
     inner = data.qfrc_constraint - weld
     motors, joints = data.qfrc_smooth + data.qfrc_bias + inner, data.qfrc_passive + inner

@@ -14,6 +14,7 @@ import numpy as np
 from onorbit_rs.common.files import exists
 from onorbit_rs.exceptions import DtypeError, ModelError, NotFoundError
 from onorbit_rs.output import with_absolute_paths
+from onorbit_rs.output.checks import LOOPS
 from onorbit_rs.output.manifest import SCENARIO, SUMMARY
 from onorbit_rs.output.read import SavedRun
 from onorbit_rs.robots.fingerprint import has_changed
@@ -29,6 +30,9 @@ Source = str | os.PathLike[str] | Mapping[str, Any] | Scenario | WorldScenario |
 """Output folder of a run, scenario as accepted by :func:`onorbit_rs.run`, or :class:`onorbit_rs.Run`."""
 
 
+(OPENING,) = LOOPS
+
+
 @dataclass(frozen=True)
 class Recorded:
     """Columns of one robot by their names in ``trace.npz``, its scenario and its robot."""
@@ -42,6 +46,8 @@ class Recorded:
     """Fingerprint of the robot at the time of the run; None for runs by earlier versions."""
     system: str | None = None
     """Name of the system in a run with several systems."""
+    opening: float | None = None
+    """Largest opening of loops and mimic joints during the run, m or rad; None without any."""
 
     @property
     def robot(self) -> Any:
@@ -119,7 +125,10 @@ def _of_run(made: Run) -> Recorded | RecordedWorld:
     name = f"{scenario.name} ({scenario.engine})" if made.out is None else str(made.out)
     if isinstance(scenario, WorldScenario):
         return _of_world(name, trace, made.summary, scenario, made)
-    return Recorded(name, _columns(trace), scenario, made, made.summary.get("robot_fingerprint"))
+    return Recorded(
+        name, _columns(trace), scenario, made, made.summary.get("robot_fingerprint"),
+        opening=made.summary.get(OPENING),
+    )  # fmt: skip
 
 
 def _of_folder(folder: Path) -> Recorded | RecordedWorld:
@@ -135,7 +144,10 @@ def _of_folder(folder: Path) -> Recorded | RecordedWorld:
     scenario = saved.scenario()
     if isinstance(scenario, WorldScenario):
         return _of_world(str(folder), trace, summary, scenario)
-    return Recorded(str(folder), _columns(trace), scenario, fingerprint=summary.get("robot_fingerprint"))
+    return Recorded(
+        str(folder), _columns(trace), scenario, fingerprint=summary.get("robot_fingerprint"),
+        opening=summary.get(OPENING),
+    )  # fmt: skip
 
 
 def _of_world(
@@ -143,9 +155,11 @@ def _of_world(
 ) -> RecordedWorld:
     systems = {}
     for name, alone in scenario.scenarios.items():
-        fingerprint = summary["systems"][name].get("robot_fingerprint")
-        rows = _columns(trace[name])
-        systems[name] = Recorded(f"{run_name} ({name})", rows, alone, made, fingerprint, name)
+        own = summary["systems"][name]
+        systems[name] = Recorded(
+            f"{run_name} ({name})", _columns(trace[name]), alone, made, own.get("robot_fingerprint"), name,
+            own.get(OPENING),
+        )  # fmt: skip
     return RecordedWorld(run_name, systems, trace.events, scenario)
 
 

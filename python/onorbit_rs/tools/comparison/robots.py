@@ -54,7 +54,9 @@ class Comparison(Verdict):
     """Instants at which the runs are compared, (T,), s."""
     differences: tuple[Difference, ...]
     notes: tuple[str, ...]
-    """Notes on differing robots and settings, on interpolated rows, and on quantities not compared."""
+    """Notes on differing robots and settings, on the openings of loops, on interpolated rows, and on
+    quantities not compared.
+    """
 
     @property
     def parts_at(self) -> float | None:
@@ -94,7 +96,7 @@ def compared_robots(a: Recorded, b: Recorded, tolerance: float, settings: Sequen
     CompareError
         If the robots' joints differ in number, name or order, or the runs do not overlap in time.
     """
-    notes = [*_same_robot(a, b), *settings]
+    notes = [*_same_robot(a, b), *settings, *_openings(a, b)]
     rows_a, rows_b, time, remarks = aligned_rows(a, b)
     found, missing = differences_in_quantities(rows_a, rows_b)
     differences = tuple(
@@ -111,6 +113,12 @@ def _difference(name: str, unit: str, values: Floats, allowed: float, time: Floa
     return Difference(
         name, unit, values, float(values[worst]), float(time[worst]), float(values[-1]), allowed, parts_at
     )
+
+
+def _openings(a: Recorded, b: Recorded) -> list[str]:
+    """Return a note on how far each run opened its loops and mimic joints, if it has any."""
+    found = [f"{run.opening:.1e} in {run.name}" for run in (a, b) if run.opening is not None]
+    return [f"largest opening of loops and mimic joints, m or rad: {', '.join(found)}"] if found else []
 
 
 def _same_robot(a: Recorded, b: Recorded) -> list[str]:
