@@ -130,5 +130,5 @@ def test_bad_watches_say_what_is_wrong() -> None:
         bare = oo.Model.rigid_body(1.0, np.eye(3))
         rest = oo.Simulation(bare, bare.neutral(), np.zeros(6), time_step=0.1).run(0.1)
         oo.clearances(bare, rest, [oo.KeepOut("z", oo.Shape.sphere(1), "base")])
-    with pytest.raises(InputError, match="no rotation"):
+    with pytest.raises(InputError, match="is not a rotation"):
         oo.KeepOut("z", oo.Shape.sphere(1), "body", pose=2 * np.eye(4))

@@ -186,7 +186,7 @@ def test_a_trajectory_stamped_by_the_wall_clock_is_pointed_out(peer: Peer) -> No
             )
             assert answer(peer) == (
                 1, "/arm/joint_trajectory",
-                "starts in 1.79e+09 s: set use_sim_time in the node that sends it",
+                "the trajectory starts in 1.79e+09 s; set use_sim_time in the node that sends it",
             )  # fmt: skip
             step(peer, 0.01)
         assert len(node.commands) == 1
@@ -202,7 +202,7 @@ def test_of_two_senders_the_last_message_holds(peer: Peer) -> None:
                 obeyed(node, count)
                 if count == 2:
                     name = next(iter(simulation().models))
-                    text = f"several processes send to wrist of {name}; the last message holds"
+                    text = f"several processes send to wrist of {name}; the last message takes effect"
                     assert answer(peer) == (1, "/wrist/commands", text)
             step(peer, 0.02)
     assert (found[0].tau[:, 4] == 0.03).all()

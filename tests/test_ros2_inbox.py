@@ -21,8 +21,8 @@ ROBOT = oo.robots.load("humanoid_torso")
 ARM, WRIST = ROBOT.joint_names[:4], ROBOT.joint_names[4:]
 FLOATS = "std_msgs/msg/Float64MultiArray"
 TOO_MANY = (
-    "refused: 500 messages, the oldest of 1500 since the last look at the topic; the node obeys 1000 at "
-    "once, so send fewer"
+    "refused: 500 messages, the oldest of 1500 that arrived since the topic was last read; the node obeys "
+    "1000 at once, so send fewer"
 )
 
 
@@ -67,7 +67,7 @@ def test_the_number_of_refused_messages_is_a_least_number_if_they_were_not_all_k
     inbox: Any = Inbox(FakeParticipant([payload] * MOST_COUNTED))  # type: ignore[arg-type]
     inbox.subscribe("/pause", "std_msgs/msg/Bool", lambda content: [{"pause": content.data}])
     first, *rest = inbox.take()
-    assert first.refusal.startswith("at least 99000 messages, the oldest of at least 100000 since")
+    assert first.refusal.startswith("at least 99000 messages, the oldest of at least 100000 that arrived since")
     assert not first.entries and len(rest) == 1000 and all(one.entries for one in rest)
 
 
@@ -79,7 +79,8 @@ def test_a_step_beyond_the_times_of_ros_is_refused() -> None:
             assert not orders._step("/step", length)
         assert orders._step("/step", 0.01)
     assert said[1:] == [
-        "/step: refused: the step is 2147483648.0 s; times of ROS end at 2147483647 s",
+        "/step: refused: the step is 2147483648.0 s; times of ROS end at 2147483647 s, so give a shorter "
+        "step",
         "/step: advanced to t = 0.01 s",
     ]
 

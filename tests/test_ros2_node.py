@@ -188,10 +188,15 @@ def test_a_run_is_stepped_paused_and_reset_by_messages(peer: Peer) -> None:
                 peer.say("/step", "std_msgs/msg/Float64", {"data": step})
             refused = answers(peer, 4)
             assert [level for level, _, _ in refused] == [2, 2, 2, 2]
-            assert refused[3][2] == "refused: the step is 1e-12 s; the clock resolves 1e-09 s"
+            assert (
+                refused[3][2]
+                == "refused: the step is 1e-12 s; the clock resolves 1e-09 s, so give a longer step"
+            )
             for is_paused in (False, True):
                 peer.say("/pause", "std_msgs/msg/Bool", {"data": is_paused})
-                assert answers(peer, 1) == [(1, "/pause", "in pace stepped the run advances on /step only")]
+                assert answers(peer, 1) == [
+                    (1, "/pause", "/pause has no effect with pace stepped; the run advances only on /step")
+                ]
             assert refused[0][2] == "refused: the step is -1.0 s; it must be positive and finite"
             peer.say("/step", "std_msgs/msg/Float64", {"data": 0.025})
             assert answers(peer, 1) == [(0, "/step", "advanced to t = 0.05 s")]

@@ -101,7 +101,7 @@ def test_the_viewer_listens_only_on_this_machine(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(screen.subprocess, "Popen", popen)
     for start in (screen.open_viewer, lambda: screen.open_recording(Path("run.rrd"))):
-        with pytest.raises(ViewerError, match="did not start: it gave no reason"):  # it exited at once
+        with pytest.raises(ViewerError, match="did not start: it printed no reason"):  # it exited at once
             start()
     assert len(commands) == 2
     for command in commands:
@@ -126,7 +126,9 @@ def viewer_that_hangs(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen[
 def test_waiting_for_a_viewer_that_hangs_is_limited(monkeypatch: pytest.MonkeyPatch) -> None:
     started = viewer_that_hangs(monkeypatch)
     monkeypatch.setattr(screen, "START_PATIENCE_S", 0.2)
-    with pytest.raises(ViewerError, match=r"did not start: it did not respond within 0\.2 s"):
+    with pytest.raises(
+        ViewerError, match=r"did not start: it did not respond within 0\.2 s; check that 'rerun' opens"
+    ):
         screen.open_viewer()
     assert started[0].returncode is not None  # terminated, and not a zombie
 

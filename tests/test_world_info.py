@@ -127,7 +127,20 @@ def test_events_without_a_time_are_in_the_order_of_declaration() -> None:
 def test_a_capture_of_what_is_connected_is_pointed_out() -> None:
     latch = {"latch": {"within": [0.1, 0.1]}}
     found = stages(chain(("one", latch, capture("a", "b")), ("two", latch, capture("b", "a"))))
-    assert found[-1].remark == "stops the run: b and a are already connected"
+    assert found[-1].remark == "closes a loop: b and a are already connected"
+    assert found[-1].trees == found[-2].trees
+    seated = capture("b", "a") | {"seat": 1}
+    found = stages(chain(("one", latch, capture("a", "b")), ("two", latch, seated)))
+    assert found[-1].remark.startswith("stops the run: b and a are already connected, so")
+
+
+def test_a_loop_that_a_capture_closed_holds_the_systems_together_after_the_first_release() -> None:
+    latch = {"latch": {"within": [0.1, 0.1]}}
+    both = [("one", latch, capture("a", "b")), ("two", latch, capture("b", "a"))]
+    found = stages(chain(*both, ("open", {"after": "two"}, {"release": "one"})))
+    assert found[-1].trees == found[1].trees and not found[-1].remark
+    apart = stages(chain(both[0], ("open", {"after": "one"}, {"release": "one"})))
+    assert apart[-1].trees != apart[1].trees
 
 
 def test_the_command_shows_systems_events_and_trees(tmp_path: Path) -> None:

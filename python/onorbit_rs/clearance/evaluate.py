@@ -108,8 +108,9 @@ def prepare(models: Models, watch: Watch) -> Prepared:
     allowed = permitted(models, a, b)
     if not np.any(allowed):
         message = (
-            f"{watch.name!r} compares no two links: those of {', '.join(watch.links_a)} and of "
-            f"{', '.join(watch.links_b)} are the same or next to each other; give two different links"
+            f"{watch.name!r} compares no two links: the links that match {', '.join(watch.links_a)} and "
+            f"those that match {', '.join(watch.links_b)} are on one body or on adjacent bodies; give links "
+            "of bodies that no joint connects"
         )
         raise InputError(message, name=watch.name, got=watch.links_b)
     return Prepared(watch, a, b, allowed)

@@ -58,13 +58,17 @@ class KeepOut:
         """Check the arguments, and store the links as a tuple and the pose as an array."""
         object.__setattr__(self, "links", _patterns(self.links, "links"))
         pose = np.eye(4) if self.pose is None else np.array(self.pose, dtype=np.float64)
-        if pose.shape != (4, 4) or not np.isfinite(pose).all():
-            message = (
-                f"the pose of the zone {self.name!r} has shape {pose.shape} or is not finite; expected (4, 4)"
-            )
+        if pose.shape != (4, 4):
+            message = f"the pose of the zone {self.name!r} has shape {pose.shape}; expected (4, 4)"
             raise InputError(message, name="pose", got=pose.shape)
+        if not np.isfinite(pose).all():
+            message = f"the pose of the zone {self.name!r} contains infinity or NaN; give finite numbers"
+            raise InputError(message, name="pose", got=self.name)
         if not np.allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-6):
-            message = f"the pose of the zone {self.name!r} contains no rotation; give an orthogonal matrix"
+            message = (
+                f"the upper left 3 x 3 block of the pose of the zone {self.name!r} is not a rotation; give "
+                "an orthogonal matrix"
+            )
             raise InputError(message, name="pose", got=self.name)
         object.__setattr__(self, "pose", pose)
 

@@ -87,7 +87,8 @@ def open_viewer(folder: Path) -> None:
 
     recording = folder / "run.rrd"
     if not recording.is_file():
-        print_line(f"there is no recording to show: {recording} does not exist")
+        again = f"onorbit run {shell_word(folder / 'scenario.yaml')} --out DIR"
+        print_line(f"there is no recording to show: {recording} does not exist; to write one: {again}")
         return
     suggestion = (
         f"save a picture with: onorbit show {shell_word(folder)} --picture FILE.png, "
@@ -106,7 +107,7 @@ def _check_time(at_s: float, end_s: float) -> None:
     """Raise InputError for a time outside a run that ends at ``end_s``."""
     if not (math.isfinite(at_s) and 0.0 <= at_s <= end_s):
         raise InputError(
-            f"--at {at_s:g} is outside the run; it must be between 0 and {end_s:g} s",
+            f"--at {at_s:g} is outside the run; give a time from 0 to {end_s:g}, in s",
             name="at", got=at_s, expected=f"0 to {end_s:g} s",
         )  # fmt: skip
 

@@ -39,7 +39,7 @@ def check_regular(path: str | os.PathLike[str], kind: str = "file") -> None:
     try:
         mode = Path(path).stat().st_mode
     except FileNotFoundError:
-        raise NotFoundError(f"no such file: {path}", path=str(path), kind=kind) from None
+        raise NotFoundError(f"no such file: {path}; check the path", path=str(path), kind=kind) from None
     except (OSError, ValueError) as error:  # ValueError: a null character in the name
         raise _unreadable(path, str(getattr(error, "strerror", None) or error), kind) from None
     if stat.S_ISDIR(mode):

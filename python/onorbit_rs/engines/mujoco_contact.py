@@ -101,7 +101,7 @@ def _with_forces(contacts: Sequence[Contact]) -> list[Contact]:
     if wrong:
         kind = type(wrong[0]).__name__
         raise EngineError(
-            f"contacts is or holds a {kind}; give a list of contacts, such as [oo.Contact(...)]",
+            f"contacts is, or contains, a value of type {kind}; give a list such as [oo.Contact(...)]",
             name="contacts", got=kind,
         )  # fmt: skip
     found = [contact for contact in contacts if contact.normal is not None]

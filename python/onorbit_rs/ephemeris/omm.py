@@ -73,7 +73,8 @@ def _from_xml(text: str, where: str) -> list[dict[str, Any]]:
 
     if "<!DOCTYPE" in text:  # its entities can expand to any length
         raise ElementSetError(
-            f"{where} contains a document type (<!DOCTYPE>), which is not allowed in an OMM; remove that tag"
+            f"{where} contains a document type (<!DOCTYPE>), which is not read, because its entities can "
+            "expand to any length; remove it"
         )
     try:
         messages = list(omm.parse_xml(io.StringIO(text)))

@@ -86,7 +86,7 @@ def _chain(kernel: Any, name: str, path: str | Path) -> list[tuple[int, int]]:
     if not chain:
         known = ", ".join(str(target) for target in sorted(centres))
         message = (
-            f"{path} does not contain the {name.title()} (body {BODIES[name]}), but only the bodies "
+            f"{path} does not contain the {name.title()} (body {BODIES[name]}); its bodies are "
             f"{known or 'none'}; give a kernel of the Sun, the Moon and the Earth, such as de440s.bsp"
         )
         raise EarthError(message, name="ephemeris", got=str(path), expected=name)

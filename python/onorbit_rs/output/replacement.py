@@ -24,8 +24,10 @@ class Replacement:
 
     @contextmanager
     def writing(self, name: str) -> Iterator[Path]:
-        """Yield a temporary path, which :meth:`commit` renames to ``name``; raise OutputFolderError if it
-        cannot be written or the file may not be replaced.
+        """Yield the path of a temporary file, which :meth:`commit` renames to ``name``.
+
+        Raises OutputFolderError if the temporary file cannot be written, or if an existing file ``name`` may
+        not be replaced.
         """
         file = self._folder.path / name
         with output_errors(file):
@@ -36,8 +38,9 @@ class Replacement:
             self._written[name] = temporary, Entry.of(temporary)
 
     def commit(self) -> None:
-        """Add the files to the manifest, if the folder has one, then rename them; raise OutputFolderError if
-        this fails.
+        """Add the files to the manifest, if the folder has one, and rename them.
+
+        Raises OutputFolderError if the manifest or a file cannot be written.
         """
         if not self._written:
             return

@@ -85,7 +85,7 @@ def expand(
 def _import_xacro(file: Path) -> Any:
     """Return PyPI's xacro, after checking that the file can be read."""
     if not file.exists():
-        raise NotFoundError(f"no such file: {file}", path=str(file), kind="robot")
+        raise NotFoundError(f"no such file: {file}; check the path", path=str(file), kind="robot")
     if file.is_dir():
         raise ReadError(f"{file} is a folder; give a xacro file", path=str(file), kind="robot")
     input_files.check_regular(file, "robot")

@@ -22,7 +22,7 @@ class Files:
     """Opens files that one xacro file includes or loads, and finds packages."""
 
     def __init__(self, file: Path, package_paths: Sequence[Path], work: Work) -> None:
-        """Allow ``file`` to read files of its package and of those in ``package_paths``."""
+        """Allow reading only in the package of ``file`` and in the folders ``package_paths``."""
         self._above = list(file.absolute().parents)
         self._given = [folder.absolute() for folder in package_paths]
         self._work = work
@@ -39,7 +39,8 @@ class Files:
         """
         if not package:
             raise ValueError(
-                "$(find …): the package name is empty; give a value to the argument that it consists of"
+                "$(find …): the name of the package is empty; give a value to the xacro argument that "
+                "contains it"
             )
         if package in (".", "..") or "/" in package or "\\" in package:
             raise ValueError(
@@ -103,12 +104,15 @@ class Environment:
         self._values, self._used = values, used
 
     def required(self, name: str) -> str:
-        """Return the argument with this name; the environment of the process is not read."""
+        """Return the value of the xacro argument ``name``, which takes the place of an environment variable.
+
+        Raises ValueError if the argument is not given.
+        """
         self._used.add(name)
         if name not in self._values:
             hint = did_you_mean(name, self._values)
             raise ValueError(
-                f"$(env {name}): the environment is not read; give the value with "
+                f"$(env {name}): environment variables are not read; give the value with "
                 f"{wording().argument(name)}{hint}"
             )
         return self._values[name]
@@ -140,5 +144,8 @@ def _checked(raw: bytes, name: str) -> str:
     if not text.strip():
         raise ValueError(f"the file {name!r} is empty; write its content, or remove its include")
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise ValueError(f"{name!r} contains a document type (<!DOCTYPE>), which is not allowed; remove it")
+        raise ValueError(
+            f"{name!r} contains a document type (<!DOCTYPE>), which is not read, because its entities can "
+            "expand to any length; remove it"
+        )
     return text

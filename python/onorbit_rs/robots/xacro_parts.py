@@ -75,8 +75,8 @@ def replace_parts(
 
     def refused(*_: Any) -> None:
         raise ValueError(
-            "the installed version of xacro is not supported, because it would execute Python; "
-            "install xacro 2.1"
+            "the installed version of xacro is not supported, because it would execute Python code of the "
+            "file; install xacro 2.1"
         )
 
     for owner, name, replacement in (

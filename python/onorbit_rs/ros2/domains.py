@@ -90,8 +90,8 @@ def join(domain: int, network: str) -> Joined:
     if joined := _JOINED.get(domain):
         if joined.network != network:
             raise Ros2Error(
-                f"this process has joined DDS domain {domain} with network={joined.network!r}; close that "
-                "node, or use the same network or another domain",
+                f"this process has joined DDS domain {domain} with network={joined.network!r}; close the "
+                "node that did so, or use the same network or another domain",
                 reason="another network",
             )
         return joined

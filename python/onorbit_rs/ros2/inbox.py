@@ -102,8 +102,8 @@ def _overflow(route: Route, count: int) -> Arrived:
     """Return the refusal of the oldest of ``count`` messages that arrived since the topic was last read."""
     least = "at least " if count >= MOST_COUNTED else ""
     refusal = (
-        f"{least}{count - MOST} messages, the oldest of {least}{count} since the last look at the topic; the "
-        f"node obeys {MOST} at once, so send fewer"
+        f"{least}{count - MOST} messages, the oldest of {least}{count} that arrived since the topic was last "
+        f"read; the node obeys {MOST} at once, so send fewer"
     )
     return Arrived(route.reader.topic, route.reader.kind, b"", [], refusal)
 

@@ -222,8 +222,8 @@ class Node:
         if not self._run.plan(np.inf if duration is None else duration):
             self._session.say(
                 WARN, "run",
-                "the adaptive steps differ from those of onorbit run, since a controller in Python cannot be "
-                "set back; give it get_state() and set_state()",
+                "the adaptive steps differ from those of onorbit run, since the state of a Python controller "
+                "cannot be restored; give it get_state() and set_state()",
             )  # fmt: skip
         try:
             with (

@@ -38,7 +38,9 @@ class Orders:
         """Obey and record the messages that have arrived; refuse those that are wrong, with an answer."""
         for arrived in self._inbox.take():
             if arrived.contested:
-                text = f"several processes send to {', '.join(arrived.contested)}; the last message holds"
+                text = (
+                    f"several processes send to {', '.join(arrived.contested)}; the last message takes effect"
+                )
                 self._session.say(WARN, arrived.topic, text)
             if arrived.refusal is not None:
                 self._refuse(arrived.topic, arrived.refusal)
@@ -60,7 +62,7 @@ class Orders:
     def _pause(self, topic: str, is_paused: bool) -> bool:
         session = self._session
         if session.pace == "stepped":
-            session.say(WARN, topic, "in pace stepped the run advances on /step only")
+            session.say(WARN, topic, "/pause has no effect with pace stepped; the run advances only on /step")
             return False
         session.is_paused = is_paused
         session.publish_present()
@@ -72,7 +74,8 @@ class Orders:
             return self._refuse(topic, self._fixed)
         if not self._session.run.can_restart:
             return self._refuse(
-                topic, "a controller in Python cannot be set back; give it get_state() and set_state()"
+                topic,
+                "the state of a Python controller cannot be restored; give it get_state() and set_state()",
             )
         self._session.run.reset()
         self._on_reset()
@@ -89,9 +92,13 @@ class Orders:
         if not 0.0 < length < np.inf:
             return self._refuse(topic, f"the step is {length!r} s; it must be positive and finite")
         if min(now + length, session.run.end) > _LATEST_S:
-            return self._refuse(topic, f"the step is {length!r} s; times of ROS end at {_LATEST_S} s")
+            return self._refuse(
+                topic, f"the step is {length!r} s; times of ROS end at {_LATEST_S} s, so give a shorter step"
+            )
         if length < 1.0 and nanoseconds(now + length) == nanoseconds(now):
-            return self._refuse(topic, f"the step is {length!r} s; the clock resolves 1e-09 s")
+            return self._refuse(
+                topic, f"the step is {length!r} s; the clock resolves 1e-09 s, so give a longer step"
+            )
         session.advance_by(length)
         session.publish_present()
         session.say(OK, topic, f"advanced to t = {session.run.time:.9g} s")
@@ -106,7 +113,7 @@ class Orders:
         except OnOrbitError as error:
             return self._refuse(topic, str(error))
         if (start := entry.get("trajectory", {}).get("start", now)) > now + _FAR_S:
-            text = f"starts in {start - now:.9g} s: set use_sim_time in the node that sends it"
+            text = f"the trajectory starts in {start - now:.9g} s; set use_sim_time in the node that sends it"
             self._session.say(WARN, topic, text)
         if "trigger" in entry:
             self._session.say(OK, topic, f"{entry['trigger']} is due at t = {now:.9g} s")

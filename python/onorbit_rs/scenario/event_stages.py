@@ -21,7 +21,7 @@ class Stage:
     trees: tuple[tuple[str, ...], ...]
     """Names of the systems in each tree; the first is the root."""
     remark: str = ""
-    """Reason why the event changes no tree; empty if it changes the trees."""
+    """Remark on an event that changes no tree; empty if the event changes the trees."""
     seating_joints: tuple[int, ...] = ()
     """Number of joints of each tree whose positions are prescribed by a seating in progress."""
 
@@ -106,12 +106,14 @@ def _time(event: Event, by_name: dict[str, Event]) -> float | None:
 
 
 def _capture(event: Event, trees: Sequence[Sequence[str]], welds: list[_Weld], roots: list[str]) -> str:
-    """Connect two systems; return the reason if that is not possible, otherwise an empty string."""
+    """Connect two systems; return a remark if they are already connected, otherwise an empty string."""
     by, of = (split_path(path)[0] for path in event.do.capture or ())
     first, second = (next(tree for tree in trees if name in tree) for name in (by, of))
-    if first == second:
-        return f"stops the run: {by} and {of} are already connected"
+    if first == second and event.do.seat:
+        return f"stops the run: {by} and {of} are already connected, so the capture cannot seat its frames"
     welds.append(_Weld(event.name, by, of, event.do.seat or 0.0))
+    if first == second:
+        return f"closes a loop: {by} and {of} are already connected"
     roots[:] = [root for root in roots if root not in (first[0], second[0])] + [first[0]]
     return ""
 
@@ -140,7 +142,7 @@ def _trees(names: Sequence[str], welds: Sequence[_Weld], roots: Sequence[str]) -
         for system in tree:  # the list grows during the iteration
             ends = ((weld.by, weld.of) if weld.by == system else (weld.of, weld.by) for weld in welds
                     if system in (weld.by, weld.of))  # fmt: skip
-            tree += [far for _, far in ends if far not in tree]
+            tree += [far for far in dict.fromkeys(far for _, far in ends) if far not in tree]
         placed.update(tree)
         found.append(tuple(tree))
     return tuple(found)

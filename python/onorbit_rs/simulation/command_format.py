@@ -121,7 +121,9 @@ def read_commands(file: str | os.PathLike[str]) -> list[Command]:
     """
     path = Path(file)
     if not path.is_file():
-        raise NotFoundError(f"no such file of commands: {path}", path=str(path), kind="commands")
+        raise NotFoundError(
+            f"no such file of commands: {path}; check the path", path=str(path), kind="commands"
+        )
     content = read_bytes(path, _MOST, "commands")
     try:
         text = content.decode()
@@ -145,7 +147,7 @@ def parse_commands(text: str, name: str) -> list[Command]:
             reason = str(error)
             if isinstance(error, json.JSONDecodeError):
                 reason = f"{error.msg} at column {error.colno}"
-            raise invalid(where, f"the line is not valid JSON: {reason}") from None
+            raise invalid(where, f"the line is not valid JSON: {reason}; correct it") from None
         if not isinstance(entry, dict) or "time" not in entry:
             message = "each line must be a JSON object with the key 'time', the simulated time in s"
             raise invalid(where, f"{message}, not {line.strip()!r:.60}")

@@ -106,7 +106,7 @@ def reason(printed: str) -> str:
     if panic := _PANIC.search(printed):
         return panic[1]
     lines = printed.strip().splitlines()
-    return lines[-1].rsplit(": ", 1)[-1] if lines else "it gave no reason"
+    return lines[-1].rsplit(": ", 1)[-1] if lines else "it printed no reason"
 
 
 def _start(port: int, *arguments: str) -> None:
@@ -140,7 +140,9 @@ def _await_window(viewer: subprocess.Popen[bytes], port: int, said: IO[str]) -> 
             asked.start()
         time.sleep(0.05)
     if not answered.is_set() and not listens(port):
-        raise _not_started(f"it did not respond within {START_PATIENCE_S:g} s")
+        raise _not_started(
+            f"it did not respond within {START_PATIENCE_S:g} s; check that 'rerun' opens a window"
+        )
 
 
 def _not_started(why: str) -> ViewerError:

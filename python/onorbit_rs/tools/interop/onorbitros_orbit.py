@@ -178,7 +178,9 @@ def read_fixed_pose(source: Source) -> None:
     quat = [source.number(name, float(name.endswith("w"))) for name in names]
     norm = math.hypot(*quat)
     if abs(norm - 1.0) > 1e-3:
-        raise source.fail("orientation_w", f"the quaternion has norm {norm:.6g}; it must be 1 within 1e-3")
+        raise source.fail(
+            "orientation_w", f"the quaternion has norm {norm:.6g}; it must be 1 within 1e-3; normalise it"
+        )
     source.put(("orbit", "kind"), "fixed_frame", "kind")
     source.put(("orbit", "position"), position, "pos_x")
     source.put(("orbit", "attitude"), {"quaternion_xyzw": [part / norm for part in quat]}, "orientation_w")

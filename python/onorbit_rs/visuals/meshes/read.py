@@ -64,7 +64,7 @@ def _read(path: Path, _changed: int, _size: int) -> Mesh | ReadError:
     except ValueError as error:
         return _failure(path, str(error))
     except Exception as error:  # the libraries raise many types for damaged files
-        return _failure(path, f"it is damaged ({type(error).__name__}: {error})")
+        return _failure(path, f"it is damaged ({type(error).__name__}: {error}); export the mesh again")
 
 
 def _checked(parts: list[Part]) -> list[Part]:
