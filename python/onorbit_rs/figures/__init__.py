@@ -15,6 +15,7 @@ from onorbit_rs.figures.drawings import Drawing, drawings
 from onorbit_rs.figures.forces import environment_forces
 from onorbit_rs.figures.ground_track import ground_track
 from onorbit_rs.figures.ledger import ledger
+from onorbit_rs.figures.loop_history import loop_history
 from onorbit_rs.figures.manipulability import manipulability
 from onorbit_rs.figures.motion import base_motion, base_reaction
 from onorbit_rs.figures.orbit import orbit_overview
@@ -55,6 +56,7 @@ __all__ = [
     "ground_track",
     "joint_torques",
     "ledger",
+    "loop_history",
     "manipulability",
     "marks_of",
     "momentum_exchange",

@@ -15,6 +15,7 @@ from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.forces import environment_forces
 from onorbit_rs.figures.ground_track import ground_track
 from onorbit_rs.figures.ledger import ledger
+from onorbit_rs.figures.loop_history import loop_history
 from onorbit_rs.figures.manipulability import manipulability
 from onorbit_rs.figures.motion import base_motion, base_reaction
 from onorbit_rs.figures.orbit import orbit_overview
@@ -111,6 +112,7 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
         "angular momentum is about the centre of mass."
     )
     yield Drawing("ledger", about, partial(ledger, trace))
+    yield from _of_the_loops(trace)
     if trace.wrenches and model is not None:
         about = "Force and torque of every effect on every body; torques are about the body's centre of mass."
         if subject.is_carried:
@@ -131,6 +133,19 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
     if about_earth and earth is not None:
         about = "The ground track, geodetic, and the height above the ellipsoid."
         yield Drawing("ground_track", about, partial(ground_track, trace, earth))
+
+
+def _of_the_loops(trace: Trace) -> Iterator[Drawing]:
+    """Yield a figure for each loop that was closed at some time."""
+    for number, (loop, rows) in enumerate(trace.loops.items()):
+        if not np.any(rows.values):
+            continue
+        part = file_part(loop) if file_part(loop) == loop else f"{number + 1}_{file_part(loop)}"
+        about = (
+            f"Loop {loop}: force on its second frame and moment about its point, in W, and the distance and "
+            "the angle by which it is open. Rounding errors are of the order of 1e-16."
+        )
+        yield Drawing(f"loop_{part}", about, partial(loop_history, trace, loop))
 
 
 def _angle_flown_deg(trace: Trace) -> float:

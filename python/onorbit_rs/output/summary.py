@@ -63,6 +63,7 @@ def summarize(
         | _controls(trace, built)
         | _motion(trace, built)
         | _losses(trace, built)
+        | _loops(trace)
         | _certificate(trace)
         | {"rereferenced": len(trace.rereferenced)}
         | run_numbers(trace, scenario)
@@ -149,6 +150,21 @@ def _losses(trace: Trace, built: Built) -> Summary:
         losses["joint_dissipation_j"] = np.asarray(trace.dissipated)[-1]
         losses["joint_limits_exceeded"] = ", ".join(trace.joint_limits_exceeded())
     return losses | loads_exceeded(trace, built.model)
+
+
+def _loops(trace: Trace) -> Summary:
+    """Return the largest force, moment and opening of every closed loop."""
+    loops: Summary = {}
+    for name, loop in trace.loops.items():
+        distance, angle = np.asarray(loop.opening).max(axis=0)
+        for what, value in (
+            ("force_max_n", np.linalg.norm(loop.force, axis=1).max()),
+            ("moment_max_nm", np.linalg.norm(loop.moment, axis=1).max()),
+            ("opening_max_m", distance),
+            ("opening_angle_max_rad", angle),
+        ):
+            loops[f"loop_{name}_{what}"] = value
+    return loops
 
 
 def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -> Summary:

@@ -36,6 +36,7 @@ _NAMES = {
 _GROUPS = (
     ("Tracking", ("tracking_", "control_")),
     ("Motion", ("joint_", "base_")),
+    ("Closed loops", ("loop_",)),
     ("Orbit", ("inertial_axes", "velocity_eci", "gravity_mode", "reference_residual", "rereferenced")),
     (
         "Simulation",

@@ -13,7 +13,7 @@ from onorbit_rs._core import COLUMNS
 from onorbit_rs.common.coordinates import POSITION, QUATERNION
 from onorbit_rs.common.display_units import amount, round_up
 from onorbit_rs.common.rotations import matrix_from_quaternion
-from onorbit_rs.viewer.colors import MOMENTUM, hues
+from onorbit_rs.viewer.colors import LOOPS, MOMENTUM, hues
 from onorbit_rs.viewer.frames import FOLLOW, WORLD, put_in
 from onorbit_rs.viewer.trace_rows import TIMELINE
 from onorbit_rs.viewer.wrenches import centers_of_bodies, forces, net_force, torque_about_center
@@ -72,10 +72,13 @@ class Arrows:
     _scales: dict[str, float] = field(default_factory=dict)
 
     def send(self, rows: TraceRows) -> None:
-        """Send momenta at the centre of mass and, if recorded, forces and torques of every effect."""
+        """Send momenta at the centre of mass, forces and moments of the closed loops and, if recorded,
+        forces and torques of every effect.
+        """
         center = rows["center_of_mass"][:, None, :]
         for kind, vectors in self._momenta(rows):
             self._send(rows, kind, center, vectors[:, None, :])
+        self._send_loops(rows)
         if not rows.wrenches:
             return
         centers = centers_of_bodies(rows, self.setting.model)
@@ -93,6 +96,22 @@ class Arrows:
             self._send(rows, force, centers, forces(wrenches))
             self._send(rows, torque, center, torque_about_center(rows, centers, wrenches)[:, None, :])
 
+    def _send_loops(self, rows: TraceRows) -> None:
+        """Send force and moment of all loops at their points; moments of rounding errors are omitted."""
+        if not rows.loops:
+            return
+        path, parts = self.setting.entity("arrows/loops"), COLUMNS["loops"].parts
+        values = np.stack(list(rows.loops.values()), axis=1)
+        points, (at, unit), (about, moment_unit) = (
+            values[:, :, parts["point"][0]], parts["force"], parts["moment"]
+        )  # fmt: skip
+        name = "loop force on the second frame"
+        force = _Kind(f"{path}/force", name, unit, LOOPS.full)
+        self._send(rows, force, points, values[:, :, at], at_surface=False)
+        if _peak(values[:, :, about]) > ROUNDING * _peak(values[:, :, at]) * self.viewpoint.size:
+            moment = _Kind.of_moments(f"{path}/moment", "loop moment", moment_unit, LOOPS.pale)
+            self._send(rows, moment, points, values[:, :, about], at_surface=False)
+
     def _momenta(self, rows: TraceRows) -> Iterator[tuple[_Kind, Floats]]:
         """Yield the momenta that are significant relative to the motion of the joints."""
         mass, energy = self.setting.model.mass, float(rows["kinetic_energy"].max())
@@ -108,9 +127,14 @@ class Arrows:
             if _peak(vectors) > WORTH_SHOWING * at_least or kind.path in self._scales:
                 yield kind, vectors
 
-    def _send(self, rows: TraceRows, kind: _Kind, origins: Floats, vectors: Floats) -> None:
-        """Send arrows (T, n, 3) at origins (T, n, 3), m, both in W."""
-        path, to_surface = kind.path, self._to_surface(rows, origins, vectors)
+    def _send(
+        self, rows: TraceRows, kind: _Kind, origins: Floats, vectors: Floats, *, at_surface: bool = True
+    ) -> None:
+        """Send arrows (T, n, 3) at origins (T, n, 3), m, both in W; by default, the first arrow begins at the
+        surface of the base.
+        """
+        path = kind.path
+        to_surface = self._to_surface(rows, origins, vectors) if at_surface else np.zeros(vectors.shape)
         room = kind.longest * self.viewpoint.size - np.linalg.norm(to_surface, axis=2, keepdims=True)
         needed = _peak(vectors / np.maximum(room, LEAST_LENGTH * self.viewpoint.size))
         scale = max(round_up(needed), self._scales.get(path, 0.0))

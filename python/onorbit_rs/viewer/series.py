@@ -68,6 +68,7 @@ def series_of(rows: TraceRows, setting: Setting, *, is_live: bool = False) -> It
         _of_joints(rows, setting.model),
         _of_base(rows),
         _of_balances(rows),
+        _of_loops(rows),
         _of_effects(rows, setting.model),
     )
     for series in chain.from_iterable(parts):
@@ -103,6 +104,22 @@ def _of_effects(rows: TraceRows, model: Model) -> Iterator[Series]:
         for part, title, values in parts:
             _, unit = COLUMNS["wrenches"].parts[part]
             yield Series("Forces", f"plots/{effect}/{part}", f"{name}: {title}", unit, AXES, values)
+
+
+def _of_loops(rows: TraceRows) -> Iterator[Series]:
+    """Yield the plots of force, moment and opening of every closed loop."""
+    parts = COLUMNS["loops"].parts
+    for name, values in rows.loops.items():
+        path = f"plots/loops/{name}"
+        for part, title in (("force", "force on the second frame"), ("moment", "moment")):
+            entries, unit = parts[part]
+            yield Series("Loops", f"{path}/{part}", f"{name}: {title}", unit, AXES, values[:, entries])
+        entries, units = parts["opening"]
+        for number, (what, unit) in enumerate(
+            zip(("opening", "opening_angle"), units.split(" and "), strict=True)
+        ):
+            title, own = what.replace("_", " "), values[:, entries][:, [number]]
+            yield Series("Loops", f"{path}/{what}", f"{name}: {title}", unit, (title,), own)
 
 
 def _of_tools(rows: TraceRows, setting: Setting) -> Iterator[Series]:

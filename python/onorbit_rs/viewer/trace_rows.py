@@ -36,14 +36,15 @@ TIMELINE = "simulation_time"
 class TraceRows:
     """Rows of a trace: ``columns`` maps the name of each column to its values, (T, ...).
 
-    ``wrenches``, (T, bodies, 6), are stored by effect, ``tracking`` errors, (T, k), by control, and
-    ``contacts``, (T, 19), by contact.
+    ``wrenches``, (T, bodies, 6), are stored by effect, ``tracking`` errors, (T, k), by control,
+    ``contacts``, (T, 19), by contact, and ``loops``, (T, 11), by loop.
     """
 
     columns: Mapping[str, Floats]
     wrenches: Mapping[str, Floats] = field(default_factory=dict)
     tracking: Mapping[str, Floats] = field(default_factory=dict)
     contacts: Mapping[str, Floats] = field(default_factory=dict)
+    loops: Mapping[str, Floats] = field(default_factory=dict)
 
     @classmethod
     def of_trace(cls, trace: Trace, chosen: NDArray[np.int64] | slice = slice(None)) -> TraceRows:
@@ -53,13 +54,16 @@ class TraceRows:
             {shown(name): np.asarray(values)[chosen] for name, values in trace.wrenches.items()},
             {shown(name): np.asarray(values)[chosen] for name, values in trace.tracking.items()},
             {shown(name): np.asarray(one.values)[chosen] for name, one in trace.contacts.items()},
+            {shown(name): np.asarray(one.values)[chosen] for name, one in trace.loops.items()},
         )
 
     @classmethod
     def of_checkpoint(cls, columns: Mapping[str, Floats]) -> TraceRows:
         """Return the rows of a checkpoint, with its flat (rows, width) columns reshaped as in a trace."""
         plain: dict[str, Floats] = {}
-        owned: dict[str, dict[str, Floats]] = {"wrenches": {}, "tracking": {}, "contacts": {}}
+        owned: dict[str, dict[str, Floats]] = {
+            "wrenches": {}, "tracking": {}, "contacts": {}, "loops": {},
+        }  # fmt: skip
         joints = columns["q"].shape[1] - BASE_NQ
         for path, values in columns.items():
             name, owner = split_path(path)
@@ -90,11 +94,11 @@ class TraceRows:
 
     def at(self, chosen: NDArray[np.int64] | slice) -> TraceRows:
         """Return the rows with the chosen indices."""
-        parts = (self.columns, self.wrenches, self.tracking, self.contacts)
+        parts = (self.columns, self.wrenches, self.tracking, self.contacts, self.loops)
         return TraceRows(*({name: values[chosen] for name, values in part.items()} for part in parts))
 
     def last(self) -> TraceRows:
-        """Return the last row of the columns, without wrenches, tracking errors and contacts."""
+        """Return the last row of the columns, without wrenches, tracking errors, contacts and loops."""
         return TraceRows({name: values[-1:] for name, values in self.columns.items()})
 
     def after(self, earlier: TraceRows) -> TraceRows:
