@@ -105,7 +105,6 @@ fn text(recording: &Recording) -> String {
 }
 
 #[test]
-#[ignore = "contacts of these random hulls open and close at one instant and take minutes"]
 fn the_broad_phase_changes_no_bit() {
     let mut touches = 0.0;
     for seed in 0..4 {
@@ -121,7 +120,6 @@ fn the_broad_phase_changes_no_bit() {
 
 /// A checkpoint holds the states of far pairs too.
 #[test]
-#[ignore = "contacts of these random hulls open and close at one instant and take minutes"]
 fn a_resumed_run_has_the_bits_of_the_whole_run() {
     for seed in [1, 2] {
         let whole = simulation(seed, true).run(3.0).unwrap();

@@ -66,9 +66,6 @@ pub(super) struct Progress {
     /// True if the elastic energy of contacts has jumped in the last step.
     #[serde(default)]
     pub(super) has_jumped: bool,
-    /// Number of consecutive steps whose energy balance did not close at the shortest length.
-    #[serde(default)]
-    pub(super) unclosed: u32,
     /// Progress of each tree.
     pub(super) trees: Vec<TreeProgress>,
     /// Progress of each system.

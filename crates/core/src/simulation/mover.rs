@@ -141,23 +141,20 @@ impl<S: Scalar> Mover<'_, S> {
 
     /// Returns the state from which [`Mover::restore`] returns to the current step: the adaptive step control
     /// (`None` for other methods), the number of consecutive idle steps, and whether the elastic energy of contacts
-    /// has jumped in the last step, and the number of steps whose energy balance did not close.
-    pub(super) fn save(&self) -> (Option<StepControl>, usize, bool, u32) {
+    /// has jumped in the last step.
+    pub(super) fn save(&self) -> (Option<StepControl>, usize, bool) {
         match self {
             Self::Native(method) => {
-                (method.integration.control().cloned(), method.idle_steps, method.has_jumped, method.unclosed)
+                (method.integration.control().cloned(), method.idle_steps, method.has_jumped)
             }
-            Self::External(_) => (None, 0, false, 0),
+            Self::External(_) => (None, 0, false),
         }
     }
 
     /// Restores the state returned by [`Mover::save`].
-    pub(super) fn restore(
-        &mut self,
-        (control, idle_steps, has_jumped, unclosed): (Option<StepControl>, usize, bool, u32),
-    ) {
+    pub(super) fn restore(&mut self, (control, idle_steps, has_jumped): (Option<StepControl>, usize, bool)) {
         if let Self::Native(method) = self {
-            (method.idle_steps, method.has_jumped, method.unclosed) = (idle_steps, has_jumped, unclosed);
+            (method.idle_steps, method.has_jumped) = (idle_steps, has_jumped);
             if let Some(control) = control {
                 method.integration.set_control(control);
             }

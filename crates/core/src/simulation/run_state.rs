@@ -82,7 +82,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// Returns everything that a step changes, except the state of the controllers and the list of events,
     /// which only grows.
     pub(super) fn progress(&self) -> Progress {
-        let (step_control, idle_steps, has_jumped, unclosed) = self.mover.save();
+        let (step_control, idle_steps, has_jumped) = self.mover.save();
         let (contacts, touches) = self.equations.contacts.save();
         let tree = |(number, tree): (usize, &Tree<'_, S>)| {
             let (errors, checks) = self.accuracy.save(number);
@@ -106,7 +106,6 @@ impl<S: Scalar> RunState<'_, S> {
             step_control,
             idle_steps,
             has_jumped,
-            unclosed,
             trees: self.equations.trees.iter().enumerate().map(tree).collect(),
             systems: self.systems.iter().map(system).collect(),
             world: WorldProgress {
@@ -129,8 +128,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.state = progress.state.map(|x| S::of(*x));
         self.schedule.set_cursor(progress.cursor);
         self.steps = progress.steps;
-        let Progress { step_control, idle_steps, has_jumped, unclosed, .. } = progress;
-        self.mover.restore((step_control, idle_steps, has_jumped, unclosed));
+        self.mover.restore((progress.step_control, progress.idle_steps, progress.has_jumped));
         for (number, (saved, tree)) in progress.trees.into_iter().zip(&mut self.equations.trees).enumerate() {
             tree.modes.restore(&saved.modes);
             self.accuracy.restore(number, (saved.errors, saved.checks));

@@ -17,8 +17,9 @@ const MOST_IDLE_STEPS: usize = 32;
 const IDLE: f64 = 1e-6;
 /// Displacement, rad or m, below which a step is idle although the joint came to rest or reached its stop.
 const STILL: f64 = 1e-9;
-/// Length to which a step may be shortened to improve its energy balance, relative to the length of the first
-/// attempt.
+/// Length to which a step may be shortened to improve its energy balance, relative to the length without
+/// changes of modes. A fraction of a length that ends at a jump of the elastic energy would let the steps
+/// approach the jump without ever passing it.
 const SHORTEST: f64 = 1e-4;
 /// Rounding error of the energy balance, relative to the sum of the kinetic energies and of the works.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -37,8 +38,6 @@ pub(crate) struct StepMethod<S> {
     pub(crate) idle_steps: usize,
     /// True if the elastic energy has jumped in the last step.
     pub(crate) has_jumped: bool,
-    /// Number of consecutive steps whose energy balance did not close at the shortest length.
-    pub(crate) unclosed: u32,
     time_step: f64,
 }
 
@@ -51,14 +50,13 @@ impl<S: Real> StepMethod<S> {
             ignores_slip: false,
             idle_steps: 0,
             has_jumped: false,
-            unclosed: 0,
             time_step: settings.time_step,
         }
     }
 
     /// Resets the method at the start of another run.
     pub(crate) fn reset(&mut self) {
-        (self.idle_steps, self.has_jumped, self.unclosed) = (0, false, 0);
+        (self.idle_steps, self.has_jumped) = (0, false);
     }
 
     /// Applies the impacts at `state`. Requires its kinematics, with projected base twists, in `equations`,
@@ -96,12 +94,13 @@ impl<S: Real> StepMethod<S> {
         }
         self.ignores_slip = self.idle_steps >= MOST_IDLE_STEPS;
         equations.contacts.ignores_slip = self.ignores_slip;
-        // a change that recurs at the same instant, such as a contact that opens and closes, must not stop the run
-        let is_stuck = self.idle_steps >= 2 * MOST_IDLE_STEPS;
-        let fraction = if is_stuck { 1.0 } else { self.locate(equations, state, (interval.0, end))? };
+        let fraction = self.locate(equations, state, (interval.0, end))?;
         let reached = if fraction < 1.0 { interval.0 + fraction * (end - interval.0) } else { end };
         let reached = match balance {
-            Some(balance) => self.close_energy_balance(equations, state, (interval.0, reached), balance)?,
+            Some(balance) => {
+                let shortest = SHORTEST * (end - interval.0);
+                self.close_energy_balance(equations, state, (interval.0, reached), balance, shortest)?
+            }
             None => reached,
         };
         let parts = equations.trees.iter().zip(&self.start.trees).zip(&mut state.trees);
@@ -112,21 +111,18 @@ impl<S: Real> StepMethod<S> {
     }
 
     /// Shortens the step over `interval`, which ended at `state`, until the energy balance at its end agrees
-    /// with `balance`, which holds at its start. Returns the time reached, s. A force that jumps within a
-    /// step, for example where the nearest faces of two bodies change, causes an error of the balance that is
-    /// proportional to the square of the step length.
+    /// with `balance`, which holds at its start, or its length is at most `shortest`, s. Returns the time
+    /// reached, s. A force that jumps within a step, for example where the nearest faces of two bodies change,
+    /// causes an error of the balance that is proportional to the square of the step length.
     fn close_energy_balance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
         state: &mut State<S>,
         (start, mut end): (f64, f64),
         balance: S,
+        shortest: f64,
     ) -> Result<f64, SimulationError> {
         let permitted = equations.contacts.energy_error;
-        // each failure makes the next attempt ten times less persistent, so that a run does not crawl where the
-        // balance cannot close, as where the elastic energy jumps in many steps
-        let shortest = (SHORTEST * 10.0_f64.powi(self.unclosed.min(4) as i32)) * (end - start);
-        let mut is_halved = false;
         loop {
             self.settled.copy_from(state);
             equations.project_momentum(&mut self.settled);
@@ -137,14 +133,8 @@ impl<S: Real> StepMethod<S> {
             let is_balanced = (now - balance).lane(0).abs() <= permitted && (is_stored || self.has_jumped);
             if is_balanced || end - start <= shortest {
                 self.has_jumped = !is_stored;
-                self.unclosed = match (is_balanced, is_halved) {
-                    (true, false) => 0,
-                    (true, true) => self.unclosed,
-                    (false, _) => self.unclosed + 1,
-                };
                 return Ok(end);
             }
-            is_halved = true;
             end = 0.5 * (start + end);
             self.repeat_step(equations, state, (start, end), 1.0)?;
         }
