@@ -152,3 +152,77 @@ def test_a_second_grasp_closes_a_loop() -> None:
     # the welds remove the relative velocity within some steps instead of at once
     assert max(apart.values()) < 1e-5, apart
     assert np.abs(ours["craft"].q[-1] - one_hand["craft"].q[-1]).max() > 0.05
+
+
+def arm() -> oo.Model:
+    """Return a base with an arm of two joints, the second about an inclined axis."""
+    builder = oo.ModelBuilder("arm", base="base", mass=20.0, inertia=np.diag([1.0, 1.2, 1.4]))
+    for number, axis in enumerate(([0.0, 0.0, 1.0], [0.0, 1.0, 0.3])):
+        builder.add_link(
+            f"link_{number}", parent="base" if number == 0 else "link_0", joint=f"joint_{number}", axis=axis,
+            xyz=[0.4, 0.0, 0.0], mass=2.0, com=[0.2, 0.0, 0.0], inertia=np.diag([0.01, 0.04, 0.05]),
+        )  # fmt: skip
+    return builder.build()
+
+
+def body() -> oo.Model:
+    return oo.ModelBuilder("body", base="box", mass=3.0, inertia=np.diag([0.1, 0.12, 0.14])).build()
+
+
+def braked(slip_torque: float, engine: Any, *, engage_at: float | None = 0.3) -> Any:
+    """Simulate an arm whose brake on the first joint is engaged at a time, or never."""
+    model = arm()
+    q, v = model.neutral(), np.zeros(model.nv)
+    v[6:] = [0.5, -0.3]
+    actuators = [oo.Brake("brake", "joint_0", slip_torque=slip_torque)]
+    craft = oo.System("craft", model, q, v, actuators=actuators)
+    box = body()
+    far = box.neutral()
+    far[0] = 10.0
+    other = oo.System("other", box, far, np.zeros(6))
+    events = [] if engage_at is None else [oo.Engage("hold", "craft/brake", at=engage_at)]
+    world = oo.World([craft, other], events=events)
+    return oo.Simulation(world, time_step=STEP, engine=engine).run(1.0)["craft"]
+
+
+@pytest.mark.parametrize(("slip_torque", "allowed"), [(0.3, 3e-6), (np.inf, 1e-3)])
+def test_a_brake_slows_or_stops_a_joint(slip_torque: float, allowed: float) -> None:
+    ours = braked(slip_torque, None)
+    models = {"craft": arm(), "other": body()}
+    theirs = braked(slip_torque, Mujoco(models, time_step=STEP))
+    free = braked(slip_torque, Mujoco(models, time_step=STEP), engage_at=None)
+    # the lock removes the rate 0.5 rad/s within some steps of 2 ms instead of at once
+    assert np.abs(ours.q[-1] - theirs.q[-1]).max() < allowed
+    assert abs(theirs.v[-1, 6]) < 1e-6
+    assert abs(theirs.q[-1, 7] - free.q[-1, 7]) > 0.1
+
+
+def test_a_brake_of_a_single_robot_holds_for_the_whole_run() -> None:
+    model = arm()
+    q, v = model.neutral(), np.zeros(model.nv)
+    v[7] = 0.4
+    actuators = [oo.Brake("brake", "joint_0", engaged=True)]
+
+    def run(engine: Any, actuators: Any) -> Any:
+        return oo.Simulation(model, q, v, time_step=STEP, engine=engine, actuators=actuators).run(1.0)
+
+    ours, theirs = (run(engine, actuators) for engine in (None, Mujoco(model, time_step=STEP)))
+    assert np.abs(ours.q[-1] - theirs.q[-1]).max() < 1e-5
+    assert np.ptp(theirs.q[:, 7]) < 1e-5
+    assert np.ptp(run(Mujoco(model, time_step=STEP), []).q[:, 7]) > 1e-3
+
+
+def test_a_capture_by_a_link_with_an_inclined_axis_holds_the_pose_of_that_instant() -> None:
+    """The weld was rotated by the inclination of the axis."""
+    models = {"craft": arm(), "target": (target := body())}
+    (q, v), (q_target, v_target) = [(model.neutral(), np.zeros(model.nv)) for model in models.values()]
+    q[7:], q_target[:3], v_target[:] = [0.3, 0.4], [1.4, 0.3, -0.2], [0.0, 0.01, 0.0, 0.02, 0.0, 0.03]
+
+    def run(engine: Any) -> Any:
+        systems = [oo.System("craft", models["craft"], q, v), oo.System("target", target, q_target, v_target)]
+        grasp = oo.Capture("grasp", "craft/link_1", "target/box", at=0.0)
+        return oo.Simulation(oo.World(systems, events=[grasp]), time_step=STEP, engine=engine).run(1.0)
+
+    ours, theirs = run(None), run(Mujoco(models, time_step=STEP))
+    for name in models:
+        assert np.abs(ours[name].q[-1] - theirs[name].q[-1]).max() < 1e-4

@@ -7,6 +7,7 @@ use onorbit_core::simulation::{
 };
 use onorbit_core::spatial::Vec3;
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Environment of a run. ``wrenches(t, q, v)`` returns an array (bodies, 6) for time ``t``, s, within the
@@ -68,6 +69,8 @@ pub(crate) struct PythonEngine {
     /// Names of the contacts whose forces the engine computes.
     contacts: Vec<String>,
     is_world: bool,
+    /// True if the methods take the engaged brakes as the argument `brakes`.
+    supports_brakes: bool,
 }
 
 impl PythonEngine {
@@ -82,6 +85,10 @@ impl PythonEngine {
             Some(names) => names_in(&names, "the contacts of the engine", "names of contacts", "touch")?,
             None => Vec::new(),
         };
+        let supports_brakes = match engine.getattr_opt("supports_brakes")? {
+            Some(answer) => answer.is_truthy()?,
+            None => false,
+        };
         let is_world = simulation.systems.len() > 1 || !contacts.is_empty();
         if is_world && !engine.hasattr("step_world")? {
             let message = "an engine of a world of several systems needs a method step_world; see the notes of \
@@ -90,7 +97,7 @@ impl PythonEngine {
         }
         let query = Mutex::new((simulation.outside(), (0.0, 0.0)));
         let wrenches = Py::new(py, PyWrenches { query, sizes })?;
-        Ok(Self { object: engine.clone().unbind(), wrenches, contacts, is_world })
+        Ok(Self { object: engine.clone().unbind(), wrenches, contacts, is_world, supports_brakes })
     }
 
     /// Calls the engine and copies its results to `output`.
@@ -100,10 +107,11 @@ impl PythonEngine {
         self.wrenches.get().lock().1 = input.interval;
         let state = (array(input.q), array(input.v), array(input.tau));
         let object = self.object.bind(py);
+        let options = self.options(py, input)?;
         let [q, v, a] = if self.is_world {
             let welds: Vec<_> = input.welds.iter().map(|weld| described(py, weld)).collect();
             let arguments = (start, end, state.0, state.1, state.2, &self.wrenches, welds);
-            let result = object.call_method1("step_world", arguments)?;
+            let result = object.call_method("step_world", arguments, options.as_ref())?;
             let ([q, v, a, impulse, work, loss, weld_impulse, weld_work, orbital], contacts) =
                 self.returned(&result)?;
             if let Some(contacts) = contacts {
@@ -113,7 +121,7 @@ impl PythonEngine {
             [q, v, a]
         } else {
             let arguments = (start, end, state.0, state.1, state.2, &self.wrenches);
-            let result = object.call_method1("step", arguments)?;
+            let result = object.call_method("step", arguments, options.as_ref())?;
             let [q, v, a, impulse, work, loss]: [Bound<'_, PyAny>; 6] = result.extract()?;
             let done = &mut output.systems[0];
             done.impulse.copy_from_slice(vector(&impulse, IMPULSE, 6)?.data());
@@ -129,6 +137,17 @@ impl PythonEngine {
             to.copy_from_slice(vector(&value, name, n)?.data());
         }
         Ok(())
+    }
+
+    /// Returns the argument `brakes`, a list of system, joint and slip torque, if the engine supports brakes.
+    fn options<'py>(&self, py: Python<'py>, input: &StepInput<'_>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        if !self.supports_brakes {
+            return Ok(None);
+        }
+        let options = PyDict::new(py);
+        let engaged = input.brakes.iter().map(|brake| (brake.system, brake.joint, brake.slip_torque));
+        options.set_item("brakes", engaged.collect::<Vec<_>>())?;
+        Ok(Some(options))
     }
 
     /// Splits the tuple that ``step_world`` returned. Its last entry belongs to the contacts and is absent
@@ -211,6 +230,10 @@ fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyR
 impl Engine for PythonEngine {
     fn contacts(&self) -> Vec<String> {
         self.contacts.clone()
+    }
+
+    fn supports_brakes(&self) -> bool {
+        self.supports_brakes
     }
 
     fn step(&mut self, input: &StepInput<'_>, output: &mut StepOutput) -> Result<(), SimulationError> {

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from onorbit_rs.common.counting import count
+from onorbit_rs.engines.mujoco_brakes import Brakes
 from onorbit_rs.engines.mujoco_log import without_log
 from onorbit_rs.engines.mujoco_model import import_mujoco, world_model
 from onorbit_rs.engines.mujoco_pressure import WIDTH, Contacts
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from onorbit_rs._core import Contact, Model
+    from onorbit_rs.engines.mujoco_brakes import Engaged
     from onorbit_rs.engines.mujoco_share import Share, Weld
 
     Floats = NDArray[np.float64]
@@ -39,7 +41,8 @@ class Mujoco:
     every stage. Momentum is not projected, so that its drift is of fourth order in the step.
     ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are
     MuJoCo's soft constraints with their stiffest settings; the restitution of stops is close to zero. Closed
-    loops and mimic joints are equalities with the same settings; a prismatic loop is rejected. The
+    loops and mimic joints are equalities with the same settings; a prismatic loop is rejected. An engaged
+    brake is friction of its slip torque, or an equality of the joint if that is infinite. The
     connections of a world are welds, also soft: a capture removes the relative velocity within a few steps
     instead of at once. One simulation at a time may use an instance; a concurrent step is refused. MuJoCo's
     log settings, which are global to the process, are disabled during a step and restored after it.
@@ -72,6 +75,8 @@ class Mujoco:
         If MuJoCo cannot represent the robot.
     """
 
+    supports_brakes = True
+
     def __init__(
         self,
         model: Model | Mapping[str, Model],
@@ -97,8 +102,8 @@ class Mujoco:
             world_model, models, time_step=time_step, with_stops=stops,
             weld_time_constant=weld_time_constant, contacts=contacts,
         )  # fmt: skip
+        self._models = models
         self._build(len(models) - 1)
-        self._shares = shares(self._model, models)
         self._bodies, self._dofs, self._q_columns, self._v_columns = (
             np.concatenate([getattr(part, name) for part in self._shares])
             for name in ("bodies", "dofs", "q_columns", "v_columns")
@@ -111,6 +116,8 @@ class Mujoco:
         self._model, touches = self._compile(connections=connections)
         self._contacts = Contacts(self._mujoco, self._model, touches)
         self._data = self._mujoco.MjData(self._model)
+        self._shares = shares(self._model, self._models)
+        self._brakes = Brakes(self._model, self._shares, connections)
 
     @property
     def version(self) -> str:
@@ -123,7 +130,15 @@ class Mujoco:
         return self._contacts.names
 
     def step(
-        self, start: float, end: float, q: Floats, v: Floats, tau: Floats, wrenches: Wrenches
+        self,
+        start: float,
+        end: float,
+        q: Floats,
+        v: Floats,
+        tau: Floats,
+        wrenches: Wrenches,
+        *,
+        brakes: Sequence[Engaged] = (),
     ) -> tuple[Floats, Floats, Floats, Floats, float, float]:
         """Integrate one step with constant joint torques; a step of length zero computes v̇ only.
 
@@ -140,6 +155,8 @@ class Mujoco:
         wrenches : callable
             ``wrenches(t, q, v)`` returns the environment's force on each body and its torque about the body's
             centre of mass, (bodies, 6), axes of W, N and N m.
+        brakes : list of (int, int, float)
+            Index of the system, index of its joint, and slip torque, N m or N, of each engaged brake.
 
         Returns
         -------
@@ -162,7 +179,7 @@ class Mujoco:
         EngineError
             If another simulation is in a step of this instance, or MuJoCo raises a fatal error.
         """
-        qpos, qvel, acceleration, done, _ = self._advance((start, end), (q, v, tau), wrenches, [])
+        qpos, qvel, acceleration, done, _ = self._advance((start, end), (q, v, tau), wrenches, [], brakes)
         return qpos, qvel, acceleration, done[:6], float(done[6]), float(done[7])
 
     def step_world(
@@ -174,6 +191,8 @@ class Mujoco:
         tau: Floats,
         wrenches: Wrenches,
         welds: Sequence[Weld],
+        *,
+        brakes: Sequence[Engaged] = (),
     ) -> tuple[Floats, ...]:
         """Integrate one step of all systems of a world; the counterpart of :meth:`step` for a world.
 
@@ -190,6 +209,8 @@ class Mujoco:
         welds : list
             Connections: ``(system, body)`` of both sides, the captured origin in the axes of each body,
             (2, 3), m, and the rotation from the axes of the second body to those of the first, (3, 3).
+        brakes : list
+            Engaged brakes, as in :meth:`step`.
 
         Returns
         -------
@@ -224,7 +245,9 @@ class Mujoco:
                 "the world",
                 name="engine", got="mujoco",
             )  # fmt: skip
-        qpos, qvel, acceleration, done, first = self._advance((start, end), (q, v, tau), wrenches, welds)
+        qpos, qvel, acceleration, done, first = self._advance(
+            (start, end), (q, v, tau), wrenches, welds, brakes
+        )
         end_of_systems = 15 * len(self._shares)
         of, orbital = done[:end_of_systems].reshape(-1, 15), done[end_of_systems:][:3]
         result = (qpos, qvel, acceleration, of[:, :6], of[:, 6], of[:, 7], of[:, 8:14], of[:, 14], orbital)
@@ -239,6 +262,7 @@ class Mujoco:
         state: tuple[Floats, Floats, Floats],
         wrenches: Wrenches,
         welds: Sequence[Weld],
+        brakes: Sequence[Engaged],
     ) -> tuple[Floats, Floats, Floats, Floats, Floats]:
         if not self._lock.acquire(blocking=False):
             raise EngineError(
@@ -253,6 +277,8 @@ class Mujoco:
                 slots = self._connections
                 connect(self._mujoco, self._model, self._data, self._shares, welds, slots)
                 self._contacts.release_held(self._data, slots)
+                qpos, _ = self._to_mujoco(*state[:2])
+                self._brakes.engage(self._data, brakes, qpos)
                 return self._step(*interval, *state, wrenches)
         finally:
             self._lock.release()

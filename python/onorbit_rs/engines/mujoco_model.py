@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.common.numbers import finite_float
+from onorbit_rs.engines.mujoco_brakes import add_locks
 from onorbit_rs.engines.mujoco_common import HARDEST, link_name, path
 from onorbit_rs.engines.mujoco_contact import Touch, add_contacts
 from onorbit_rs.engines.mujoco_loops import add_loops, set_lengths
@@ -87,8 +88,8 @@ def world_model(
     """Return one ``mujoco.MjModel`` of several systems, and their contacts.
 
     The names of links and joints are paths. The first equalities of the model are inactive welds, one for
-    each of ``connections``. ``with_stops`` names the systems with rigid stops. The errors are those of
-    :func:`mujoco_model`.
+    each of ``connections``, and then an inactive lock for each joint. ``with_stops`` names the systems with
+    rigid stops. The errors are those of :func:`mujoco_model`.
     """
     mujoco = import_mujoco()
     softness = _time_constant(weld_time_constant, time_step)
@@ -118,6 +119,8 @@ def world_model(
         weld.type, weld.objtype = mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY
         weld.name1, weld.name2, weld.active = bases[0], bases[1], False  # replaced by each connection
         weld.solref, weld.solimp = np.array([softness, 1.0]), np.array(HARDEST)
+    joints = [path(name, joint) for name, model in models.items() for joint in model.joint_names]
+    add_locks(mujoco, spec, joints, time_step)
     lengths: dict[str, float] = {}
     for name, (model, bodies) in built.items():
         lengths |= add_loops(mujoco, spec, name, model, bodies, time_step)

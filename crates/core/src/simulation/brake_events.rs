@@ -18,12 +18,14 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Engages a brake. A brake with an infinite slip torque stops its joint by an impulse,
     /// `Δv = −M⁻¹ e_j q̇_j / (M⁻¹)_jj`, in which the closed loops and the other joints that brakes hold take part.
+    /// An external engine instead stops the joint during the next steps.
     pub(super) fn engage(&mut self, number: usize, at: BrakeIndex, t: f64) -> EventRecord {
         let (before, slip_torque) = (self.snapshots(), self.brake(at).slip_torque);
         let (tree, joint) = self.set_brake(at, true);
         let (mut impulse, mut lost) = (0.0, 0.0);
         let (moved, state) = (&mut self.equations.trees[tree], &mut self.state.trees[tree]);
-        if slip_torque.is_infinite() && state.v[BASE_NV + joint].value() != 0.0 {
+        let is_rigid = slip_torque.is_infinite() && !self.mover.is_external();
+        if is_rigid && state.v[BASE_NV + joint].value() != 0.0 {
             (impulse, lost) = moved.strike(joint, 0.0, state);
         }
         self.equations.members.follow(&self.equations.trees, &self.state.trees);
@@ -60,6 +62,7 @@ impl<S: Scalar> RunState<'_, S> {
             }
         };
         trees[tree].modes.set_brake(in_tree, slip_torque);
+        self.pass_brakes();
         (tree, in_tree)
     }
 

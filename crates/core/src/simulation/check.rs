@@ -113,7 +113,9 @@ impl Simulation {
                 _ => {}
             }
         }
-        if let Some(system) = self.systems.iter().find(|system| !system.brakes.is_empty()) {
+        let has_brakes = self.engine.as_ref().is_some_and(|engine| engine.supports_brakes());
+        let braked = self.systems.iter().find(|system| !system.brakes.is_empty());
+        if let Some(system) = braked.filter(|_| !has_brakes) {
             let name = &system.brakes[0].name;
             return cannot(name, "a brake", "remove the brake; friction of the joint can take its place");
         }

@@ -23,6 +23,11 @@ pub trait Engine: Send {
     fn contacts(&self) -> Vec<String> {
         Vec::new()
     }
+
+    /// Returns true if the engine holds the joints of engaged brakes; see [`StepInput::brakes`].
+    fn supports_brakes(&self) -> bool {
+        false
+    }
 }
 
 /// Input of a step: interval, initial states, torques and connections. States and torques are those of all
@@ -39,16 +44,29 @@ pub struct StepInput<'a> {
     pub tau: &'a [f64],
     /// Connections that hold during the step.
     pub welds: &'a [BodyWeld],
+    /// Brakes that are engaged during the step.
+    pub brakes: &'a [EngagedBrake],
 }
 
-/// Rigid connection of two bodies of different systems.
+/// Engaged brake of a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EngagedBrake {
+    /// Index of the system.
+    pub system: usize,
+    /// Index of the joint among those of the system.
+    pub joint: usize,
+    /// Largest torque that the brake can hold, N m (N for a prismatic joint); may be infinite.
+    pub slip_torque: f64,
+}
+
+/// Rigid connection of two bodies of different systems, in the axes of their links as declared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyWeld {
     /// The two bodies, beginning with the body of the capturing frame.
     pub bodies: [BodyIndex; 2],
-    /// Origin of the captured frame in the axes of each body, m.
+    /// Origin of the captured frame relative to the origin of each body's link, in axes of that link, m.
     pub points: [Vec3<f64>; 2],
-    /// Rotation from axes of the second body to axes of the first body.
+    /// Rotation from axes of the second body's link to axes of the first body's link.
     pub rotation: Mat3<f64>,
 }
 

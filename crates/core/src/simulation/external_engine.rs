@@ -1,7 +1,7 @@
 //! External engine of a run, with buffers for its input and output.
 
 use super::contacts::Contacts;
-use super::engine::{BodyWeld, ContactOutput, Engine, StepInput, StepOutput};
+use super::engine::{BodyWeld, ContactOutput, EngagedBrake, Engine, StepInput, StepOutput};
 use super::error::SimulationError;
 use super::recording::Ledger;
 use super::state::State;
@@ -23,6 +23,7 @@ pub(super) struct ExternalEngine<'a> {
     /// Index ranges of each system in the vectors of all configurations and of all velocities.
     ranges: Vec<[Range<usize>; 2]>,
     pub(super) welds: Vec<BodyWeld>,
+    pub(super) brakes: Vec<EngagedBrake>,
     /// For each declared contact, its index among the outputs of the engine; `None` if the engine does not
     /// compute its force.
     contacts: Vec<Option<usize>>,
@@ -45,7 +46,8 @@ impl<'a> ExternalEngine<'a> {
         }
         let tau = vec![0.0; models.iter().map(|model| model.joint_count()).sum()];
         let (q, v) = (output.q.clone(), output.v.clone());
-        Self { engine, q, v, tau, ranges, welds: Vec::new(), contacts, output, has_output: false }
+        let (welds, brakes) = (Vec::new(), Vec::new());
+        Self { engine, q, v, tau, ranges, welds, brakes, contacts, output, has_output: false }
     }
 
     /// Returns the acceleration of a system at the start of the last step, `(nv,)`, m/s² and rad/s²; `None`
@@ -97,7 +99,7 @@ impl<'a> ExternalEngine<'a> {
         state: &mut State<S>,
         interval: (f64, f64),
     ) -> Result<(), SimulationError> {
-        let Self { engine, q, v, tau, ranges, welds, output, has_output, .. } = self;
+        let Self { engine, q, v, tau, ranges, welds, brakes, output, has_output, .. } = self;
         for (state, [q_range, v_range]) in state.trees.iter().zip(ranges) {
             for (to, from) in [(&mut q[q_range.clone()], &state.q), (&mut v[v_range.clone()], &state.v)] {
                 to.iter_mut().zip(from).for_each(|(to, from)| *to = from.value());
@@ -106,7 +108,7 @@ impl<'a> ExternalEngine<'a> {
         let torques = trees.iter().flat_map(|tree| tree.torques());
         tau.iter_mut().zip(torques).for_each(|(to, tau)| *to = tau.value());
         *has_output = false;
-        engine.step(&StepInput { interval, q, v, tau, welds }, output)?;
+        engine.step(&StepInput { interval, q, v, tau, welds, brakes }, output)?;
         *has_output = true;
         self.check_output(trees, interval.0)?;
         self.update_state(state);

@@ -1,13 +1,13 @@
-//! Connections passed to the external engine, which maintains them by its own constraints.
+//! Connections and engaged brakes passed to the external engine, which maintains them by its own constraints.
 
-use super::engine::BodyWeld;
+use super::engine::{BodyWeld, EngagedBrake};
 use super::error::SimulationError;
 use super::mover::Mover;
 use super::record::complete_rows;
 use super::run_state::RunState;
 use crate::environment::BodyIndex;
 use crate::spatial::{Quat, Scalar, Vec3};
-use crate::world::Weld;
+use crate::world::{FrameIndex, Weld};
 
 impl<S: Scalar> RunState<'_, S> {
     /// Passes the active connections to the external engine.
@@ -23,16 +23,37 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Converts a connection of two frames to a connection of their bodies.
+    /// Passes the engaged brakes to the external engine.
+    pub(super) fn pass_brakes(&mut self) {
+        let Self { mover, systems, numbers, .. } = self;
+        if let Mover::External(engine) = mover {
+            let engaged = systems.iter().zip(numbers.iter()).flat_map(|(run, &system)| {
+                let engaged = run.brakes.iter().filter(|brake| brake.is_engaged);
+                engaged.map(move |brake| EngagedBrake {
+                    system,
+                    joint: brake.joint,
+                    slip_torque: brake.slip_torque,
+                })
+            });
+            engine.brakes = engaged.collect();
+        }
+    }
+
+    /// Converts a connection of two frames to a connection of their bodies, in axes of their links.
     fn body_weld(&self, weld: &Weld) -> BodyWeld {
-        let [by, of] = [weld.by, weld.of].map(|place| &self.model(place.system).frames()[place.frame]);
+        let frame = |place: FrameIndex| {
+            let model = self.model(place.system);
+            let frame = &model.frames()[place.frame];
+            (frame.body, model.pose_in_link(frame))
+        };
+        let [(by_body, (rot_by, pos_by)), (of_body, (rot_of, pos_of))] = [weld.by, weld.of].map(frame);
         let rot_by_of = Quat::from_xyzw(&weld.pose.rotation).matrix();
-        let point = by.rot_kf * Vec3::from_slice(&weld.pose.position) + by.pos_kf;
+        let point = rot_by * Vec3::from_slice(&weld.pose.position) + pos_by;
         let body = |system: usize, body: usize| BodyIndex { system: self.numbers[system], body };
         BodyWeld {
-            bodies: [body(weld.by.system, by.body), body(weld.of.system, of.body)],
-            points: [point, of.pos_kf],
-            rotation: by.rot_kf * rot_by_of * of.rot_kf.transpose(),
+            bodies: [body(weld.by.system, by_body), body(weld.of.system, of_body)],
+            points: [point, pos_of],
+            rotation: rot_by * rot_by_of * rot_of.transpose(),
         }
     }
 

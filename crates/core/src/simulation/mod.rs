@@ -82,7 +82,7 @@ pub use columns::{
     COLUMNS, CONTACTS, Column, Condition, LOOPS, Length, Part, REREFERENCED, TRACKING, WRENCHES, columns,
 };
 pub use distance::FarSystem;
-pub use engine::{BodyWeld, ContactOutput, Engine, Exchange, StepInput, StepOutput};
+pub use engine::{BodyWeld, ContactOutput, EngagedBrake, Engine, Exchange, StepInput, StepOutput};
 pub use environment_query::EnvironmentQuery;
 pub(crate) use equations::EquationsOfMotion;
 pub use error::{RunFailure, SimulationError};

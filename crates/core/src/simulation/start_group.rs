@@ -155,6 +155,7 @@ impl Shared {
             earth: self.earth.clone(),
         };
         run.find_latches();
+        run.pass_brakes();
         Ok(run)
     }
 

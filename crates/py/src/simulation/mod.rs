@@ -117,6 +117,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// their impulse and work in those of the connections, and ``step_world`` returns a tenth entry, (contacts,
 /// 14): at ``start`` the force on the second side, N, its moment about the origin of W, N m, and the power taken
 /// from the motion, W; then the integrals of these seven over the step. Steps are shortened while bodies touch.
+///
+/// An engine whose attribute ``supports_brakes`` is True receives the keyword argument ``brakes`` in both methods:
+/// the brakes that are engaged during the step, a list of ``(system, joint, slip_torque)`` with the indices of
+/// the system and of its joint, and N m or N. Other engines refuse robots with brakes.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     run: SharedRun,
