@@ -67,19 +67,19 @@ def test_a_robot_without_loops_has_no_figure_of_loops() -> None:
 
 def test_arrows_at_the_points_of_loops_have_the_scale_of_the_legend(recorded: Path) -> None:
     _, trace = gripper()
-    ((text,),) = column(recorded, "/world/arrows/loops/force/scale", "Points3D:labels")
+    ((text,),) = column(recorded, "/world/loops/force/scale", "Points3D:labels")
     assert text.startswith("loop force on the second frame: 1 m = ")
     value, unit = text.split()[-2:]
     scale = float(value) * {"mN": 1e-3, "N": 1.0}[unit]
-    vectors = np.array(column(recorded, "/world/arrows/loops/force", "Arrows3D:vectors"))
-    origins = np.array(column(recorded, "/world/arrows/loops/force", "Arrows3D:origins"))
+    vectors = np.array(column(recorded, "/world/loops/force", "Arrows3D:vectors"))
+    origins = np.array(column(recorded, "/world/loops/force", "Arrows3D:origins"))
     for index, name in enumerate(NAMES):
         loop = trace.loops[name]
         np.testing.assert_allclose(scale * vectors[:, index], loop.force, atol=1e-7)
         np.testing.assert_allclose(origins[:, index], loop.point, atol=1e-6)
     assert not np.allclose(trace.loops[NAMES[0]].point, trace.loops[NAMES[1]].point, atol=1e-3)
     moving, _ = rows_by_entity(recorded)
-    assert moving["/world/arrows/loops/moment"] == 0  # pins exert no moment, except rounding errors
+    assert moving["/world/loops/moment"] == 0  # pins exert no moment, except rounding errors
 
 
 def test_plots_of_every_loop(recorded: Path) -> None:
@@ -107,7 +107,7 @@ def test_loops_are_shown_live(tmp_path: Path) -> None:
     live.finish(trace)
     moving, _ = rows_by_entity(tmp_path / "live.rrd")
     assert moving["/plots/loops/left_linkage/force"] == len(trace)
-    assert moving["/world/arrows/loops/force"] > 0
+    assert moving["/world/loops/force"] > 0
 
 
 def test_the_summary_and_the_report_state_the_largest_values() -> None:

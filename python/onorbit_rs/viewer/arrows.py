@@ -100,7 +100,7 @@ class Arrows:
         """Send force and moment of all loops at their points; moments of rounding errors are omitted."""
         if not rows.loops:
             return
-        path, parts = self.setting.entity("arrows/loops"), COLUMNS["loops"].parts
+        path, parts = self.setting.entity("loops"), COLUMNS["loops"].parts
         values = np.stack(list(rows.loops.values()), axis=1)
         points, (at, unit), (about, moment_unit) = (
             values[:, :, parts["point"][0]], parts["force"], parts["moment"]

@@ -27,7 +27,7 @@ PLAYS_IN_S = 40.0
 
 _SPACE = (12, 14, 20)
 
-_LARGE = ("arrows", "axes", "flight")
+_LARGE = ("arrows", "loops", "axes", "flight")
 _SOLID, _HIDDEN = ("robot", "target"), 0.02
 """Entities that would hide a short path, and the path length, in sizes of the robot, below which they do."""
 
