@@ -92,7 +92,7 @@ EXPECTED = {
     "heavy_on_light": LOADS,
     "huge_limits": LOADS,
     "inertia_all_rounding": warns("the principal moments of inertia of link 'pin' are"),
-    "inertia_breaking_triangle": warns("the inertia of link 'arm' breaks the triangle inequality"),
+    "inertia_breaking_triangle": warns("the inertia of link 'arm' violates the triangle inequality"),
     "inertia_indefinite": physics("the inertia of link 'arm' is not positive definite"),
     "inertia_indefinite_part": warns("the inertia of link 'part' is not positive definite"),
     "inertia_infinite": physics('izz="inf" of <inertia>'),

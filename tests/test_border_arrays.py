@@ -187,6 +187,6 @@ def test_python_lists_and_numbers_are_accepted() -> None:
 
 
 def test_an_impossible_inertia_warns_with_the_name_of_the_link() -> None:
-    with pytest.warns(UserWarning, match="'base' breaks the triangle inequality"):
+    with pytest.warns(UserWarning, match="'base' violates the triangle inequality"):
         model = oo.Model.rigid_body(1.0, np.diag([1.0, 1.0, 3.0]))
     assert len(model.warnings) == 1 and "base" in model.warnings[0]

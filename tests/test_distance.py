@@ -174,7 +174,7 @@ def test_a_missing_mesh_and_an_invalid_shape_are_errors() -> None:
             "<mesh filename='package://lost/a.stl'/>",
             "there is no mesh file 'package://lost/a.stl'; correct its name",
         ),
-        ("<sphere radius='0'/>", "link 'body': radius of <sphere> is 0; it must be positive"),
+        ("<sphere radius='0'/>", "link 'body': radius of <sphere> is 0 m; it must be positive"),
         ("<box size='1 -1 1'/>", "link 'body': size"),
     ]:
         # another element does not hide the invalid one

@@ -160,7 +160,7 @@ SCENARIO: dict[str, Any] = {
         ({"surfaces": {"kind": "cannonball", "area": 2}}, None, EffectError, r"in YAML bodies: \{torso"),
         ({"bodies": {"torsso": "faces"}}, None, OnOrbitError, "torso"),
         ({}, "epoch", EffectError, "in YAML, give an epoch"),
-        ({"bodies": {}}, None, ScenarioError, "has 0 entries, expected at least 1"),
+        ({"bodies": {}}, None, ScenarioError, "has 0 entries; give at least one"),
     ],
 )
 @pytest.mark.parametrize("kind", ["drag", "radiation_pressure"])

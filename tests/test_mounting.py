@@ -252,7 +252,7 @@ def _light(text: str) -> str:
 
 def test_warnings_are_issued_once(files: Path) -> None:
     odd = robot("arm", arm().replace('ixx="0.05"', 'ixx="5"', 1))
-    with pytest.warns(UserWarning, match="'l0' breaks the triangle"):
+    with pytest.warns(UserWarning, match="'l0' violates the triangle"):
         arm_of_text = oo.Model.from_urdf_string(odd)
     bus = oo.robots.load(files / "bus.urdf")
     with warnings.catch_warnings():
@@ -260,7 +260,7 @@ def test_warnings_are_issued_once(files: Path) -> None:
         whole = oo.attach(bus, "plate", arm_of_text, prefix="x_")
         whole = whole.with_link("hull", mass=250.0)
     assert [warning for warning in whole.warnings if "'x_l0'" in warning] == whole.warnings != []
-    with pytest.warns(UserWarning, match="'hull' breaks the triangle"):
+    with pytest.warns(UserWarning, match="'hull' violates the triangle"):
         whole.with_link("hull", inertia=np.diag([1.0, 1.0, 9.0]))
 
 

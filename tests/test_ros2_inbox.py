@@ -67,7 +67,9 @@ def test_the_number_of_refused_messages_is_a_least_number_if_they_were_not_all_k
     inbox: Any = Inbox(FakeParticipant([payload] * MOST_COUNTED))  # type: ignore[arg-type]
     inbox.subscribe("/pause", "std_msgs/msg/Bool", lambda content: [{"pause": content.data}])
     first, *rest = inbox.take()
-    assert first.refusal.startswith("at least 99000 messages, the oldest of at least 100000 that arrived since")
+    assert first.refusal.startswith(
+        "at least 99000 messages, the oldest of at least 100000 that arrived since"
+    )
     assert not first.entries and len(rest) == 1000 and all(one.entries for one in rest)
 
 

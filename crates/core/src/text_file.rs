@@ -9,13 +9,13 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[allow(missing_docs)] // the messages explain the fields
 pub enum TextFileError {
-    #[error("there is no such file")]
+    #[error("there is no such file; check the path")]
     NotFound,
     #[error("it is a folder; give the path of a file")]
     Folder,
     #[error("it is a pipe or a device; save its content as a file")]
     NotRegular,
-    #[error("it is larger than {limit} bytes, the limit for such files")]
+    #[error("it is larger than {limit} bytes, the largest size that is read; give a smaller file")]
     TooLarge { limit: usize },
     #[error("it is not UTF-8 text (its byte {at} is invalid); save it as UTF-8")]
     NotUtf8 { at: usize },

@@ -172,7 +172,7 @@ fn unsupported_joints_are_refused() {
         joint("j", "revolute", "a", "b", "<dynamics damping='-1'/>") + &joint("bc", "fixed", "b", "c", "");
     assert!(matches!(
         problem(&robot(&damping)),
-        UrdfProblem::Model(ModelError::Negative { what: "damping", .. })
+        UrdfProblem::Model(ModelError::Negative { what: "the damping", .. })
     ));
 }
 

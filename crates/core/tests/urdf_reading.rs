@@ -251,7 +251,8 @@ fn incomplete_inertials_give_a_warning() {
     assert!(notes(&none)[0].contains("link 'b' has no <mass>"), "{:?}", notes(&none));
     let no_products =
         with("<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixz='0'/></inertial>");
-    let warnings = ["the <inertia> of link 'b' has no ixy, iyz, which are read as 0"];
+    let warnings =
+        ["the <inertia> of link 'b' has no ixy, iyz, which are read as 0; add them unless 0 is meant"];
     assert_eq!(
         (notes(&no_products), moments(&no_products, 0)),
         (warnings.map(str::to_owned).to_vec(), [2.0; 3])
@@ -289,7 +290,7 @@ fn extensions_are_recognized_by_prefix_not_by_namespace() {
     );
     let model = load(&both);
     assert_eq!(model.mass(), 2.0);
-    assert!(notes(&model)[0].starts_with("<p:x> has a prefix that URDF"), "{:?}", notes(&model));
+    assert!(notes(&model)[0].contains(": <p:x> has a prefix that URDF"), "{:?}", notes(&model));
     assert_eq!(notes(&model).len(), 1);
 }
 
@@ -387,7 +388,13 @@ fn elements_that_are_not_urdf_are_ignored_and_named() {
     let model = load(&format!("<link name='a'>{INERTIAL}</link>\n{inside}"));
     let said = notes(&model);
     assert_eq!(said.len(), 2, "{said:?}");
-    assert!(said[0].starts_with("<gazebo:x> has a prefix that URDF"), "{said:?}");
-    assert!(said[0].ends_with("ignored (so are '<drake:joint>')"), "{said:?}");
-    assert!(said[1].starts_with("<Link> is not an element of URDF and is ignored"), "{said:?}");
+    assert!(said[0].contains(": <gazebo:x> has a prefix that URDF"), "{said:?}");
+    assert!(
+        said[0].ends_with("ignored (as are '<drake:joint>'); remove the prefix if it describes the robot"),
+        "{said:?}"
+    );
+    assert!(
+        said[1].contains(": <Link> is not an element of URDF and is ignored; correct its name"),
+        "{said:?}"
+    );
 }

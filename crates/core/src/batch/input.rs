@@ -13,7 +13,7 @@ use thiserror::Error;
 pub enum InputError {
     #[error("{name} has {got} per state; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got}, but the first argument has {expected}", got = count(*got, "state"))]
+    #[error("{name} has {got}, but the first argument has {expected}; give the same number of states", got = count(*got, "state"))]
     WrongBatch { name: &'static str, expected: usize, got: usize },
     #[error("{name} has {got}; expected a multiple of {width}, which is the length of a row", got = count(*got, "number"))]
     Ragged { name: &'static str, width: usize, got: usize },

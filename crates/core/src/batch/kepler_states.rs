@@ -57,8 +57,8 @@ fn check_elements(elements: &[&[f64]; 7], mu: f64, count: usize) -> Result<(), I
         Some(state) => Err(InputError::NotAnEllipse { name, state, value: values[state], expected }),
         None => Ok(()),
     };
-    check("mu", &[mu], |mu| mu > 0.0 && mu.is_finite(), "positive and finite")?;
-    check(NAMES[0], elements[0], |a| a > 0.0, "positive; use Kepler for a hyperbola")?;
+    check("mu", &[mu], |mu| mu > 0.0 && mu.is_finite(), "positive and finite (m³/s²)")?;
+    check(NAMES[0], elements[0], |a| a > 0.0, "positive (m); use Kepler for a hyperbola")?;
     check(NAMES[1], elements[1], |e| (0.0..1.0).contains(&e), "in [0, 1); use Kepler for an open orbit")
 }
 

@@ -109,7 +109,7 @@ pub enum EarthError {
         run: &'static str,
     },
     /// A number in a segment of a SPICE kernel is implausible.
-    #[error("{name} of a segment of the kernel is {value}; expected {expected} (the kernel may be damaged)", value = short(*value))]
+    #[error("{name} of a segment of the kernel is {value}; expected {expected}; the kernel may be damaged; download it again", value = short(*value))]
     Segment {
         /// Name of the number.
         name: &'static str,
@@ -127,7 +127,7 @@ pub enum EarthError {
     /// A segment of a SPICE kernel does not consist of complete intervals.
     #[error(
         "a segment of the kernel has {got}, which is not a positive multiple of 3 × {per_interval} (3 components with \
-         {per_interval} per interval); the kernel may be damaged",
+         {per_interval} per interval); the kernel may be damaged; download it again",
         got = count(*got, "coefficient")
     )]
     SegmentLength {

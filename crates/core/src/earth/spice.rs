@@ -76,11 +76,11 @@ impl SpiceSegment {
     fn check(&self) -> Result<(), EarthError> {
         let farthest = self.coefficients.iter().copied().find(|c| c.abs() > FARTHEST_KM);
         let (name, value, expected) = if self.sign.abs() != 1.0 {
-            ("sign", self.sign, "1 or -1")
+            ("the sign", self.sign, "1 or -1")
         } else if self.length <= 0.0 {
-            ("length of an interval", self.length, "a positive number of seconds")
+            ("the length of an interval, in s,", self.length, "a positive number of seconds")
         } else if let Some(value) = farthest {
-            ("coefficient", value, "at most 1e12 km")
+            ("a coefficient, in km,", value, "at most 1e12 km")
         } else {
             return Ok(());
         };

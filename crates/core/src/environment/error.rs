@@ -116,7 +116,7 @@ pub enum ScenePoint {
 impl std::fmt::Display for ScenePoint {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Reference => write!(f, "the reference"),
+            Self::Reference => write!(f, "the reference orbit"),
             Self::Body(body) => write!(f, "{body}"),
         }
     }

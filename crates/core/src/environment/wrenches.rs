@@ -76,8 +76,8 @@ impl Wrenches {
         self.layout.bodies().filter_map(|body| self.get(body))
     }
 
-    /// Returns the wrenches on the bodies of the system at position `system` of the run, beginning with its
-    /// base.
+    /// Returns the wrenches on the bodies of a system, beginning with its base. `system` is the index of the
+    /// system in the list of systems of the run.
     pub(crate) fn of_system(&self, system: usize) -> impl Iterator<Item = Wrench> {
         let SystemRows { number, count, .. } = self.layout.systems()[system];
         (0..count).filter_map(move |body| self.get(BodyIndex { system: number, body }))

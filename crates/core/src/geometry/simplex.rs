@@ -2,7 +2,7 @@
 
 use crate::spatial::Vec3;
 
-/// Difference of a point of the first shape and a point of the second, with both points.
+/// Point of the first shape, point of the second shape, and their difference.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub(super) on_a: Vec3<f64>,

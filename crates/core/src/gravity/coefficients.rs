@@ -127,9 +127,9 @@ pub(super) fn check_degree(degree: usize) -> Result<usize, GravityError> {
 
 /// Returns an error for values that cannot belong to a planet in SI units.
 pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
-    for (name, value) in [("mu", mu), ("radius", radius)] {
+    for (name, value, unit) in [("mu", mu, "m³/s²"), ("radius", radius, "m")] {
         if !(value.is_finite() && value > 0.0) {
-            return Err(GravityError::NotPositive { name, value });
+            return Err(GravityError::NotPositive { name, value, unit });
         }
     }
     if radius < 1e5 {

@@ -10,8 +10,8 @@ use crate::number_text::{count, short, unlike};
 pub enum GravityError {
     #[error("{name} holds {value}; expected finite numbers", value = short(*value))]
     NotFinite { name: &'static str, value: f64 },
-    #[error("{name} is {value}; it must be positive and finite", value = short(*value))]
-    NotPositive { name: &'static str, value: f64 },
+    #[error("{name} is {value} {unit}; it must be positive and finite", value = short(*value))]
+    NotPositive { name: &'static str, value: f64, unit: &'static str },
     #[error(
         "the degree of a zonal field is {degree}; it must be from 2 to 6 (J2 to J6); use a gravity model for higher \
          harmonics"

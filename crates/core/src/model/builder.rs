@@ -251,7 +251,7 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
             return Err(ModelError::ZeroAxis { joint: name() });
         }
         if !axis.norm().is_finite() {
-            let (value, expected) = (axis.amax(), "numbers up to 1e150");
+            let (value, expected) = (axis.amax(), "components of at most 1e150");
             return Err(ModelError::OutOfRange { what: "the axis", name: name(), value, expected });
         }
     }
@@ -263,22 +263,22 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         }
     }
     let amounts = [
-        ("damping", joint.damping),
-        ("friction", joint.friction),
-        ("static friction", joint.static_friction.unwrap_or(0.0)),
-        ("rotor inertia", joint.rotor_inertia),
-        ("velocity limit", joint.limits.velocity.unwrap_or(0.0)),
-        ("effort limit", joint.limits.effort.unwrap_or(0.0)),
+        ("the damping", joint.damping, "N m s/rad (N s/m)"),
+        ("the friction", joint.friction, "N m (N)"),
+        ("the static friction", joint.static_friction.unwrap_or(0.0), "N m (N)"),
+        ("the rotor inertia", joint.rotor_inertia, "kg m2 (kg)"),
+        ("the velocity limit", joint.limits.velocity.unwrap_or(0.0), "rad/s (m/s)"),
+        ("the effort limit", joint.limits.effort.unwrap_or(0.0), "N m (N)"),
     ];
-    for (what, value) in amounts {
+    for (what, value, unit) in amounts {
         if value.is_nan() {
             return Err(ModelError::NotFinite { what, name: name() });
         }
         if value < 0.0 {
-            return Err(ModelError::Negative { joint: name(), what, value });
+            return Err(ModelError::Negative { joint: name(), what, value, unit });
         }
         if value > 1e20 && !what.ends_with("limit") {
-            let expected = "numbers up to 1e20";
+            let expected = "at most 1e20, in SI units";
             return Err(ModelError::OutOfRange { what, name: name(), value, expected });
         }
     }

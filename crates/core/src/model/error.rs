@@ -70,8 +70,8 @@ pub enum ModelError {
     MimicCircle { joints: Vec<String> },
     #[error("joint '{joint}' has an axis of length zero; specify a nonzero vector")]
     ZeroAxis { joint: String },
-    #[error("joint '{joint}': {what} is {value}; it must not be negative", value = short(*value))]
-    Negative { joint: String, what: &'static str, value: f64 },
+    #[error("joint '{joint}': {what} is {value} {unit}; it must not be negative", value = short(*value))]
+    Negative { joint: String, what: &'static str, value: f64, unit: &'static str },
     #[error(
         "joint '{joint}': its static friction {at_rest} N m (N) is below its kinetic friction {moving} N m \
          (N); give at least {moving}, or omit it",
@@ -125,7 +125,7 @@ impl fmt::Display for ModelWarning {
         match self {
             Self::TriangleInequality { link, moments: [a, b, c] } => write!(
                 f,
-                "the inertia of link '{link}' breaks the triangle inequality: {} + {} < {} kg m2; no rigid \
+                "the inertia of link '{link}' violates the triangle inequality: {} + {} < {} kg m2; no rigid \
                  body has such principal moments (it is used unchanged); check its entries",
                 short(a.max(0.0)), // a moment below zero is within the rounding tolerance here
                 short(b.max(0.0)),
@@ -134,7 +134,8 @@ impl fmt::Display for ModelWarning {
             Self::IndefinitePart { link, moments } => write!(
                 f,
                 "the inertia of link '{link}' is not positive definite: its principal moments are {} kg m2 (it is \
-                 used unchanged, since the inertia of the whole body, with the links fixed to it, is positive definite)",
+                 used unchanged, since the inertia of the whole body, with the links fixed to it, is positive \
+                 definite); check its entries",
                 list(moments)
             ),
             Self::RoundedInertia { link, moments } => write!(

@@ -159,7 +159,7 @@ fn law_of<'a, 'py>(controller: Any<'a, 'py>) -> PyResult<&'a Bound<'py, PyComput
         let py = controller.py();
         let got = type_name(controller);
         let message = format!(
-            "controller is {got}, but a rollout supports only ComputedTorque, or torques given as tau; use a \
+            "controller is of type {got}, but a rollout supports only ComputedTorque, or torques given as tau; use a \
              Simulation for other controllers"
         );
         let fields = fields!(py, "name": "controller", "got": got, "expected": "ComputedTorque");

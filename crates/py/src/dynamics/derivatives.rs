@@ -69,7 +69,7 @@ pub(crate) fn evaluate_three<'py>(
 ) -> PyResult<Bound<'py, PyTuple>> {
     let out = out.map(|out| out.extract::<[Bound<'py, PyAny>; 3]>()).transpose().map_err(|_| {
         let needed = "a sequence of three arrays of shape (nv, nv) or (B, nv, nv)";
-        let message = format!("out is not accepted; expected {needed}, such as an earlier result");
+        let message = format!("out is not {needed}; give such arrays, for example an earlier result");
         raise(py, "InputError", &message, &fields!(py, "name": "out", "expected": needed))
     })?;
     let square: &[usize] = &[model.model.nv(); 2];

@@ -8,7 +8,7 @@ impl IntoPython for GravityError {
     fn into_python(self, py: Python<'_>) -> PyErr {
         let fields = match &self {
             Self::Earth(error) => return error.clone().into_python(py),
-            Self::NotFinite { name, value } | Self::NotPositive { name, value } => {
+            Self::NotFinite { name, value } | Self::NotPositive { name, value, .. } => {
                 fields!(py, "name": name, "got": value)
             }
             Self::Degree { degree } | Self::ZonalDegree { degree } => {

@@ -104,7 +104,7 @@ fn element_set_error(py: Python<'_>, error: &ElementSetError, message: &str) -> 
         ElementSetError::Entry { key, got, expected } => {
             fields!(py, "name": key, "got": got, "expected": expected)
         }
-        ElementSetError::Range { name, got, range } => {
+        ElementSetError::Range { name, got, range, .. } => {
             fields!(py, "name": name, "got": got, "expected": (*range.start(), *range.end()))
         }
         _ => fields!(py,),

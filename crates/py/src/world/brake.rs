@@ -123,7 +123,7 @@ pub(super) fn brake_at(
     match known.iter().position(|name| name == brake) {
         Some(brake) => Ok(BrakeIndex { system, brake }),
         None if known.is_empty() => {
-            Err(wrong(&format!("the system '{name}' has no brakes; add it to the actuators of the system")))
+            Err(wrong(&format!("the system '{name}' has no brakes; add the brake to its actuators")))
         }
         None => Err(wrong(&format!("the brakes of the system '{name}' are: {}", known.join(", ")))),
     }

@@ -19,7 +19,7 @@ impl ConstantAtmosphere {
         if density.is_finite() && density >= 0.0 {
             return Ok(Self { density });
         }
-        let (name, expected) = ("density", "a finite number of at least 0");
+        let (name, expected) = ("density", "a finite density of at least 0 kg/m³");
         Err(AtmosphereError::Value { name, value: density, expected })
     }
 }

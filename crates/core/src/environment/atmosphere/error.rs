@@ -9,7 +9,8 @@ use crate::number_text::{short, unlike};
 pub enum AtmosphereError {
     /// A position is inside the Earth.
     #[error(
-        "altitude is {altitude} m, which is below the surface; expected at least 0 m above the ellipsoid",
+        "altitude is {altitude} m, which is below the surface; expected at least 0 m above the ellipsoid; end the run \
+         earlier or raise the orbit",
         altitude = short(*altitude)
     )]
     BelowSurface {
@@ -107,9 +108,13 @@ fn above_previous(index: usize, previous: f64) -> String {
 }
 
 /// Returns `value`, or an error if it is not finite and positive.
-pub(super) fn positive(name: &'static str, value: f64) -> Result<f64, AtmosphereError> {
+pub(super) fn positive(
+    name: &'static str,
+    value: f64,
+    expected: &'static str,
+) -> Result<f64, AtmosphereError> {
     if value.is_finite() && value > 0.0 {
         return Ok(value);
     }
-    Err(AtmosphereError::Value { name, value, expected: "a finite number above 0" })
+    Err(AtmosphereError::Value { name, value, expected })
 }

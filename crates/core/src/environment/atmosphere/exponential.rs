@@ -38,8 +38,8 @@ impl ExponentialAtmosphere {
             return Err(AtmosphereError::NoLayers);
         }
         for (index, layer) in layers.iter().enumerate() {
-            positive("density", layer.density)?;
-            positive("scale_height", layer.scale_height)?;
+            positive("density", layer.density, "a finite density above 0 kg/m³")?;
+            positive("scale_height", layer.scale_height, "a finite height above 0 m")?;
             let (altitude, previous) =
                 (layer.base, index.checked_sub(1).map_or(f64::MIN, |k| layers[k].base));
             if !(altitude.is_finite() && altitude > previous) {

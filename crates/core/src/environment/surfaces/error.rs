@@ -116,5 +116,11 @@ pub(in crate::environment) fn not_negative(name: &'static str, value: f64) -> Re
     if value.is_finite() && value >= 0.0 {
         return Ok(value);
     }
-    Err(SurfaceError::Value { name, value, expected: "a finite number of at least 0" })
+    let expected = match name {
+        "area" => "a finite area of at least 0 m²",
+        "flux" => "a finite flux of at least 0 W/m²",
+        "distance of a centroid" => "a finite distance, m",
+        _ => "a finite number of at least 0",
+    };
+    Err(SurfaceError::Value { name, value, expected })
 }

@@ -60,7 +60,7 @@ impl UrdfError {
 pub enum UrdfProblem {
     #[error("there is no such file; check the path")]
     NotFound,
-    #[error("the path is a folder; expected a URDF file")]
+    #[error("the path is a folder; give the path of a URDF file")]
     IsFolder,
     #[error("the file cannot be read: {reason}")]
     Unreadable { reason: String },
@@ -114,7 +114,7 @@ pub enum UrdfProblem {
         amount_of_numbers(.expected)
     )]
     BadNumber { owner: String, element: String, attribute: &'static str, text: String, expected: usize },
-    #[error("{owner}: {attribute} of <{element}> is {value}; it must be positive", value = short(*value))]
+    #[error("{owner}: {attribute} of <{element}> is {value} m; it must be positive", value = short(*value))]
     NotPositive { owner: String, element: String, attribute: &'static str, value: f64 },
     #[error("{owner}: <origin> has both rpy and quat_xyzw; remove one of them")]
     TwoOrientations { owner: String },
@@ -129,12 +129,13 @@ pub enum UrdfProblem {
     #[error("joint '{joint}': there is no link '{link}'{}", nearest(.candidates, .link))]
     UnknownLink { joint: String, link: String, candidates: Vec<String> },
     #[error(
-        "link '{link}' is the child of two joints, '{}' and '{}', but kinematic loops are not supported; \
-         remove one of the joints",
+        "link '{link}' is the child of two joints, '{}' and '{}', but a URDF describes a tree; remove one of the \
+         joints, and if both exist, close the loop with 'loops' in the scenario (in Python: Model.with_loops)",
         .joints[0], .joints[1]
     )]
     TwoParents { link: String, joints: [String; 2] },
-    #[error("the links {} form a closed loop; remove a joint so that all links descend from one root link", list(.links))]
+    #[error("the links {} form a closed loop; remove a joint, so that all links descend from one root link, and \
+         close the loop with 'loops' in the scenario (in Python: Model.with_loops)", list(.links))]
     Loop { links: Vec<String> },
     #[error(
         "{} links are not children of joints: {}; connect all of them except the root by joints",

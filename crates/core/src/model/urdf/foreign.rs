@@ -72,17 +72,21 @@ impl<'a> Ignored<'a> {
                 tag(*first)
             ));
         }
-        for (nodes, what) in [
-            (&self.prefixed, "has a prefix that URDF does not define"),
-            (&self.unknown, "is not an element of URDF"),
+        for (nodes, what, fix) in [
+            (&self.prefixed, "has a prefix that URDF does not define", "remove the prefix"),
+            (&self.unknown, "is not an element of URDF", "correct its name"),
         ] {
             let Some(first) = nodes.first() else { continue };
             let mut names: Vec<String> = nodes.iter().skip(1).map(|node| tag(*node)).collect();
             names.sort();
             names.dedup();
             names.retain(|name| *name != tag(*first));
-            let more = if names.is_empty() { String::new() } else { format!(" (so are {})", list(&names)) };
-            notes.push(format!("{} {what} and is ignored{more}", tag(*first)));
+            let more = if names.is_empty() { String::new() } else { format!(" (as are {})", list(&names)) };
+            notes.push(format!(
+                "line {}: {} {what} and is ignored{more}; {fix} if it describes the robot",
+                line(*first),
+                tag(*first)
+            ));
         }
         notes.into_iter().map(ModelWarning::Note).collect()
     }

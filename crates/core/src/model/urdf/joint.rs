@@ -89,15 +89,16 @@ fn limits(
         }
         low <= high && (low > f64::NEG_INFINITY || high < f64::INFINITY)
     });
-    let mut largest = |what: &str, value: f64| {
+    let mut largest = |what: &str, value: f64, unit: &str| {
         // Gazebo writes -1 for "no limit"
         if value.is_finite() && value < 0.0 {
             note(format!(
-                "its {what} limit is negative and is ignored (it is {}); give a limit of at least 0, or omit it",
+                "its {what} limit is negative ({} {unit}) and is ignored; give a limit of at least 0, or omit it",
                 short(value)
             ));
         }
         (value.is_finite() && value >= 0.0).then_some(value)
     };
-    Limits { position, velocity: largest("velocity", read.velocity), effort: largest("effort", read.effort) }
+    let velocity = largest("velocity", read.velocity, "rad/s or m/s");
+    Limits { position, velocity, effort: largest("effort", read.effort, "N m or N") }
 }

@@ -76,9 +76,9 @@ fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<
             let is_missing = |product: &&str| inertia.text(product).is_none();
             let missing: Vec<&str> = ["ixy", "ixz", "iyz"].into_iter().filter(is_missing).collect();
             if !missing.is_empty() {
-                let verb = if missing.len() == 1 { "is" } else { "are" };
+                let (verb, what) = if missing.len() == 1 { ("is", "it") } else { ("are", "them") };
                 note(format!(
-                    "the <inertia> of {owner} has no {}, which {verb} read as 0",
+                    "the <inertia> of {owner} has no {}, which {verb} read as 0; add {what} unless 0 is meant",
                     missing.join(", ")
                 ));
             }

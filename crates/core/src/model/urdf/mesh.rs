@@ -94,7 +94,8 @@ impl<'a> Meshes<'a> {
         let files = mesh_files(self.guessed.len());
         Some(format!(
             "{files} not found at the paths in the URDF; files of the same name in the folder of the URDF, or \
-             in its subfolder 'meshes', are drawn instead, such as {path} for '{name}'"
+             in its subfolder 'meshes', are drawn instead, such as {path} for '{name}'; correct the paths in the \
+             URDF if other files are meant"
         ))
     }
 

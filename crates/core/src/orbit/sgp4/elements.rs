@@ -87,16 +87,16 @@ impl MeanElements {
     /// # Errors
     /// [`ElementSetError::Range`], with values in the units of published element sets.
     pub fn checked(self) -> Result<Self, ElementSetError> {
-        let within = |name, got: f64, range: std::ops::RangeInclusive<f64>| {
-            if range.contains(&got) { Ok(()) } else { Err(ElementSetError::Range { name, got, range }) }
+        let within = |name, got: f64, range: std::ops::RangeInclusive<f64>, unit| {
+            if range.contains(&got) { Ok(()) } else { Err(ElementSetError::Range { name, got, range, unit }) }
         };
         let turn = -360.0..=360.0;
-        within("inclination (deg)", self.inclination.to_degrees(), 0.0..=180.0)?;
-        within("right ascension of the node (deg)", self.raan.to_degrees(), turn.clone())?;
-        within("eccentricity", self.eccentricity, 0.0..=1.0 - f64::EPSILON)?;
-        within("argument of perigee (deg)", self.argument_of_perigee.to_degrees(), turn.clone())?;
-        within("mean anomaly (deg)", self.mean_anomaly.to_degrees(), turn)?;
-        within("mean motion (rev/day)", self.mean_motion * REV_DAY, f64::MIN_POSITIVE..=18.0)?;
+        within("inclination", self.inclination.to_degrees(), 0.0..=180.0, " deg")?;
+        within("right ascension of the node", self.raan.to_degrees(), turn.clone(), " deg")?;
+        within("eccentricity", self.eccentricity, 0.0..=1.0 - f64::EPSILON, "")?;
+        within("argument of perigee", self.argument_of_perigee.to_degrees(), turn.clone(), " deg")?;
+        within("mean anomaly", self.mean_anomaly.to_degrees(), turn, " deg")?;
+        within("mean motion", self.mean_motion * REV_DAY, f64::MIN_POSITIVE..=18.0, " rev/day")?;
         Ok(self)
     }
 }

@@ -69,7 +69,7 @@ pub enum ElementSetError {
     },
     /// An element is outside its accepted range.
     #[error(
-        "{name} of the element set is {got}; it must be {}",
+        "{name} of the element set is {got}{unit}; it must be {}{unit}",
         bounds(range),
         got = unlike(*got, &[*range.start(), *range.end()])
     )]
@@ -80,6 +80,8 @@ pub enum ElementSetError {
         got: f64,
         /// Accepted range, in the unit of the element set.
         range: RangeInclusive<f64>,
+        /// Unit with a leading blank, such as ` deg`, or empty.
+        unit: &'static str,
     },
 }
 
