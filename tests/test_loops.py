@@ -53,6 +53,21 @@ def test_the_nearest_closed_state_keeps_the_momentum() -> None:
     assert np.abs(change).max() < 1e-15
 
 
+def test_an_extended_prismatic_loop_is_closed_from_nearby() -> None:
+    builder = oo.ModelBuilder("telescope", base="base", mass=4.0, inertia=np.diag([0.3, 0.4, 0.5]))
+    builder.add_link("tube", parent="base", joint="hinge", axis=[0.0, 1.0, 0.0], **rod(0.5, 0.4))
+    builder.add_link("boom", parent="tube", joint="slide", kind="prismatic", **rod(0.5, 0.4))
+    guide = np.eye(4)
+    guide[2, 3] = 0.2
+    model = builder.build().with_loops([oo.Loop("guide", "prismatic", "base", "boom", pose_a=guide)])
+    q = model.neutral()
+    q[7:] = [1e-3, 1.2]  # the hinge is 0.2 m from the guide, and the boom 1 m
+    closed = model.closed_configuration(q)
+    assert np.abs(model.loop_errors(closed)).max() < 1e-15
+    assert closed[7:] == pytest.approx([0.0, 1.2], abs=1e-5)
+    assert np.abs(model.loop_errors(q)).max() > 1e-3  # negative control
+
+
 def test_the_acceleration_keeps_the_loops_closed() -> None:
     model = looped()
     q, v = permitted(model)

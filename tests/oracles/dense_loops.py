@@ -57,10 +57,9 @@ def rows(robot: PinRobot, state: State, loop: oo.Loop) -> tuple[Array, Array]:
     along, about = axes @ jacobian[:3], axes @ jacobian[3:]
     along_rate, about_rate = axes @ rate[:3], axes @ (rate[3:] + np.cross(twist[3:], turn))
     if loop.kind == "prismatic":
-        # x·d = 0:  x·Δv + (ω × x)·d = 0,  x·Δa + 2 (ω × x)·Δv + (α × x + ω × (ω × x))·d = 0;
-        # with the α of the second side, which is the same, the force acts at the origin of the first side
-        along = along - axes @ np.cross(jacobian_b[3:].T, gap).T
-        turning = np.cross(rate_b[3:], gap) - np.cross(turn, np.cross(turn, gap))
+        # x·d = 0:  x·Δv + (ω × x)·d = 0,  x·Δa + 2 (ω × x)·Δv + (α × x + ω × (ω × x))·d = 0
+        along = along - axes @ np.cross(jacobian_a[3:].T, gap).T
+        turning = np.cross(rate_a[3:], gap) - np.cross(turn, np.cross(turn, gap))
         along_rate = axes @ (rate[:3] - 2.0 * np.cross(turn, twist[:3]) - turning)
     count = {"weld": (3, 3), "revolute": (3, 2), "spherical": (3, 0), "prismatic": (2, 3)}[loop.kind]
     return (

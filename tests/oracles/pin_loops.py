@@ -59,7 +59,9 @@ def looped(seed: int, kinds: Sequence[str], *, between_the_same: bool = False) -
         length = LENGTH if kind == "distance" else None
         loops.append(oo.Loop(f"loop{i}", kind, *names, pose_a=pose_a, pose_b=pose_b, length=length))  # type: ignore[arg-type]
     closed = model.with_loops(loops)
-    q = closed.closed_configuration(state.q)
+    # several loops may have no other closed configuration nearby
+    near = closed.integrate(state.q, 3e-4 * state.v) if len(loops) == 1 else state.q
+    q = closed.closed_configuration(near)
     v = closed.closed_velocity(q, state.v)
     return Looped(model, closed, robot, State(q, v, state.a, state.tau, state.external))
 

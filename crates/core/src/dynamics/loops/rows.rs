@@ -116,16 +116,18 @@ pub(super) fn update<S: Real>(closure: &Closure, data: &Data<S>, rows: &mut [Row
             [Force::at(-n, Vec3::zero(), placed[0].offset), Force::at(n, Vec3::zero(), placed[1].offset)];
         return;
     }
-    // the common point is the origin of the first frame
-    let point_b = placed[1].offset - gap;
+    // common point of both forces: the origin of the first frame, or of the second frame if it slides along the
+    // first one, so that the rows are the rates of the errors
+    let points = match kind {
+        LoopKind::Prismatic => [placed[0].offset + gap, placed[1].offset],
+        _ => [placed[0].offset, placed[1].offset - gap],
+    };
     let axes = [placed[0].rot.x, placed[0].rot.y, placed[0].rot.z];
     for (row, &(axis, is_moment)) in rows.iter_mut().zip(directions(*kind)) {
         let axis = axes[axis];
         row.forces = match is_moment {
             true => [Force::new(Vec3::zero(), -axis), Force::new(Vec3::zero(), axis)],
-            false => {
-                [Force::at(-axis, Vec3::zero(), placed[0].offset), Force::at(axis, Vec3::zero(), point_b)]
-            }
+            false => [Force::at(-axis, Vec3::zero(), points[0]), Force::at(axis, Vec3::zero(), points[1])],
         };
     }
 }
