@@ -5,9 +5,8 @@ use crate::dynamics::aba::{forward_dynamics_recursion, locked_dynamics_recursion
 use crate::dynamics::data::Data;
 use crate::dynamics::external::{FrameWrench, apply_external};
 use crate::dynamics::kinematics::kinematics;
-use crate::dynamics::momentum::composite_momentum;
 use crate::model::Model;
-use crate::spatial::{Motion, Real};
+use crate::spatial::Real;
 
 /// Joints that are locked, `(n,)`, and their given accelerations, `(n,)`, or an empty slice if these are zero.
 pub(crate) type Locked<'a> = Option<(&'a [bool], &'a [f64])>;
@@ -86,30 +85,21 @@ impl<S: Real> ClosedLoops<S> {
     /// `data`.
     #[inline(always)]
     pub(super) fn solve(&mut self, model: &Model, data: &Data<S>, locked: Option<&[bool]>) -> S {
-        let Self { rows, force, matrix, supported, scratch, compliance, scale, .. } = self;
-        let base = if model.is_heavy_on_light() {
+        let Self { rows, force, matrix, supported, scratch, compliance, scale, base, .. } = self;
+        if model.is_heavy_on_light() {
             dense_response::jacobian(model, data, rows, &mut scratch.dense);
             dense_response::inverse_apparent_mass(data, &scratch.dense, locked, model.nv(), matrix);
-            None
+            dense_response::compliance(data, rows, compliance);
         } else {
-            let base = data.bodies[0].articulated.inverse();
+            *base = data.bodies[0].articulated.inverse();
             let tree = (model.nodes(), &data.bodies[..]);
-            response::inverse_apparent_mass(tree, &base, rows, supported, scratch, matrix);
-            Some(base)
-        };
-        for (compliance, row) in compliance.iter_mut().zip(&*rows) {
-            // Fᵀ I_0⁻¹ F with the force on the second body, about the base origin
-            let force = row.forces[1].from_point(data.bodies[row.bodies[1]].pos_b);
-            let acceleration: Motion<S> = match &base {
-                Some(base) => base.apply(force),
-                None => composite_momentum(data).0.inverse().apply(force),
-            };
-            *compliance = acceleration.dot(force);
+            response::inverse_apparent_mass(tree, base, (rows, supported), scratch, (matrix, compliance));
         }
         constraint_force::solve(matrix, compliance, scale, force)
     }
 
-    /// Adds the response to the constraint forces to `a` and to the accelerations in `data`.
+    /// Adds the response to the constraint forces to `a` and to the accelerations in `data`. Requires the results of
+    /// [`solve`](Self::solve) with the same inertias.
     #[inline(always)]
     pub(super) fn respond(
         &mut self,
@@ -118,7 +108,7 @@ impl<S: Real> ClosedLoops<S> {
         (v, tau, locked): (&[S], &[S], Option<&[bool]>),
         a: &mut [S],
     ) {
-        let Self { rows, force, supported, scratch, .. } = self;
+        let Self { rows, force, supported, scratch, base, .. } = self;
         if model.is_heavy_on_light() {
             let jacobian = std::mem::take(&mut scratch.dense);
             dense_response::add_response(model, data, (&jacobian, force), (v, tau, locked), a);
@@ -129,7 +119,7 @@ impl<S: Real> ClosedLoops<S> {
             #[inline(always)]
             || {
                 let tree = (model.nodes(), &mut data.bodies[..]);
-                response::add_response(tree, (rows, force), supported, scratch, a);
+                response::add_response(tree, base, (rows, force), (supported, locked), scratch, a);
             },
         );
     }

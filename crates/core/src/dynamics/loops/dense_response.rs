@@ -3,6 +3,7 @@
 use super::rows::Row;
 use crate::dynamics::data::Data;
 use crate::dynamics::dense;
+use crate::dynamics::momentum::composite_momentum;
 use crate::dynamics::rnea::inverse_dynamics_recursion;
 use crate::dynamics::subspace::joint_effort;
 use crate::model::{BASE_NV, Model};
@@ -49,6 +50,16 @@ pub(super) fn inverse_apparent_mass<S: Real>(
         for r in c..m {
             matrix[r * m + c] = dot(&jacobian[r * nv..(r + 1) * nv], &response);
         }
+    }
+}
+
+/// Computes `Fᵀ I_0⁻¹ F` for the force `F` of each row on its second body, about the base origin, with the inertia
+/// `I_0` of the whole robot.
+#[inline(always)]
+pub(super) fn compliance<S: Real>(data: &Data<S>, rows: &[Row<S>], out: &mut [S]) {
+    for (out, row) in out.iter_mut().zip(rows) {
+        let force = row.forces[1].from_point(data.bodies[row.bodies[1]].pos_b);
+        *out = composite_momentum(data).0.inverse().apply(force).dot(force);
     }
 }
 

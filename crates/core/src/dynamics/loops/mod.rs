@@ -19,7 +19,7 @@ pub(crate) use projection::{project_configuration, project_velocity};
 use crate::dynamics::Data;
 use crate::dynamics::kinematics::frame_offset;
 use crate::model::{Closure, Constraint, Model, Node};
-use crate::spatial::{Force, Real, Vec3};
+use crate::spatial::{Force, InverseArticulated, Real, Vec3};
 use response::Scratch;
 use rows::Row;
 
@@ -40,6 +40,8 @@ pub struct ClosedLoops<S> {
     scale: Vec<S>,
     /// Bodies between the base and the bodies of the constraints, without the base, in ascending order.
     supported: Vec<usize>,
+    /// Inverse of the articulated inertia of the whole robot.
+    base: InverseArticulated<S>,
     scratch: Scratch<S>,
 }
 
@@ -57,6 +59,7 @@ impl<S: Real> ClosedLoops<S> {
             matrix: vec![zero; m * m],
             compliance: vec![zero; m],
             scale: vec![zero; m],
+            base: InverseArticulated::default(),
             scratch: Scratch::new(model.nodes().len(), dense),
             rows,
             supported,
@@ -75,8 +78,8 @@ impl<S: Real> ClosedLoops<S> {
     }
 
     /// Returns the constraint forces `λ` computed last, `(m,)`, N and N m: for each closure, the force and the
-    /// moment on its second body along the constrained directions of the first frame, or the torque on a mimic
-    /// joint.
+    /// moment on its second body at the origin of the second frame along the constrained directions of the first
+    /// frame, or the torque on a mimic joint.
     pub fn forces(&self) -> &[S] {
         &self.force
     }

@@ -13,7 +13,7 @@ use std::any::Any;
 struct Term<R> {
     /// Sum of the forces on the articulated body, about the origin of the body in base axes.
     force: Force<R>,
-    /// Effort at the joint, and then `u = τ + Sᵀ f`.
+    /// Effort at the joint, then `u = τ + Sᵀ f`, and then `u − Uᵀ a_p`.
     effort: R,
     acceleration: Motion<R>,
     /// Acceleration of the joint.
@@ -44,18 +44,18 @@ impl<S: Real> Scratch<S> {
 }
 
 /// Computes the lower triangle of `A = J M⁻¹ Jᵀ`: column `c` holds the constraint accelerations that a unit
-/// constraint force in row `c` causes at rest.
+/// constraint force in row `c` causes at rest. `compliance`, `(m,)`, receives `Fᵀ I_0⁻¹ F` for the force `F` of each
+/// row on its second body, about the base origin.
 #[inline(always)]
 pub(super) fn inverse_apparent_mass<S: Real>(
     (nodes, bodies): (&[Node], &[BodyData<S>]),
     base: &InverseArticulated<S>,
-    rows: &[Row<S>],
-    supported: &[usize],
+    (rows, supported): (&[Row<S>], &[usize]),
     scratch: &mut Scratch<S>,
-    matrix: &mut [S],
+    (matrix, compliance): (&mut [S], &mut [S]),
 ) {
     let columns = &mut scratch.columns;
-    S::solve_columns(UnitResponses { nodes, bodies, base, rows, supported, columns, matrix });
+    S::solve_columns(UnitResponses { nodes, bodies, base, rows, supported, columns, matrix, compliance });
 }
 
 struct UnitResponses<'a, S> {
@@ -66,37 +66,45 @@ struct UnitResponses<'a, S> {
     supported: &'a [usize],
     columns: &'a mut Box<dyn Any + Send + Sync>,
     matrix: &'a mut [S],
+    compliance: &'a mut [S],
 }
 
 impl<S: Real> ColumnKernel<S> for UnitResponses<'_, S> {
     #[inline(always)]
     fn run<R: Real>(self, lift: impl Fn(S) -> R + Copy) {
-        let Self { nodes, bodies, base, rows, supported, columns, matrix } = self;
+        let Self { nodes, bodies, base, rows, supported, columns, matrix, compliance } = self;
+        // a scalar with several lanes holds one column per lane; otherwise each column is a scalar
+        let width = if S::LANES == 1 { R::LANES } else { 1 };
+        let groups = rows.len().div_ceil(width);
         if !columns.is::<Vec<Term<R>>>() {
-            *columns = Box::new(vec![Term::<R>::default(); nodes.len()]);
+            *columns = Box::new(vec![Term::<R>::default(); nodes.len() * groups]);
         }
         let Some(terms) = columns.downcast_mut::<Vec<Term<R>>>() else { return };
         let base = base.map(
             #[inline(always)]
             |x| lift(*x),
         );
-        // a scalar with several lanes holds one column per lane; otherwise each column is a scalar
-        let width = if S::LANES == 1 { R::LANES } else { 1 };
-        for first in (0..rows.len()).step_by(width) {
-            clear(terms, supported);
-            let chunk = &rows[first..rows.len().min(first + width)];
-            if width == 1 {
-                add_forces(terms, &chunk[0], lift);
-            } else {
-                gather_forces(terms, chunk);
-            }
-            respond((nodes, bodies), &base, terms, (supported, supported.iter().copied()), lift);
-            // A is symmetric, so the rows above the chunk are not needed
+        clear(&mut terms[..groups]);
+        for &k in supported {
+            clear(&mut terms[k * groups..(k + 1) * groups]);
+        }
+        for (group, rows) in rows.chunks(width).enumerate() {
+            add_forces(terms, (group, groups), rows, lift);
+        }
+        respond((nodes, bodies), &base, (terms, groups), (supported, supported.iter().copied()), lift);
+        for (group, columns) in rows.chunks(width).enumerate() {
+            let first = group * width;
+            // A is symmetric, so the rows above the group are not needed
             for (r, row) in rows.iter().enumerate().skip(first) {
-                let accelerations = acceleration(terms, row, lift);
-                for c in first..rows.len().min(first + width).min(r + 1) {
+                let accelerations = acceleration(terms, (group, groups), row, lift);
+                for c in first..(first + columns.len()).min(r + 1) {
                     matrix[r * rows.len() + c] = of_column::<S, R>(accelerations, c - first);
                 }
+            }
+            let force = second_forces(bodies, columns, lift);
+            let accelerations = base.apply(force).dot(force);
+            for (c, compliance) in compliance[first..].iter_mut().take(columns.len()).enumerate() {
+                *compliance = of_column::<S, R>(accelerations, c);
             }
         }
     }
@@ -111,88 +119,169 @@ fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
     }
 }
 
+/// Returns the numbers `of` the rows, each in the lane of its right-hand side, of which the first is `first`. The
+/// other lanes are zero.
 #[inline(always)]
-fn clear<R: Real>(terms: &mut [Term<R>], supported: &[usize]) {
-    terms[0].force = Force::zero();
-    for &k in supported {
-        (terms[k].force, terms[k].effort) = (Force::zero(), R::of(0.0));
+fn to_columns<S: Real, R: Real>(
+    rows: &[Row<S>],
+    first: usize,
+    of: impl Fn(&Row<S>) -> S,
+    lift: impl Fn(S) -> R + Copy,
+) -> R {
+    if S::LANES > 1 {
+        return lift(of(&rows[0]));
+    }
+    R::from_lanes(
+        #[inline(always)]
+        |lane| match lane.checked_sub(first) {
+            Some(i) if i < rows.len() => of(&rows[i]).lane(0),
+            _ => 0.0,
+        },
+    )
+}
+
+/// Returns the forces `of` the rows, each in the lane of its right-hand side, of which the first is `first`.
+#[inline(always)]
+fn force_columns<S: Real, R: Real>(
+    rows: &[Row<S>],
+    first: usize,
+    of: impl Fn(&Row<S>) -> Force<S>,
+    lift: impl Fn(S) -> R + Copy,
+) -> Force<R> {
+    macro_rules! column {
+        ($part:ident, $axis:ident) => {
+            to_columns(
+                rows,
+                first,
+                #[inline(always)]
+                |row| of(row).$part.$axis,
+                lift,
+            )
+        };
+    }
+    Force::new(
+        Vec3::new(column!(linear, x), column!(linear, y), column!(linear, z)),
+        Vec3::new(column!(angular, x), column!(angular, y), column!(angular, z)),
+    )
+}
+
+/// Returns the forces on the second bodies, about the base origin.
+#[inline(always)]
+fn second_forces<S: Real, R: Real>(
+    bodies: &[BodyData<S>],
+    rows: &[Row<S>],
+    lift: impl Fn(S) -> R + Copy,
+) -> Force<R> {
+    force_columns(
+        rows,
+        0,
+        #[inline(always)]
+        |row| row.forces[1].from_point(bodies[row.bodies[1]].pos_b),
+        lift,
+    )
+}
+
+#[inline(always)]
+fn clear<R: Real>(terms: &mut [Term<R>]) {
+    for term in terms {
+        (term.force, term.effort) = (Force::zero(), R::of(0.0));
     }
 }
 
-/// Adds the forces of one row.
+/// Adds the forces of the rows of a group, each in the lane of its right-hand side.
 #[inline(always)]
-fn add_forces<S: Real, R: Real>(terms: &mut [Term<R>], row: &Row<S>, lift: impl Fn(S) -> R + Copy) {
-    for side in 0..2 {
-        let term = &mut terms[row.bodies[side]];
-        term.force += force(row.forces[side], lift);
-        term.effort += lift(row.efforts[side]);
-    }
-}
-
-/// Adds the forces of several rows, each in its own lane.
-#[inline(always)]
-fn gather_forces<S: Real, R: Real>(terms: &mut [Term<R>], rows: &[Row<S>]) {
-    for (lane, row) in rows.iter().enumerate() {
-        for side in 0..2 {
-            let (term, force) = (&mut terms[row.bodies[side]], &row.forces[side]);
-            let to = &mut term.force;
-            let parts = [
-                (&mut to.linear.x, force.linear.x),
-                (&mut to.linear.y, force.linear.y),
-                (&mut to.linear.z, force.linear.z),
-                (&mut to.angular.x, force.angular.x),
-                (&mut to.angular.y, force.angular.y),
-                (&mut to.angular.z, force.angular.z),
-                (&mut term.effort, row.efforts[side]),
-            ];
-            for (to, x) in parts {
-                to.set_lane(lane, to.lane(lane) + x.lane(0));
-            }
+fn add_forces<S: Real, R: Real>(
+    terms: &mut [Term<R>],
+    (group, groups): (usize, usize),
+    rows: &[Row<S>],
+    lift: impl Fn(S) -> R + Copy,
+) {
+    let mut first = 0;
+    while first < rows.len() {
+        // rows of one closure act on the same bodies
+        let bodies = rows[first].bodies;
+        let mut end = first + 1;
+        while end < rows.len() && rows[end].bodies == bodies {
+            end += 1;
         }
+        let rows = &rows[first..end];
+        for side in 0..2 {
+            let term = &mut terms[bodies[side] * groups + group];
+            term.force += force_columns(
+                rows,
+                first,
+                #[inline(always)]
+                |row| row.forces[side],
+                lift,
+            );
+            term.effort += to_columns(
+                rows,
+                first,
+                #[inline(always)]
+                |row| row.efforts[side],
+                lift,
+            );
+        }
+        first = end;
     }
 }
 
 /// Returns the row times the accelerations of a response.
 #[inline(always)]
-fn acceleration<S: Real, R: Real>(terms: &[Term<R>], row: &Row<S>, lift: impl Fn(S) -> R + Copy) -> R {
+fn acceleration<S: Real, R: Real>(
+    terms: &[Term<R>],
+    (group, groups): (usize, usize),
+    row: &Row<S>,
+    lift: impl Fn(S) -> R + Copy,
+) -> R {
     let mut sum = R::of(0.0);
     for side in 0..2 {
-        let term = &terms[row.bodies[side]];
+        let term = &terms[row.bodies[side] * groups + group];
         sum = term.acceleration.dot_add(force(row.forces[side], lift), sum);
         sum = term.rate.mul_add(lift(row.efforts[side]), sum);
     }
     sum
 }
 
-/// Computes the accelerations that the forces and efforts in `terms` cause at rest. Forces act only on the
-/// bodies `loaded`. The accelerations of the bodies `moved`, which must contain all of their parents, are
-/// computed. Both are in ascending order.
+/// Computes the accelerations that the forces and efforts in `terms` cause at rest. The terms of a body follow each
+/// other, one for each of the `groups` of right-hand sides. Forces act only on the bodies `loaded`. The
+/// accelerations of the bodies `moved`, which must contain all of their parents, are computed. Both are in
+/// ascending order.
 #[inline(always)]
 fn respond<S: Real, R: Real>(
     (nodes, bodies): (&[Node], &[BodyData<S>]),
     base: &InverseArticulated<R>,
-    terms: &mut [Term<R>],
+    (terms, groups): (&mut [Term<R>], usize),
     (loaded, moved): (&[usize], impl Iterator<Item = usize>),
     lift: impl Fn(S) -> R + Copy,
 ) {
     for &k in loaded.iter().rev() {
         let (node, body) = (&nodes[k], Lifted::of(&bodies[k], lift));
-        let Term { force, effort, .. } = terms[k];
-        // u = τ + Sᵀ f;  the parent carries f − U u/D
-        let u = effort + joint_effort(node, body.axis, force);
-        terms[k].effort = u;
-        let carried = body.u_force.scale_add(-u * body.d_inverse, force.from_point(body.offset));
-        terms[node.parent].force += carried;
+        let (parents, own) = terms.split_at_mut(k * groups);
+        let parents = &mut parents[node.parent * groups..(node.parent + 1) * groups];
+        for (term, parent) in own[..groups].iter_mut().zip(parents) {
+            // u = τ + Sᵀ f;  the parent carries f − U u/D
+            let u = term.effort + joint_effort(node, body.axis, term.force);
+            term.effort = u;
+            let carried = body.u_force.scale_add(-u * body.d_inverse, term.force.from_point(body.offset));
+            parent.force += carried;
+        }
     }
-    // a_0 = IA⁻¹ f
-    terms[0].acceleration = base.apply(terms[0].force);
+    for term in &mut terms[..groups] {
+        // a_0 = IA⁻¹ f
+        term.acceleration = base.apply(term.force);
+    }
     for k in moved {
         let (node, body) = (&nodes[k], Lifted::of(&bodies[k], lift));
-        let parent = terms[node.parent].acceleration;
-        // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈
-        let rate = (terms[k].effort - parent.dot(body.u_force)) * body.d_inverse;
-        terms[k].rate = rate;
-        terms[k].acceleration = add_joint_motion(node, body.axis, rate, parent.referred_to(body.offset));
+        let (parents, own) = terms.split_at_mut(k * groups);
+        let parents = &parents[node.parent * groups..(node.parent + 1) * groups];
+        for (term, parent) in own[..groups].iter_mut().zip(parents) {
+            let parent = parent.acceleration;
+            // q̈ = (u − Uᵀ a_p)/D,  a = a_p + S q̈
+            term.effort -= parent.dot(body.u_force);
+            term.rate = term.effort * body.d_inverse;
+            term.acceleration = add_joint_motion(node, body.axis, term.rate, parent.referred_to(body.offset));
+        }
     }
 }
 
@@ -236,15 +325,14 @@ fn force<S: Real, R: Real>(f: Force<S>, lift: impl Fn(S) -> R + Copy) -> Force<R
 #[inline(always)]
 pub(super) fn add_response<S: Real>(
     (nodes, bodies): (&[Node], &mut [BodyData<S>]),
+    base: &InverseArticulated<S>,
     (rows, lambda): (&[Row<S>], &[S]),
-    supported: &[usize],
+    (supported, locked): (&[usize], Option<&[bool]>),
     scratch: &mut Scratch<S>,
     a: &mut [S],
 ) {
     let terms = &mut scratch.single[..];
-    for term in &mut *terms {
-        (term.force, term.effort) = (Force::zero(), S::of(0.0));
-    }
+    clear(terms);
     for (row, &lambda) in rows.iter().zip(lambda) {
         for side in 0..2 {
             let term = &mut terms[row.bodies[side]];
@@ -252,11 +340,10 @@ pub(super) fn add_response<S: Real>(
             term.effort = row.efforts[side].mul_add(lambda, term.effort);
         }
     }
-    let base = bodies[0].articulated.inverse();
     respond(
         (nodes, bodies),
-        &base,
-        terms,
+        base,
+        (terms, 1),
         (supported, 1..nodes.len()),
         #[inline(always)]
         |x| x,
@@ -266,8 +353,10 @@ pub(super) fn add_response<S: Real>(
     (Motion::from_slice(a) + base).write(a);
     for k in 1..nodes.len() {
         let (body, term) = (&mut bodies[k], &terms[k]);
-        // λ = Uᵀ a_p − u of a locked joint
-        body.holding_torque += terms[nodes[k].parent].acceleration.dot(body.u_force) - term.effort;
+        if locked.is_some_and(|locked| locked[k - 1]) {
+            // λ = Uᵀ a_p − u
+            body.holding_torque -= term.effort;
+        }
         body.acceleration += term.acceleration;
         a[k + 5] += term.rate;
     }
