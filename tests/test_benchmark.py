@@ -27,6 +27,7 @@ def versus(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     before = set(sys.modules)
     monkeypatch.syspath_prepend(str(VERSUS))
     import contestants
+    import held_load
     import inputs
     import measure
     import page
@@ -36,7 +37,7 @@ def versus(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     import rows
     import timing
 
-    modules = (contestants, inputs, measure, page, programs, report, robots, rows, timing)
+    modules = (contestants, held_load, inputs, measure, page, programs, report, robots, rows, timing)
     yield SimpleNamespace(**{module.__name__: module for module in modules})
     for name in set(sys.modules) - before:
         if str(getattr(sys.modules[name], "__file__", "")).startswith(str(VERSUS)):
@@ -70,6 +71,38 @@ def test_all_programs_have_the_same_robot(versus: Any, arms: int, tmp_path: Path
     mujoco.mj_forward(inside, data)
     ours = model.forward_dynamics(q, v, np.concatenate([np.zeros(6), x[6:]]))
     np.testing.assert_allclose(data.qacc[6:], ours[6:], rtol=0, atol=1e-9 * np.abs(ours).max())
+
+
+def test_both_hands_hold_one_load_in_all_programs(versus: Any, tmp_path: Path) -> None:
+    versus.inputs.write(tmp_path, 2)
+    tree = oo.Model.from_urdf(tmp_path / "held.urdf")
+    model = tree.with_loops([versus.held_load.WELD])
+    # the table has the load in the body of the first hand
+    table = [line.split() for line in (tmp_path / "held.txt").read_text().splitlines()]
+    assert sum(float(line[5]) for line in table[2:-1]) + float(table[1][0]) == pytest.approx(tree.mass)
+    robot = oo.Model.from_urdf(tmp_path / "robot.urdf")
+    assert tree.mass - robot.mass == pytest.approx(versus.held_load.LOAD.mass)
+    theirs = pin.buildModelFromUrdf(str(tmp_path / "held.urdf"), pin.JointModelFreeFlyer())
+    theirs.gravity.linear = np.zeros(3)
+    sides: list[Any] = []
+    for line in (tmp_path / "grips.txt").read_text().splitlines():
+        body, *numbers = line.split()
+        rot, pos = np.split(np.array(numbers, dtype=float), [9])
+        sides += [int(body) + 1, pin.SE3(rot.reshape(3, 3), pos)]
+    weld = pin.StdVec_RigidConstraintModel()
+    kind, axes = pin.ContactType.CONTACT_6D, pin.ReferenceFrame.LOCAL
+    weld.append(pin.RigidConstraintModel(kind, theirs, *sides, axes))
+    found, data = pin.StdVec_RigidConstraintData(), theirs.createData()
+    found.append(weld[0].createData())
+    pin.initConstraintDynamics(theirs, data, weld, found)
+    states = versus.inputs.read(tmp_path / "held.bin", model.nq, model.nv, model.nv)
+    for q, v, tau in list(zip(*states, strict=True))[:8]:
+        assert np.abs(model.loop_errors(q)).max() < 1e-14
+        settings = pin.ProximalSettings(1e-12, 0.0, 1)
+        expected = pin.constraintDynamics(theirs, data, q, v, tau, weld, found, settings)
+        scale = np.abs(expected).max()
+        assert np.abs(model.constrained_forward_dynamics(q, v, tau)[0] - expected).max() < 1e-11 * scale
+        assert np.abs(tree.forward_dynamics(q, v, tau) - expected).max() > 1e-3 * scale  # negative control
 
 
 def test_programs_respond_and_agree(versus: Any, tmp_path: Path) -> None:

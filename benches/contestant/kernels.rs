@@ -1,15 +1,15 @@
 //! The kernels by name, with their states and results.
 
 use onorbit_core::dynamics::{
-    Data, FreeFloating, forward_dynamics, frame_drift, frame_jacobian, free_floating, inverse_dynamics,
-    kinematics, mass_matrix,
+    ClosedLoops, Data, FreeFloating, constrained_forward_dynamics, forward_dynamics, frame_drift,
+    frame_jacobian, free_floating, inverse_dynamics, kinematics, mass_matrix,
 };
 use onorbit_core::model::Model;
 use onorbit_core::spatial::Real;
 
 /// Names of the kernels: forward dynamics, mass matrix, inverse dynamics, Jacobian and drift of the
-/// tool, and `M*, c*, Jg, d` of it.
-pub(crate) const KERNELS: [&str; 5] = ["aba", "crba", "rnea", "jacobian", "reduced"];
+/// tool, `M*, c*, Jg, d` of it, and forward dynamics with the loops of the robot.
+pub(crate) const KERNELS: [&str; 6] = ["aba", "crba", "rnea", "jacobian", "reduced", "constrained"];
 
 /// `q`, `v` and torques or accelerations of one state.
 struct State<S> {
@@ -24,6 +24,7 @@ pub(crate) struct Kernels<'a, S> {
     tool: usize,
     states: Vec<State<S>>,
     data: Data<S>,
+    loops: ClosedLoops<S>,
     reduced: FreeFloating<S>,
     out: Vec<S>,
     matrix: Vec<S>,
@@ -45,6 +46,7 @@ impl<'a, S: Real> Kernels<'a, S> {
             tool,
             states,
             data: Data::new(model),
+            loops: ClosedLoops::new(model, model.closures()),
             reduced: FreeFloating::new(model),
             out: vec![o; nv],
             matrix: vec![o; nv * nv],
@@ -60,7 +62,7 @@ impl<'a, S: Real> Kernels<'a, S> {
     /// Computes state `k` and returns a number of the result, so that the compiler cannot omit the work.
     #[inline(always)]
     pub(crate) fn run(&mut self, kernel: usize, k: usize) -> S {
-        let Self { model, tool, states, data, reduced, out, matrix, jacobian, drift } = self;
+        let Self { model, tool, states, data, loops, reduced, out, matrix, jacobian, drift } = self;
         let (State { q, v, x }, tool) = (&states[k], *tool);
         match kernel {
             0 => {
@@ -81,10 +83,14 @@ impl<'a, S: Real> Kernels<'a, S> {
                 frame_drift(model, data, q, v, tool).write(drift);
                 drift[0]
             }
-            _ => {
+            4 => {
                 free_floating(model, data, q, v, tool, &[], reduced);
                 reduced.drift.write(drift);
                 drift[0]
+            }
+            _ => {
+                constrained_forward_dynamics((model, data, loops), q, v, x, &[], out);
+                out[6]
             }
         }
     }
@@ -93,7 +99,7 @@ impl<'a, S: Real> Kernels<'a, S> {
     pub(crate) fn output(&self, kernel: usize) -> impl Iterator<Item = S> {
         let reduced = &self.reduced;
         let parts: [&[S]; 4] = match kernel {
-            0 | 2 => [&self.out, &[], &[], &[]],
+            0 | 2 | 5 => [&self.out, &[], &[], &[]],
             1 => [&self.matrix, &[], &[], &[]],
             3 => [&self.jacobian, &self.drift, &[], &[]],
             _ => [&reduced.inertia, &reduced.bias, &reduced.jacobian, &self.drift],

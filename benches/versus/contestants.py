@@ -33,6 +33,7 @@ COMPILED = {
     "reach": ("controlled", "robot.txt arm.bin reach.txt"),
     "controlled": ("controlled", "robot.txt arms.bin controlled.txt"),
     "mujoco": ("mujoco", f"robot.xml mujoco.bin {inputs.PASSIVE_RUNS} {inputs.PASSIVE_STEPS}"),
+    "loops": ("loops", "held.txt held.bin grips.txt"),
     "contact": ("contact", f"contact.xml contact_soft.bin {contact.SOFT.steps}"),
     "hard_contact": ("contact", f"contact.xml contact_hard.bin {contact.HARD.steps}"),
 }
@@ -51,7 +52,8 @@ class Contestants:
         self.missing = {name: f"{wheel} not installed" for name, wheel in NEEDS.items() if not known[wheel]}
         self.running: dict[str, Contestant] = {}
         self.commands = {
-            "rust": [ours, self.folder / "robot.urdf", self.folder / "states.bin", inputs.STATES]
+            name: [ours, self.folder / f"{robot}.urdf", self.folder / f"{states}.bin", inputs.STATES]
+            for name, robot, states in (("rust", "robot", "states"), ("rust_loops", "held", "held"))
         }
         for name, script in SCRIPTS.items():
             self.commands[name] = [sys.executable, HERE / script, self.folder]
@@ -61,6 +63,8 @@ class Contestants:
             else:
                 files = [self.folder / word if "." in word else word for word in given.split()]
                 self.commands[name] = [peers[program], *files]
+        if arms == 1:
+            self.missing.setdefault("loops", "the robot has one hand")
 
     def __getitem__(self, name: str) -> Contestant:
         if name not in self.running:

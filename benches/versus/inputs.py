@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import contact
+import held_load
 import numpy as np
 import robots
 from robots import REACH, Array
@@ -31,6 +32,8 @@ def write(folder: Path, arms: int) -> None:
     (folder / "robot.txt").write_text(robots.table(robot))
     (folder / "robot.xml").write_text(robots.mjcf(robot))
     contact.write(folder, robot)
+    if arms == 2:
+        held_load.write(folder, robot, STATES)
     model = oo.Model.from_urdf(folder / "robot.urdf")
     assert model.joint_names == [f"joint{k}" for k in range(1, robot.nv - 5)], (
         "all programs must have the same joint order"

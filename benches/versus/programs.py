@@ -16,6 +16,14 @@ BUILD = HERE.parent / "build"
 SITE = Path(sysconfig.get_paths()["purelib"])
 WHEELS = ("pin", "libpinocchio", "cmeel-boost", "cmeel-eigen", "mujoco-core")
 
+# programs of benches/peers and the engines that they time
+PROGRAMS = {
+    "kernels": "pinocchio",
+    "controlled": "pinocchio",
+    "loops": "pinocchio",
+    "mujoco": "mujoco",
+    "contact": "mujoco",
+}
 FLAGS = ["-std=c++17", "-O3", "-DNDEBUG", "-march=native", "-w"]
 # limits of Boost that Pinocchio's joint variant requires
 BOOST = ["MPL_LIMIT_LIST_SIZE=30", "MPL_LIMIT_VECTOR_SIZE=30", "FUSION_INVOKE_MAX_ARITY=12"]
@@ -53,23 +61,19 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
     """Compiles the C++ programs if their sources changed; returns them, and why others are missing."""
     known = versions()
     if not known["g++"]:
-        return {}, dict.fromkeys(("kernels", "controlled", "mujoco", "contact"), "no g++ on this machine")
+        return {}, dict.fromkeys(PROGRAMS, "no g++ on this machine")
     lib = next(iter(SITE.glob("mujoco/libmujoco.so.*")), None)
     prefix = SITE / "cmeel.prefix" / "include"
     pinocchio = [*BOOST, f"-I{prefix}", f"-I{prefix / 'eigen3'}"]
     links = [f"-I{SITE / 'mujoco' / 'include'}", str(lib), f"-Wl,-rpath,{SITE / 'mujoco'}"]
-    options = {"kernels": pinocchio, "controlled": pinocchio, "mujoco": links, "contact": links}
-    needs = {
-        "kernels": ("pin", "cmeel-eigen"),
-        "controlled": ("pin", "cmeel-eigen"),
-        "mujoco": ("mujoco-core",),
-        "contact": ("mujoco-core",),
-    }
+    options = {"pinocchio": pinocchio, "mujoco": links}
+    needs = {"pinocchio": ("pin", "cmeel-eigen"), "mujoco": ("mujoco-core",)}
     headers = "".join(file.read_text() for file in sorted(PEERS.glob("*.hpp")))
     programs, missing, running = {}, {}, {}
     BUILD.mkdir(exist_ok=True)
-    for name, option in options.items():
-        if absent := [wheel for wheel in needs[name] if not known[wheel]]:
+    for name, engine in PROGRAMS.items():
+        option = options[engine]
+        if absent := [wheel for wheel in needs[engine] if not known[wheel]]:
             missing[name] = f"{', '.join(absent)} not installed"
             continue
         source = PEERS / f"{name}.cpp"

@@ -109,8 +109,8 @@ def unit(axis: str) -> str:
     return " ".join("1" if letter == axis else "0" for letter in "xyz")
 
 
-def urdf(robot: Robot, collision: str = "") -> str:
-    """Returns the URDF text, with the <collision> elements of the base."""
+def urdf(robot: Robot, collision: str = "", frames: str = "") -> str:
+    """Returns the URDF text, with the <collision> elements of the base and the elements of further frames."""
 
     def link(name: str, body: Body, collision: str = "") -> str:
         names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -131,7 +131,7 @@ def urdf(robot: Robot, collision: str = "") -> str:
         )
     tool = ends(robot.tool, "tool", robot.tool_xyz)
     return "\n".join(
-        [*lines, '<link name="tool"/>', f'<joint name="tool" type="fixed">{tool}</joint>', "</robot>"]
+        [*lines, '<link name="tool"/>', f'<joint name="tool" type="fixed">{tool}</joint>', frames, "</robot>"]
     )
 
 
