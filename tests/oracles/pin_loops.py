@@ -17,8 +17,9 @@ from onorbit_rs.tools.validation.trees import Array, State, random_state, random
 
 LINKS = 24
 LENGTH = 0.7  # of distance loops, m
-# of the proximal iterations: with a tolerance of 1e-12 they end too early
-MU, TOLERANCE, ITERATIONS = 1e-4, 1e-14, 100_000
+# of the proximal iterations, which end too early with a tolerance of 1e-12
+TOLERANCE, ITERATIONS = 1e-14, 6000
+MU = {"constraintDynamics": 1e-6, "lcaba": 1e-4}  # proximal terms: `lcaba` is less accurate with smaller ones
 CONTACTS = {"weld": pin.ContactType.CONTACT_6D, "spherical": pin.ContactType.CONTACT_3D}
 
 
@@ -104,14 +105,14 @@ def in_pinocchio(robot: PinRobot, loops: Sequence[oo.Loop]) -> Any:
 
 
 def solve(
-    method: str, model: Any, constraints: Any, q: Array, v: Array, tau: Array, mu: float = MU
+    method: str, model: Any, constraints: Any, q: Array, v: Array, tau: Array, mu: float | None = None
 ) -> tuple[Array, list[Array]]:
     """Returns the acceleration and the contact forces of `constraintDynamics` or of `lcaba`."""
     # both start from what earlier calls left in their data, which can keep them from converging
     data, found = model.createData(), pin.StdVec_RigidConstraintData()
     for constraint in constraints:
         found.append(constraint.createData())
-    settings = pin.ProximalSettings(TOLERANCE, TOLERANCE, mu, ITERATIONS)
+    settings = pin.ProximalSettings(TOLERANCE, TOLERANCE, mu or MU[method], ITERATIONS)
     if method == "lcaba":
         pin.computeJointMinimalOrdering(model, data, constraints)
         a = pin.lcaba(model, data, q, v, tau, constraints, found, settings)
