@@ -69,8 +69,13 @@ def test_each_kind_of_loop_moves_as_on_the_built_in_engine(kind: str, allowed: f
     assert errors[1] < allowed
     assert errors[1] < errors[0] / 3.5
     assert openings[1] < openings[0] / 3.5
-    without = Mujoco(spatial_linkage().build(), time_step=STEP)
-    q_open, _ = final(model, q, v, without)
+    tree = spatial_linkage().build()
+    without = Mujoco(tree, time_step=STEP)
+    q_open, _ = final(tree, q, v, without)
+    with pytest.raises(
+        EngineError, match=r"a closed loop or mimic joint that was not passed to it \('hands'\)"
+    ):
+        oo.Simulation(model, q, v, time_step=STEP, engine=without)
     assert np.abs(model.loop_errors(q_open)).max() > 0.05
 
 

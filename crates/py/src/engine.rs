@@ -68,6 +68,8 @@ pub(crate) struct PythonEngine {
     wrenches: Py<PyWrenches>,
     /// Names of the contacts whose forces the engine computes.
     contacts: Vec<String>,
+    /// Names of the closed loops and mimic joints whose constraints the engine satisfies.
+    loops: Vec<String>,
     is_world: bool,
     /// True if the methods take the engaged brakes as the argument `brakes`.
     supports_brakes: bool,
@@ -85,6 +87,10 @@ impl PythonEngine {
             Some(names) => names_in(&names, "the contacts of the engine", "names of contacts", "touch")?,
             None => Vec::new(),
         };
+        let loops = match engine.getattr_opt("loops")? {
+            Some(names) => names_in(&names, "the loops of the engine", "names of loops", "closing")?,
+            None => Vec::new(),
+        };
         let supports_brakes = match engine.getattr_opt("supports_brakes")? {
             Some(answer) => answer.is_truthy()?,
             None => false,
@@ -97,7 +103,7 @@ impl PythonEngine {
         }
         let query = Mutex::new((simulation.outside(), (0.0, 0.0)));
         let wrenches = Py::new(py, PyWrenches { query, sizes })?;
-        Ok(Self { object: engine.clone().unbind(), wrenches, contacts, is_world, supports_brakes })
+        Ok(Self { object: engine.clone().unbind(), wrenches, contacts, loops, is_world, supports_brakes })
     }
 
     /// Calls the engine and copies its results to `output`.
@@ -230,6 +236,10 @@ fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyR
 impl Engine for PythonEngine {
     fn contacts(&self) -> Vec<String> {
         self.contacts.clone()
+    }
+
+    fn loops(&self) -> Vec<String> {
+        self.loops.clone()
     }
 
     fn supports_brakes(&self) -> bool {

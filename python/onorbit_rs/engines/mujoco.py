@@ -13,6 +13,7 @@ import numpy as np
 from onorbit_rs.common.counting import count
 from onorbit_rs.engines.mujoco_brakes import Brakes
 from onorbit_rs.engines.mujoco_log import without_log
+from onorbit_rs.engines.mujoco_loops import loop_names
 from onorbit_rs.engines.mujoco_model import import_mujoco, world_model
 from onorbit_rs.engines.mujoco_pressure import WIDTH, Contacts
 from onorbit_rs.engines.mujoco_share import connect, exchanged, shares
@@ -128,6 +129,11 @@ class Mujoco:
     def contacts(self) -> list[str]:
         """Names of the contacts whose forces the engine computes."""
         return self._contacts.names
+
+    @property
+    def loops(self) -> list[str]:
+        """Names of the represented closed loops and mimic joints; in a world ``SYSTEM/NAME``."""
+        return loop_names(self._models)
 
     def step(
         self,

@@ -24,6 +24,15 @@ HALF_PIN = 0.1
 forces of MuJoCo's rows but not the motion that they permit."""
 
 
+def loop_names(models: Mapping[str, Model]) -> list[str]:
+    """Return the names of the closed loops and mimic joints of robots, ``SYSTEM/NAME`` in a world."""
+    return [
+        path(system, one.name)
+        for system, model in models.items()
+        for one in (*model.loops, *(joint for joint in model.joints if joint.mimic is not None))
+    ]
+
+
 def add_loops(
     mujoco: ModuleType, spec: Any, system: str, model: Model, bodies: Mapping[str, Any], time_step: float
 ) -> dict[str, float]:

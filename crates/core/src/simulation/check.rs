@@ -113,6 +113,15 @@ impl Simulation {
                 _ => {}
             }
         }
+        let satisfied = self.engine.as_ref().map_or_else(Vec::new, |engine| engine.loops());
+        for System { name: system, model, .. } in &self.systems {
+            let is_satisfied =
+                |name: &String| satisfied.contains(name) || satisfied.contains(&format!("{system}/{name}"));
+            if let Some(closure) = model.closures().iter().find(|closure| !is_satisfied(&closure.name)) {
+                let what = "a closed loop or mimic joint that was not passed to it";
+                return cannot(&closure.name, what, "create the engine from the models with their loops");
+            }
+        }
         let has_brakes = self.engine.as_ref().is_some_and(|engine| engine.supports_brakes());
         let braked = self.systems.iter().find(|system| !system.brakes.is_empty());
         if let Some(system) = braked.filter(|_| !has_brakes) {

@@ -24,6 +24,12 @@ pub trait Engine: Send {
         Vec::new()
     }
 
+    /// Returns the names of the closed loops and of the mimic joints whose constraints the engine satisfies, as
+    /// `SYSTEM/NAME`, or `NAME` for a single system.
+    fn loops(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// Returns true if the engine holds the joints of engaged brakes; see [`StepInput::brakes`].
     fn supports_brakes(&self) -> bool {
         false

@@ -118,6 +118,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// 14): at ``start`` the force on the second side, N, its moment about the origin of W, N m, and the power taken
 /// from the motion, W; then the integrals of these seven over the step. Steps are shortened while bodies touch.
 ///
+/// An engine that satisfies the constraints of closed loops and mimic joints has their names in the attribute
+/// ``loops``, as ``SYSTEM/NAME``, or ``NAME`` for a single robot. Other engines refuse robots that have them.
 /// An engine whose attribute ``supports_brakes`` is True receives the keyword argument ``brakes`` in both methods:
 /// the brakes that are engaged during the step, a list of ``(system, joint, slip_torque)`` with the indices of
 /// the system and of its joint, and N m or N. Other engines refuse robots with brakes.
