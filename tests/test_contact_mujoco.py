@@ -204,7 +204,9 @@ def test_what_mujoco_cannot_do_is_refused_with_the_remedy() -> None:
         Mujoco(MODELS, contacts=[oo.Contact("a/bod", "b/*", normal=LAWS["Hertz"])])
     wrong: Any = other[0]
     for value in (wrong, [3]):
-        with pytest.raises(EngineError, match="give a list of contacts"):
+        with pytest.raises(
+            EngineError, match=r"contacts is, or contains, a value of type .*; give a list such as"
+        ):
             Mujoco(MODELS, contacts=value)
     scenario: dict[str, Any] = {
         "engine": "mujoco",
