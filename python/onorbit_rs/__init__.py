@@ -260,14 +260,14 @@ def _reduced_world(trace: WorldTrace) -> tuple[Any, ...]:
 
 def _reduced_contact(contact: ContactTrace) -> tuple[Any, ...]:
     """Return the pickled form of the recorded values of a contact."""
-    from onorbit_rs.output.saved_contact import reduced_contact
+    from onorbit_rs.output.saved_column import reduced_contact
 
     return reduced_contact(contact)
 
 
 def _reduced_loop(loop: LoopTrace) -> tuple[Any, ...]:
     """Return the pickled form of the recorded forces of a closed loop."""
-    from onorbit_rs.output.saved_loop import reduced_loop
+    from onorbit_rs.output.saved_column import reduced_loop
 
     return reduced_loop(loop)
 

@@ -20,6 +20,8 @@ const TREES: usize = 2;
 /// Half of the inner edge of the box and half of the thickness of its walls, m.
 const ROOM: f64 = 2.5;
 const WALL: f64 = 0.5;
+/// Duration of the run of each world, s.
+const END: f64 = 60.0;
 
 fn hull(random: &mut Random) -> Shape {
     let corner = |random: &mut Random| {
@@ -112,6 +114,18 @@ fn totals(masses: &[f64], recording: &Recording, k: usize) -> Totals {
     Totals { linear, angular, about_com: angular - center.cross(&linear), energy }
 }
 
+/// Runs a world for a minute and shows how far it is.
+fn run(mut simulation: Simulation, title: &str) -> Recording {
+    let mut stepper = simulation.start(Some(END)).unwrap();
+    for k in 0..20 {
+        let t = END * f64::from(k + 1) / 20.0;
+        stepper.advance_to(t).unwrap();
+        eprint!("\r{title} so far, {t:.0} of {END:.0} s ");
+    }
+    eprintln!();
+    stepper.finish().map_err(|failure| failure.error).unwrap()
+}
+
 #[test]
 #[ignore = "takes minutes: run by make contact-campaign"]
 fn a_thousand_contacts_keep_momentum_and_energy() {
@@ -119,8 +133,8 @@ fn a_thousand_contacts_keep_momentum_and_energy() {
     let first: u64 = std::env::var("SEED").map_or(0, |seed| seed.parse().unwrap());
     let (mut contacts, mut seed) = (0, first);
     while contacts < wanted {
-        let (masses, mut simulation) = world(seed);
-        let recording = simulation.run(60.0).unwrap();
+        let (masses, simulation) = world(seed);
+        let recording = run(simulation, &format!("{seed}: {contacts} of {wanted} contacts"));
         let rows = recording.rows();
         let (first, last) = (totals(&masses, &recording, 0), totals(&masses, &recording, rows - 1));
         let impulses = recording.events.iter().map(|event| vector(&event.impulse).norm());

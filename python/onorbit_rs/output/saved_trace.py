@@ -11,8 +11,7 @@ import numpy as np
 from onorbit_rs._core import COLUMNS
 from onorbit_rs.common.coordinates import BASE_NQ
 from onorbit_rs.output.columns import row_shape, split_path
-from onorbit_rs.output.saved_contact import SavedContact
-from onorbit_rs.output.saved_loop import SavedLoop
+from onorbit_rs.output.saved_column import SavedContact, SavedLoop
 
 
 @dataclass(frozen=True)
