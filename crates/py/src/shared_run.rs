@@ -1,7 +1,7 @@
 //! Simulation together with the run that borrows it, shared by `Simulation` and its steppers.
 
 use crate::errors::{SimulationErrorExt, plain};
-use onorbit_core::simulation::{AttachedControl, Checkpoint, Simulation, Stepper, Trace};
+use onorbit_core::simulation::{AttachedControl, Checkpoint, Simulation, SingularLoop, Stepper, Trace};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use self_cell::{MutBorrow, self_cell};
@@ -33,6 +33,8 @@ pub(crate) struct Runs {
     pub(crate) wall_s: f64,
     /// Controls about which the current run has issued a warning.
     warned: Vec<AttachedControl>,
+    /// Singular loops about which the current run has issued a warning.
+    singular: Vec<SingularLoop>,
 }
 
 #[derive(Clone)]
@@ -41,7 +43,13 @@ pub(crate) struct SharedRun(Arc<Mutex<Runs>>);
 impl SharedRun {
     pub(crate) fn new(simulation: Simulation) -> Self {
         let slot = Slot::Idle(Box::new(simulation));
-        Self(Arc::new(Mutex::new(Runs { slot, number: 0, wall_s: 0.0, warned: Vec::new() })))
+        Self(Arc::new(Mutex::new(Runs {
+            slot,
+            number: 0,
+            wall_s: 0.0,
+            warned: Vec::new(),
+            singular: Vec::new(),
+        })))
     }
 
     /// Returns exclusive access to the runs. Raises an error if another thread, or a callback of the run
@@ -88,6 +96,7 @@ impl SharedRun {
                 runs.number += 1;
                 runs.wall_s = wall_s;
                 runs.warned.clear();
+                runs.singular.clear();
                 Ok(runs.number)
             }
             Err((simulation, error)) => {
@@ -126,6 +135,22 @@ impl Runs {
                  control of the same joints with after='{capture}'"
             );
             self.warned.push(new);
+            PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
+        }
+        self.warn_of_singular_loops(py, number)
+    }
+
+    /// Issues warnings about closed loops of run `number` that have been in a singular configuration.
+    fn warn_of_singular_loops(&mut self, py: Python<'_>, number: u64) -> PyResult<()> {
+        let all = self.with(number, |stepper| stepper.singular_loops()).unwrap_or_default();
+        for new in all.into_iter().filter(|one| !self.singular.contains(one)).collect::<Vec<_>>() {
+            let SingularLoop { system, name, time } = &new;
+            let message = format!(
+                "the constraints of the loop or mimic joint '{name}' of '{system}' became dependent near t = \
+                 {time:.6} s (singular configuration): the motion may continue on another branch, which can depend on \
+                 rounding errors; to avoid this configuration, limit the joints (enforce_limits) or change the reference"
+            );
+            self.singular.push(new);
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
         }
         Ok(())

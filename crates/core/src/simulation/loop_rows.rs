@@ -68,7 +68,7 @@ impl<S: Scalar> RunState<'_, S> {
 
     /// Returns the name of the column of a loop in the trace of a system from the name of the loop in a tree; `None`
     /// if the loop belongs to another system.
-    fn own_loop_name(&self, system: usize, name: &str) -> Option<String> {
+    pub(super) fn own_loop_name(&self, system: usize, name: &str) -> Option<String> {
         if let Place::Tree(_) = self.equations.members.places[system] {
             return Some(name.to_owned());
         }

@@ -19,6 +19,7 @@ use super::mover::Mover;
 use super::recording::Ledger;
 use super::run_system::RunSystem;
 use super::schedule::Schedule;
+use super::singularity_watch::SingularLoop;
 use super::state::State;
 use super::trace::Trace;
 use super::tree::Tree;
@@ -76,6 +77,8 @@ pub(super) struct RunState<'a, S> {
     /// Distance of the base from the origin of W beyond which a system changes to a local reference orbit, m.
     pub(super) rereference_beyond: f64,
     pub(super) earth: Option<Arc<Earth>>,
+    /// Loops that have been in a singular configuration since the run was started or resumed.
+    pub(super) singular_loops: Vec<SingularLoop>,
 }
 
 impl<S: Scalar> RunState<'_, S> {

@@ -153,6 +153,7 @@ impl Shared {
             records_before: f64::INFINITY,
             rereference_beyond,
             earth: self.earth.clone(),
+            singular_loops: Vec::new(),
         };
         run.find_latches();
         run.pass_brakes();

@@ -52,6 +52,7 @@ impl<S: Scalar> RunState<'_, S> {
         if !self.state.is_finite() {
             return Err(self.diverged(t));
         }
+        self.find_singular_loops(t);
         self.accuracy.end_step(t, &self.state, &self.equations);
         // 2 events: captures and releases
         self.happen(t, (t, end))?;

@@ -3,6 +3,7 @@
 use super::attached::AttachedControl;
 use super::error::SimulationError;
 use super::recording::EventRecord;
+use super::singularity_watch::SingularLoop;
 use super::stepper::Stepper;
 use crate::world::WorldError;
 
@@ -41,5 +42,11 @@ impl Stepper<'_> {
     /// follow, so that their errors cannot be reduced.
     pub fn attached_controls(&self) -> Vec<AttachedControl> {
         self.groups.iter().flat_map(|group| group.run.attached_controls()).collect()
+    }
+
+    /// Returns the closed loops that have been in, or near, a singular configuration since the run was started or
+    /// resumed, each with the first time.
+    pub fn singular_loops(&self) -> Vec<SingularLoop> {
+        self.groups.iter().flat_map(|group| group.run.singular_loops().iter().cloned()).collect()
     }
 }

@@ -6,6 +6,7 @@ use super::error::SimulationError;
 use super::external_control::ExternalControl;
 use super::recording::{EventRecord, GroupRecording};
 use super::run_state::RunState;
+use super::singularity_watch::SingularLoop;
 use super::trace::Trace;
 use super::wrench_commands::WrenchCommand;
 use crate::control::ExternalCommand;
@@ -49,6 +50,8 @@ pub(super) trait Steps: Send {
     fn records(&self) -> &[EventRecord];
     /// Returns the controls whose frames are rigidly connected to the frames that they follow.
     fn attached_controls(&self) -> Vec<AttachedControl>;
+    /// Returns the closed loops that have been in a singular configuration.
+    fn singular_loops(&self) -> &[SingularLoop];
     /// Returns the number of the event with this name if it can be triggered; `None` if there is no such
     /// event.
     fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError>;
@@ -144,6 +147,10 @@ impl<S: Scalar> Steps for RunState<'_, S> {
 
     fn attached_controls(&self) -> Vec<AttachedControl> {
         RunState::attached_controls(self)
+    }
+
+    fn singular_loops(&self) -> &[SingularLoop] {
+        &self.singular_loops
     }
 
     fn records(&self) -> &[EventRecord] {

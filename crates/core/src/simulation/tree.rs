@@ -3,6 +3,7 @@
 
 use super::body_states::LoadedSystem;
 use super::modes::JointModes;
+use super::singularity_watch::SingularityWatch;
 use super::tree_state::{TreeRate, TreeState};
 use crate::dynamics::{
     ClosedLoops, Data, Momentum, base_rotation, center_of_mass, center_of_mass_b, constrained_recursion,
@@ -31,6 +32,7 @@ pub(crate) struct Tree<'a, S> {
     pub(crate) modes: JointModes,
     /// Constraints of the tree; empty without closed loops and mimic joints.
     pub(super) loops: ClosedLoops<S>,
+    pub(super) singularities: SingularityWatch,
     /// True if any joint has damping or friction.
     is_lossy: bool,
     /// Joints of each member; empty if the tree has a single member.
@@ -56,6 +58,7 @@ impl<'a, S: Real> Tree<'a, S> {
             frame_velocity: Vec3::zero(),
             mass: S::of(model.mass()),
             loops: ClosedLoops::new(&model, model.closures()),
+            singularities: SingularityWatch::default(),
             shares: Vec::new(),
             is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0)
                 || modes.has_brakes(),
@@ -87,15 +90,16 @@ impl<'a, S: Real> Tree<'a, S> {
     ///
     /// Closed loops are projected first in position and, after the base twist, in velocity.
     pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
-        if !self.loops.is_empty() {
+        if self.loops.is_empty() {
+            self.project_twist(state);
+        } else {
             self.move_given(state);
-            let Self { model, data, loops, modes, .. } = self;
-            let locked = modes.locked().map(|locked| (locked, &[][..]));
+            let kept = self.modes.kept_at_rest(&state.q, &state.v);
+            let Self { model, data, loops, .. } = self;
+            let locked = kept.as_deref().map(|kept| (kept, &[][..]));
             project_configuration(model, data, loops, &mut state.q, locked);
-        }
-        self.project_twist(state);
-        if !self.loops.is_empty() {
-            self.close_velocity(state);
+            self.project_twist(state);
+            self.close_velocity(state, kept.as_deref());
         }
         if let Some(center) = state.center {
             let shift = center - center_of_mass(&self.data, &state.q);
@@ -123,15 +127,15 @@ impl<'a, S: Real> Tree<'a, S> {
         );
     }
 
-    /// Projects the velocity of `state` onto the closed loops, which does not change the momentum. Computes
-    /// the kinematics. Requires the articulated-body inertias of [`project_configuration`].
-    fn close_velocity(&mut self, state: &mut TreeState<S>) {
+    /// Projects the velocity of `state` onto the closed loops, which changes neither the momentum nor the rates of the
+    /// joints `kept`. Computes the kinematics. Requires the articulated-body inertias of [`project_configuration`].
+    fn close_velocity(&mut self, state: &mut TreeState<S>, kept: Option<&[bool]>) {
         // relative to the base's origin, as in `project_twist`
         let frame_velocity = Vec3::from_slice(&state.v);
         Vec3::zero().write(&mut state.v);
         self.update_kinematics(state);
-        let Self { model, data, loops, modes, .. } = self;
-        let locked = modes.locked().map(|locked| (locked, &[][..]));
+        let Self { model, data, loops, .. } = self;
+        let locked = kept.map(|kept| (kept, &[][..]));
         project_velocity(model, data, loops, &mut state.v, locked);
         (Vec3::from_slice(&state.v) + frame_velocity).write(&mut state.v);
         self.update_kinematics(state);

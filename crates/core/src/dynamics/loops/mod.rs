@@ -116,6 +116,15 @@ impl<S: Real> ClosedLoops<S> {
         self.rows.iter().map(|row| row.rate(data, v)).collect()
     }
 
+    /// Returns the pivots of the scaled matrix `A` in the last solution, `(m,)`: the part of the mobility of each row
+    /// that the rows before it leave, and zero for a row that depends on them.
+    pub(crate) fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
+        let m = self.rows.len();
+        (0..m)
+            .map(move |i| self.matrix[i * m + i].lane(0))
+            .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 })
+    }
+
     /// Returns the range of the rows of a closure.
     pub fn range_of(&self, closure: usize) -> std::ops::Range<usize> {
         let start = self.closures[..closure].iter().map(Closure::rows).sum::<usize>();

@@ -111,7 +111,15 @@ pub(super) fn update<S: Real>(closure: &Closure, data: &Data<S>, rows: &mut [Row
     let placed = [Placed::of(&frames[0], data), Placed::of(&frames[1], data)];
     let gap = gap(frames, &placed, data);
     if *kind == LoopKind::Distance {
-        let n = gap * (S::of(1.0) / gap.norm());
+        let distance = gap.norm();
+        // two origins that coincide may move apart in any direction
+        let coincide = S::less(distance, S::of(f64::MIN_POSITIVE));
+        let (x, n) = (placed[0].rot.x, gap * (S::of(1.0) / distance));
+        let n = Vec3::new(
+            S::select(coincide, x.x, n.x),
+            S::select(coincide, x.y, n.y),
+            S::select(coincide, x.z, n.z),
+        );
         rows[0].forces =
             [Force::at(-n, Vec3::zero(), placed[0].offset), Force::at(n, Vec3::zero(), placed[1].offset)];
         return;

@@ -230,6 +230,22 @@ impl JointModes {
         self.any_locked.then_some(&self.locked[..])
     }
 
+    /// Returns an array that is true for the joints that a projection onto closed loops must not move, `(n,)`: locked
+    /// joints, and joints at rest that friction, a brake or a stop can hold. A joint that has come to rest must keep the
+    /// rate zero, since a rounding error of its rate would count as motion. `None` if there are no such joints.
+    pub(in crate::simulation) fn kept_at_rest<S: Real>(&self, q: &[S], v: &[S]) -> Option<Vec<bool>> {
+        let is_kept = |j: usize| self.locked[j] || self.is_at_rest(j, q, v);
+        let kept: Vec<bool> = (0..self.locked.len()).map(is_kept).collect();
+        kept.contains(&true).then_some(kept)
+    }
+
+    /// Returns true if joint `j` is at rest and friction, a brake or a stop can hold it.
+    fn is_at_rest<S: Real>(&self, j: usize, q: &[S], v: &[S]) -> bool {
+        let can_be_held =
+            || self.has_friction(j) || self.brakes.holds(j) || self.stop(j, q[BASE_NQ + j].lane(0)) != 0.0;
+        v[BASE_NV + j].lane(0) == 0.0 && can_be_held()
+    }
+
     /// Returns an array that is true for locked joints, `(n,)`.
     pub(super) fn is_locked_each(&self) -> &[bool] {
         &self.locked
@@ -322,9 +338,8 @@ impl JointModes {
     /// all other joints slip.
     pub(super) fn lock_joints_at_rest<S: Real>(&mut self, q: &[S], v: &[S]) {
         for j in 0..self.locked.len() {
-            let (q, rate) = (q[BASE_NQ + j].lane(0), v[BASE_NV + j].lane(0));
-            let can_be_held = self.has_friction(j) || self.brakes.holds(j) || self.stop(j, q) != 0.0;
-            self.locked[j] = rate == 0.0 && can_be_held;
+            let rate = v[BASE_NV + j].lane(0);
+            self.locked[j] = self.is_at_rest(j, q, v);
             self.direction[j] = if rate == 0.0 { 0.0 } else { rate.signum() };
         }
         self.lock_given();

@@ -1,0 +1,47 @@
+//! Closed loops that have been in a singular configuration during a run.
+
+use super::run_state::RunState;
+use super::singularity_watch::SingularLoop;
+use super::tree::Tree;
+use super::tree_state::TreeState;
+use crate::spatial::{Real, Scalar};
+
+impl<S: Real> Tree<'_, S> {
+    /// Returns the loops whose constraints have become dependent, with the time, s. Requires the projected state of
+    /// the cut at `t`, s.
+    fn find_singular(&mut self, t: f64, state: &TreeState<S>) -> Vec<(String, f64)> {
+        if self.loops.is_empty() {
+            return Vec::new();
+        }
+        let kept = self.modes.kept_at_rest(&state.q, &state.v);
+        let found = self.singularities.update(t, self.loops.pivots(), kept);
+        let name = |row: usize| {
+            let count = self.loops.closures().len();
+            let closure = (0..count).find(|i| self.loops.range_of(*i).contains(&row))?;
+            Some(self.loops.closures()[closure].name.clone())
+        };
+        found.into_iter().filter_map(|(row, time)| Some((name(row)?, time))).collect()
+    }
+}
+
+impl<S: Scalar> RunState<'_, S> {
+    /// Finds the loops that have become singular. Requires the projected state of the cut at `t`, s.
+    pub(super) fn find_singular_loops(&mut self, t: f64) {
+        let pairs = self.equations.trees.iter_mut().zip(&self.state.trees);
+        let found: Vec<_> = pairs.map(|(tree, state)| tree.find_singular(t, state)).collect();
+        if found.iter().all(Vec::is_empty) {
+            return;
+        }
+        for number in 0..self.systems.len() {
+            let members = &self.equations.members;
+            for (name, time) in &found[members.tree_at(members.places[number])] {
+                let Some(name) = self.own_loop_name(number, name) else { continue };
+                let system = self.layout.systems()[number].name.clone();
+                let is_known = |known: &SingularLoop| (&known.system, &known.name) == (&system, &name);
+                if !self.singular_loops.iter().any(is_known) {
+                    self.singular_loops.push(SingularLoop { system, name, time: *time });
+                }
+            }
+        }
+    }
+}
