@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 import contact_alternatives
+import loop_alternatives
 import numpy as np
 import pytest
 
@@ -170,6 +171,7 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("brakes", "a brake that slips stops a wheel", brakes, "TORQUE", 0.900001),
     ("brakes", "12 random trees, a brake engaged in motion", brakes, "rows", without_first),
     ("brakes", "12 random pairs of trees, captured with engaged brakes", brakes, "rows", without_first),
+    *loop_alternatives.CONTROLS,
     ("capture", "a captured body is pulled by 1 m", seating, "SEAT", 3.001),
     ("capture", "a captured body is turned by 1.2 rad", seating, "TURNED", 2.001),
     ("contact", "restitution for d v0 from 0.01 to 10", contact, "CLOSING", 0.10001),

@@ -26,6 +26,7 @@ TITLES = {
     "conservation": "Conservation",
     "capture": "Capture and release",
     "brakes": "Brakes",
+    "loops": "Closed loops and mimic joints",
     "contact": "Contact",
     "world": "Worlds of several craft",
     "order": "Orders of convergence",

@@ -14,6 +14,7 @@ from onorbit_rs.exceptions import InputError
 from onorbit_rs.tools.validation import (
     against_mujoco,
     against_pinocchio,
+    against_pinocchio_loops,
     against_sgp4,
     against_spart,
     air_and_light,
@@ -28,6 +29,9 @@ from onorbit_rs.tools.validation import (
     earth,
     gravity,
     kepler,
+    loops,
+    loops_drift,
+    loops_gauss,
     nasa,
     order,
     relative,
@@ -46,7 +50,8 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, capture, seating, brakes, contact, contact_boxes,
+        conservation, capture, seating, brakes, loops, loops_gauss,
+        loops_drift, against_pinocchio_loops, contact, contact_boxes,
         contact_friction, contact_grasp, worlds, order, against_pinocchio, against_mujoco,
         against_sgp4, against_spart,
     )
