@@ -206,6 +206,22 @@ def test_invalid_loops_are_refused() -> None:
         linkage().add_link("x", parent="base", joint="x", mimic=3.0, **rod(1.0, 1.0))  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize(
+    ("leaders", "problem"),
+    [
+        (("f", None), "joint 'f' mimics itself"),
+        (("g", "f"), "the joints 'f', 'g', 'f' mimic each other in a circle"),
+        (("lefft", None), "joint 'f' mimics joint 'lefft', which does not exist; did you mean 'left'"),
+    ],
+)
+def test_invalid_mimic_joints_are_refused(leaders: Any, problem: str) -> None:
+    builder = linkage()
+    for name, leader in zip("fg", leaders, strict=True):
+        builder.add_link(name, parent="base", joint=name, mimic=leader, **rod(1.0, 0.4))
+    with pytest.raises(ModelError, match=problem):
+        builder.build()
+
+
 def test_loops_that_cannot_be_closed_are_named() -> None:
     far = oo.Loop("far", "spherical", "base", "left_crank", pose_a=at_x(5.0), pose_b=at_x(0.2))
     model = linkage().build().with_loops([far])

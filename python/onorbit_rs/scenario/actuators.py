@@ -13,6 +13,7 @@ from onorbit_rs.scenario import units
 from onorbit_rs.scenario.errors import inconsistent, shortened
 from onorbit_rs.scenario.joint_values import JointValue, joint_value
 from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.yaml_lines import Location
 
 
 def _slip_torque(value: object) -> JointValue:
@@ -72,10 +73,15 @@ class Brake(Part):
         return _core.Brake(self.brake, self.joint, slip_torque=slip, engaged=self.engaged)
 
 
-def check_actuators(system: str, actuators: list[Brake]) -> None:
-    """Raise an error if two actuators have one name, or two brakes are on one joint."""
+def check_actuators(owner: Location, actuators: list[Brake]) -> None:
+    """Raise an error if a name is empty or given twice, or two brakes are on one joint.
+
+    ``owner`` is the location of the entry that has the actuators.
+    """
     for index, brake in enumerate(actuators):
-        at = ("systems", system, "actuators", index)
+        at = (*owner, "actuators", index)
+        if not brake.brake:
+            raise inconsistent((*at, "brake"), "the name is empty; give the brake a name")
         for before in actuators[:index]:
             if before.brake == brake.brake:
                 message = f"two actuators are named {brake.brake!r}; names must be unique"

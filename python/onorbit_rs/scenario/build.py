@@ -99,6 +99,7 @@ def build_around(
         if tool is not None:
             model.frame_pose(q, tool)  # raises an error for an unknown frame
     _check_surfaces(scenario, model)
+    actuators = build_actuators(scenario, model)
     flight = Flight(model, q, v, orbit, earth)
     try_effects(scenario, effects, flight)
     with located(scenario, "engine"):
@@ -110,7 +111,7 @@ def build_around(
             built = _core.Simulation(
                 model, q, v, orbit=orbit, earth=earth, gravity_mode=scenario.gravity_mode,
                 environment=effects, controller=controller, reference=reference, tool=tool,
-                engine=engine, **scenario.simulation.arguments(),
+                actuators=actuators, engine=engine, **scenario.simulation.arguments(),
             )  # fmt: skip
         return built, reference
 
@@ -118,6 +119,15 @@ def build_around(
     try_one_step(scenario, model, simulation()[0])
     messages = tuple(warnings_of(scenario, flight, effects))
     return Built(scenario, model, orbit, earth, q, v, *simulation(), messages)
+
+
+def build_actuators(scenario: Scenario, model: _core.Model) -> list[_core.Brake]:
+    """Return the actuators of the robot; errors are located at the entry of each."""
+    found = []
+    for index, actuator in enumerate(scenario.actuators):
+        with located(scenario, "actuators", index):
+            found.append(actuator.build(model))
+    return found
 
 
 def _check_surfaces(scenario: Scenario, model: _core.Model) -> None:

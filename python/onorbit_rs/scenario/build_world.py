@@ -17,6 +17,7 @@ from onorbit_rs.relative import to_world
 from onorbit_rs.scenario.build import (
     Built,
     Environment,
+    build_actuators,
     build_around,
     build_effects,
     build_environment,
@@ -164,10 +165,7 @@ def _system(
         alone, built.model, built.q, built.orbit, runs_code=runs_code, neighbours=neighbours
     )
     settings = alone.simulation.model_dump(include=set(ControlSettings.model_fields), exclude_none=True)
-    actuators = []
-    for index, actuator in enumerate(scenario.systems[name].actuators):
-        with located(scenario, "systems", name, "actuators", index):
-            actuators.append(actuator.build(built.model))
+    actuators = build_actuators(alone, built.model)
     with located(alone, "robot"):
         return _core.System(
             name, built.model, built.q, built.v, controller=controller, reference=reference,

@@ -100,6 +100,13 @@ def check(data: Any, file: Path | None, lines: Lines) -> AnyScenario:
         raise scenario_error(message, file, None)
     if "systems" in data:
         world = WorldScenario.checked(data, file, lines)
-        only = next(iter(world.scenarios.values()))
-        return world if len(world.systems) > 1 else only
+        if len(world.systems) > 1:
+            return world
+        if world.events:
+            message = (
+                "events require at least two systems; add a system, or let a brake hold from the start with "
+                "'engaged: true'"
+            )
+            raise scenario_error(message, file, lines.get(("events",)), "events")
+        return next(iter(world.scenarios.values()))
     return Scenario.checked(data, file, lines)

@@ -74,6 +74,8 @@ def check_loops(loops: Sequence[Loop], systems: Sequence[str]) -> None:
     names = [loop.name for loop in loops]
     for index, loop in enumerate(loops):
         at = ("loops", index)
+        if not loop.name:
+            raise inconsistent((*at, "name"), "the name is empty; give the loop a name")
         if loop.name in names[:index]:
             raise inconsistent((*at, "name"), f"two loops are named {loop.name!r}; give each its own name")
         if loop.between[0] == loop.between[1]:

@@ -7,6 +7,7 @@ from typing import Annotated, Any, NamedTuple, get_args
 
 from pydantic import Field, PrivateAttr, ValidationError, ValidationInfo, model_validator
 
+from onorbit_rs.scenario.actuators import Brake, check_actuators
 from onorbit_rs.scenario.collision import CollisionShape
 from onorbit_rs.scenario.control import AnyControl, AnyController, Controller
 from onorbit_rs.scenario.control.check import check_control
@@ -47,6 +48,8 @@ class RobotKeys(Part):
     or a mapping from link to surface. Default: the visual geometry."""
     collision: list[CollisionShape] = Field(default_factory=list)
     """Collision shapes in addition to those of the robot's file. They take part in contacts and distances."""
+    actuators: list[Brake] = Field(default_factory=list)
+    """Brakes of joints."""
 
     @property
     def laws(self) -> list[AnyController]:
@@ -120,6 +123,7 @@ class Scenario(RobotKeys, Document):
         check_names(self)
         if self._in_world is None and "systems" not in context:
             check_loops(self.loops, [])
+            check_actuators((), self.actuators)
         if self.orbit is None:
             for index, effect in enumerate(self.environment):
                 if not isinstance(effect, BodyWrenchEffect):

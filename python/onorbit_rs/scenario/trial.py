@@ -19,6 +19,7 @@ from onorbit_rs.exceptions import (
     OrbitError,
     ShapeError,
     SimulationError,
+    WorldError,
 )
 from onorbit_rs.scenario.divergence import divergence
 from onorbit_rs.scenario.environment.surface_effects import SurfaceEffect
@@ -55,9 +56,16 @@ def about_controllers(scenario: Scenario) -> Iterator[None]:
 
 @contextmanager
 def about_start(scenario: Scenario) -> Iterator[None]:
-    """Locate errors about ``q`` and ``v`` at ``initial``, and other input errors at ``simulation``."""
+    """Locate errors about ``q`` and ``v`` at ``initial``, those about a brake at the brake, and others at
+    ``simulation``.
+    """
     try:
         yield
+    except WorldError as error:
+        brakes = [brake.brake for brake in scenario.actuators]
+        index = next((i for i, name in enumerate(brakes) if f"brake '{name}'" in str(error)), None)
+        with located(scenario, *(("simulation",) if index is None else ("actuators", index))):
+            raise
     except InputError as error:
         names = [loop.name for loop in scenario.loops]
         at: tuple[str | int, ...] = ("initial" if error.name in ("q", "v") else "simulation",)

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from onorbit_rs.common.suggestions import did_you_mean
-from onorbit_rs.scenario.actuators import Brake, check_actuators
+from onorbit_rs.scenario.actuators import check_actuators
 from onorbit_rs.scenario.contact import Contact, check_contacts
 from onorbit_rs.scenario.document import Document
 from onorbit_rs.scenario.engine import check_world_engine
@@ -37,9 +37,6 @@ class System(RobotKeys, ControlSettings):
     knows: list[str] = Field(default_factory=list)
     """Other systems whose models the controllers know: while such a system is connected to this system,
     model-based control laws use the model of the connected tree. Default: the model of this system only."""
-
-    actuators: list[Brake] = Field(default_factory=list)
-    """Brakes of joints."""
 
     @classmethod
     def _hint(cls, key: str, free: list[str]) -> str:
@@ -142,7 +139,7 @@ class WorldScenario(Document):
             self._check_neighbour(name, system)
             self._check_start(name, system)
             self._check_knows(name, system)
-            check_actuators(name, system.actuators)
+            check_actuators(("systems", name), system.actuators)
         check_contacts(self.contacts, names)
         check_materials(self.materials)
         look_up(self.contacts, self.materials)

@@ -66,7 +66,7 @@ pub enum ModelError {
         reason = leader_fault(*is_fixed, candidates, leader)
     )]
     UnknownLeader { joint: String, leader: String, is_fixed: bool, candidates: Vec<String> },
-    #[error("the joints {} mimic each other in a circle; remove the mimic of one of them", names(joints))]
+    #[error("{}", circle(joints))]
     MimicCircle { joints: Vec<String> },
     #[error("joint '{joint}' has an axis of length zero; specify a nonzero vector")]
     ZeroAxis { joint: String },
@@ -203,6 +203,19 @@ fn base_advice(joints: &[String]) -> String {
             "give it an inertial, or remove the joints {} and the massless links above them; the robot floats \
              without them",
             names.join(", ")
+        ),
+    }
+}
+
+/// Returns the message about joints that mimic each other in a circle, of which the last is the first.
+fn circle(joints: &[String]) -> String {
+    match joints {
+        [joint] | [joint, _] => {
+            format!("joint '{joint}' mimics itself; remove its mimic, or give another leader")
+        }
+        _ => format!(
+            "the joints {} mimic each other in a circle; remove the mimic of one of them",
+            names(joints)
         ),
     }
 }

@@ -15,7 +15,8 @@ const CLOSED: f64 = 1e-11;
 
 impl System {
     /// Returns the initial configuration and velocity with all loops closed, in the metric of the kinetic
-    /// energy the nearest ones to the given state. Mimic joints that start at zero follow their leaders.
+    /// energy the nearest ones to the given state. Mimic joints that start at zero follow their leaders. Joints that
+    /// brakes hold rigidly keep the rate zero.
     ///
     /// # Errors
     /// [`SimulationError::OpenLoop`] for a loop without `project`, and [`SimulationError::OpenMimic`] for a
@@ -44,9 +45,14 @@ impl System {
         kinematics(model, &mut data, &q, &v);
         let rates = loops.rates(&data, &v);
         check_open(&loops, &rates, ["m/s", "rad/s"])?;
-        project_configuration(model, &mut data, &mut loops, &mut q, None);
+        // joints that brakes hold rigidly must start at rest
+        let mut held = vec![false; model.joint_count()];
+        let rigid = self.brakes.iter().filter(|brake| brake.is_engaged && brake.slip_torque.is_infinite());
+        rigid.for_each(|brake| held[brake.joint] = true);
+        let locked = held.contains(&true).then_some((&held[..], &[][..]));
+        project_configuration(model, &mut data, &mut loops, &mut q, locked);
         kinematics(model, &mut data, &q, &v);
-        project_velocity(model, &mut data, &mut loops, &mut v, None);
+        project_velocity(model, &mut data, &mut loops, &mut v, locked);
         Ok([q, v])
     }
 }
