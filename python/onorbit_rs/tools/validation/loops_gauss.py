@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import onorbit_rs as oo
-from onorbit_rs.common.coordinates import BASE_NV, JOINTS_Q
+from onorbit_rs.common.coordinates import BASE_NV, JOINTS_Q, QUATERNION
 from onorbit_rs.tools.validation.capture import momentum, random_craft
 from onorbit_rs.tools.validation.capture import run as run_world
 from onorbit_rs.tools.validation.case import Case, Gate, worst
@@ -80,7 +80,7 @@ def gripper(seed: int, redundant: bool = True) -> Craft:
     model = oo.robots.load("four_bar_gripper").with_loops(loops)
     q = model.neutral()
     q[:3] = rng.uniform(-1.0, 1.0, 3)
-    q[3:7] = (lambda x: x / np.linalg.norm(x))(rng.normal(size=4))
+    q[QUATERNION] = (lambda x: x / np.linalg.norm(x))(rng.normal(size=4))
     q[JOINTS_Q] = rng.uniform(0.1, 0.8)
     q = np.asarray(model.closed_configuration(q))
     v = nearest(np.array(model.mass_matrix(q)), rows(model, q), rng.uniform(-0.3, 0.3, model.nv))
