@@ -31,9 +31,9 @@ class Body:
 
 def arm(angle: Derivatives, length: float) -> tuple[complex, complex, complex]:
     """Return `r e^(iφ)` and its first two derivatives `iφ' r e^(iφ)`, `(iφ'' - φ'²) r e^(iφ)`."""
-    phi, rate, rate2 = angle
+    phi, rate, second = angle
     tip = complex(length * np.exp(1j * phi))
-    return tip, 1j * rate * tip, (1j * rate2 - rate**2) * tip
+    return tip, 1j * rate * tip, (1j * second - rate**2) * tip
 
 
 def rod(angle: Derivatives, length: float, mass: float, start: Sequence[complex] = (0.0, 0.0, 0.0)) -> Body:
@@ -75,11 +75,11 @@ def slider_crank(crank: float, a: float, b: float) -> tuple[Derivatives, Derivat
     """
     beta = -np.arcsin(a * np.sin(crank) / b)
     rate = -a * np.cos(crank) / (b * np.cos(beta))
-    rate2 = (a * np.sin(crank) + b * np.sin(beta) * rate**2) / (b * np.cos(beta))
+    second = (a * np.sin(crank) + b * np.sin(beta) * rate**2) / (b * np.cos(beta))
     x = a * np.cos(crank) + b * np.cos(beta)
     x1 = -a * np.sin(crank) - b * np.sin(beta) * rate
-    x2 = -a * np.cos(crank) - b * np.cos(beta) * rate**2 - b * np.sin(beta) * rate2
-    return (float(beta), float(rate), float(rate2)), (float(x), float(x1), float(x2))
+    x2 = -a * np.cos(crank) - b * np.cos(beta) * rate**2 - b * np.sin(beta) * second
+    return (float(beta), float(rate), float(second)), (float(x), float(x1), float(x2))
 
 
 def cross(a: complex, b: complex) -> float:
