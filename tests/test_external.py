@@ -234,7 +234,7 @@ WRONG: list[tuple[Callable[[oo.Stepper], None], type[Exception], str]] = [
     (lambda s: s.send_trajectory("control", [np.nan], [MOVE]), Errors.InputError, "finite"),
     (lambda s: s.send_trajectory("control", [1], [MOVE], start=-2), Errors.InputError, "later 'start'"),
     (lambda s: s.send_trajectory("control", [1, 2], [MOVE]), Errors.ShapeError, "2 rows of 7"),
-    (lambda s: s.send_trajectory("control", [1], MOVE), Errors.ShapeError, "one row per time"),
+    (lambda s: s.send_trajectory("control", [1], MOVE), Errors.ShapeError, "rows, one per time"),
     (lambda s: s.send_trajectory("control", [1], ROW, accelerations=ROW), Errors.ControlError, "without"),
     (lambda s: s.wrench("tol", [1, 0, 0]), Errors.FrameError, "did you mean 'tool'"),
     (lambda s: s.wrench("tool", [1, 0, np.nan]), Errors.InputError, "finite"),

@@ -189,11 +189,14 @@ fn numbers_of_a_kernel_that_overflow_positions_are_refused() {
     for (segment, said) in [
         (
             SpiceSegment { coefficients: far(1e308), ..good() },
-            "coefficient of a segment of the kernel is 1e308",
+            "a coefficient, in km, of a segment of the kernel is 1e308",
         ),
         (SpiceSegment { coefficients: far(-2e12), ..good() }, "at most 1e12 km"),
         (SpiceSegment { sign: 1e308, ..good() }, "1 or -1"),
-        (SpiceSegment { length: 0.0, ..good() }, "length of an interval of a segment of the kernel is 0"),
+        (
+            SpiceSegment { length: 0.0, ..good() },
+            "the length of an interval, in s, of a segment of the kernel is 0",
+        ),
         (SpiceSegment { length: -86_400.0, ..good() }, "positive"),
     ] {
         let text = refused(segment);

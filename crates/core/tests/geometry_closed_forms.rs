@@ -152,7 +152,7 @@ fn shapes_without_volume_and_poses_that_are_not_finite_are_refused() {
     let torus = Shape::Torus { major_radius: 1.0, minor_radius: 0.1 };
     let error = closest(&torus, &at, &cube, &at).unwrap_err();
     assert!(error.to_string().contains("between a box and a torus is not available"), "{error}");
-    assert!(error.to_string().contains("the circle in the middle of the torus"), "{error}");
+    assert!(error.to_string().contains("the centre line of the tube of the torus"), "{error}");
     let error = closest(&Shape::HalfSpace, &at, &Shape::HalfSpace, &at).unwrap_err();
     assert!(error.to_string().contains("both are unbounded"), "{error}");
 }

@@ -130,9 +130,10 @@ impl Runs {
         for new in all.into_iter().filter(|attached| !self.warned.contains(attached)).collect::<Vec<_>>() {
             let AttachedControl { control, frame, followed, capture } = &new;
             let message = format!(
-                "the control '{control}' follows '{followed}', to which the capture '{capture}' has rigidly connected \
-                 '{frame}': its torques cannot reduce its error and may diverge; end it at the capture, for example by a \
-                 control of the same joints with after='{capture}'"
+                "the control '{control}' moves '{frame}' and follows '{followed}', but the capture '{capture}' has \
+                 rigidly connected these two frames. The control can no longer reduce its error, and its torques may \
+                 diverge. End the control at the capture, for example with another control of the same joints that has \
+                 after='{capture}'"
             );
             self.warned.push(new);
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;

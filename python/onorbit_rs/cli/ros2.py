@@ -21,7 +21,13 @@ DomainOption = Annotated[
 ForOption = Annotated[
     float | None, typer.Option("--for", metavar="SECONDS", help="Simulated time, s; default: the scenario's.")
 ]
-NetworkOption = Annotated[str, typer.Option(metavar="NETWORK", help="loopback, or all networks.")]
+NetworkOption = Annotated[
+    str,
+    typer.Option(
+        metavar="NETWORK",
+        help="Networks on which the node is reachable: loopback (this machine only) or all.",
+    ),
+]
 RecordOption = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Record messages and obeyed commands as MCAP.")
 ]

@@ -48,7 +48,9 @@ def missing() -> EngineError:
 
 
 def mujoco_model(model: Model, *, time_step: float, enforce_limits: bool) -> Any:
-    """Return the ``mujoco.MjModel`` of a robot; joints keep their names, :func:`link_name` names the bodies.
+    """Return the ``mujoco.MjModel`` of a robot.
+
+    Joints keep their names; :func:`link_name` gives the name of each body.
 
     Raises
     ------

@@ -17,7 +17,7 @@ class LiveRows:
     """Reads the recorded rows of a stepper, each of them once."""
 
     def __init__(self, stepper: Stepper, models: Mapping[str, Model]) -> None:
-        """Take the stepper, and the robots by the name of the system; no row has been read yet."""
+        """Store the stepper and the model of each system by the name of the system."""
         self._stepper, self._models = stepper, models
         self._counts = dict.fromkeys(models, 0)
         self._taken_until = -np.inf

@@ -37,19 +37,20 @@ class Sample(NamedTuple):
 
 
 def read_samples(path: Path, topic: str | None) -> tuple[str, list[Sample]]:
-    """Return the name of a topic of a bag, and the joint motion recorded on it.
+    """Return the joint motion recorded on one topic of a bag, after the name of the topic.
 
     Parameters
     ----------
     path : path
-        MCAP file, SQLite file or folder of rosbag2, or bag of ROS 1.
+        MCAP file, SQLite file or folder written by rosbag2, or ROS 1 bag.
     topic : str or None
-        Name of the topic; default: the only topic with motions of joints.
+        Name of the topic; default: the only topic with joint motion.
 
     Raises
     ------
     NotFoundError, ReadError
-        If the file does not exist, is not a bag or is damaged, or the topic is missing or not unique.
+        If the file does not exist, is not a bag or is damaged; if the topic is missing or ambiguous; or if it
+        has trajectories, but not exactly one.
     Ros2Error
         If rosbags is not installed.
     """

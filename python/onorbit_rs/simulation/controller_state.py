@@ -99,7 +99,12 @@ class _Encoder:
 
     def _item(self, key: object, value: object, place: str) -> list[Any]:
         if type(key) not in _KEYS:
-            raise _refused(f"a key of {place}", f"is of type {_name(type(key))}", key)
+            name, allowed = _name(type(key)), "None, bool, int, float, str or tuple"
+            raise ControlError(
+                f"a key of {place} is of type {name}; keys must be {allowed}: convert the key in get_state() and "
+                "restore it in set_state()",
+                name=f"a key of {place}", got=name, expected=allowed,
+            )  # fmt: skip
         return [self.encoded(key, f"a key of {place}"), self.encoded(value, f"{place}[{key!r}]")]
 
 

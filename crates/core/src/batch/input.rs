@@ -24,7 +24,7 @@ pub enum InputError {
     #[error("the number of states is {got}; expected 1; use Evaluator::many for several states")]
     NotSingle { got: usize },
     #[error(
-        "there is no frame {frame}, because the robot has {known}; give the index of one of them",
+        "frame {frame} does not exist; the robot has {known}",
         known = indices(*count, "frame")
     )]
     UnknownFrame { frame: usize, count: usize },

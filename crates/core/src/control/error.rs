@@ -142,10 +142,10 @@ pub enum ControlError {
     )]
     ControlEnded { control: String },
     #[error(
-        "{name} of the command to '{control}' has {got}; expected {expected}",
+        "{name} of the command to control '{control}': {got}, but expected {expected}",
         got = count(*got, "number"),
         expected = if *points == 1 { format!("{joints}, one per joint of its group") }
-            else { format!("{points} rows of {}, with one row per time", count(*joints, "number")) }
+            else { format!("{}: {points} rows, one per time, of {}", points * joints, count(*joints, "number")) }
     )]
     CommandLength { control: String, name: &'static str, points: usize, joints: usize, got: usize },
     #[error(

@@ -44,8 +44,11 @@ impl EarthParameters {
                 Ok(Some(row)) => rows.push(row),
                 Ok(None) if !rows.is_empty() => break,
                 Ok(None) | Err(()) => {
-                    let problem =
-                        format!("the row is '{}'; expected MJD, polar motion and UT1 - UTC", line.trim_end());
+                    let problem = format!(
+                        "the row is '{}'; expected numbers for the MJD, the polar motion x and y (arcsec) and \
+                         UT1 - UTC (s); correct or remove the row",
+                        line.trim_end()
+                    );
                     return Err(EarthError::Table { line: index + 1, problem });
                 }
             }

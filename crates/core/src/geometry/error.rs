@@ -88,7 +88,7 @@ pub enum GeometryError {
 fn unavailable(pair: &PosedPair) -> &'static str {
     match (pair.a, pair.b) {
         ("a half-space", "a half-space") => "both are unbounded; replace one of them by a box",
-        _ => "the circle in the middle of the torus meets the other shape; move the shapes apart",
+        _ => "the centre line of the tube of the torus intersects the other shape; move the shapes apart",
     }
 }
 

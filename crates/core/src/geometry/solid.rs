@@ -44,7 +44,7 @@ impl Solid {
         }
         let warning = defect.map(|defect| {
             format!(
-                "the collision mesh {filename} {defect}; its triangles are reversed for its convex pieces"
+                "the collision mesh {filename} {defect}; its triangles are reversed before it is divided into convex pieces"
             )
         });
         Ok(Self { mesh, hull, warning })

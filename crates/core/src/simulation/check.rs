@@ -188,7 +188,7 @@ fn check_seats(events: &[Event], time_step: f64) -> Result<(), SimulationError> 
     for Event { name, action, .. } in events {
         let Action::Capture { seat: Some(Seat { duration, .. }), .. } = action else { continue };
         if *duration < 1e-3 * time_step {
-            let (event, what, unit) = (name.clone(), "the time of seating", "s");
+            let (event, what, unit) = (name.clone(), "the duration of seat", "s");
             let expected = "at least a thousandth of time_step";
             return Err(WorldError::Number { event, what, value: *duration, unit, expected }.into());
         }

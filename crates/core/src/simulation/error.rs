@@ -111,7 +111,7 @@ pub enum SimulationError {
     )]
     NeedsTool,
     #[error(
-        "frame {frame} does not exist, because the robot has {known}; give the index of one of them",
+        "frame {frame} does not exist; the robot has {known}",
         known = indices(*count, "frame")
     )]
     UnknownFrame { frame: usize, count: usize },

@@ -32,7 +32,7 @@ pub(super) struct Attached {
 #[derive(Debug, Default)]
 pub(super) struct Events {
     pub(super) list: Vec<Event>,
-    /// Number of each event in the world.
+    /// Index of each event among all events of the world.
     pub(super) numbers: Vec<usize>,
     pub(super) states: Vec<EventState>,
     /// Captures and releases, and touch-downs and lift-offs of contacts, that have happened.

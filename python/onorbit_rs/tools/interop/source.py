@@ -72,10 +72,10 @@ class Source:
         for key in self.data:
             if key in known:
                 continue
-            hint = did_you_mean(key, known) or "; see docs/coming_from/onorbitros.md"
+            hint = did_you_mean(key, known) or f"; the keys here are {', '.join(known)}"
             if not self.keep_going:
-                fix = "correct or remove it, or ignore it with --keep-going"
-                raise self.fail(key, f"is not a key of OnOrbitROS{hint} ({fix})")
+                fix = "correct or remove the key, or use --keep-going to ignore it"
+                raise self.fail(key, f"{key!r} is not a key of OnOrbitROS{hint}; {fix}")
             self.note(key, "no meaning", f"not a key of OnOrbitROS{hint}")
 
     def number(self, key: str, default: float | None = None) -> float:

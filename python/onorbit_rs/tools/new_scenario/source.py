@@ -71,8 +71,8 @@ class Source:
         if len(bus.frame_names) == 1:
             return bus.frame_names[0]
         raise FrameError(
-            f"give the frame of the bus for the robot with --at FRAME; the frames of {self.bus} are "
-            f"{', '.join(bus.frame_names)}",
+            f"the bus {self.bus} has several frames to which the robot could be attached; choose one with "
+            f"--at FRAME: {', '.join(bus.frame_names)}",
             name=None, kind="frame", known=list(bus.frame_names), suggestion=None,
         )  # fmt: skip
 

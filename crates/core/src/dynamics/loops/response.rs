@@ -188,7 +188,8 @@ fn clear<R: Real>(terms: &mut [Term<R>]) {
     }
 }
 
-/// Adds the forces of the rows of a group, each in the lane of its right-hand side.
+/// Adds the constraint forces and joint efforts of the rows of a group to the terms of the bodies on which they
+/// act, each in the lane of its column.
 #[inline(always)]
 fn add_forces<S: Real, R: Real>(
     terms: &mut [Term<R>],

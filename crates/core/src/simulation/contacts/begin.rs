@@ -153,8 +153,8 @@ impl Touching {
     }
 }
 
-/// Returns the bristles that were `before` at the start of the last step. `speed` is the magnitude that the
-/// velocity `rate` had at that time.
+/// Returns the bristles at the end of the last step, which they started as `before`. `rate` is the present
+/// sliding velocity, m/s, or rate of turn, rad/s, and `speed` its magnitude at the start of the step.
 fn continued(
     before: &Bristle,
     found: &FrictionForce,
