@@ -75,6 +75,7 @@ __all__ = [
     "Compliance",
     "ComputedTorque",
     "ConstantAtmosphere",
+    "ConstrainedFreeFloating",
     "Contact",
     "ContactTrace",
     "Control",
@@ -100,6 +101,7 @@ __all__ = [
     "HarrisPriester",
     "Hold",
     "HuntCrossley",
+    "InternalForce",
     "Joint",
     "JointComputedTorque",
     "JointHold",
@@ -327,6 +329,15 @@ class Model:
         threads: int | None = None,
         out: FreeFloating | None = None,
     ) -> FreeFloating: ...
+    def constrained_free_floating(
+        self,
+        q: ArrayLike,
+        v: ArrayLike,
+        frame: str,
+        *,
+        independent: Sequence[str] | None = None,
+        external: _External | None = None,
+    ) -> ConstrainedFreeFloating: ...
     def free_floating_derivatives(
         self,
         q: ArrayLike,
@@ -441,6 +452,25 @@ class Shape:
 
 @final
 class FreeFloating:
+    @property
+    def inertia(self) -> _Array: ...
+    @property
+    def bias(self) -> _Array: ...
+    @property
+    def external(self) -> _Array: ...
+    @property
+    def jacobian(self) -> _Array: ...
+    @property
+    def drift(self) -> _Array: ...
+
+@final
+class ConstrainedFreeFloating:
+    @property
+    def independent(self) -> list[str]: ...
+    @property
+    def joint_map(self) -> _Array: ...
+    @property
+    def joint_drift(self) -> _Array: ...
     @property
     def inertia(self) -> _Array: ...
     @property
@@ -960,6 +990,20 @@ class Goal:
 _Law = ComputedTorque | JointComputedTorque | JointPid | Compliance | External | _Controller
 
 @final
+class InternalForce:
+    def __new__(
+        cls, loop: str, *, force: ArrayLike | None = None, moment: ArrayLike | None = None
+    ) -> InternalForce: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def loop(self) -> str: ...
+    @property
+    def force(self) -> list[float] | None: ...
+    @property
+    def moment(self) -> list[float] | None: ...
+
+@final
 class Control:
     def __new__(
         cls,
@@ -974,6 +1018,8 @@ class Control:
         after: str | None = None,
         goal: Goal | None = None,
         starts_at_present: bool = False,
+        load: str | None = None,
+        internal_forces: Sequence[InternalForce] | None = None,
     ) -> Control: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
 

@@ -6,8 +6,8 @@ mod common;
 use common::{Random, random_model, random_state};
 use nalgebra::{DMatrix, DVector, Isometry3, Rotation3};
 use onorbit_core::dynamics::{
-    ClosedLoops, Data, bias_forces, closure_errors, constrained_forward_dynamics, frame_pose, mass_matrix,
-    positions,
+    ClosedLoops, Data, bias_forces, close_velocity, closure_errors, constrained_forward_dynamics,
+    constrained_free_floating, frame_drift, frame_jacobian, frame_pose, kinematics, mass_matrix, positions,
 };
 use onorbit_core::model::{Loop, LoopKind, Model, integrate};
 use onorbit_core::spatial::{Fused, Real};
@@ -156,4 +156,62 @@ fn accelerations_of_closed_loops_agree_with_the_dense_equations() {
         let (model, q) = closed(seed, 9 + seed as usize % 7, &kinds[..1 + seed as usize % 2]);
         compare(&model, &q, seed);
     }
+}
+
+/// Returns a state of a random looped robot that satisfies the constraints.
+fn closed_state(seed: u64, links: usize, kinds: &[LoopKind]) -> (Model, Vec<f64>, Vec<f64>) {
+    let (model, q) = closed(seed, links, kinds);
+    let mut v: Vec<f64> = Random::new(seed + 9).numbers(model.nv());
+    let mut loops = ClosedLoops::new(&model, model.closures());
+    close_velocity(&model, &mut Data::new(&model), &mut loops, &q, &mut v);
+    (model, q, v)
+}
+
+#[test]
+fn the_model_of_independent_joints_has_the_constrained_acceleration() {
+    let (mut redundant, mut with_drift) = (0, 0);
+    for seed in 0..40 {
+        let kinds = [KINDS[seed as usize % 5], KINDS[(seed as usize / 5) % 5]];
+        let (model, q, v) = closed_state(seed, 9, &kinds[..1 + seed as usize % 2]);
+        let (n, nv) = (model.joint_count(), model.nv());
+        let mut tau = Random::new(seed + 3).numbers(nv);
+        tau[..6].fill(0.0);
+        let (mut data, mut loops) = (Data::<f64>::new(&model), ClosedLoops::new(&model, model.closures()));
+        let mut a = vec![0.0; nv];
+        let rank = constrained_forward_dynamics((&model, &mut data, &mut loops), &q, &v, &tau, &[], &mut a);
+        redundant += usize::from((rank as usize) < loops.count());
+
+        let frame = model.frames().len() - 1;
+        let reduced = constrained_free_floating(&model, (&q, &v), frame, &[], &[]);
+        let f = reduced.joints.count();
+        assert_eq!(f, n - rank as usize, "seed {seed}");
+        // M ÿ = Gᵀ τ − c
+        let inertia = DMatrix::from_row_slice(f, f, &reduced.inertia);
+        let map = DMatrix::from_row_slice(n, f, &reduced.joints.map);
+        let bias = DVector::from_column_slice(&reduced.bias);
+        let y =
+            inertia.lu().solve(&(map.transpose() * DVector::from_column_slice(&tau[6..]) - bias)).unwrap();
+        let found = &map * &y + DVector::from_column_slice(&reduced.joints.drift);
+        let expected = DVector::from_column_slice(&a[6..]);
+        let error = (&found - &expected).amax() / (1.0 + expected.amax());
+        assert!(error < 1e-10, "seed {seed}: {error:.1e}");
+        // the rates of the independent joints determine all rates
+        let independent = DVector::from_iterator(f, reduced.joints.independent.iter().map(|&j| v[6 + j]));
+        assert!((&map * independent - DVector::from_column_slice(&v[6..])).amax() < 1e-10);
+        // the task acceleration is that of the constrained motion
+        kinematics(&model, &mut data, &q, &v);
+        let (mut jacobian, mut task) = (vec![0.0; 6 * nv], [0.0; 6]);
+        frame_jacobian(&model, &data, &q, frame, &mut jacobian);
+        frame_drift(&model, &data, &q, &v, frame).write(&mut task);
+        let expected = DMatrix::from_row_slice(6, nv, &jacobian) * DVector::from_column_slice(&a)
+            + DVector::from_column_slice(&task);
+        let found = DMatrix::from_row_slice(6, f, &reduced.jacobian) * &y
+            + DVector::from_column_slice(&reduced.drift);
+        assert!((&found - &expected).amax() < 1e-9 * (1.0 + expected.amax()), "seed {seed}");
+        // the control: without g, the accelerations differ, unless the dependent joints cannot move
+        let without = (&map * &y - DVector::from_column_slice(&a[6..])).amax();
+        with_drift += usize::from(without > 1e-6);
+    }
+    assert!(with_drift > 4, "{with_drift}");
+    assert!(redundant > 3, "{redundant}");
 }

@@ -11,6 +11,7 @@ import numpy as np
 
 from onorbit_rs import _core
 from onorbit_rs.exceptions import EffectError
+from onorbit_rs.scenario.control.load import check_load, needs_load
 from onorbit_rs.scenario.control.selection import joint_group, tool_of
 from onorbit_rs.scenario.engine import build_engine
 from onorbit_rs.scenario.environment.earth import build_earth
@@ -221,9 +222,13 @@ def controlled(
         with located(scenario, *at):
             joints = None if part.joints is None else joint_group(part.joints, list(model.joint_names))
             law = part.build_law(model, tool_of(part, tool), folder, runs_code=runs_code)
+        with located(scenario, *at, "load"):
+            check_load(getattr(part, "load", None), neighbours or {})
         with located(scenario, *at, "reference"):
             group = None if joints is None else tuple(joints)
-            reference = _reference(part.reference, replace(start, tool=tool_of(part, tool), joints=group))
+            load: str | None = getattr(part, "load", None)
+            placed = replace(start, tool=tool_of(part, tool), joints=group, load=load)
+            reference = _reference(part.reference, placed)
         with located(scenario, *at):
             controls.append(part.build_control(law, reference, joints))
     return controls or None, None
@@ -237,10 +242,15 @@ def _is_moving(reference: Any) -> bool:
 def _waiting(scenario: Scenario) -> set[str]:
     """Return the names of the controls that require other systems.
 
-    These controls start after an event or track a frame of another system, or start after such a control.
+    These controls start after an event, track or move a frame of another system, command the force of a
+    capture, or start after such a control.
     """
     controls = scenario.controllers or []
-    found = {str(part.name) for part in controls if _is_moving(part.reference)}
+    found = {
+        str(part.name)
+        for part in controls
+        if _is_moving(part.reference) or needs_load(part, scenario.event_names)
+    }
     causes = {*scenario.event_names, *found}
     while new := {str(part.name) for part in controls if part.after in causes} - found:
         found |= new

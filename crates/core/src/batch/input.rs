@@ -53,6 +53,11 @@ pub enum InputError {
              'base', or use a Simulation"
     )]
     NeedsOrbit,
+    #[error(
+        "the robot has closed loops or mimic joints, with which a rollout does not evaluate ComputedTorque; use a Simulation, or \
+         give the rollout torques"
+    )]
+    LoopedTask,
     #[error("threads is 0; it must be at least 1; omit it to use all cores")]
     NoThreads,
     #[error(

@@ -98,6 +98,9 @@ impl Rollout<'_> {
             if reference.needs_orbit() {
                 return Err(InputError::NeedsOrbit);
             }
+            if !model.closures().is_empty() {
+                return Err(InputError::LoopedTask);
+            }
         }
         let diverged = match InstructionSet::current() {
             InstructionSet::Baseline => self.all::<f64>(model, q0, v0, q, v),

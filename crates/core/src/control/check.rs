@@ -1,6 +1,7 @@
 //! Validation of the controls before a run.
 
 use super::control::{Begin, Control};
+use super::control_law::JointCommand;
 use super::error::ControlError;
 use crate::model::Model;
 
@@ -10,7 +11,7 @@ use crate::model::Model;
 /// [`ControlError`] for names that occur twice; groups that are empty, contain a joint twice or one that does
 /// not exist, or overlap while both controls are active, as far as their times are known before the run;
 /// gains, goals or references that are invalid or do not fit a group; goals or shifts to the present state
-/// without a reference; time windows that are empty; controls that start after a control that does not exist
+/// without a reference; loads and internal forces of laws that do not use them; time windows that are empty; controls that start after a control that does not exist
 /// or never ends, or after themselves; and controls of which only some compensate the environment.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
     for (i, control) in controls.iter().enumerate() {
@@ -21,6 +22,11 @@ pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), Control
         let fits =
             control.law.check(&control.name, &control.joints, model).and_then(|()| check_goal(control));
         fits.map_err(|error| error.of_control(&control.name))?;
+        let command = control.law.control_law().joint_command();
+        let moves_load = control.load.is_none() || command == JointCommand::Task;
+        if !moves_load || !control.internal_forces.is_empty() && command == JointCommand::Effort {
+            return Err(ControlError::UnusedLoad { control: control.name.clone() });
+        }
         check_window(i, controls)?;
         for earlier in 0..i {
             check_pair(earlier, i, controls, model)?;

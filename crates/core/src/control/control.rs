@@ -2,6 +2,7 @@
 
 use super::control_law::Interface;
 use super::goal::Goal;
+use super::internal_force::InternalForce;
 use super::law::Law;
 use crate::model::Model;
 
@@ -15,6 +16,11 @@ pub struct Control {
     pub joints: Vec<usize>,
     /// Control law with its reference.
     pub law: Law,
+    /// Frame of a captured system to which the reference applies; `None` for a reference of the tracked frame. The
+    /// tracked frame must hold the body of this frame rigidly.
+    pub load: Option<LoadFrame>,
+    /// Forces of closed loops that the control commands.
+    pub internal_forces: Vec<InternalForce>,
     /// Condition under which the control starts.
     pub begin: Begin,
     /// End time, s. If it is infinite, the control ends with the run or when a successor stops it.
@@ -27,6 +33,15 @@ pub struct Control {
     /// True if the trace has a `tracking` column with the error of this control. If false, a tracked frame
     /// must be the tool of the run, whose error is recorded in `position_error` and `attitude_error`.
     pub has_column: bool,
+}
+
+/// Frame of a system that a control moves together with its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LoadFrame {
+    /// Number of the system in the world.
+    pub system: usize,
+    /// Index of the frame in the model of the system.
+    pub frame: usize,
 }
 
 /// Start condition of a control.
@@ -47,6 +62,8 @@ impl Control {
             name: name.to_owned(),
             joints,
             law,
+            load: None,
+            internal_forces: Vec::new(),
             begin: Begin::At(0.0),
             end: f64::INFINITY,
             goal: None,

@@ -57,6 +57,8 @@ pub(super) struct ControlState {
     pub(super) desired_pose: Option<TaskSample<f64>>,
     /// Pose of the tracked frame: relative to the base if the reference is, otherwise in W.
     pub(super) pose: (Mat3<f64>, Vec3<f64>),
+    /// Pose of the tracked frame in the frame of the load to which the reference applies; `None` without a load.
+    pub(super) tool_in_load: Option<(Mat3<f64>, Vec3<f64>)>,
     /// Tracking error, desired less actual, `(width,)`.
     pub(super) error: Vec<f64>,
 }
@@ -93,6 +95,7 @@ impl ControlState {
             desired: JointSample::new(k),
             desired_pose: None,
             pose: (Mat3::identity(), Vec3::zero()),
+            tool_in_load: None,
             error: vec![0.0; control.width()],
         }
     }
@@ -116,7 +119,8 @@ impl ControlState {
         if let (Some(frame), Some((_, reference))) = (&self.frame, control.law.task()) {
             // shift from the first pose of the path to the pose of the tracked frame, in the frame of the
             // reference
-            let (frame, first, (rot, pos)) = (frame.sample(t, t)?, reference.path.sample(0.0), self.pose);
+            let (frame, first, (rot, pos)) =
+                (frame.sample(t, t)?, reference.path.sample(0.0), self.followed_pose());
             let turn = first.rot_wd.transpose() * frame.rot_wd.transpose() * rot;
             self.set_anchor_pose(turn, frame.rot_wd.transpose_mul(pos - frame.pos_w) - first.pos_w);
         }
@@ -133,8 +137,23 @@ impl ControlState {
     pub(super) fn hold(&mut self, control: &Control, q: &[f64]) {
         self.memory.is_held = true;
         match control.law.task() {
-            Some(_) => self.set_anchor_pose(self.pose.0, self.pose.1),
+            Some(_) => {
+                let (rot, pos) = self.followed_pose();
+                self.set_anchor_pose(rot, pos);
+            }
             None => self.memory.anchor.iter_mut().zip(&control.joints).for_each(|(to, &j)| *to = q[j]),
+        }
+    }
+
+    /// Returns the pose of the frame to which the reference applies: that of the load, or the tracked frame.
+    fn followed_pose(&self) -> (Mat3<f64>, Vec3<f64>) {
+        let (rot, pos) = self.pose;
+        match &self.tool_in_load {
+            Some((rot_lt, pos_lt)) => {
+                let rot_l = rot * rot_lt.transpose();
+                (rot_l, pos - rot_l * *pos_lt)
+            }
+            None => (rot, pos),
         }
     }
 
@@ -159,7 +178,10 @@ impl ControlState {
         rates: &[f64],
     ) -> Result<(), ReferenceError> {
         if let Some((_, reference)) = control.law.task() {
-            let desired = self.sample(reference, t)?;
+            let mut desired = self.sample(reference, t)?;
+            if let Some((rot, pos)) = self.tool_in_load {
+                desired = desired.carry(&TaskSample::at_rest(rot, pos));
+            }
             if self.needs_error {
                 let error: Motion<f64> = task_error(&self.pose.0, self.pose.1, &desired);
                 error.write(&mut self.error);

@@ -40,6 +40,32 @@ pub enum ControlError {
         time = short(*time), value = short(*value)
     )]
     Overflow { joint: String, time: f64, value: f64 },
+    #[error(
+        "control '{control}' commands the internal force of the loop '{name}', but {known}",
+        known = if known.is_empty() { "the robot has no loops that transmit one".to_owned() }
+            else { format!("the loops are: {}", known.join(", ")) }
+    )]
+    NoSuchLoop { control: String, name: String, known: Vec<String> },
+    #[error(
+        "control '{control}' commands a {direction} {axis} of the loop '{name}', which permits this motion and transmits \
+         none; set it to 0"
+    )]
+    FreeDirection { control: String, name: String, direction: &'static str, axis: &'static str },
+    #[error(
+        "control '{control}' moves a load that its tool does not hold at t = {time} s; start the control after the \
+         capture, end it before the release, and let the capturing frame and the frame of the load belong to the bodies \
+         that the capture joins", time = short(*time)
+    )]
+    LoadNotHeld { control: String, time: f64 },
+    #[error(
+        "control '{control}' moves a load of a system that its own system does not know; add this system to 'knows'"
+    )]
+    UnknownLoad { control: String },
+    #[error(
+        "control '{control}' has a load or internal forces, which its law does not use; use computed torque of a tool (or, \
+         for internal forces, of joints)"
+    )]
+    UnusedLoad { control: String },
     #[error("control '{control}' drives no joint; name at least one joint")]
     EmptyGroup { control: String },
     #[error(

@@ -84,7 +84,7 @@ pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), C
 const LARGEST: f64 = 1e20;
 
 /// Checks that the numbers are finite and that their magnitude does not exceed [`LARGEST`].
-fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
+pub(super) fn check_size(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     if let Some(&value) = numbers.iter().find(|x| !x.is_finite()) {
         return Err(ControlError::NotFinite { name, value });
     }

@@ -19,6 +19,7 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// single task on all joints the solution equals that of [`computed_torque`](super::computed_torque).
 ///
 /// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
+#[derive(Debug)]
 pub(super) struct HybridDynamics {
     n: usize,
     /// Reduced inertia matrix `M*`, row major `(n, n)`.
@@ -68,6 +69,11 @@ impl HybridDynamics {
             inverse: PseudoInverse::new(tasks),
             work: [zeros(n), zeros(n), zeros(n), zeros(n)],
         }
+    }
+
+    /// Sets the number of joints, at most that of [`HybridDynamics::new`].
+    pub(super) fn set_count(&mut self, n: usize) {
+        self.n = n;
     }
 
     /// Eliminates the joints with given efforts `tau`, and clears the tasks. `commands` and `tau` are `(n,)`;

@@ -4,6 +4,8 @@
 //! that have no motors. Eliminating these joints yields a reduced model of the robot's own joints, which all
 //! laws can use unchanged.
 
+use super::looped_dynamics::Looped;
+use super::pseudo_inverse::ROWS;
 use crate::dynamics::{Data, FreeFloating, free_floating_frame, free_floating_recursion, kinematics};
 use crate::model::Model;
 use crate::spatial::{Motion, Scalar, cholesky_factor, cholesky_solve, dot};
@@ -35,12 +37,21 @@ pub struct KnownTree {
     bias: Vec<f64>,
     /// `M_PP⁻¹ Q_P`, `(p,)`, rad/s² (m/s²).
     external: Vec<f64>,
+    /// Solver for the torques if the tree has closed loops.
+    pub(super) looped: Option<Looped<f64>>,
 }
 
 impl KnownTree {
     /// Creates the tree from its model; `own` and `frames` are the indices, in the tree, of the joints and
-    /// the frames of the robot.
-    pub fn new(model: Model, own: Vec<usize>, frames: Vec<usize>) -> Self {
+    /// the frames of the robot. `loops` has the name by which controls refer to each closure of the tree
+    /// ([`InternalForce::closure`](super::InternalForce)), and `controls` is the number of controls.
+    pub fn new(
+        model: Model,
+        own: Vec<usize>,
+        frames: Vec<usize>,
+        loops: Vec<Option<String>>,
+        controls: usize,
+    ) -> Self {
         let others: Vec<usize> = (0..model.joint_count()).filter(|joint| !own.contains(joint)).collect();
         let zeros = |count: usize| vec![0.0; count];
         let (n, p) = (own.len(), others.len());
@@ -48,6 +59,7 @@ impl KnownTree {
             data: Data::new(&model),
             q: zeros(model.nq()),
             v: zeros(model.nv()),
+            looped: Looped::new(&model, own.clone(), loops, controls),
             full: FreeFloating::new(&model),
             factor: zeros(p * p),
             gain: zeros(n * p),
@@ -72,8 +84,11 @@ impl KnownTree {
     ///
     /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
     pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {
-        let Self { model, data, q, v, full, own, others, factor, gain, bias, external, .. } = self;
+        let Self { model, data, q, v, full, own, others, factor, gain, bias, external, looped, .. } = self;
         free_floating_recursion(model, data, q, v, 0, full);
+        if let Some(looped) = looped {
+            looped.update(model, data, full);
+        }
         let (all, n, p) = (model.joint_count(), own.len(), others.len());
         for (row, &i) in others.iter().enumerate() {
             others.iter().enumerate().for_each(|(k, &j)| factor[row * p + k] = full.inertia[i * all + j]);
@@ -121,6 +136,19 @@ impl KnownTree {
         out.velocity = lift(full.velocity);
         out.pose.rot_wf = full.pose.rot_wf.map(|x| S::of(*x));
         out.pose.pos_w = full.pose.pos_w.map(|x| S::of(*x));
+    }
+
+    /// Returns the drift `d` of the frame of the last [`KnownTree::reduce_frame`] in the tree without its loops.
+    pub(super) fn drift(&self) -> Motion<f64> {
+        self.full.drift
+    }
+
+    /// Adds a task of the frame of the last [`KnownTree::reduce_frame`] to the solver for closed loops, with the
+    /// acceleration `p̈r − d` and the damping threshold `λ₀`.
+    pub(super) fn add_task(&mut self, acceleration: [f64; ROWS], damping: f64) {
+        if let Some(looped) = &mut self.looped {
+            looped.dynamics.add_task(&self.full.jacobian, acceleration, damping);
+        }
     }
 }
 

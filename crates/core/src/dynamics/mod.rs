@@ -33,8 +33,14 @@ pub use free_floating::{
 pub use jacobian::{frame_acceleration, frame_drift, frame_jacobian};
 pub(crate) use kinematics::base_rotation;
 pub use kinematics::{FramePose, frame_pose, frame_velocity, kinematics, positions};
-pub use loops::{ClosedLoops, close_loops, close_velocity, closure_errors, constrained_forward_dynamics};
-pub(crate) use loops::{constrained_recursion, project_configuration, project_velocity};
+pub use loops::{
+    ClosedLoops, ConstrainedFreeFloating, IndependentJoints, close_loops, close_velocity, closure_errors,
+    constrained_forward_dynamics, constrained_free_floating,
+};
+pub(crate) use loops::{
+    add_leaders, constrained_recursion, length_joints, project_configuration, project_velocity,
+    solve_semidefinite,
+};
 pub use momentum::{
     Momentum, center_of_mass, composite_momentum, kinetic_energy, momentum, projected_base_twist,
 };

@@ -62,4 +62,18 @@ impl LoopKind {
             Self::Distance => 1,
         }
     }
+
+    /// Returns the directions along and about which the joint transmits forces, in the axes of the first frame, as
+    /// pairs of an index (0 to 2) and whether it is a moment. A distance has no fixed direction.
+    pub fn directions(self) -> &'static [(usize, bool)] {
+        const ALL: [(usize, bool); 6] = [(0, false), (1, false), (2, false), (0, true), (1, true), (2, true)];
+        const PRISMATIC: [(usize, bool); 5] = [(0, false), (1, false), (0, true), (1, true), (2, true)];
+        match self {
+            Self::Weld => &ALL,
+            Self::Revolute => &ALL[..5],
+            Self::Spherical => &ALL[..3],
+            Self::Prismatic => &PRISMATIC,
+            Self::Distance => &[],
+        }
+    }
 }

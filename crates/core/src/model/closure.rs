@@ -48,4 +48,12 @@ impl Closure {
             Constraint::Mimic { .. } => 1,
         }
     }
+
+    /// Returns the directions of [`LoopKind::directions`]; empty for mimic joints.
+    pub fn directions(&self) -> &'static [(usize, bool)] {
+        match &self.constraint {
+            Constraint::Frames { kind, .. } => kind.directions(),
+            Constraint::Mimic { .. } => &[],
+        }
+    }
 }

@@ -1,7 +1,8 @@
 //! Connections between the systems of a run.
 
 use super::members::SavedPart;
-use crate::model::{Model, ModelError};
+use crate::model::{Closure, Model, ModelError};
+use crate::spatial::{Mat3, Vec3};
 use crate::world::{Assembly, FrameIndex, Member, Weld, assemble};
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +105,42 @@ impl Connections {
     /// Returns the index in a tree of each frame of a system.
     pub(super) fn frames_in(&self, system: usize, tree: &Model) -> Result<Vec<usize>, ModelError> {
         self.prefixed[system].frames().iter().map(|frame| tree.frame(&frame.name)).collect()
+    }
+
+    /// Returns the pose of a frame in another frame of the same body of a tree; `None` if a frame is not in the tree or
+    /// they belong to different bodies.
+    pub(super) fn pose_in(
+        &self,
+        tree: &Model,
+        frame: FrameIndex,
+        other: FrameIndex,
+    ) -> Option<(Mat3<f64>, Vec3<f64>)> {
+        let find = |place| Some(&tree.frames()[tree.frame(self.frame_name(place)).ok()?]);
+        let (frame, other) = (find(frame)?, find(other)?);
+        let rot = other.rot_kf.transpose() * frame.rot_kf;
+        (frame.body == other.body).then(|| (rot, other.rot_kf.transpose_mul(frame.pos_kf - other.pos_kf)))
+    }
+
+    /// Returns the name of each closure of a tree in the trace of a system: that of a loop of the system, or of the
+    /// capture that closes the loop; `None` for the loops of other systems. `name` returns the name of a capture.
+    pub(super) fn loops_in(
+        &self,
+        system: usize,
+        tree: &Model,
+        name: impl Fn(usize) -> String,
+    ) -> Vec<Option<String>> {
+        let own = self.prefixed[system].closures();
+        let of = |closure: &Closure| {
+            let closed_by = || {
+                let weld = self.active.welds.iter().find(|weld| weld.loop_name() == closure.name)?;
+                Some(name(weld.capture))
+            };
+            let is_own = own.iter().any(|own| own.name == closure.name);
+            // names of systems have no slash
+            let name = closure.name.split_once('/').filter(|_| is_own).map(|(_, name)| name.to_owned());
+            name.or_else(closed_by)
+        };
+        tree.closures().iter().map(of).collect()
     }
 
     /// Returns the name of a frame in the models of trees, `SYSTEM/FRAME`.

@@ -7,20 +7,30 @@ use super::run_system::RunSystem;
 use crate::control::KnownTree;
 use crate::model::{BASE_NQ, BASE_NV};
 use crate::spatial::Scalar;
+use crate::world::FrameIndex;
 
 impl<S: Scalar> RunState<'_, S> {
     /// Assembles, for every system whose controllers know the models of other systems, the tree of that
     /// system and of the known systems that are connected to it.
     pub(super) fn find_known(&mut self) -> Result<(), SimulationError> {
-        let Self { systems, connections, .. } = self;
+        let Self { systems, connections, events, numbers, .. } = self;
         for (number, run) in systems.iter_mut().enumerate().filter(|(_, run)| !run.knows.is_empty()) {
             let found = connections.known_tree(number, &run.knows)?;
             let Some((model, members)) = found else {
                 run.controllers.set.know(None);
+                run.controllers.set.set_loads(|_, _| None);
                 continue;
             };
             let frames = connections.frames_in(number, &model)?;
-            run.controllers.set.know(Some(KnownTree::new(model, members[0].joints.clone(), frames)));
+            run.controllers.set.set_loads(|tool, load| {
+                let system = numbers.iter().position(|number| *number == load.system)?;
+                let load = FrameIndex { system, frame: load.frame };
+                connections.pose_in(&model, FrameIndex { system: number, frame: tool }, load)
+            });
+            let loops = connections.loops_in(number, &model, |capture| events.list[capture].name.clone());
+            let count = run.controllers.set.controls().len();
+            let own = members[0].joints.clone();
+            run.controllers.set.know(Some(KnownTree::new(model, own, frames, loops, count)));
             run.known_members = members;
         }
         Ok(())

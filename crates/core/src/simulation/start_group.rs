@@ -25,7 +25,7 @@ use super::state::State;
 use super::tree::Tree;
 use super::wrench_commands::WRENCH_COMMAND;
 use crate::contact::{Contact, ContactSteps};
-use crate::control::Control;
+use crate::control::{Control, ControlError};
 use crate::earth::Earth;
 use crate::environment::{Effect, GravityMode};
 use crate::gravity::Gravity;
@@ -171,14 +171,21 @@ impl Shared {
         let System { model, controls, tool, reference, stops, knows, brakes, .. } = system;
         let model: &'a Model = model;
         let stops = stops.filter(|_| !self.has_engine); // an external engine has its own stops
+        if let Some(control) =
+            controls.iter().find(|control| control.load.is_some_and(|load| !knows.contains(&load.system)))
+        {
+            return Err(ControlError::UnknownLoad { control: control.name.clone() }.into());
+        }
         let knows: Vec<usize> = knows.iter().filter_map(|&system| local(numbers, system)).collect();
         let mut options = self.record_options(model, controls, *tool, reference.is_some());
         let own = self.contacts.iter().filter(|contact| contact.first_system() == Some(number));
         options.contacts = own.map(|contact| contact.name.clone()).collect();
         options.loops = recorded_loops(number, model, events);
+        let loops = options.loops.clone();
         let recorder = Recorder::new(rows, (number, model), options, controls, rows_suffice)?;
         let tracked = (*tool, reference.as_ref());
         let mut controllers = Controllers::new(controls, tracked, model, self.time_step, !knows.is_empty())?;
+        controllers.set.check_internal_forces(model, &loops)?;
         if self.has_engine {
             controllers.set.assume_creeping_friction();
         }

@@ -2,13 +2,14 @@
 
 use super::LAWS;
 use super::gains::per_joint;
+use super::internal_force::PyInternalForce;
 use super::native_law::{Group, Robot};
 use super::user::PythonController;
-use crate::arrays::{names_in, text, type_name};
+use crate::arrays::{list_of, names_in, text, type_name};
 use crate::errors::{IntoPython, plain};
 use crate::pickling::{ConstructorCall, Reduced, call_of};
 use crate::reference;
-use onorbit_core::control::{Begin, Control, ControlError, Goal, Law};
+use onorbit_core::control::{Begin, Control, ControlError, Goal, Law, LoadFrame};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -89,6 +90,13 @@ impl PyGoal {
 ///     Goal with tolerances.
 /// starts_at_present : bool
 ///     If True, the reference is shifted so that it begins at the current pose or joint positions.
+/// load : str, optional
+///     Frame of a captured system, ``SYSTEM/FRAME``, that the reference of a tool applies to instead of the tool. The
+///     tool must hold the body of this frame while the control is active, and the system must know the other
+///     (``knows``).
+/// internal_forces : list of InternalForce
+///     Forces that closed loops are to transmit while the control is active. They require a law that commands
+///     accelerations, such as :class:`ComputedTorque` or :class:`JointComputedTorque`.
 ///
 /// Raises
 /// ------
@@ -106,6 +114,8 @@ pub(crate) struct PyControl {
     after: Option<String>,
     goal: Option<Py<PyGoal>>,
     starts_at_present: bool,
+    load: Option<String>,
+    internal_forces: Vec<PyInternalForce>,
 }
 
 #[pymethods]
@@ -113,7 +123,7 @@ impl PyControl {
     #[new]
     #[pyo3(signature = (
         controller, *, reference=None, joints=None, tool=None, name=None, start=0.0, end=None, after=None, goal=None,
-        starts_at_present=false,
+        starts_at_present=false, load=None, internal_forces=None,
     ))]
     fn new(
         controller: Py<PyAny>,
@@ -126,14 +136,36 @@ impl PyControl {
         after: Option<Any<'_, '_>>,
         goal: Option<Py<PyGoal>>,
         starts_at_present: bool,
+        load: Option<Any<'_, '_>>,
+        internal_forces: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
+        let expected = "internal forces, such as [oo.InternalForce('grasp', force=[20, 0, 0])]";
+        let forces =
+            internal_forces.map(|forces| list_of::<PyInternalForce>(forces, "internal_forces", expected));
+        let forces = forces.transpose()?.unwrap_or_default();
+        let internal_forces = forces.into_iter().map(|force| force.get().clone()).collect();
         let joints =
             joints.map(|joints| names_in(joints, "joints", "names of joints", "elbow")).transpose()?;
         let after = after
             .map(|after| text(after, "after", "the name of a control or of an event (str)"))
             .transpose()?;
         let end = end.unwrap_or(f64::INFINITY);
-        Ok(Self { controller, reference, joints, tool, name, start, end, after, goal, starts_at_present })
+        Ok(Self {
+            controller,
+            reference,
+            joints,
+            tool,
+            name,
+            start,
+            end,
+            after,
+            goal,
+            starts_at_present,
+            load: load
+                .map(|load| text(load, "load", "a frame of another system, SYSTEM/FRAME (str)"))
+                .transpose()?,
+            internal_forces,
+        })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
@@ -147,6 +179,8 @@ impl PyControl {
         keywords.set_item("after", &self.after)?;
         keywords.set_item("goal", &self.goal)?;
         keywords.set_item("starts_at_present", self.starts_at_present)?;
+        keywords.set_item("load", &self.load)?;
+        keywords.set_item("internal_forces", self.internal_forces.clone())?;
         ConstructorCall::new("Control", (&self.controller,), &keywords)?.reduce(py)
     }
 }
@@ -224,7 +258,14 @@ impl PyControl {
         };
         let goal = self.goal.as_ref().map(|goal| goal.get().goal.clone());
         let (end, starts_at_present) = (self.end, self.starts_at_present);
-        Ok(Control { begin, end, goal, starts_at_present, ..Control::new(name, joints, law) })
+        let internal_forces = self.internal_forces.iter().map(|force| force.force.clone()).collect();
+        let load = self.load.as_ref().map(|path| {
+            let moving = reference::moving_frame(py, "the load is", path, robot.around.systems)?;
+            Ok::<_, PyErr>(LoadFrame { system: moving.system, frame: moving.frame })
+        });
+        let load = load.transpose()?;
+        let control = Control::new(name, joints, law);
+        Ok(Control { begin, end, goal, starts_at_present, load, internal_forces, ..control })
     }
 }
 

@@ -8,6 +8,7 @@ mod computed_torque;
 mod control;
 mod external;
 mod gains;
+mod internal_force;
 mod joint_computed_torque;
 mod joint_pid;
 mod native_law;
@@ -41,5 +42,6 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyExternal>()?;
     m.add_class::<control::PyControl>()?;
     m.add_class::<control::PyGoal>()?;
+    m.add_class::<internal_force::PyInternalForce>()?;
     m.add_class::<user::PyState>()
 }

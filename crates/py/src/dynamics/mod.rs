@@ -13,6 +13,8 @@ use crate::model::PyModel;
 use crate::output::{Output, outputs};
 use numpy::PyArrayDyn;
 use onorbit_core::batch::{Evaluator, Kernel, Rows, RowsMut, Wrenches};
+use onorbit_core::dynamics::FrameWrench;
+use onorbit_core::spatial::Force;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -78,6 +80,18 @@ fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Op
         }
     }
     Ok((first.len() == 2).then(|| first[0]))
+}
+
+/// Reads `{frame: (6,)}`: wrenches on one state in frame axes about the frame origin, N and N m, linear first.
+pub(crate) fn single_wrenches(
+    model: &PyModel,
+    external: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Vec<FrameWrench<f64>>> {
+    let mut inputs = Vec::new();
+    let frames = wrenches(model, external, None, &mut inputs)?;
+    let wrench =
+        |(frame, input): (usize, &Input<'_>)| FrameWrench { frame, wrench: Force::from_slice(input.data()) };
+    Ok(frames.into_iter().zip(&inputs).map(wrench).collect())
 }
 
 /// Reads `{frame: (6,) or (B, 6)}`: wrenches in frame axes about the frame origin, N and N m, linear first.

@@ -31,7 +31,7 @@ impl IntoPython for InputError {
                 raise(py, "InputError", &message, &fields)
             }
             Self::NoThreads => raise(py, "InputError", &message, &fields!(py, "name": "threads", "got": 0)),
-            Self::NeedsOrbit => plain(py, "ControlError", &message),
+            Self::NeedsOrbit | Self::LoopedTask => plain(py, "ControlError", &message),
             Self::Orbit { orbit, source } => {
                 let error = source.clone().into_python(py);
                 for (name, value) in [("index", orbit.into_py_any(py)), ("message", message.into_py_any(py))]

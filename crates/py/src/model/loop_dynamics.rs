@@ -189,12 +189,7 @@ impl PyModel {
     fn closed_velocity<'py>(&self, q: Any<'_, 'py>, v: Any<'_, 'py>) -> PyResult<Array<'py>> {
         let (py, model) = (q.py(), &*self.model);
         let q = self.configuration(q)?;
-        let given = Input::new(v, "v")?;
-        if given.shape() != [model.nv()] {
-            return Err(wrong_shape(py, "v", &format!("({},)", model.nv()), given.shape()));
-        }
-        let mut v = given.data().to_vec();
-        crate::arrays::finite(py, "v", &v)?;
+        let mut v = self.velocity(v)?;
         let mut loops = ClosedLoops::new(model, model.closures());
         close_velocity(model, &mut Data::new(model), &mut loops, &q, &mut v);
         Ok(array_of(py, &[v.len()], &v))
@@ -208,7 +203,7 @@ impl PyModel {
     }
 
     /// Reads one configuration, (nq,), with a unit quaternion.
-    fn configuration(&self, q: Any<'_, '_>) -> PyResult<Vec<f64>> {
+    pub(super) fn configuration(&self, q: Any<'_, '_>) -> PyResult<Vec<f64>> {
         let (py, nq) = (q.py(), self.model.nq());
         let given = Input::new(q, "q")?;
         if given.shape() != [nq] {

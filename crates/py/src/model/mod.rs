@@ -5,6 +5,7 @@ pub(crate) mod attach;
 mod builder;
 pub(crate) mod closed_loop;
 mod collision;
+mod constrained_free_floating;
 mod construction;
 mod convex_pieces;
 mod description;
@@ -50,6 +51,7 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyFrame>()?;
     m.add_class::<builder::PyModelBuilder>()?;
     m.add_class::<closed_loop::PyLoop>()?;
+    m.add_class::<constrained_free_floating::PyConstrainedFreeFloating>()?;
     m.add_function(wrap_pyfunction!(attach::attach, m)?)
 }
 

@@ -110,7 +110,9 @@ impl Frame {
             Self::World => ReferenceFrame::World,
             Self::Base => ReferenceFrame::Base,
             Self::Target(target) => ReferenceFrame::Target(target.clone()),
-            Self::System(path) => ReferenceFrame::System(moving_frame(py, path, around.systems)?),
+            Self::System(path) => {
+                ReferenceFrame::System(moving_frame(py, "the reference is given in", path, around.systems)?)
+            }
             Self::Lvlh => {
                 let message = "a reference in the frame 'lvlh' requires an orbit; set orbit";
                 let orbit = around.orbit.ok_or_else(|| {
@@ -122,8 +124,13 @@ impl Frame {
     }
 }
 
-/// Returns the frame with the path ``SYSTEM/FRAME``.
-fn moving_frame(py: Python<'_>, path: &str, systems: &[(String, Arc<Model>)]) -> PyResult<MovingFrame> {
+/// Returns the frame with the path ``SYSTEM/FRAME``; `what` begins the message of an error.
+pub(crate) fn moving_frame(
+    py: Python<'_>,
+    what: &str,
+    path: &str,
+    systems: &[(String, Arc<Model>)],
+) -> PyResult<MovingFrame> {
     let (name, frame) = path.split_once('/').unwrap_or((path, ""));
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
@@ -132,7 +139,7 @@ fn moving_frame(py: Python<'_>, path: &str, systems: &[(String, Arc<Model>)]) ->
         } else {
             format!("no system of the world is named '{name}'; the systems are: {}", known.join(", "))
         };
-        let message = format!("the reference is given in the frame '{path}' of another system, but {reason}");
+        let message = format!("{what} the frame '{path}' of another system, but {reason}");
         return Err(raise(py, "ControlError", &message, &fields!(py, "name": "frame", "got": path)));
     };
     let frame = systems[system].1.frame(frame).map_err(|error| error.into_python(py))?;

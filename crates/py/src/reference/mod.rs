@@ -9,7 +9,7 @@ mod pose_spline;
 mod screw;
 mod timing;
 
-pub(crate) use frame::Around;
+pub(crate) use frame::{Around, moving_frame};
 
 use crate::arrays::{Input, fixed, fresh, times, type_name, wrong_shape, zeros};
 use crate::errors::{IntoPython, fields, raise};

@@ -8,6 +8,7 @@ from pydantic import BeforeValidator, Field
 
 from onorbit_rs import _core
 from onorbit_rs.scenario.control.gains import JointTolerance, TaskTolerance
+from onorbit_rs.scenario.control.internal_force import InternalForce
 from onorbit_rs.scenario.control.law import arguments
 from onorbit_rs.scenario.fields import NotNegative, Positive, Time
 from onorbit_rs.scenario.part import Part
@@ -61,6 +62,9 @@ class Control(Part):
     joints."""
     starts_at_present: bool = False
     """Whether the reference is moved to start at the present pose of the tool or position of the joints."""
+    internal_forces: list[InternalForce] = Field(default_factory=list)
+    """Forces that closed loops are to transmit while the control is active, such as the force with which two
+    hands squeeze a load."""
 
     def build_control(self, law: Any, reference: Any, joints: list[str] | None) -> _core.Control:
         """Return the control as an object of the engine, made of a law, a reference and a joint group."""
@@ -69,6 +73,8 @@ class Control(Part):
             law, reference=reference, joints=joints, tool=getattr(self, "tool", None), name=self.name,
             start=self.start, end=self.end, after=self.after, starts_at_present=self.starts_at_present,
             goal=None if goal is None else _core.Goal(**arguments(**goal.model_dump())),
+            load=getattr(self, "load", None),
+            internal_forces=[force.build() for force in self.internal_forces],
         )  # fmt: skip
 
 
@@ -77,6 +83,9 @@ class TaskControl(Control):
 
     tool: str | None = None
     """Controlled frame. Default: the ``tool`` of the scenario."""
+    load: str | None = None
+    """Frame of a captured system, ``SYSTEM/FRAME``, that the reference applies to instead of the tool, which
+    holds it. The system of the tool must know the other (``knows``)."""
     goal: TaskGoal | None = None
     """Goal; the summary of the run contains its result."""
 

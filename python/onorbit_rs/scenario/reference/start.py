@@ -36,9 +36,15 @@ class Start:
     """Names of the joints that track a joint reference; default: all joints."""
     neighbours: Mapping[str, Neighbour] = field(default_factory=dict)
     """Other systems of the world, at time zero."""
+    load: str | None = None
+    """Frame ``SYSTEM/FRAME`` of a load that tracks the reference instead of the tool, which holds it."""
 
     def tool_pose(self) -> Floats:
-        """Return the pose (4, 4) of the tool in W."""
+        """Return the pose (4, 4) of the frame that tracks the reference in W: the load or the tool."""
+        if self.load is not None:
+            name, _, frame = self.load.partition("/")
+            system = self.neighbours[name]
+            return np.asarray(system.model.frame_pose(system.q, frame))
         assert self.tool is not None, "a reference of a tool is built for a tool"
         return np.asarray(self.model.frame_pose(self.q, self.tool))
 

@@ -1,6 +1,6 @@
 //! Static and kinetic friction of the joints with given efforts.
 
-use super::ControllerSet;
+use super::{ControllerSet, active_loops};
 use crate::control::control_law::JointCommand;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Scalar;
@@ -32,13 +32,19 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// in the direction of that torque. Returns false if there is no such joint. Requires the accelerations
     /// of all joints.
     pub(super) fn release_joint(&mut self, model: &Model) -> bool {
-        let slips = |j: &usize| {
-            let holding = self.dynamics.holding_torque(*j, self.tau[*j]);
-            self.commands[*j] == JointCommand::Held && holding.abs() > model.joints()[*j].static_friction
+        let Self { dynamics, tau, commands, known, looped, .. } = self;
+        let mut loops = active_loops(known, looped);
+        let mut holding_torque = |j: usize| match &mut loops {
+            Some(loops) => loops.holding_torque(j),
+            None => dynamics.holding_torque(j, tau[j]),
         };
-        let Some(j) = (0..self.commands.len()).find(slips) else { return false };
+        let mut slips = |j: &usize| {
+            commands[*j] == JointCommand::Held
+                && holding_torque(*j).abs() > model.joints()[*j].static_friction
+        };
+        let Some(j) = (0..commands.len()).find(&mut slips) else { return false };
         // kinetic friction replaces the holding torque λ and has its direction: τ − l, l = … − f sign(λ)
-        let holding = self.dynamics.holding_torque(j, self.tau[j]);
+        let holding = holding_torque(j);
         self.dynamics.load[j] -= model.joints()[j].friction * holding.signum();
         self.commands[j] = JointCommand::Effort;
         true

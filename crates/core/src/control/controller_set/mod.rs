@@ -4,6 +4,7 @@ mod activation;
 mod commands;
 mod errors;
 mod friction;
+mod loads;
 mod torques;
 
 use crate::control::check::check_controls;
@@ -16,6 +17,7 @@ use crate::control::goal::Outcome;
 use crate::control::hybrid_dynamics::HybridDynamics;
 use crate::control::known_tree::KnownTree;
 use crate::control::law::Law;
+use crate::control::looped_dynamics::{Looped, LoopedDynamics};
 use crate::control::pseudo_inverse::{PseudoInverse, ROWS};
 use crate::dynamics::{Data, FreeFloating, free_floating_recursion};
 use crate::model::Model;
@@ -61,6 +63,8 @@ pub struct ControllerSet<'a, S> {
     group: [Vec<f64>; 3],
     /// Tree of connected robots whose model the laws use.
     known: Option<Box<KnownTree>>,
+    /// Solver for the torques if the robot has closed loops.
+    looped: Option<Box<Looped<S>>>,
     /// True if the next update repeats the previous one, in which case laws with a state, such as
     /// user-defined ones, keep their torques.
     is_repeated: bool,
@@ -84,7 +88,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         }
         let (n, tasks) = (model.joint_count(), controls.len());
         let zeros = |count: usize| vec![0.0; count];
-        let is_whole = |control: &Control| !knows_others && task_on_all_joints(control, n).is_some();
+        let is_tree = !knows_others && model.closures().is_empty();
+        let is_whole = |control: &Control| is_tree && task_on_all_joints(control, n).is_some();
         let whole_robot = controls.iter().any(is_whole).then(|| Box::new(ComputedTorqueWork::new(model)));
         let needs_error = |control: &Control| control.law.control_law().uses_error() && !is_whole(control);
         let compensates =
@@ -116,6 +121,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             events: Vec::new(),
             group: [zeros(n), zeros(n), zeros(n)],
             known: None,
+            looped: looped(model, tasks),
             is_repeated: false,
         })
     }
@@ -284,6 +290,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             self.evaluated_at = f64::NAN; // the set of active controls has changed
             self.update_errors(t, model, data, q, v)?;
         }
+        self.check_loads(t)?;
         if !self.task_of_whole_robot(model, data, q, v, tau) {
             self.torques_of_groups(t, model, data, (q, v), tau)?;
             tau.iter_mut().zip(&self.tau).for_each(|(to, from)| *to = S::of(*from));
@@ -334,7 +341,12 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         if has_accelerations || laws().any(ControlLaw::needs_jacobian) {
             match &mut self.known {
                 Some(known) => known.reduce(&mut self.reduced),
-                None => free_floating_recursion(model, data, q, v, 0, &mut self.reduced),
+                None => {
+                    free_floating_recursion(model, data, q, v, 0, &mut self.reduced);
+                    if let Some(looped) = &mut self.looped {
+                        looped.update(model, data, &self.reduced);
+                    }
+                }
             }
         }
         self.efforts(t, model, data, (q, v), last)?;
@@ -342,6 +354,23 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
             self.accelerations(model, data, q, v);
         }
         Ok(())
+    }
+}
+
+/// Allocates the solver for the torques of a robot with closed loops; `None` if it has none.
+fn looped<S: Scalar>(model: &Model, controls: usize) -> Option<Box<Looped<S>>> {
+    let names = model.closures().iter().map(|closure| Some(closure.name.clone())).collect();
+    Looped::new(model, (0..model.joint_count()).collect(), names, controls).map(Box::new)
+}
+
+/// Returns the solver for the torques of the tree that the controllers use; `None` if it has no closed loops.
+fn active_loops<'l, S>(
+    known: &'l mut Option<Box<KnownTree>>,
+    own: &'l mut Option<Box<Looped<S>>>,
+) -> Option<&'l mut LoopedDynamics> {
+    match known {
+        Some(known) => known.looped.as_mut().map(|looped| &mut looped.dynamics),
+        None => own.as_mut().map(|looped| &mut looped.dynamics),
     }
 }
 

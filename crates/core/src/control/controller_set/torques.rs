@@ -1,6 +1,6 @@
 //! Evaluation of the active laws.
 
-use super::{ControllerSet, running};
+use super::{ControllerSet, active_loops, running};
 use crate::control::control_law::{ControlLaw, EffortInput, EffortWork, JointCommand};
 use crate::control::control_state::ControlState;
 use crate::control::error::ControlError;
@@ -90,12 +90,20 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// Sets the inertia, the loads and the given accelerations of the reduced model, and the command of each
     /// joint.
     fn set_up_dynamics(&mut self, model: &Model) {
-        let Self { dynamics, reduced, .. } = self;
-        for (to, from) in dynamics.inertia.iter_mut().zip(&reduced.inertia) {
-            *to = from.value();
-        }
-        for (j, load) in dynamics.load.iter_mut().enumerate() {
-            *load = (reduced.bias[j] - reduced.external[j]).value();
+        let Self { dynamics, reduced, known, looped, .. } = self;
+        if let Some(looped) = active_loops(known, looped) {
+            looped.clear_forces();
+            let forces =
+                running(self.controls, &self.states).flat_map(|(control, _)| &control.internal_forces);
+            forces.for_each(|force| looped.add_force(force));
+            dynamics.load.fill(0.0); // these are in addition to those of the model
+        } else {
+            for (to, from) in dynamics.inertia.iter_mut().zip(&reduced.inertia) {
+                *to = from.value();
+            }
+            for (j, load) in dynamics.load.iter_mut().enumerate() {
+                *load = (reduced.bias[j] - reduced.external[j]).value();
+            }
         }
         let mut compensates_friction = false;
         for (control, state) in running(self.controls, &self.states) {
@@ -127,6 +135,10 @@ impl<S: Scalar> ControllerSet<'_, S> {
 
     /// Computes the accelerations of all joints, and the torques of the joints with commanded accelerations.
     fn solve_dynamics(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
+        if active_loops(&mut self.known, &mut self.looped).is_some() {
+            self.solve_with_loops(model, data, q, v);
+            return;
+        }
         let Self { dynamics, reduced, tau, known, .. } = self;
         dynamics.eliminate(&self.commands, tau);
         for (control, state) in running(self.controls, &self.states) {
@@ -136,21 +148,64 @@ impl<S: Scalar> ControllerSet<'_, S> {
                 continue;
             }
             reduce_to_frame((model, data, q, v), known.as_deref_mut(), (frame, reference), reduced);
-            // p̈r − d
-            let acceleration = state.desired_pose.map_or(Motion::zero(), |desired| desired.acceleration);
-            let (error, velocity_error) = (Motion::from_slice(&state.error), state.velocity_error(reduced));
-            let task_acceleration =
-                law.task_acceleration(error, velocity_error, acceleration) - motion(reduced.drift);
-            let mut rows = [0.0; ROWS];
-            task_acceleration.write(&mut rows);
+            let rows = state.task_acceleration(law, reduced, motion(reduced.drift));
             self.jacobian.iter_mut().zip(&reduced.jacobian).for_each(|(to, from)| *to = from.value());
             dynamics.add_task(&self.jacobian, rows, law.task_damping().pseudo_inverse);
         }
         dynamics.solve(&self.v[BASE_NV..], tau);
     }
+
+    /// Computes the same as [`ControllerSet::solve_dynamics`] for a robot with closed loops.
+    fn solve_with_loops(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
+        let Self { dynamics, reduced, tau, known, looped, .. } = self;
+        if let Some(looped) = active_loops(known, looped) {
+            looped.eliminate(dynamics, &self.commands, tau);
+        }
+        for (control, state) in running(self.controls, &self.states) {
+            let law = control.law.control_law();
+            let Some((frame, reference)) = control.law.task() else { continue };
+            if law.joint_command() != JointCommand::Task {
+                continue;
+            }
+            reduce_to_frame((model, data, q, v), known.as_deref_mut(), (frame, reference), reduced);
+            self.jacobian.iter_mut().zip(&reduced.jacobian).for_each(|(to, from)| *to = from.value());
+            let damping = law.task_damping().pseudo_inverse;
+            match known.as_deref_mut().filter(|_| !reference.is_relative_to_base()) {
+                Some(known) => {
+                    let rows = state.task_acceleration(law, reduced, known.drift());
+                    known.add_task(rows, damping);
+                }
+                None => {
+                    let rows = state.task_acceleration(law, reduced, motion(reduced.drift));
+                    if let Some(looped) = active_loops(known, looped) {
+                        looped.add_task(&self.jacobian, rows, damping);
+                    }
+                }
+            }
+        }
+        let rates = known.as_ref().map_or_else(|| self.v.clone(), |known| known.v.clone());
+        if let Some(looped) = active_loops(known, looped) {
+            looped.solve(&rates[BASE_NV..], &mut dynamics.acceleration, tau);
+        }
+    }
 }
 
 impl ControlState {
+    /// Returns the task acceleration `p̈r − d` of a frame with the drift `d`, m/s² and rad/s².
+    fn task_acceleration<S: Scalar>(
+        &self,
+        law: &dyn ControlLaw,
+        reduced: &FreeFloating<S>,
+        drift: Motion<f64>,
+    ) -> [f64; ROWS] {
+        let acceleration = self.desired_pose.map_or(Motion::zero(), |desired| desired.acceleration);
+        let (error, velocity_error) = (Motion::from_slice(&self.error), self.velocity_error(reduced));
+        let task_acceleration = law.task_acceleration(error, velocity_error, acceleration) - drift;
+        let mut rows = [0.0; ROWS];
+        task_acceleration.write(&mut rows);
+        rows
+    }
+
     /// Returns the velocity error, desired less actual, m/s and rad/s, of the frame to which the reduced
     /// model belongs.
     fn velocity_error<S: Scalar>(&self, reduced: &FreeFloating<S>) -> Motion<f64> {

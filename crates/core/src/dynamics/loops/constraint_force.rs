@@ -16,7 +16,7 @@ const DEPENDENT: f64 = 1e-10;
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 10.3.
 #[inline(always)]
-pub(super) fn solve<S: Real>(a: &mut [S], compliance: &[S], scale: &mut [S], x: &mut [S]) -> S {
+pub(crate) fn solve<S: Real>(a: &mut [S], compliance: &[S], scale: &mut [S], x: &mut [S]) -> S {
     let m = x.len();
     for i in 0..m {
         let size = a[i * m + i] + compliance[i];

@@ -7,14 +7,21 @@
 mod constrained;
 mod constraint_force;
 mod dense_response;
+mod independent;
 mod projection;
+mod reduced;
 mod response;
 mod rows;
 
 pub use constrained::constrained_forward_dynamics;
 pub(crate) use constrained::constrained_recursion;
+pub(crate) use constraint_force::solve as solve_semidefinite;
+pub use independent::IndependentJoints;
 pub use projection::{close_loops, close_velocity, closure_errors};
 pub(crate) use projection::{project_configuration, project_velocity};
+
+pub use reduced::{ConstrainedFreeFloating, constrained_free_floating};
+pub(crate) use reduced::{add_leaders, length_joints};
 
 use crate::dynamics::Data;
 use crate::dynamics::kinematics::frame_offset;

@@ -77,26 +77,12 @@ fn gap<S: Real>(frames: &[Frame; 2], placed: &[Placed<S>; 2], data: &Data<S>) ->
     (b - a) + (placed[1].offset - placed[0].offset)
 }
 
-/// Returns the directions along and about which a joint transmits forces, in the axes of the first frame, as
-/// pairs of an index (0 to 2) and whether it is a moment.
-fn directions(kind: LoopKind) -> &'static [(usize, bool)] {
-    const ALL: [(usize, bool); 6] = [(0, false), (1, false), (2, false), (0, true), (1, true), (2, true)];
-    const PRISMATIC: [(usize, bool); 5] = [(0, false), (1, false), (0, true), (1, true), (2, true)];
-    match kind {
-        LoopKind::Weld => &ALL,
-        LoopKind::Revolute => &ALL[..5],
-        LoopKind::Spherical => &ALL[..3],
-        LoopKind::Prismatic => &PRISMATIC,
-        LoopKind::Distance => &[],
-    }
-}
-
 /// Returns for each row of a closure whether it constrains rotations.
 pub(super) fn angular_rows(closure: &Closure) -> Vec<bool> {
     match &closure.constraint {
         Constraint::Frames { kind: LoopKind::Distance, .. } => vec![false],
         Constraint::Frames { kind, .. } => {
-            directions(*kind).iter().map(|(_, is_moment)| *is_moment).collect()
+            kind.directions().iter().map(|(_, is_moment)| *is_moment).collect()
         }
         Constraint::Mimic { .. } => vec![true],
     }
@@ -131,7 +117,7 @@ pub(super) fn update<S: Real>(closure: &Closure, data: &Data<S>, rows: &mut [Row
         _ => [placed[0].offset, placed[1].offset - gap],
     };
     let axes = [placed[0].rot.x, placed[0].rot.y, placed[0].rot.z];
-    for (row, &(axis, is_moment)) in rows.iter_mut().zip(directions(*kind)) {
+    for (row, &(axis, is_moment)) in rows.iter_mut().zip(kind.directions()) {
         let axis = axes[axis];
         row.forces = match is_moment {
             true => [Force::new(Vec3::zero(), -axis), Force::new(Vec3::zero(), axis)],
@@ -166,7 +152,7 @@ pub(super) fn errors<S: Real>(closure: &Closure, data: &Data<S>, q: &[S], out: &
         _ => log_rotation(&rot_ab),
     };
     let (distance, angle) = ([distance.x, distance.y, distance.z], [angle.x, angle.y, angle.z]);
-    for (out, &(axis, is_moment)) in out.iter_mut().zip(directions(*kind)) {
+    for (out, &(axis, is_moment)) in out.iter_mut().zip(kind.directions()) {
         *out = if is_moment { angle[axis] } else { distance[axis] };
     }
 }
