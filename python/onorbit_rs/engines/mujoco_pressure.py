@@ -99,8 +99,10 @@ class Contacts:
         data.qacc[:] = data.qacc_smooth + pushed[0]
 
     def _gain(self, data: Any, rows: Indices) -> Floats:
-        """Return the derivative of the reference accelerations with respect to the normal forces, `J M⁻¹ Jᵀ +
-        R`, 1/kg, where `J` is the Jacobian of the normal rows, `M` the mass matrix and `R` the regularization.
+        """Return the derivative of the reference accelerations with respect to the normal forces, 1/kg.
+
+        This is `J M⁻¹ Jᵀ + R`, where `J` is the Jacobian of the normal rows, `M` the mass matrix and `R` the
+        regularization.
         """
         jacobian = data.efc_J.reshape(-1, self._model.nv)[rows]
         response = np.empty_like(jacobian)

@@ -58,8 +58,8 @@ def check_size(value: Any, work: Work) -> None:
             waiting.extend(dict.keys(item))
         elif not (item is None or isinstance(item, float)):
             raise ValueError(
-                f"a xacro expression has a value of type {type(item).__name__}; use numbers, booleans, strings, "
-                "lists, tuples, mappings or None"
+                f"a xacro expression has a value of type {type(item).__name__}; use numbers, booleans, "
+                "strings, lists, tuples, mappings or None"
             )
         if items + len(waiting) > MAX_ITEMS:
             raise ValueError(f"a list or mapping exceeds the limit of {MAX_ITEMS} items in xacro expressions")

@@ -28,8 +28,8 @@ def ros_names(names: Iterable[str], kind: str) -> dict[str, str]:
     wanted = {name: ros_name(name) for name in names}
     kept = {name for name, ros in wanted.items() if ros == name}
     reason = (
-        "names in ROS topics must be distinct, begin with a letter, not end with an underscore, and contain only "
-        f"letters, digits and single underscores; these {kind}s are renamed there"
+        "names in ROS topics must be distinct, begin with a letter, not end with an underscore, and contain "
+        f"only letters, digits and single underscores; these {kind}s are renamed there"
     )
     return _numbered(wanted, kept, kept, reason)
 

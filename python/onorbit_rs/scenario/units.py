@@ -142,7 +142,7 @@ def _from_text(text: str, allowed: tuple[Dimension, ...]) -> float:
 
 
 def _parse_unit(unit: str, text: str, allowed: tuple[Dimension, ...]) -> tuple[float, Powers]:
-    """Return the factor that converts a compound unit such as ``km^3/s^2`` to SI, and its dimensions as powers."""
+    """Return the factor that converts a compound unit such as ``km^3/s^2`` to SI, and its dimension."""
     factor, powers, at = 1.0, NUMBER.powers, 0
     while at < len(unit):
         match = _FACTOR.match(unit, at)

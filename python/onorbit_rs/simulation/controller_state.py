@@ -101,8 +101,8 @@ class _Encoder:
         if type(key) not in _KEYS:
             name, allowed = _name(type(key)), "None, bool, int, float, str or tuple"
             raise ControlError(
-                f"a key of {place} is of type {name}; keys must be {allowed}: convert the key in get_state() and "
-                "restore it in set_state()",
+                f"a key of {place} is of type {name}; keys must be {allowed}: convert the key in get_state() "
+                "and restore it in set_state()",
                 name=f"a key of {place}", got=name, expected=allowed,
             )  # fmt: skip
         return [self.encoded(key, f"a key of {place}"), self.encoded(value, f"{place}[{key!r}]")]
