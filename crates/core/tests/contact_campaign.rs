@@ -1,7 +1,7 @@
 //! One run with a thousand contacts: random trees with random convex bodies in a floating box.
 //!
 //! The test takes minutes and is run by `make contact-campaign`; `CONTACTS` sets the number of contacts.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod common;
 

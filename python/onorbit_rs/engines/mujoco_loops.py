@@ -26,11 +26,11 @@ forces of MuJoCo's rows but not the motion that they permit."""
 
 def loop_names(models: Mapping[str, Model]) -> list[str]:
     """Return the names of the closed loops and mimic joints of robots, ``SYSTEM/NAME`` in a world."""
-    return [
-        path(system, one.name)
-        for system, model in models.items()
-        for one in (*model.loops, *(joint for joint in model.joints if joint.mimic is not None))
-    ]
+    names = []
+    for system, model in models.items():
+        names += [path(system, loop.name) for loop in model.loops]
+        names += [path(system, joint.name) for joint in model.joints if joint.mimic is not None]
+    return names
 
 
 def add_loops(
