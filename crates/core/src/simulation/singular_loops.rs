@@ -27,7 +27,8 @@ impl<S: Real> Tree<'_, S> {
 impl<S: Scalar> RunState<'_, S> {
     /// Finds the loops that have become singular. Requires the projected state of the cut at `t`, s.
     pub(super) fn find_singular_loops(&mut self, t: f64) {
-        if self.mover.is_external() {
+        let has_loops = self.equations.trees.iter().any(|tree| !tree.loops.is_empty());
+        if !has_loops || self.mover.is_external() {
             return; // an external engine solves its own constraints
         }
         let pairs = self.equations.trees.iter_mut().zip(&self.state.trees);
