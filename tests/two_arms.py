@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,7 @@ import onorbit_rs as oo
 from onorbit_rs.scenario import WorldScenario, load
 from onorbit_rs.scenario.build_world import build_world
 
-SCENARIO = Path(__file__).parent / "fixtures" / "berthing_with_two_arms.yaml"
+SCENARIO = oo.scenarios.path("berthing_with_two_arms")
 """Both arms of a servicer move a module to its berthing port."""
 
 
