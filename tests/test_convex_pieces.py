@@ -233,9 +233,9 @@ def test_pieces_in_a_scenario(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("entry", "message"),
     [
-        ("{link: base}", "give 'shape', or 'pieces'"),
+        ("{link: base}", "neither 'shape' nor 'pieces' is given"),
         ("{link: base, pieces: 0}", "pieces: 0 is below the minimum, 1"),
-        ("{link: base, pieces: 4, shape: {kind: sphere, radius: 1}}", "write 'pieces' in 'shape'"),
+        ("{link: base, pieces: 4, shape: {kind: sphere, radius: 1}}", "move 'pieces' into 'shape'"),
         ("{link: base, pieces: 4, pose: {position: [0, 0, 1]}}", "add 'shape' or omit 'pose'"),
         ("{link: base, pieces: 4}", "none of them is a mesh"),
     ],

@@ -308,7 +308,7 @@ def test_from_two_files_to_a_run(files: Path) -> None:
         run = oo.run(files / "mine.yaml", quiet=True)
     assert run.summary["certificate_passed"] and run.summary["joint_limits_exceeded"] == ""
     assert _robot(files / "mine.yaml").mass == 312.0
-    assert "with --at FRAME; the frames of bus.urdf are hull, plate" in refusal(
+    assert "choose one with --at FRAME: hull, plate" in refusal(
         "new", "arm.urdf", "--bus", "bus.urdf", cwd=files
     )
     assert "did you mean 'plate'" in refusal(

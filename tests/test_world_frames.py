@@ -191,17 +191,17 @@ def grasped(
 def test_a_control_that_follows_what_its_tool_has_grasped_is_warned_of():
     stepper = grasped().start(duration=4.0)
     stepper.advance_to(1.0)  # an exception, if there were a warning before the grasp
-    with pytest.warns(UserWarning, match="'follow' follows 'target/handle'.*'grasp'.*after='grasp'"):
+    with pytest.warns(UserWarning, match="'follow' moves 'servicer/tool' and follows 'target/handle'.*'grasp'.*after='grasp'"):
         stepper.advance_to(1.5)
     stepper.advance_to(1.6)  # once
-    with pytest.warns(UserWarning, match="'follow' follows"):
+    with pytest.warns(UserWarning, match="'follow' moves"):
         grasped(replaced=False).start(resume=stepper.checkpoint()).advance_to(1.7)
 
 
 def test_during_a_seating_the_frames_are_not_rigid_yet():
     stepper = grasped(seat=0.5).start(duration=4.0)
     stepper.advance_to(1.4)
-    with pytest.warns(UserWarning, match="'follow' follows"):
+    with pytest.warns(UserWarning, match="'follow' moves"):
         stepper.advance_to(1.6)
 
 
@@ -216,7 +216,7 @@ def test_joints_that_a_control_accelerates_without_bound_end_an_adaptive_run():
     """The tolerance would make the steps ever shorter: the run would take hours."""
     simulation = grasped(integrator="dormand_prince")
     with (
-        pytest.warns(UserWarning, match="'follow' follows"),
+        pytest.warns(UserWarning, match="'follow' moves"),
         pytest.raises(
             SimulationError, match=r"requires steps of .* although the controllers act every 0\.01 s"
         ) as error,

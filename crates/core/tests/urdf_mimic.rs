@@ -39,5 +39,5 @@ fn a_mimic_joint_becomes_a_constraint() {
         "{unknown}"
     );
     let circle = wrong("<mimic joint='j'/>");
-    assert!(circle.contains("'j' mimic each other in a circle"), "{circle}");
+    assert!(circle.contains("joint 'j' mimics itself"), "{circle}");
 }
