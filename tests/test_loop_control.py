@@ -176,6 +176,7 @@ def scenario(folder: Path, *changes: tuple[str, str]) -> Path:
     return file
 
 
+@pytest.mark.filterwarnings("ignore:event 'berth' did not happen")  # the run ends before the berthing
 def test_the_scenario_moves_the_module_with_both_arms(tmp_path: Path) -> None:
     run: Any = oo.run(scenario(tmp_path), quiet=True)
     held = run.trace.time > 1.0 + 1e-9

@@ -191,7 +191,8 @@ def grasped(
 def test_a_control_that_follows_what_its_tool_has_grasped_is_warned_of():
     stepper = grasped().start(duration=4.0)
     stepper.advance_to(1.0)  # an exception, if there were a warning before the grasp
-    with pytest.warns(UserWarning, match="'follow' moves 'servicer/tool' and follows 'target/handle'.*'grasp'.*after='grasp'"):
+    text = "'follow' moves 'servicer/tool' and follows 'target/handle'.*'grasp'.*after='grasp'"
+    with pytest.warns(UserWarning, match=text):
         stepper.advance_to(1.5)
     stepper.advance_to(1.6)  # once
     with pytest.warns(UserWarning, match="'follow' moves"):
