@@ -57,8 +57,8 @@ impl System {
     }
 }
 
-/// Sets the positions and rates of mimic joints at zero from those of their leaders. A chain of mimic joints
-/// needs several passes.
+/// Sets each position and each rate of a mimic joint that is zero from the value of its leader. This is repeated,
+/// so that the values reach the end of a chain of mimic joints.
 fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
     let [given_q, given_v] = [q.to_vec(), v.to_vec()];
     for _ in model.closures() {
