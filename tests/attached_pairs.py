@@ -32,18 +32,23 @@ def drawn(seed: int, links: int) -> Tree:
 
 def prefixed(tree: Tree) -> oo.Model:
     """Returns the model with all names of links, joints and the tool prefixed, as attached."""
-    base, *others = tree.parts
+    base = tree.parts[0]
     builder = oo.ModelBuilder(
         "part", base=PREFIX + base.name, mass=base.mass, com=base.com, inertia=base.inertia
     )
-    for part in others:
+    add_parts(builder, tree, PREFIX)
+    return builder.build()
+
+
+def add_parts(builder: oo.ModelBuilder, tree: Tree, prefix: str) -> None:
+    """Adds all links but the base of a tree, and its tool, with prefixed names."""
+    for part in tree.parts[1:]:
         builder.add_link(
-            PREFIX + part.name, parent=f"{PREFIX}{part.parent}", joint=PREFIX + part.joint,
+            prefix + part.name, parent=f"{prefix}{part.parent}", joint=prefix + part.joint,
             kind=part.kind, axis=part.axis, xyz=part.xyz, rpy=part.rpy,  # type: ignore[arg-type]
             mass=part.mass, com=part.com, inertia=part.inertia, rotor_inertia=part.rotor_inertia,
         )  # fmt: skip
-    builder.add_frame(f"{PREFIX}tool", PREFIX + tree.tool_link, xyz=tree.tool_xyz, rpy=tree.tool_rpy)
-    return builder.build()
+    builder.add_frame(f"{prefix}tool", prefix + tree.tool_link, xyz=tree.tool_xyz, rpy=tree.tool_rpy)
 
 
 @dataclass(frozen=True)

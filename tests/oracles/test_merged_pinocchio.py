@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from attached_pairs import PREFIX, Pair, pair
+from attached_pairs import PREFIX, Pair, add_parts, pair
 
 import onorbit_rs as oo
-from onorbit_rs.tools.validation.trees import BASE, Array, Tree, deviation
+from onorbit_rs.tools.validation.trees import BASE, Array, deviation
 
 pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
 import pin_robot  # noqa: E402
@@ -107,16 +107,6 @@ def with_free_joints(two: Pair) -> oo.Model:
         )  # fmt: skip
     add_parts(builder, two.tree_b, PREFIX)
     return builder.build()
-
-
-def add_parts(builder: oo.ModelBuilder, tree: Tree, prefix: str) -> None:
-    for part in tree.parts[1:]:
-        builder.add_link(
-            prefix + part.name, parent=f"{prefix}{part.parent}", joint=prefix + part.joint,
-            kind=part.kind, axis=part.axis, xyz=part.xyz, rpy=part.rpy,  # type: ignore[arg-type]
-            mass=part.mass, com=part.com, inertia=part.inertia, rotor_inertia=part.rotor_inertia,
-        )  # fmt: skip
-    builder.add_frame(f"{prefix}tool", prefix + tree.tool_link, xyz=tree.tool_xyz, rpy=tree.tool_rpy)
 
 
 def test_the_merged_tree_against_a_loop_of_six_joints(two: Pair) -> None:

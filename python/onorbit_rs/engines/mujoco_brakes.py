@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onorbit_rs.common.coordinates import JOINTS_Q
-from onorbit_rs.engines.mujoco_common import HARDEST
+from onorbit_rs.engines.mujoco_common import harden
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -29,7 +29,7 @@ def add_locks(mujoco: ModuleType, spec: Any, joints: Iterable[str], time_step: f
         lock = spec.add_equality()
         lock.type, lock.objtype = mujoco.mjtEq.mjEQ_JOINT, mujoco.mjtObj.mjOBJ_JOINT
         lock.name1, lock.active = name, False
-        lock.solref, lock.solimp = np.array([2.0 * time_step, 1.0]), np.array(HARDEST)
+        harden(lock, 2.0 * time_step)
 
 
 class Brakes:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 HARDEST = (0.9999, 0.9999, 0.001, 0.5, 2.0)
 """``solimp`` of all constraints except contacts; a soft constraint leaves a fraction ``1 - d`` of the
 acceleration."""
@@ -15,3 +19,8 @@ def path(system: str, name: str) -> str:
 def link_name(name: str) -> str:
     """Return the MuJoCo name of a body; the prefix avoids the reserved name ``world``."""
     return f"link {name}"
+
+
+def harden(equality: Any, time_constant: float) -> None:
+    """Make an equality a critically damped spring with a time constant, s, and the stiffest impedance."""
+    equality.solref, equality.solimp = np.array([time_constant, 1.0]), np.array(HARDEST)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs.engines.mujoco_common import HARDEST, path
+from onorbit_rs.engines.mujoco_common import harden, path
 from onorbit_rs.exceptions import EngineError
 
 if TYPE_CHECKING:
@@ -51,10 +51,10 @@ def add_loops(
     lengths: dict[str, float] = {}
     for joint in model.joints:
         if joint.mimic is not None:
-            _harden(_add_mimic(mujoco, spec, system, joint), time_step)
+            harden(_add_mimic(mujoco, spec, system, joint), 2.0 * time_step)
     for loop in model.loops:
         for equality in _add_loop(mujoco, spec, path(system, loop.name), loop, model, bodies):
-            _harden(equality, time_step)
+            harden(equality, 2.0 * time_step)
         if loop.kind == "distance":
             assert loop.length is not None
             lengths[path(system, loop.name)] = loop.length
@@ -65,10 +65,6 @@ def set_lengths(compiled: Any, lengths: Mapping[str, float]) -> None:
     """Set the lengths of the tendons in a compiled model, m; MuJoCo states them relative to ``qpos0``."""
     for name, length in lengths.items():
         compiled.equality(name).data[0] = length - compiled.tendon_length0[compiled.tendon(name).id]
-
-
-def _harden(equality: Any, time_step: float) -> None:
-    equality.solref, equality.solimp = np.array([2.0 * time_step, 1.0]), np.array(HARDEST)
 
 
 def _add_mimic(mujoco: ModuleType, spec: Any, system: str, joint: Joint) -> Any:

@@ -10,7 +10,7 @@ import numpy as np
 
 from onorbit_rs.common.numbers import finite_float
 from onorbit_rs.engines.mujoco_brakes import add_locks
-from onorbit_rs.engines.mujoco_common import HARDEST, link_name, path
+from onorbit_rs.engines.mujoco_common import HARDEST, harden, link_name, path
 from onorbit_rs.engines.mujoco_contact import Touch, add_contacts
 from onorbit_rs.engines.mujoco_loops import add_loops, set_lengths
 from onorbit_rs.exceptions import EngineError, ModelError
@@ -120,7 +120,7 @@ def world_model(
         weld = spec.add_equality()
         weld.type, weld.objtype = mujoco.mjtEq.mjEQ_WELD, mujoco.mjtObj.mjOBJ_BODY
         weld.name1, weld.name2, weld.active = bases[0], bases[1], False  # replaced by each connection
-        weld.solref, weld.solimp = np.array([softness, 1.0]), np.array(HARDEST)
+        harden(weld, softness)
     joints = [path(name, joint) for name, model in models.items() for joint in model.joint_names]
     add_locks(mujoco, spec, joints, time_step)
     lengths: dict[str, float] = {}

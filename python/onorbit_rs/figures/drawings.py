@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from onorbit_rs.common.file_parts import file_part
+from onorbit_rs.common.file_parts import file_part, numbered_part
 from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.forces import environment_forces
 from onorbit_rs.figures.ground_track import ground_track
@@ -140,12 +140,11 @@ def _of_the_loops(trace: Trace) -> Iterator[Drawing]:
     for number, (loop, rows) in enumerate(trace.loops.items()):
         if not np.any(rows.values):
             continue
-        part = file_part(loop) if file_part(loop) == loop else f"{number + 1}_{file_part(loop)}"
         about = (
             f"Loop {loop}: force on its second frame and moment about its point, in W, and the distance and "
             "the angle by which it is open. Rounding errors are of the order of 1e-16."
         )
-        yield Drawing(f"loop_{part}", about, partial(loop_history, trace, loop))
+        yield Drawing(f"loop_{numbered_part(number, loop)}", about, partial(loop_history, trace, loop))
 
 
 def _angle_flown_deg(trace: Trace) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onorbit_rs.common.file_parts import file_part
+from onorbit_rs.common.file_parts import numbered_part
 from onorbit_rs.common.rotations import has_local_frame
 from onorbit_rs.figures.captured_motion import captured_motion
 from onorbit_rs.figures.contact_energy import contact_energy
@@ -84,7 +84,7 @@ def _of_contacts(subject: WorldSubject) -> Iterator[Drawing]:
     for number, (contact, rows) in enumerate(trace.contacts.items()):
         if not np.any(np.asarray(rows.force) != 0.0):
             continue
-        part = file_part(contact) if file_part(contact) == contact else f"{number + 1}_{file_part(contact)}"
+        part = numbered_part(number, contact)
         about = (
             f"Contact {contact} from the first touch to the last one: gap (negative: depth), normal force "
             "and friction, sliding speed, and energies."

@@ -11,8 +11,9 @@ use crate::model::Model;
 /// [`ControlError`] for names that occur twice; groups that are empty, contain a joint twice or one that does
 /// not exist, or overlap while both controls are active, as far as their times are known before the run;
 /// gains, goals or references that are invalid or do not fit a group; goals or shifts to the present state
-/// without a reference; loads and internal forces of laws that do not use them; time windows that are empty; controls that start after a control that does not exist
-/// or never ends, or after themselves; and controls of which only some compensate the environment.
+/// without a reference; loads and internal forces of laws that do not use them; time windows that are empty;
+/// controls that start after a control that does not exist or never ends, or after themselves; and controls of
+/// which only some compensate the environment.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
     for (i, control) in controls.iter().enumerate() {
         if controls[..i].iter().any(|other| other.name == control.name) {

@@ -1,6 +1,7 @@
 //! Evaluation of the active laws.
 
 use super::{ControllerSet, active_loops, running};
+use crate::control::control::Control;
 use crate::control::control_law::{ControlLaw, EffortInput, EffortWork, JointCommand};
 use crate::control::control_state::ControlState;
 use crate::control::error::ControlError;
@@ -141,13 +142,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
         let Self { dynamics, reduced, tau, known, .. } = self;
         dynamics.eliminate(&self.commands, tau);
-        for (control, state) in running(self.controls, &self.states) {
-            let law = control.law.control_law();
-            let Some((frame, reference)) = control.law.task() else { continue };
-            if law.joint_command() != JointCommand::Task {
-                continue;
-            }
-            reduce_to_frame((model, data, q, v), known.as_deref_mut(), (frame, reference), reduced);
+        for (law, state, task) in tasks(self.controls, &self.states) {
+            reduce_to_frame((model, data, q, v), known.as_deref_mut(), task, reduced);
             let rows = state.task_acceleration(law, reduced, motion(reduced.drift));
             self.jacobian.iter_mut().zip(&reduced.jacobian).for_each(|(to, from)| *to = from.value());
             dynamics.add_task(&self.jacobian, rows, law.task_damping().pseudo_inverse);
@@ -161,16 +157,11 @@ impl<S: Scalar> ControllerSet<'_, S> {
         if let Some(looped) = active_loops(known, looped) {
             looped.eliminate(dynamics, &self.commands, tau);
         }
-        for (control, state) in running(self.controls, &self.states) {
-            let law = control.law.control_law();
-            let Some((frame, reference)) = control.law.task() else { continue };
-            if law.joint_command() != JointCommand::Task {
-                continue;
-            }
-            reduce_to_frame((model, data, q, v), known.as_deref_mut(), (frame, reference), reduced);
+        for (law, state, task) in tasks(self.controls, &self.states) {
+            reduce_to_frame((model, data, q, v), known.as_deref_mut(), task, reduced);
             self.jacobian.iter_mut().zip(&reduced.jacobian).for_each(|(to, from)| *to = from.value());
             let damping = law.task_damping().pseudo_inverse;
-            match known.as_deref_mut().filter(|_| !reference.is_relative_to_base()) {
+            match known.as_deref_mut().filter(|_| !task.1.is_relative_to_base()) {
                 Some(known) => {
                     let rows = state.task_acceleration(law, reduced, known.drift());
                     known.add_task(rows, damping);
@@ -183,8 +174,11 @@ impl<S: Scalar> ControllerSet<'_, S> {
                 }
             }
         }
-        let rates = known.as_ref().map_or_else(|| self.v.clone(), |known| known.v.clone());
-        if let Some(looped) = active_loops(known, looped) {
+        let (rates, looped) = match known.as_deref_mut() {
+            Some(KnownTree { v, looped, .. }) => (&v[..], looped.as_mut().map(|looped| &mut looped.dynamics)),
+            None => (&self.v[..], looped.as_mut().map(|looped| &mut looped.dynamics)),
+        };
+        if let Some(looped) = looped {
             looped.solve(&rates[BASE_NV..], &mut dynamics.acceleration, tau);
         }
     }
@@ -212,6 +206,18 @@ impl ControlState {
         let desired = self.desired_pose.map_or(Motion::zero(), |desired| desired.velocity);
         desired - motion(reduced.velocity)
     }
+}
+
+/// Returns the laws of the active controls that command accelerations of a frame, each with its state, and with the
+/// frame and its reference.
+fn tasks<'c>(
+    controls: &'c [Control],
+    states: &'c [ControlState],
+) -> impl Iterator<Item = (&'c dyn ControlLaw, &'c ControlState, (usize, &'c TaskReference))> {
+    running(controls, states).filter_map(|(control, state)| {
+        let (law, task) = (control.law.control_law(), control.law.task()?);
+        (law.joint_command() == JointCommand::Task).then_some((law, state, task))
+    })
 }
 
 /// Returns true if a law compensates damping and friction; laws that command efforts never do.
