@@ -44,18 +44,21 @@ def arguments() -> argparse.Namespace:
 
 
 def selected_rows(given: argparse.Namespace) -> list[Row]:
-    """Returns the rows of ``make bench`` that run on one thread, for each robot."""
+    """Returns the rows of ``make bench`` that run on one thread, for each robot that has them."""
     robots = (13, 20) if given.nv is None else (given.nv,)
     rows = [row for row in ROWS if given.rows in row.what and row.ours[0] != "ours_all"]
+    rows = list({row.ours: row for row in reversed(rows)}.values())[::-1]  # two peers, one program of ours
     if not rows:
         sys.exit(f"no row contains {given.rows!r}; there are: {', '.join(row.what for row in ROWS)}")
-    return [Row(row, nv) for nv, row in itertools.product(robots, rows)]
+    pairs = itertools.product(robots, rows)
+    return [Row(row, nv) for nv, row in pairs if nv == 20 or row.ours[0] != "rust_loops"]
 
 
 def has_row(build: revisions.Build, row: Row) -> bool:
-    """Returns False for the row of contacts if the build is older than contacts."""
+    """Returns False for the rows of contacts and loops if the build is older than these."""
     package = (build.python / "onorbit_rs" / "__init__.py").read_text()
-    return row.row.ours[1] != "contact" or '"Contact"' in package
+    needed = {"contact": "Contact", "constrained": "Loop"}.get(row.row.ours[1])
+    return needed is None or f'"{needed}"' in package
 
 
 def main() -> int:

@@ -14,6 +14,7 @@ from revisions import Build
 from timing import Contestant, difference
 
 BLOCKS = 3  # per build and round; the fastest counts, as the least disturbed by other processes
+RUST = {"rust": ("robot.urdf", "states.bin"), "rust_loops": ("held.urdf", "held.bin")}
 SAME = (0.98, 1.02)  # range of ratios that count as equal speed
 
 
@@ -75,8 +76,9 @@ class BuildComparison:
 
 def start(build: Build, who: str, folder: Path) -> Contestant:
     """Starts a process of one build: the Rust program or the Python worker."""
-    if who == "rust":
-        command = [build.contestant, folder / "robot.urdf", folder / "states.bin", STATES]
+    if who in RUST:
+        robot, states = RUST[who]
+        command = [build.contestant, folder / robot, folder / states, STATES]
         return Contestant([*map(str, command)], core=CORE)
     environment = {"PYTHONPATH": str(build.python)}
     if who == "ours_avx2":

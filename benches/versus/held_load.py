@@ -13,7 +13,6 @@ import onorbit_rs as oo
 
 LOAD = Body(40.0, [0.1, 0.2, 0.3], [1.5, 0.1, -0.2, 1.8, 0.05, 1.2])  # in the axes of the first hand
 HANDS = 7, 14  # bodies
-WELD = oo.Loop("weld", "weld", "grip_a", "grip_b")
 SPREAD = 0.2  # rad, of the joints about humanoid_reach's configuration
 SEED = 6
 
@@ -40,7 +39,7 @@ def write(folder: Path, robot: Robot, count: int) -> None:
             for body, pose in zip(HANDS, grips, strict=True)
         )
     )
-    model = oo.Model.from_urdf(folder / "held.urdf").with_loops([WELD])
+    model = oo.Model.from_urdf(folder / "held.urdf").with_loops([oo.Loop("weld", "weld", "grip_a", "grip_b")])
     np.hstack(closed_states(model, q, count)).tofile(folder / "held.bin")
 
 
