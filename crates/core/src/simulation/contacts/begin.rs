@@ -14,6 +14,9 @@ pub(super) const FAR: f64 = 0.1;
 pub(super) const TRAVEL: f64 = 3.0;
 /// Bristles without deflection that stick.
 const AT_REST: Bristle = Bristle { deflection: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, is_slipping: false };
+/// Distance at which pieces touch after a step of length zero, relative to the rounding error of a distance.
+/// The kinematics before and after such a step differ by more than that error.
+const TOUCHING: f64 = 1e3;
 /// Relative tolerance within which a change of mode counts as reached.
 const REACHED: f64 = 1e-9;
 
@@ -95,7 +98,8 @@ impl Touching {
     fn next_phase(&self, loading: &Loading, rounding: f64) -> Phase {
         let Loading { depth, rate, .. } = *loading;
         let Some(law) = &self.law else { return Phase::Apart };
-        let is_apart = depth < -rounding || (depth < rounding && rate <= 0.0);
+        let gap = if self.mode.since == Mode::REPEATED { TOUCHING * rounding } else { rounding };
+        let is_apart = depth < -gap || (depth < rounding && rate <= 0.0);
         let pressing = law.normal.pressing(depth, rate);
         let least = REACHED * law.normal.pressing(depth.abs(), 0.0).abs();
         let is_pressed = match self.mode.phase {

@@ -41,11 +41,15 @@ pub(in crate::simulation) struct Mode {
     /// Distances from the next changes of mode that count as zero: of the gap or depth, m, of the force and
     /// of friction. They let a step begin at a change of mode.
     pub(super) slack: [f64; 3],
-    /// Instant at which the mode was determined, s; negative before the first step.
+    /// Instant at which the mode was determined, s; negative before the first step, and [`Self::REPEATED`]
+    /// after a step of length zero.
     pub(super) since: f64,
 }
 
 impl Mode {
+    /// Instant of a mode that is determined again at the same instant.
+    pub(super) const REPEATED: f64 = -2.0;
+
     /// Mode before the first step.
     pub(super) const START: Self = {
         let zero = Vec3 { x: 0.0, y: 0.0, z: 0.0 };

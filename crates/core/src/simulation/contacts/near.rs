@@ -51,6 +51,13 @@ impl Contacts {
         self.begun_at = f64::NAN;
     }
 
+    /// Lets the next step determine all modes although it begins at the same instant, after a step of length
+    /// zero: a change of mode so close to the start of a step would otherwise recur without end.
+    pub(in crate::simulation) fn repeat_instant(&mut self) {
+        self.write_instant();
+        self.list.iter_mut().for_each(|touching| touching.mode.since = Mode::REPEATED);
+    }
+
     /// Returns the pairs that are far apart since the start of the step; empty if the modes are to be
     /// determined anew or the rigid pairs are not known.
     fn known_far(&self) -> Vec<usize> {

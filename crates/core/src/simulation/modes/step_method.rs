@@ -105,6 +105,9 @@ impl<S: Real> StepMethod<S> {
         };
         let parts = equations.trees.iter().zip(&self.start.trees).zip(&mut state.trees);
         parts.for_each(|((tree, start), state)| tree.snap_to_event(start, state));
+        if reached <= interval.0 {
+            equations.contacts.repeat_instant();
+        }
         let is_idle = fraction < 1.0 && self.is_idle(equations, state, reached - interval.0);
         self.idle_steps = if is_idle { self.idle_steps + 1 } else { 0 };
         Ok(reached)
