@@ -2,13 +2,14 @@
 
 use super::{Orbit, OrbitError, PathFrame, StateRows};
 
-/// Computes positions and velocities of an orbit at many instants, in axes of `I`.
+/// Computes positions and velocities of an orbit at many instants, in the inertial axes `I` of the orbit.
 ///
-/// `times` (T,) are in s, `positions` (T, 3) in m and `velocities` (T, 3) in m/s, row-major.
+/// `times` (T,) are simulation times in s, `positions` (T, 3) in m from the planet's centre and `velocities`
+/// (T, 3) in m/s, row-major.
 ///
 /// # Errors
 /// [`OrbitError::WrongLength`] if an output does not hold 3 T numbers; otherwise the first error of
-/// [`Orbit::position_velocity`], after the rows before it were written.
+/// [`Orbit::position_velocity`]. The rows of the instants before that error have then been written.
 pub fn states(
     orbit: &dyn Orbit,
     times: &[f64],
@@ -20,8 +21,9 @@ pub fn states(
 
 /// Computes the local orbital frames `L` (Hill) at many instants.
 ///
-/// `times` (T,) are in s; `rotations` receives `rot_il` (T, 3, 3), row-major, and `rates` (T, 3) the angular
-/// velocities of the frame in its own axes, rad/s.
+/// `times` (T,) are simulation times in s. `rotations` (T, 3, 3), row-major, receives `rot_il`, the rotation
+/// from `L` axes to the inertial axes `I`, and `rates` (T, 3) the angular velocity of `L` with respect to `I`
+/// in `L` axes, rad/s.
 ///
 /// # Errors
 /// [`OrbitError::WrongLength`] for outputs of the wrong length; otherwise the first error of [`Orbit::lvlh`].
@@ -34,8 +36,8 @@ pub fn lvlh_frames(
     frames_at(times, rotations, rates, |t| orbit.lvlh(t).map(PathFrame::from))
 }
 
-/// Computes the frames attached to the orbit ([`Orbit::frame`]) at many instants; arrays as in
-/// [`lvlh_frames`].
+/// Computes the frames attached to the orbit ([`Orbit::frame`]) at many instants. The arrays have the shapes
+/// and units of those of [`lvlh_frames`].
 ///
 /// # Errors
 /// [`OrbitError::WrongLength`] for outputs of the wrong length; otherwise the first error of

@@ -1,4 +1,4 @@
-//! Orbit through given points, which may describe any motion.
+//! Reference path through given points, which may describe any motion, whether in free fall or not.
 
 use nalgebra::{Vector3, Vector4};
 
@@ -17,19 +17,20 @@ pub enum Ends {
     Coast,
 }
 
-/// Points of a path, with one row per time, in axes of `I`.
+/// Points of a path in the inertial axes `I`, with one row per time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathPoints {
     /// Simulation times in increasing order, s.
     pub times: Vec<f64>,
     /// Positions from the planet's centre, m.
     pub positions: Vec<Vector3<f64>>,
-    /// Velocities, m/s; `None` if they are to follow from the positions.
+    /// Velocities, m/s; with `None`, they follow from the interpolated positions.
     pub velocities: Option<Vec<Vector3<f64>>>,
-    /// Accelerations, m/s², which require velocities; `None` if they are to follow from the other points.
+    /// Accelerations, m/s², which require velocities; with `None`, they follow from the interpolated
+    /// positions.
     pub accelerations: Option<Vec<Vector3<f64>>>,
-    /// Attitudes: unit quaternions x, y, z, w from axes of the path's frame to `I`; `None` for the axes of
-    /// the LVLH frame.
+    /// Attitudes: unit quaternions (x, y, z, w) of the rotations from the axes of the path's frame to `I`;
+    /// with `None`, the path's frame is the LVLH frame.
     pub attitudes: Option<Vec<Vector4<f64>>>,
 }
 
@@ -79,7 +80,7 @@ impl CustomPath {
         Ok(Self { mu, ends, position, attitude })
     }
 
-    /// Returns the first and the last time, s.
+    /// Returns the times of the first and the last point, s.
     pub fn span(&self) -> (f64, f64) {
         let times = self.position.times();
         (times[0], times[times.len() - 1])
@@ -121,8 +122,8 @@ impl Orbit for CustomPath {
         "derivative of the path's spline"
     }
 
-    /// Returns the times of all points, where a derivative of the acceleration is discontinuous. At the first
-    /// and the last point of a path that coasts, the acceleration itself is discontinuous.
+    /// Returns the times of all points, s, where a derivative of the acceleration is discontinuous. At the
+    /// first and the last point of a path that coasts, the acceleration itself is discontinuous.
     fn event_times(&self) -> Vec<f64> {
         self.position.times().to_vec()
     }

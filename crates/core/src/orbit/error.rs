@@ -139,8 +139,8 @@ pub enum OrbitError {
     },
     /// No impulse leads to the origin in the given time.
     #[error(
-        "no impulse leads to the origin in {time} s at a mean motion of {mean_motion} rad/s: x or z returns \
-         to its initial value for every velocity; choose a different time",
+        "no impulse leads to the origin in {time} s at a mean motion of {mean_motion} rad/s, because one direction \
+         of the final position does not depend on the initial velocity; choose a different time",
         time = short(*time), mean_motion = short(*mean_motion)
     )]
     NoIntercept {
@@ -201,7 +201,7 @@ pub enum OrbitError {
         /// Sine of the angle between position and velocity.
         sine: f64,
     },
-    /// The time is so far from the epoch that the phase has lost its accuracy.
+    /// The time is so far from the epoch that the state would be inaccurate.
     #[error(
         "time is {time} s; it must be within {limit} s of the epoch, {epoch} s",
         time = short(*time), epoch = short(*epoch), limit = short(*limit)
@@ -303,7 +303,7 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, OrbitError> 
     Ok(value)
 }
 
-/// Returns `value`, or an error if it is not positive and finite.
+/// Returns `value`, or an error if it is not positive, too large or not finite.
 pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, OrbitError> {
     if finite(name, value)? > 0.0 { Ok(value) } else { Err(OrbitError::NotPositive { name, value }) }
 }

@@ -5,10 +5,10 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use super::error::{finite, positive};
 use super::{Orbit, OrbitError, OrbitState, PathFrame};
 
-/// Frame at rest in `I`, such as a laboratory or a frame far from all bodies.
+/// Frame at rest in the inertial frame `I`, such as a laboratory or a frame far from all bodies.
 ///
 /// The frame is not in free fall: around a planet, gravity accelerates the robot relative to the frame,
-/// except in `carried` mode.
+/// except with `gravity_mode` `carried`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedFrame {
     position: Vector3<f64>,

@@ -3,13 +3,13 @@
 //! | name | x | y | z |
 //! |-|-|-|-|
 //! | [`Lvlh`], letter `L`: Hill, RSW, OnOrbitROS | radial, outward | along track, completes the triad | angular momentum |
-//! | [`Nadir`], letter `N`: called LVLH by NASA and CCSDS | along track, completes the triad | against angular momentum | down |
+//! | [`Nadir`], letter `N`: called LVLH by NASA and CCSDS | along track, completes the triad | against angular momentum | towards the planet |
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{OrbitError, OrbitState};
 
-/// Sine of the angle between position and velocity below which the orbital plane is undefined.
+/// Sine of the angle between position and velocity up to which the orbital plane is treated as undefined.
 const SMALLEST_SINE: f64 = 1e-10;
 
 /// Local orbital frame as defined by Hill (RSW): x outward, y along track, z along `r × v`.
@@ -24,8 +24,9 @@ pub struct Lvlh {
 impl Lvlh {
     /// Computes the frame from a state of the reference orbit.
     ///
-    /// `x̂ = r/|r|`, `ẑ = h/|h|`, `ŷ = ẑ × x̂`, with `h = r × v`;
-    /// `ω = (r aₙ/h) x̂ + (h/r²) ẑ`, with `aₙ` the acceleration along `ẑ` (zero on a Kepler orbit).
+    /// `x̂ = r/|r|`, `ẑ = h/|h|`, `ŷ = ẑ × x̂`, with the position `r`, the velocity `v` and `h = r × v`;
+    /// `ω = (|r| aₙ/|h|) x̂ + (|h|/|r|²) ẑ`, with the acceleration `aₙ` along `ẑ`, which is zero on a Kepler
+    /// orbit.
     ///
     /// # Errors
     /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
@@ -49,7 +50,8 @@ impl Lvlh {
     }
 }
 
-/// Nadir-pointing orbital frame, called LVLH by NASA and CCSDS: z down, y against `r × v`.
+/// Nadir-pointing orbital frame, called LVLH by NASA and CCSDS: z towards the planet's centre, y against
+/// `r × v`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nadir {
     /// Rotation from `N` axes to `I` axes.

@@ -3,8 +3,9 @@
 use super::{Orbit, OrbitError, StateRows};
 use crate::spatial::{Real, Vec3};
 
-/// Fills `rows` with states computed by `kernel` on the SIMD lanes of `S`. If `kernel` returns `None`, its
-/// instants are evaluated individually.
+/// Fills `rows` with states computed by `kernel` on the SIMD lanes of `S`. `kernel` converts one time per
+/// lane, s, to positions (m) and velocities (m/s). If it returns `None`, those instants are evaluated
+/// individually.
 pub(super) fn fill_lanes<S: Real>(
     orbit: &impl Orbit,
     times: &[f64],

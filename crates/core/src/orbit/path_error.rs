@@ -18,7 +18,7 @@ pub enum PathError {
     )]
     NotFinite { name: &'static str, index: usize, value: f64 },
     #[error(
-        "times[{index}] is {time} s, and the time before is {before} s; times must increase by at least 1e-9 s; \
+        "times[{index}] is {time} s, but the time before it is {before} s; times must increase by at least 1e-9 s; \
          sort the rows and remove duplicates",
         before = short(*before), time = unlike(*time, &[*before])
     )]
@@ -38,8 +38,8 @@ pub enum PathError {
     )]
     TurnTooFar { index: usize, angle: f64 },
     #[error(
-        "the path covers {start} s to {end} s, but the run requires t = {time} s; give times that cover the \
-         run, or continue the path on a straight line beyond them with ends=\"coast\"",
+        "the path covers {start} s to {end} s, but its state at t = {time} s is required; give points that cover \
+         this time, or continue the path along a straight line beyond its ends with ends=\"coast\"",
         time = unlike(*time, &[*start, *end]), start = short(*start), end = short(*end)
     )]
     TimeOutOfPath { time: f64, start: f64, end: f64 },

@@ -11,7 +11,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the gravitational parameter of the planet, m³/s²; `None` without a planet.
     fn mu(&self) -> Option<f64>;
 
-    /// Returns the gravity field if the orbit is in free fall in this field alone; otherwise `None`.
+    /// Returns the gravity field in which the orbit is in free fall; `None` if the orbit was not integrated
+    /// in a given field.
     fn gravity(&self) -> Option<&Arc<Gravity>> {
         None
     }
@@ -22,21 +23,23 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// [`OrbitError`] if `t` is not finite or the orbit is not defined at `t`.
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError>;
 
-    /// Returns the states at two instants, bit-identical to [`Orbit::state`]; `None` if the orbit has no
-    /// method that computes both in little more than the time of one.
+    /// Returns the states at two instants, s, bit-identical to those of [`Orbit::state`]; `None` if the orbit
+    /// cannot compute both in little more time than one, or if one of them is an error.
     fn two_states(&self, _: [f64; 2]) -> Option<[OrbitState; 2]> {
         None
     }
 
-    /// Returns the position, m, and velocity, m/s, at `t` without computing the acceleration.
+    /// Returns the position, m, and velocity, m/s, at simulation time `t`, s, in axes of `I`, without the
+    /// acceleration.
     ///
     /// # Errors
-    /// The errors of [`Orbit::state`], except those of the acceleration.
+    /// The errors of [`Orbit::state`], except those that only the acceleration causes.
     fn position_velocity(&self, t: f64) -> Result<(Vector3<f64>, Vector3<f64>), OrbitError> {
         self.state(t).map(|state| (state.position, state.velocity))
     }
 
-    /// Computes positions and velocities at many instants. Rows before the first error are written.
+    /// Computes positions and velocities at `times`, s, and writes them to `rows`. If an instant causes an
+    /// error, the rows before it have been written.
     ///
     /// The states equal those of [`Orbit::position_velocity`] up to rounding, because some kinds of orbit
     /// evaluate several instants at once on SIMD lanes.
@@ -47,8 +50,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         fill_each(self, times, rows)
     }
 
-    /// Computes at most `most_steps` integration steps towards `times`. Returns true if no further step is
-    /// needed.
+    /// Computes at most `most_steps` integration steps in each direction towards `times`, s. Returns true if
+    /// no further step is needed.
     ///
     /// Results do not depend on this call. It lets callers divide a long integration into parts that can be
     /// interrupted.
@@ -66,13 +69,15 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         None
     }
 
-    /// Returns a phrase that describes how [`OrbitState::velocity`] is obtained.
+    /// Returns a phrase that describes the origin of [`OrbitState::velocity`], such as "derivative of the
+    /// position".
     fn velocity_source(&self) -> &'static str {
         "derivative of the position"
     }
 
-    /// Returns the time derivative of the position at `t`, m/s. Equals `state.velocity` unless the velocity
-    /// reported by the orbit model is not the derivative of the position (SGP4).
+    /// Returns the time derivative of the position, m/s, at simulation time `t`, s, at which the orbit has
+    /// the given `state`. It equals `state.velocity` unless the velocity reported by the orbit model is not
+    /// the derivative of the position (SGP4).
     ///
     /// # Errors
     /// The errors of [`Orbit::state`].
@@ -86,8 +91,8 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         Vec::new()
     }
 
-    /// Returns the frame attached to the reference: the attitude given for it, or else its local orbital
-    /// frame.
+    /// Returns the frame attached to the reference at simulation time `t`, s: the attitude given for the
+    /// reference, or else its local orbital frame.
     ///
     /// # Errors
     /// The errors of [`Orbit::state`] and [`Orbit::lvlh`].
@@ -105,7 +110,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
     }
 }
 
-/// Fills the rows by evaluating the orbit once per instant.
+/// Fills `rows` with one evaluation of the orbit per instant.
 pub(super) fn fill_each(
     orbit: &(impl Orbit + ?Sized),
     times: &[f64],

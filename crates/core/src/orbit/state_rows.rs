@@ -29,7 +29,7 @@ impl<'a> StateRows<'a> {
         Ok(Self { positions, velocities })
     }
 
-    /// Writes a position and a velocity to row `index`.
+    /// Writes a position, m, and a velocity, m/s, to row `index`.
     ///
     /// # Errors
     /// [`OrbitError::WrongLength`] for a row beyond the last.

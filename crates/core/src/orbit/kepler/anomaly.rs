@@ -1,8 +1,8 @@
-//! Solvers of Kepler's equation for ellipse, parabola and hyperbola: the eccentric anomaly from the mean
-//! anomaly.
+//! Solvers of Kepler's equation for the ellipse and the hyperbola, and of Barker's equation for the parabola.
 //!
-//! `|1 - e|` is a separate input and `E - sin E` is computed without cancellation, which keeps the relative
-//! accuracy for `e → 1`, `M → 0`.
+//! `e` is the eccentricity, `E` the eccentric anomaly, `H` its hyperbolic counterpart and `M` the mean
+//! anomaly. `|1 - e|` is a separate input and `E - sin E` is computed without cancellation, which keeps the
+//! relative accuracy for `e → 1`, `M → 0`.
 
 use crate::spatial::Real;
 use std::f64::consts::PI;
@@ -67,11 +67,11 @@ pub(super) fn mean_from_hyperbolic(e: f64, e_minus_one: f64, hyperbolic: f64) ->
     e_minus_one * hyperbolic + e * sinh_minus_x(hyperbolic, hyperbolic.sinh())
 }
 
-/// Eccentricity below which [`solve_ellipse`] uses [`solve_nearly_circular`]; above it,
+/// Eccentricity below which [`solve_ellipse`] uses [`solve_nearly_circular`]; from it on,
 /// [`solve_any_ellipse`].
 const NEARLY_CIRCULAR: f64 = 0.1;
 
-/// Solves `M = E - e sin E` for `M` in [-π, π] and `0 ≤ e < 1`.
+/// Solves Kepler's equation `M = E - e sin E` for `E`, given `M` (`mean`) in [-π, π] and `0 ≤ e < 1`.
 #[inline(always)]
 pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
     let is_nearly_circular = S::less(e, S::of(NEARLY_CIRCULAR));
@@ -93,9 +93,9 @@ pub(super) fn solve_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnoma
 /// Solves Kepler's equation of a nearly circular orbit for `δ = E - M`, in half the time of
 /// [`solve_any_ellipse`].
 ///
-/// Takes two steps with the reverted series of `f = δ - e sin(M + δ)`. The first step starts at `δ = 0` and
-/// is of second order: it gives `δ = x - x³/2` with `x = e sin M/(1 - e cos M)` and an error below 1e-5 rad.
-/// The second step is of third order and reduces the error to rounding.
+/// Two steps use the reverted series of `f = δ - e sin(M + δ)`. The first step starts at `δ = 0`; its result
+/// `δ = x - x³/2` with `x = e sin M/(1 - e cos M)` is of second order and has an error below 1e-5 rad. The
+/// second step is of third order and reduces the error to rounding.
 ///
 /// Source of the series: Abramowitz and Stegun, Handbook of Mathematical Functions, 1964, eq. 3.6.25.
 #[inline(always)]
@@ -115,8 +115,7 @@ fn solve_nearly_circular<S: Real>(e: S, mean: S) -> HalfAnomaly<S> {
     HalfAnomaly { sin, cos }
 }
 
-/// Returns the sine and cosine of an angle after an increase by `x`, `|x| < 1/8`, from the sine and cosine
-/// before.
+/// Returns the sine and cosine of `α + x`, given those of `α` as `(s, c)`, for `|x| < 1/8` rad.
 #[inline(always)]
 fn turned<S: Real>((s, c): (S, S), x: S) -> (S, S) {
     // nested series of sin x/x and cos x: each factor is 1 - z/a times the next factor
@@ -127,7 +126,7 @@ fn turned<S: Real>((s, c): (S, S), x: S) -> (S, S) {
     (s * cos + c * sin, c * cos - s * sin)
 }
 
-/// Solves Kepler's equation of any ellipse.
+/// Solves Kepler's equation of any ellipse, with the inputs of [`solve_ellipse`].
 ///
 /// The solution of a cubic equation, with an error below 1e-3 rad, is refined by one correction of fifth
 /// order.
@@ -165,10 +164,10 @@ fn solve_any_ellipse<S: Real>(e: S, one_minus_e: S, mean: S) -> HalfAnomaly<S> {
     HalfAnomaly { sin: S::select(S::less(mean, of(0.0)), -up, up), cos: cos * cos_h - sin * sin_h }
 }
 
-/// Solves `M = e sinh H - H` for any `M` and `e > 1`.
+/// Solves Kepler's equation `M = e sinh H - H` for `H`, given any `M` (`mean`) and `e > 1`.
 ///
-/// Newton's method starts above the solution, from where it decreases monotonically, because `e sinh H - H`
-/// is convex for `H > 0`.
+/// Newton's method for `|M|` starts above the solution. From there the iterates decrease monotonically,
+/// because `e sinh H - H` is convex for `H > 0`.
 pub(super) fn solve_hyperbola(e: f64, e_minus_one: f64, mean: f64) -> HalfAnomaly {
     let m = mean.abs();
     // upper bounds of H: from (e - 1) H + e H³/6 ≤ M, and from sinh H = (M + H)/e with the first bound
@@ -190,7 +189,8 @@ pub(super) fn solve_hyperbola(e: f64, e_minus_one: f64, mean: f64) -> HalfAnomal
     HalfAnomaly { sin: sin.copysign(mean), cos: (1.0 + sin * sin).sqrt() }
 }
 
-/// Solves Barker's equation `B = D + D³/3` for `D = tan(ν/2)`.
+/// Solves Barker's equation `B = D + D³/3` for `D = tan(ν/2)` with the true anomaly `ν`. `B` is proportional
+/// to the time since periapsis.
 pub(super) fn solve_parabola(b: f64) -> f64 {
     2.0 * ((1.5 * b).asinh() / 3.0).sinh()
 }

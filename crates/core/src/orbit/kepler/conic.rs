@@ -24,7 +24,7 @@ pub(super) struct Shape {
     pub(super) inverse_axis: Double,
 }
 
-/// Largest `|1 - e|` at which the orbit is treated as a parabola.
+/// Value of `|1 - e|` below which the orbit is treated as a parabola.
 pub(super) const PARABOLIC: f64 = 1e-30;
 
 /// Position and velocity in perifocal axes, m and m/s.
@@ -69,8 +69,8 @@ impl<S: Real> Ellipse<S> {
     }
 }
 
-/// Period of revolution as a sum of three numbers. The first two have 26 bits, so that multiples up to 2²⁶
-/// are exact.
+/// Period of revolution, s, also stored as the sum of three `pieces`. The first two have 26 bits, so that
+/// their multiples up to 2²⁶ are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Period {
     pub(super) seconds: f64,
@@ -108,7 +108,7 @@ impl Period {
 /// Conic with the constants of the motion on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Conic {
-    /// Ellipse, `e < 1`; the phase is the mean anomaly.
+    /// Ellipse, `e < 1`, with the semi-axes `a` and `b`, m; the phase is the mean anomaly, rad.
     Ellipse {
         a: f64,
         b: f64,
@@ -118,15 +118,15 @@ pub(super) enum Conic {
         /// `√(μ a)` and `√(μ p)`, m²/s.
         velocity_scale: [f64; 2],
     },
-    /// Parabola, `e = 1`; the phase is the time since periapsis.
+    /// Parabola, `e = 1`; the phase is the time since periapsis, s.
     Parabola {
         /// Rate of `B` in Barker's equation, `√(μ/(2 q³))`, rad/s.
         n: f64,
         /// Half the speed at periapsis, `√(μ/(2 q))`, m/s.
         speed: f64,
     },
-    /// Hyperbola, `e > 1`; the phase is the time since periapsis. The semi-axes `a` and `b`, m, are positive;
-    /// the other fields are those of the ellipse.
+    /// Hyperbola, `e > 1`; the phase is the time since periapsis, s. The semi-axes `a` and `b`, m, are
+    /// positive (`n = √(μ/|a|³)`); the other fields are defined as for the ellipse.
     Hyperbola { a: f64, b: f64, n: f64, velocity_scale: [f64; 2] },
 }
 
@@ -162,8 +162,8 @@ impl Conic {
         }
     }
 
-    /// Returns the phase `dt` s after `phase`: the mean anomaly on an ellipse, otherwise seconds since
-    /// periapsis.
+    /// Returns the phase `dt` s after the instant with the phase `phase`: the mean anomaly, rad, on an
+    /// ellipse, otherwise the time since periapsis, s.
     pub(super) fn advance(&self, phase: f64, dt: f64) -> f64 {
         match self {
             Self::Ellipse { n, period, .. } => wrap(phase + n * period.reduce(dt)),
@@ -171,7 +171,8 @@ impl Conic {
         }
     }
 
-    /// Returns the state of an ellipse in perifocal axes, `dt` s after `phase`; `None` for an open orbit.
+    /// Returns the state on an ellipse in perifocal axes, `dt` s after the instant with the mean anomaly
+    /// `phase`; `None` for an open orbit.
     #[inline(always)]
     pub(super) fn ellipse_state_at<S: Real>(
         &self,

@@ -24,7 +24,7 @@ impl From<f64> for Double {
 }
 
 impl Double {
-    /// Returns `a + b` for `|a| ≥ |b|`.
+    /// Returns `a + b` exactly, for `|a| ≥ |b|`.
     fn quick(a: f64, b: f64) -> Self {
         let hi = a + b;
         Self { hi, lo: b - (hi - a) }

@@ -23,7 +23,8 @@ pub enum Size {
 /// Position of the body on the conic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Phase {
-    /// Mean anomaly at the epoch, rad: `n (t - t_p)` with `n = √(μ/|a|³)`; undefined for a parabola.
+    /// Mean anomaly at the epoch, rad: `n (t - t_p)` with `n = √(μ/|a|³)` and the time `t_p` of a periapsis
+    /// passage; undefined for a parabola.
     MeanAnomaly(f64),
     /// True anomaly at the epoch, rad; for an open orbit, within the asymptotes.
     TrueAnomaly(f64),
@@ -68,27 +69,27 @@ impl Elements {
     }
 }
 
-/// Distance from `e = 1` within which [`Kepler::elements`] states `p` and the time of periapsis, because `a`
-/// and `M` would lose digits by the factor `1/|1 - e|`.
+/// Distance from `e = 1` within which [`Kepler::elements`] returns the semi-latus rectum and the time of
+/// periapsis, because the errors of `a` and of the mean anomaly would grow by the factor `1/|1 - e|`.
 const NEAR_PARABOLIC: f64 = 1e-2;
 
 /// Largest eccentricity of a hyperbola. Beyond it the path differs from a straight line only by rounding, and
 /// the anomalies overflow.
 const LARGEST_ECCENTRICITY: f64 = 1e20;
 
-/// Largest accepted anomaly on an ellipse, rad; the spacing of `f64` is 1/8 rad there.
+/// Largest accepted anomaly on an ellipse, rad; there the spacing of adjacent `f64` numbers is 1/8 rad.
 const LARGEST_ANGLE: f64 = 1e15;
 
 impl Kepler {
-    /// Creates the orbit with these elements.
+    /// Creates the orbit with the given elements.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::NotPositive`] for invalid
     /// numbers and for sizes beyond the range of `f64`; [`OrbitError::OutOfRange`] for anomalies on an
     /// ellipse beyond 1e15 rad and eccentricities beyond 1e20;
     /// [`OrbitError::NegativeEccentricity`], [`OrbitError::AxisSign`], [`OrbitError::ParabolaHasNoAxis`],
-    /// [`OrbitError::ParabolaHasNoMeanAnomaly`], [`OrbitError::Inclination`], [`OrbitError::BeyondAsymptote`]
-    /// for inconsistent elements.
+    /// [`OrbitError::ParabolaHasNoMeanAnomaly`], [`OrbitError::Inclination`] and
+    /// [`OrbitError::BeyondAsymptote`] for invalid or inconsistent elements.
     pub fn new(elements: &Elements) -> Result<Self, OrbitError> {
         let mu = positive("mu", elements.mu)?;
         let shape = shape(elements)?;

@@ -8,22 +8,23 @@ use super::{Kepler, anomaly};
 use crate::orbit::OrbitError;
 use crate::orbit::error::{finite, positive};
 
-/// Sine of the angle between position and velocity below which the orbital plane is undefined. On ellipses
-/// with `1 - e` above 1e-16 the sine is never below this limit, because its minimum is `√(1 - e²)`. On a
-/// hyperbola the sine reaches the limit at a distance of 1e10 semi-minor axes.
+/// Sine of the angle between position and velocity up to which the orbital plane is treated as undefined. On
+/// ellipses with `1 - e` above 1e-16 the sine always exceeds this limit, because its minimum is `√(1 - e²)`.
+/// On a hyperbola the sine reaches the limit at a distance of 1e10 semi-minor axes.
 const SMALLEST_SINE: f64 = 1e-10;
 
 impl Kepler {
-    /// Creates the orbit with position `r` (m) and velocity `v` (m/s), axes of `I`, at time zero.
+    /// Creates the orbit with position `r` (m, from the planet's centre) and velocity `v` (m/s) at time zero,
+    /// axes of `I`, around a planet with the gravitational parameter `mu` (m³/s²).
     ///
     /// Circular and equatorial orbits are not singular.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for invalid numbers,
-    /// [`OrbitError::NotPositive`] for `mu` (m³/s²), and [`OrbitError::Rectilinear`] if `r` or `v` is zero or
-    /// they are parallel within 1e-10 rad.
+    /// [`OrbitError::NotPositive`] for `mu`, and [`OrbitError::Rectilinear`] if `r` or `v` is zero or if the
+    /// two are parallel within 1e-10 rad.
     ///
-    /// Source: Battin, AIAA 1999, chapter 3.
+    /// Source: Battin, An Introduction to the Mathematics and Methods of Astrodynamics, AIAA 1999, chapter 3.
     pub fn from_state(r: Vector3<f64>, v: Vector3<f64>, mu: f64) -> Result<Self, OrbitError> {
         positive("mu", mu)?;
         for (name, x) in [("position", &r), ("velocity", &v)] {

@@ -1,8 +1,8 @@
 //! Two-body motion on any conic: ellipse, parabola, hyperbola.
 //!
-//! `r̈ = -μ r/|r|³`, solved by Kepler's equation. [`Kepler::state`] uses no angles, so circular and equatorial
-//! orbits are not singular. Source: Battin, An Introduction to the Mathematics and Methods of Astrodynamics,
-//! AIAA 1999, chapters 3 and 4.
+//! `r̈ = -μ r/|r|³`, solved by Kepler's equation. [`Kepler::state`] uses no angles, so circular and
+//! equatorial orbits are not singular. Source: Battin, An Introduction to the Mathematics and Methods of
+//! Astrodynamics, AIAA 1999, chapters 3 and 4.
 
 mod anomaly;
 mod conic;
@@ -28,8 +28,8 @@ pub use secular::SecularJ2;
 /// Unperturbed orbit around a point mass.
 ///
 /// The phase of an ellipse is accurate over 2²⁶ revolutions, and the phase of an open orbit over 1e18 s.
-/// [`Orbit::state`] returns an error for times farther from the epoch, because `f64` seconds then no longer
-/// resolve metres.
+/// [`Orbit::state`] returns an error for times farther from the epoch, where `f64` seconds are too coarse to
+/// determine the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kepler {
     mu: f64,
@@ -132,8 +132,8 @@ impl Kepler {
         OrbitState { position, velocity, acceleration: point_mass(self.mu, &position) }
     }
 
-    /// Returns the states of an ellipse in perifocal axes at two times after the epoch, s; `None` for an open
-    /// orbit.
+    /// Returns the states on an ellipse in perifocal axes at two times since the epoch, s, in the first two
+    /// lanes; `None` for an open orbit.
     fn two_perifocal_states(&self, [first, second]: [f64; 2]) -> Option<PerifocalState<Lanes4>> {
         Lanes4::enter(
             #[inline(always)]
@@ -144,7 +144,7 @@ impl Kepler {
         )
     }
 
-    /// Returns the state of an ellipse in perifocal axes, `dt` s after the epoch; `None` for an open orbit,
+    /// Returns the state on an ellipse in perifocal axes, `dt` s after the epoch; `None` for an open orbit,
     /// or on a processor without fused multiply-add.
     fn perifocal_state_fused(&self, dt: f64) -> Option<PerifocalState> {
         if InstructionSet::current() == InstructionSet::Baseline {
@@ -157,8 +157,8 @@ impl Kepler {
         Some(PerifocalState { x: s.x.0, y: s.y.0, vx: s.vx.0, vy: s.vy.0 })
     }
 
-    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated
-    /// individually.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`. Groups of instants that contain an invalid
+    /// time are evaluated individually.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         let (p, q, longest) = (self.p_i.into(), self.q_i.into(), self.conic.longest_time());
         let (p, q) = (Vec3::<S>::of(&p), Vec3::<S>::of(&q));

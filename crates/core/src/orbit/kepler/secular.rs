@@ -8,12 +8,12 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 /// Kepler ellipse with secular rates of first order in J₂; the elements are mean elements.
 ///
-/// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`, `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 -
-/// 3 sin²i)`, with the node `Ω`, argument of periapsis `ω`, mean anomaly `M`, mean motion `n`, reference
-/// radius `R` of the planet, semi-latus rectum `p`, inclination `i` and eccentricity `e`. The given node and
-/// periapsis refer to the epoch, or to the time of periapsis if that is given instead. Velocity and
-/// acceleration are the time derivatives of the mean position, which differs from the osculating position by
-/// kilometres; they are not those of a body in free fall.
+/// `Ω̇ = -3/2 n J₂ (R/p)² cos i`, `ω̇ = 3/4 n J₂ (R/p)² (4 - 5 sin²i)`,
+/// `Ṁ - n = 3/4 n J₂ (R/p)² √(1 - e²) (2 - 3 sin²i)`, with the node `Ω`, argument of periapsis `ω`, mean
+/// anomaly `M`, mean motion `n`, reference radius `R` of the planet, semi-latus rectum `p`, inclination `i`
+/// and eccentricity `e`. The given node and periapsis refer to the epoch, or to the time of periapsis if that
+/// is given instead. Velocity and acceleration are the time derivatives of the mean position, which differs
+/// from the osculating position by kilometres; they are not those of a body in free fall.
 ///
 /// Source: Vallado, Fundamentals of Astrodynamics and Applications, 4th ed., eqs. 9-38, 9-40 and 9-41.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,15 +23,15 @@ pub struct SecularJ2 {
     node_rate: f64,
     /// `ω̇`, rad/s.
     periapsis_rate: f64,
-    /// Rate of the mean anomaly relative to the mean motion, `Ṁ/n`.
+    /// Ratio `Ṁ/n` of the rate of the mean anomaly to the mean motion.
     pace: f64,
     /// Unit vector along the angular momentum at the epoch.
     normal: Unit<Vector3<f64>>,
 }
 
 impl Kepler {
-    /// Returns this ellipse with the secular rates caused by the oblateness `j2` of a planet whose axis is z
-    /// and whose reference radius is `radius`, m.
+    /// Returns this ellipse with the secular rates caused by the oblateness coefficient `j2` of a planet
+    /// whose axis is z and whose reference radius is `radius`, m.
     ///
     /// # Errors
     /// [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and [`OrbitError::NotPositive`] for `radius`,
@@ -67,7 +67,7 @@ impl Kepler {
 }
 
 impl SecularJ2 {
-    /// Returns the rates of the node and of the argument of periapsis, rad/s.
+    /// Returns the rates of the node and of the argument of periapsis, `(Ω̇, ω̇)`, rad/s.
     pub fn rates(&self) -> (f64, f64) {
         (self.node_rate, self.periapsis_rate)
     }

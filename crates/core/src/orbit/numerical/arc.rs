@@ -10,14 +10,14 @@ use std::sync::{PoisonError, RwLock};
 const TOLERANCE: f64 = 1e-14;
 /// Length of the first step, in units of `√(r³/μ)` with the distance `r` from the planet's centre.
 const FIRST: f64 = 0.1;
-/// Length of the smallest step, in the same units.
+/// Length, in the same units, up to which a step counts as too short, so that the integration fails.
 const SHORTEST: f64 = 1e-9;
 /// Ratio of the next step to the longest step that the tolerance permits.
 const SAFETY: f64 = 0.9;
 /// Smallest and largest ratio of successive steps.
 const CHANGE: (f64, f64) = (0.25, 2.0);
-/// Largest number of steps on either side of the initial state, which cover years of a low orbit and take 90
-/// MB.
+/// Largest number of steps on either side of the initial state. They cover years of a low orbit and use 90 MB
+/// of memory.
 const MOST_STEPS: usize = 1 << 18;
 
 /// Integration steps of an orbit after and before the initial state.
@@ -36,7 +36,7 @@ struct Half {
     steps: Vec<Step>,
     /// Start and length, s, of the next step.
     next: (Start, f64),
-    /// Error that makes further steps impossible.
+    /// Error that ended the integration in this direction; `None` while further steps are possible.
     ended: Option<OrbitError>,
 }
 
@@ -52,7 +52,8 @@ impl Arcs {
         Ok(Self { mu, minimum, after: half(length), before: half(-length), initial })
     }
 
-    /// Returns the state at `t`, s, after computing the missing steps.
+    /// Returns the state at `t`, s, after computing the missing steps. `field(t, r)` returns the
+    /// acceleration, m/s², at time `t` and position `r`, m.
     pub(super) fn state(
         &self,
         t: f64,
@@ -106,7 +107,7 @@ impl Arcs {
         (last < begin || towards(&self.after, last)) && (first >= begin || towards(&self.before, first))
     }
 
-    /// Adds one step after the last one.
+    /// Computes the next step of `half` and adds it.
     fn extend(
         &self,
         half: &mut Half,

@@ -1,4 +1,5 @@
-//! Checks a LEO under J₂ about z against an integration of the same equation in extended precision.
+//! Compares a low Earth orbit under J₂ about z with an integration of the same equation in extended
+//! precision.
 //!
 //! Initial state: GMAT's case `leo_1day`. The table was computed by Lobatto collocation with 16 nodes and 160
 //! equal steps per day in x87 extended precision (numpy longdouble); 100 steps agree to 1e-10 m.

@@ -19,17 +19,18 @@ pub(super) type Samples = [Vector3<f64>; NODES];
 /// Lobatto's quadrature rule on [-1, 1].
 pub(super) struct Rule {
     pub(super) nodes: [f64; NODES],
-    /// Double integral from -1 to node `i` of the polynomial that is one at node `j` and zero at the other
-    /// nodes.
+    /// `twice[i][j]`: double integral, from -1 to node `i`, of the polynomial that is one at node `j` and
+    /// zero at the other nodes.
     pub(super) twice: [[f64; NODES]; NODES],
-    /// Legendre coefficient `k` of the polynomial that is one at node `j` and zero at the other nodes.
+    /// `spectrum[k][j]`: Legendre coefficient of degree `k` of the polynomial that is one at node `j` and
+    /// zero at the other nodes.
     pub(super) spectrum: [[f64; NODES]; NODES],
 }
 
 /// Quadrature rule of all steps, computed on first use.
 pub(super) static RULE: LazyLock<Rule> = LazyLock::new(Rule::new);
 
-/// Values of the Legendre polynomials at a point, with their first and second integrals from -1.
+/// Values of the Legendre polynomials at a point, with their single and double integrals from -1, by degree.
 pub(super) struct Legendre {
     pub(super) value: [f64; NODES + 2],
     pub(super) once: [f64; NODES + 1],

@@ -15,9 +15,9 @@ use std::sync::Arc;
 /// Orbit integrated in a gravity field: `r̈ = g(t, r)`.
 ///
 /// The integrator is Lobatto collocation, of order 16 at the ends of steps. Steps are computed on request,
-/// outward from `t₀`, and stored. They do not depend on the requested times, so the state is a function of
-/// `t` alone. Position, velocity and acceleration are continuous. Within a step the estimated relative error
-/// of the position is at most 1e-14.
+/// forwards and backwards from the time `t₀` of the initial state, and stored. They do not depend on the
+/// requested times, so the state is a function of `t` alone. Position, velocity and acceleration are
+/// continuous. Within a step the estimated relative error of the position is at most 1e-14.
 #[derive(Debug)]
 pub struct Numerical {
     gravity: Arc<Gravity>,
@@ -26,12 +26,13 @@ pub struct Numerical {
 }
 
 impl Numerical {
-    /// Creates the orbit through position `r` (m) with velocity `v` (m/s) at simulation time `t0` (s), axes
-    /// of `I`.
+    /// Creates the orbit with position `r` (m, from the planet's centre) and velocity `v` (m/s) at simulation
+    /// time `t0` (s), axes of `I`.
     ///
     /// # Errors
-    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for the state,
-    /// [`OrbitError::BeginsBelowSurface`], and the errors of the field.
+    /// [`OrbitError::NotFinite`] and [`OrbitError::TooLarge`] for the state or `t0`,
+    /// [`OrbitError::BeginsBelowSurface`] for a position inside the planet, and the errors of
+    /// [`Gravity::acceleration`].
     pub fn new(r: Vector3<f64>, v: Vector3<f64>, t0: f64, gravity: Arc<Gravity>) -> Result<Self, OrbitError> {
         for (name, x) in [("position", &r), ("velocity", &v)] {
             x.iter().try_for_each(|&c| finite(name, c).map(drop))?;
@@ -47,13 +48,14 @@ impl Numerical {
         Ok(Self { gravity, axes: Axes::default(), arcs })
     }
 
-    /// Returns the same orbit with its states and gravity interpreted in `axes`.
+    /// Returns the same orbit with `axes` as the axes of its states and of gravity. The numbers of the state
+    /// do not change.
     #[must_use]
     pub fn with_axes(self, axes: Axes) -> Self {
         Self { axes, ..self }
     }
 
-    /// Returns the acceleration at `time` and position `r`, m/s².
+    /// Returns the acceleration, m/s², at `time`, s, and position `r`, m.
     fn field(&self, time: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, OrbitError> {
         self.gravity.acceleration(time, r).map_err(|error| match error {
             GravityError::BelowSurface { distance, minimum } => {
@@ -77,7 +79,8 @@ impl Orbit for Numerical {
         self.axes
     }
 
-    /// Returns the epoch at time zero that the gravity field or its third bodies define, if any.
+    /// Returns the epoch at time zero that the gravity field or its third bodies define; `None` if they
+    /// define none.
     fn epoch(&self) -> Option<Epoch> {
         self.gravity.epoch()
     }
@@ -91,7 +94,7 @@ impl Orbit for Numerical {
     /// # Errors
     /// [`OrbitError::BelowSurface`] after the time at which the orbit enters the planet,
     /// [`OrbitError::TooManySteps`] too far from `t₀`, [`OrbitError::StepTooShort`] and
-    /// [`OrbitError::NotFinite`] where the integration fails, and the errors of the field.
+    /// [`OrbitError::NotFinite`] where the integration fails, and the errors of [`Gravity::acceleration`].
     fn state(&self, t: f64) -> Result<OrbitState, OrbitError> {
         self.arcs.state(finite("time", t)?, |time, r| self.field(time, r))
     }

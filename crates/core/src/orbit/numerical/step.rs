@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 
 /// Largest number of iterations of a step; a step that needs more is repeated with a smaller length.
 const MOST_SWEEPS: usize = 16;
-/// Change of the node positions, as a fraction of the distance, below which the iteration has converged.
+/// Change of the node positions, as a fraction of the distance from the planet's centre, up to which the
+/// iteration counts as converged.
 const SETTLED: f64 = 1e-15;
 
 /// Time (s), position (m) and velocity (m/s) at the start of a step. Position and velocity are accumulated
@@ -34,7 +35,7 @@ impl Start {
 
     /// Computes the step of `length` s from this state, and estimates the error, m, of positions within the
     /// step. Returns `None` if the iteration does not converge because the step is too long. `before` is the
-    /// preceding step.
+    /// preceding step, from which the initial guess is extrapolated; `field(t, r)` is the acceleration, m/s².
     pub(super) fn step(
         &self,
         length: f64,
@@ -77,7 +78,7 @@ fn spectrum(rule: &Rule, a: &Samples) -> Samples {
 }
 
 impl Step {
-    /// Returns the time `t` normalised to -1 at the start and 1 at the end of the step.
+    /// Returns the time `t`, s, mapped to -1 at the start and 1 at the end of the step.
     fn place(&self, t: f64) -> f64 {
         2.0 * ((t - self.start.time) / self.length) - 1.0
     }
@@ -122,7 +123,7 @@ impl Step {
     }
 }
 
-/// Returns `a + b + c` and its rounding error.
+/// Returns `a + b + c` and the rounding error of the sum.
 fn exactly(a: Vector3<f64>, b: Vector3<f64>, c: Vector3<f64>) -> [Vector3<f64>; 2] {
     let two_sum = |a: f64, b: f64| {
         let sum = a + b;

@@ -1,9 +1,10 @@
 //! Relative orbital elements of a deputy satellite with respect to a chief satellite.
 //!
 //! `δa = (a_d - a)/a`, `δλ = (u_d - u) + (Ω_d - Ω) cos i`, `δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin ω)`,
-//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`, where `d` denotes the deputy, `a` the semi-major axis,
-//! `e` the eccentricity, `i` the inclination, `Ω` the node, `ω` the argument of periapsis and `M` the mean
-//! anomaly. These elements are regular for circular orbits and singular for an equatorial chief.
+//! `δi = (i_d - i, (Ω_d - Ω) sin i)` with `u = M + ω`, the semi-major axis `a`, the eccentricity `e`, the
+//! inclination `i`, the node `Ω`, the argument of periapsis `ω` and the mean anomaly `M`. The index `d`
+//! denotes the deputy; symbols without index are the chief's. These elements are regular for circular orbits
+//! and singular for an equatorial chief.
 //!
 //! Source: D'Amico and Montenbruck, J. Guidance, Control and Dynamics 29(3), 2006; D'Amico, thesis, TU Delft
 //! 2010.
@@ -13,10 +14,10 @@ use crate::orbit::{Orbit, OrbitError};
 use nalgebra::{Vector3, Vector6};
 use std::f64::consts::{PI, TAU};
 
-/// Sine of the chief's inclination below which its node is treated as undefined.
+/// Sine of the chief's inclination up to which its node is treated as undefined.
 const EQUATORIAL: f64 = 1e-6;
 
-/// Orbital elements of one satellite that are regular for circular orbits; `a` in m, angles in rad.
+/// Orbital elements of one satellite in a form that is regular for circular orbits; `a` in m, angles in rad.
 struct Regular {
     a: f64,
     /// Mean argument of latitude, `M + ω`, rad.
@@ -45,9 +46,9 @@ impl Regular {
     }
 }
 
-/// Returns `(δa, δλ, δex, δey, δix, δiy)` of a deputy with respect to a chief. `deputy` and `chief` are
-/// positions (m) and velocities (m/s) in `I` at one instant. The elements are dimensionless or in rad;
-/// multiplied by the chief's `a` they are lengths in m.
+/// Returns the relative elements `(δa, δλ, δex, δey, δix, δiy)` of a deputy with respect to a chief. `chief`
+/// and `deputy` are `[position, velocity]` in `I` at one instant, m and m/s; `mu` is in m³/s². The elements
+/// are dimensionless or in rad; multiplied by the chief's `a` they are lengths in m.
 ///
 /// # Errors
 /// [`OrbitError::NotClosed`] for an open orbit, [`OrbitError::Equatorial`] for an equatorial chief, and the
@@ -66,8 +67,8 @@ pub fn relative_elements(
     Ok(Vector6::new((d.a - c.a) / c.a, along, d.e[0] - c.e[0], d.e[1] - c.e[1], d.i - c.i, node * sin))
 }
 
-/// Returns the position (m) and velocity (m/s) in `I` of a deputy with these relative elements. This is the
-/// inverse of [`relative_elements`].
+/// Returns the position (m) and velocity (m/s) in `I` of a deputy with the given relative elements. This is
+/// the inverse of [`relative_elements`], with the same units.
 ///
 /// # Errors
 /// The errors of [`relative_elements`], and of [`Kepler::new`] for elements that do not describe an ellipse.
@@ -96,8 +97,8 @@ pub fn deputy_state(
     Ok([r, v])
 }
 
-/// Computes [`relative_elements`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `out`
-/// is (B, 6).
+/// Computes [`relative_elements`] for many pairs: `chief` and `deputy` hold positions (m) and velocities
+/// (m/s), (B, 3) each, and `out` is (B, 6).
 ///
 /// # Errors
 /// The errors of [`relative_elements`], and [`OrbitError::WrongLength`] for arrays of the wrong length.
@@ -121,8 +122,8 @@ pub fn relative_elements_rows(
     Ok(())
 }
 
-/// Computes [`deputy_state`] for many pairs: positions (m) and velocities (m/s) are (B, 3) each, `elements`
-/// is (B, 6).
+/// Computes [`deputy_state`] for many pairs: `chief` and `out` hold positions (m) and velocities (m/s), (B,
+/// 3) each, and `elements` is (B, 6).
 ///
 /// # Errors
 /// The errors of [`deputy_state`], and [`OrbitError::WrongLength`] for arrays of the wrong length.

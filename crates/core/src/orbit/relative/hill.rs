@@ -34,7 +34,7 @@ pub fn hill_transition(n: f64, t: f64) -> Result<Matrix6<f64>, OrbitError> {
     Ok(transition)
 }
 
-/// Computes the transition matrices over many `times` (T,), s; `out` is (T, 6, 6), row-major.
+/// Computes [`hill_transition`] for each of `times` (T,), s; `out` is (T, 6, 6), row-major.
 ///
 /// # Errors
 /// The errors of [`hill_transition`], and [`OrbitError::WrongLength`] if `out` has the wrong length.
@@ -46,12 +46,13 @@ pub fn hill_transitions(n: f64, times: &[f64], out: &mut [f64]) -> Result<(), Or
     Ok(())
 }
 
-/// Magnitude of the determinant of `n Φ_rv` ([`intercept_velocity`]) up to which no impulse leads to the
-/// origin in the given time.
+/// Magnitude of the determinant of `n Φ_rv` ([`intercept_velocity`]) up to which the matrix counts as
+/// singular, so that no impulse leads to the origin in the given time.
 const SINGULAR: f64 = 1e-9;
 
-/// Returns the velocity, m/s, with which a satellite at `r` (m, axes `L`) reaches the origin in `t` s. The
-/// change to this velocity is the first impulse of a two-impulse rendezvous.
+/// Returns the velocity, m/s in rotating axes `L`, with which a satellite at `r` (m, axes `L`) reaches the
+/// origin in `t` s, near a circular orbit with mean motion `n`, rad/s. The change to this velocity is the
+/// first impulse of a two-impulse rendezvous.
 ///
 /// `v = -Φ_rv⁻¹ Φ_rr r`, where the blocks `Φ_rr` and `Φ_rv` of the transition matrix give the final position
 /// due to the initial position and velocity. The second impulse cancels the final velocity, which

@@ -10,16 +10,16 @@ pub enum LocalFrame {
     /// [`Lvlh`]: x outward, y along track, z along the angular momentum.
     #[default]
     Lvlh,
-    /// [`Nadir`]: x along track, z down.
+    /// [`Nadir`]: x along track, y against the angular momentum, z towards the planet's centre.
     Nadir,
 }
 
 impl LocalFrame {
-    /// All kinds, each with its name.
+    /// All kinds, each with the name used in Python.
     pub const ALL: [(&'static str, Self); 2] = [("lvlh", Self::Lvlh), ("nadir", Self::Nadir)];
 
-    /// Returns the rotation from local axes to `I`, and the angular velocity of the frame in its own axes,
-    /// rad/s.
+    /// Returns the rotation from local axes to `I`, and the angular velocity of the local frame with respect
+    /// to `I` in local axes, rad/s.
     fn of(self, reference: &OrbitState) -> Result<(Matrix3<f64>, Vector3<f64>), OrbitError> {
         match self {
             Self::Lvlh => Lvlh::of(reference).map(|frame| (frame.rot_il, frame.rate_l)),
@@ -30,8 +30,9 @@ impl LocalFrame {
 
 /// Returns the position (m) and velocity (m/s) relative to `reference` in its rotating local frame.
 ///
-/// `ρ = R_ilᵀ (r - R)`, `ρ̇ = R_ilᵀ (v - V) - ω × ρ`, with `r` and `v` in `I`, `R` and `V` of the reference,
-/// the rotation `R_il` from local axes to `I` and the angular velocity `ω` of the local frame.
+/// `ρ = R_ilᵀ (r - R)`, `ρ̇ = R_ilᵀ (v - V) - ω × ρ`, with the position `r` (m) and velocity `v` (m/s) in
+/// `I`, those of the reference `R` and `V`, the rotation `R_il` from local axes to `I` and the angular
+/// velocity `ω` of the local frame in its axes.
 ///
 /// # Errors
 /// [`OrbitError::UndefinedFrame`] for a reference at rest or in rectilinear motion.
@@ -66,8 +67,8 @@ pub fn from_local(
 type Convert =
     fn(&OrbitState, LocalFrame, &Vector3<f64>, &Vector3<f64>) -> Result<[Vector3<f64>; 2], OrbitError>;
 
-/// Computes [`to_local`] at each of `times` (T,), s: `given` and `out` are positions (m) and velocities
-/// (m/s), (T, 3) each.
+/// Computes [`to_local`] at each of `times` (T,), s: `given` and `out` are pairs of positions (m) and
+/// velocities (m/s), (T, 3) each.
 ///
 /// # Errors
 /// The errors of [`to_local`] and [`Orbit::state`]; [`OrbitError::NotFinite`] for a given state that is not

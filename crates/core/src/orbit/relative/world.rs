@@ -4,14 +4,14 @@ use crate::earth::Earth;
 use crate::orbit::{Orbit, OrbitError};
 use nalgebra::Vector3;
 
-/// Largest relative difference between gravitational parameters of one planet; those of SGP4 and the IERS
-/// differ by 1e-6.
+/// Largest relative difference at which two gravitational parameters are those of the same planet; the values
+/// of SGP4 and the IERS differ by 1e-6.
 const SAME_PLANET: f64 = 1e-5;
 
-/// Returns the position of `orbit` in the frame W of `reference` at simulation time `t`, s, `r - r_ref` in m,
-/// and its time derivative in m/s, in axes of the reference.
+/// Returns the position `r - r_ref` of `orbit` in the frame W of `reference`, m, and its time derivative,
+/// m/s, at simulation time `t`, s, in axes of the reference.
 ///
-/// `t` is the simulation time of the reference. An orbit with an epoch, such as one of an element set, is
+/// `t` is the simulation time of the reference. An orbit with an epoch, such as that of an element set, is
 /// evaluated at the same instant; if the reference has no epoch, the epoch of `earth` applies. If the axes of
 /// the two orbits differ, `earth` is used to convert them. The velocities are time derivatives of the
 /// positions, even if the orbit model reports different velocities (SGP4).
@@ -51,7 +51,7 @@ pub fn to_world(
     Ok([own[0] - origin[0], own[1] - origin[1]])
 }
 
-/// Returns the position at `t`, s, and its time derivative.
+/// Returns the position, m, at simulation time `t`, s, and its time derivative, m/s.
 fn position_and_rate(orbit: &dyn Orbit, t: f64) -> Result<[Vector3<f64>; 2], OrbitError> {
     let state = orbit.state(t)?;
     Ok([state.position, orbit.rate_of_position(t, &state)?])

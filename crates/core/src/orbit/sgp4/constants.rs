@@ -8,15 +8,15 @@ use std::f64::consts::TAU;
 pub enum EarthModel {
     /// WGS-72 with the rounded constants of Spacetrack Report #3.
     Wgs72Old,
-    /// WGS-72 with `kₑ` computed from the gravitational parameter.
+    /// WGS-72, with the constant `kₑ = √μ` of SGP4 computed from the gravitational parameter.
     #[default]
     Wgs72,
-    /// WGS-84 with `kₑ` computed from the gravitational parameter.
+    /// WGS-84, with `kₑ` computed from the gravitational parameter.
     Wgs84,
 }
 
 impl EarthModel {
-    /// All models, each with its name.
+    /// All models, each with the name used in Python and YAML.
     pub const ALL: [(&'static str, Self); 3] =
         [("wgs72old", Self::Wgs72Old), ("wgs72", Self::Wgs72), ("wgs84", Self::Wgs84)];
 
@@ -83,8 +83,8 @@ pub(super) struct Mean<S = f64> {
     pub(super) anomaly: S,
 }
 
-/// Returns the remainder of an angle divided by 2π, with the sign of the angle as Lyddane's variables
-/// require. Valid up to 2²⁶ turns.
+/// Returns the remainder of the division of an angle by 2π. It has the sign of the angle, as Lyddane's
+/// variables require. The function is valid up to 2²⁶ turns.
 #[inline(always)]
 pub(super) fn wrap_angle<S: Real>(angle: S) -> S {
     const ROUND: f64 = 6_755_399_441_055_744.0; // adding 1.5 × 2⁵² rounds to an integer

@@ -19,7 +19,8 @@ const LYDDANE: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct DeepSpace {
     bodies: [ThirdBody; 2],
-    /// Rates of `e`, `i`, `M`, `ω`, `Ω` caused by Sun and Moon, per minute.
+    /// Rates of eccentricity, 1/min, inclination, mean anomaly, perigee and node, rad/min, caused by Sun and
+    /// Moon.
     rates: Five,
     resonance: Option<Resonance>,
     /// Sidereal time at the epoch, rad.
@@ -52,7 +53,7 @@ impl DeepSpace {
         Self { bodies, rates, resonance, sidereal }
     }
 
-    /// Adds the secular perturbations over `t` minutes since the epoch.
+    /// Adds to `mean` the secular perturbations over `t` minutes since the epoch.
     pub(super) fn add_secular(&self, t: f64, mean: &mut Mean) {
         let [e, i, anomaly, perigee, node] = self.rates;
         mean.e += e * t;
@@ -65,7 +66,7 @@ impl DeepSpace {
         }
     }
 
-    /// Adds the periodic perturbations caused by Sun and Moon, `t` minutes after the epoch.
+    /// Adds to `mean` the periodic perturbations caused by Sun and Moon, `t` minutes after the epoch.
     pub(super) fn add_periodic(&self, t: f64, mean: &mut Mean) {
         let [sun, moon] = [&self.bodies[0], &self.bodies[1]].map(|body| body.waves(t));
         let [de, di, dl, gh, h]: Five = std::array::from_fn(|k| sun[k] + moon[k]);

@@ -34,7 +34,7 @@ pub struct MeanElements {
 
 impl MeanElements {
     /// Reads the entries of a CCSDS Orbit Mean-Elements Message (OMM); `entry` returns the text for a
-    /// keyword.
+    /// keyword, or `None` if the message has no such entry. Angles are in deg and the mean motion in rev/day.
     ///
     /// # Errors
     /// [`ElementSetError::Missing`], [`ElementSetError::Entry`] and [`ElementSetError::Range`] for a missing

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// UTC epoch: a day and the seconds since its midnight, without leap seconds, as in SGP4.
+/// UTC epoch: a day and the seconds since its midnight. Every day has 86 400 s, as in SGP4, which ignores
+/// leap seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Epoch {
     /// Days since 2000-01-01.
@@ -68,7 +69,8 @@ impl Epoch {
         midnight + part
     }
 
-    /// Returns the Greenwich mean sidereal time of 1982, rad in [0, 2π), with UT1 replaced by UTC.
+    /// Returns the Greenwich mean sidereal time by the formula of 1982, rad in [0, 2π), with UT1 replaced by
+    /// UTC.
     ///
     /// Source: Aoki et al., Astronomy and Astrophysics 105, 1982, eq. 14.
     pub(super) fn sidereal_time(&self) -> f64 {
@@ -96,7 +98,7 @@ fn digits(text: &str) -> Option<i64> {
         .then(|| text.parse().ok())?
 }
 
-/// Returns the number of days from 2000-01-01 to a Gregorian date. In the computation years begin in March,
+/// Returns the number of days from 2000-01-01 to a Gregorian date. In the computation, years begin in March,
 /// so that leap days are at the end of a year.
 fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
     let y = if month < 3 { year - 1 } else { year };
@@ -104,7 +106,7 @@ fn days_since_2000(year: i64, month: i64, day: i64) -> i64 {
     365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + days_of_months + day - 730_426
 }
 
-/// Returns the year, month and day for a number of days since 2000-01-01.
+/// Returns the Gregorian year, month and day for a number of days since 2000-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
     // a lower bound of the year, for days before and after 2000
     let mut year = 2000 + days.div_euclid(if days < 0 { 365 } else { 366 });

@@ -29,7 +29,7 @@ pub enum ElementSetError {
     },
     /// The checksum is wrong.
     #[error(
-        "line {line} of the TLE, column 69: the checksum is {got}, but that of the line is {expected}; copy \
+        "line {line} of the TLE, column 69: the checksum is {got}, but columns 1 to 68 give {expected}; copy \
          the line again, or accept it with check_checksum=False"
     )]
     Checksum {
@@ -37,7 +37,7 @@ pub enum ElementSetError {
         line: u8,
         /// Digit in column 69.
         got: u8,
-        /// Checksum of the line.
+        /// Checksum computed from columns 1 to 68.
         expected: u8,
     },
     /// The two lines belong to different satellites.
@@ -168,7 +168,8 @@ pub enum Sgp4Error {
     },
 }
 
-/// Returns a range as text; a bound next to 0 or 1 is an excluded bound.
+/// Returns a range as text. A lower bound of [`f64::MIN_POSITIVE`] is written as "above 0", and an upper
+/// bound of `1 - f64::EPSILON` as "below 1".
 fn bounds(range: &RangeInclusive<f64>) -> String {
     let (start, end) = (*range.start(), *range.end());
     let lower =

@@ -5,11 +5,11 @@
 
 use nalgebra::Complex;
 
-/// Term of the rate of the mean motion, `d sin(p ω + q λ - φ)`, rad/min², with the argument of perigee `ω`
-/// and the resonant longitude `λ`.
+/// Term of the rate of the mean motion, `d sin(p ω + q λ - φ)`, rad/min², with the amplitude `d`, the phase
+/// `φ`, the argument of perigee `ω` and the resonant longitude `λ`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Harmonic {
-    /// Complex amplitude `d e⁻ⁱᵠ`.
+    /// Complex amplitude `d e⁻ⁱᵠ`, where the exponent contains the phase `φ`.
     pub(super) d: Complex<f64>,
     /// Multiple of the argument of perigee, -1 to 2.
     pub(super) p: i8,

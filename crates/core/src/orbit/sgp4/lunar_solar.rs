@@ -6,8 +6,8 @@
 use super::constants::Mean;
 use std::f64::consts::TAU;
 
-/// One value for each of `e`, `i`, `l` (mean longitude), `g + h` (perigee plus node) and `h` (node, times sin
-/// i).
+/// One value for each of `e`, `i`, `l` (mean longitude), `g + h` (perigee plus node) and `h` (node,
+/// multiplied by `sin i`).
 pub(super) type Five = [f64; 5];
 
 /// Perturbing body on its apparent elliptic orbit around the Earth.
@@ -24,8 +24,8 @@ pub(super) struct ThirdBody {
     anomaly: f64,
 }
 
-/// Orientation of a third body's orbit: cosine and sine of its argument of perigee `g`, inclination `i` and
-/// node `h`.
+/// Orbit of a third body around the Earth: cosine and sine of its argument of perigee `g`, inclination `i`
+/// and node `h`, eccentricity, mean motion (rad/min) and mean anomaly at the epoch (rad).
 struct Ellipse {
     g: (f64, f64),
     i: (f64, f64),
@@ -33,7 +33,7 @@ struct Ellipse {
     eccentricity: f64,
     motion: f64,
     anomaly: f64,
-    /// Strength of the perturbation, rad²/min².
+    /// Strength of the perturbation, rad/min.
     c: f64,
 }
 
@@ -134,8 +134,10 @@ impl ThirdBody {
         Self { rates, waves, eccentricity: eb, motion: n, anomaly: body.anomaly }
     }
 
-    /// Returns the periodic perturbations of the five quantities of [`Five`], `t` minutes after the epoch:
-    /// sums of `F₂ = ½ sin²f - ¼`, `F₃ = -½ sin f cos f` and `sin f` with the true anomaly `f` of the body.
+    /// Returns the periodic perturbations of the five quantities of [`Five`], `t` minutes after the epoch.
+    ///
+    /// They are weighted sums of `F₂ = ½ sin²f - ¼`, `F₃ = -½ sin f cos f` and `sin f` with the true anomaly
+    /// `f` of the body.
     pub(super) fn waves(&self, t: f64) -> Five {
         // f = M + 2 e sin M,  F₂ = ½ sin²f - ¼,  F₃ = -½ sin f cos f
         let anomaly = self.anomaly + self.motion * t;

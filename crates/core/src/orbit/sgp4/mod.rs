@@ -68,7 +68,7 @@ impl Sgp4 {
         Self { elements, model, propagator, theory: Theory::Native }
     }
 
-    /// Returns the same orbit, but computed by the reference implementation, which is much slower.
+    /// Returns the same orbit, but computed by `code`, the reference implementation, which is much slower.
     pub fn with_external(self, code: Arc<dyn ExternalSgp4>) -> Self {
         Self { theory: Theory::External(code), ..self }
     }
@@ -106,8 +106,8 @@ impl Sgp4 {
         Ok((at.position * 1e3, at.velocity * 1e3))
     }
 
-    /// Fills `rows` with states computed on the SIMD lanes of `S`; instants with an error are evaluated
-    /// individually.
+    /// Fills `rows` with states computed on the SIMD lanes of `S`. Groups of instants that contain an error
+    /// are evaluated individually.
     fn fill_in_lanes<S: Real>(&self, times: &[f64], rows: StateRows<'_>) -> Result<(), OrbitError> {
         fill_lanes::<S>(
             self,
@@ -124,7 +124,7 @@ impl Sgp4 {
         )
     }
 
-    /// Returns the first derivative of the position, m/s, by finite differences with step `h`, s.
+    /// Returns the first time derivative of the position at `t`, m/s, by finite differences with step `h`, s.
     fn rate(&self, t: f64, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // ṙ ≈ Σ wₖ (r(t + k h) - r(t - k h))/(60 h)
         let mut sum = Vector3::zeros();
@@ -136,7 +136,8 @@ impl Sgp4 {
         Ok(sum / (60.0 * h))
     }
 
-    /// Returns the second derivative of the position, m/s², by finite differences with step `h`, s.
+    /// Returns the second time derivative of the position at `t`, m/s², by finite differences with step `h`,
+    /// s; `r` is the position at `t`, m.
     fn acceleration(&self, t: f64, r: &Vector3<f64>, h: f64) -> Result<Vector3<f64>, Sgp4Error> {
         // r̈ ≈ Σ wₖ (r(t + k h) + r(t - k h))/(180 h²)
         let mut sum = r * WEIGHTS[0];

@@ -13,7 +13,7 @@ const FINE_PERIGEE: f64 = 220.0;
 /// Eccentricity below which `C₃` and the periodic drag term of the mean anomaly are set to zero.
 const NEARLY_CIRCULAR: f64 = 1e-4;
 
-/// Elements at the epoch and their rates.
+/// Mean elements at the epoch, their secular rates, and the coefficients of drag in the report's symbols.
 #[derive(Clone, Debug)]
 pub(super) struct NearEarth {
     pub(super) epoch: Mean,
@@ -156,7 +156,8 @@ impl NearEarth {
         Self { epoch, anomaly_rate, perigee_rate, node_rate, node_drag, b_star, c1, c4: cc4, fine }
     }
 
-    /// Returns the elements `t` minutes after the epoch.
+    /// Returns the mean elements `t` minutes after the epoch. The drag terms that change the size of the
+    /// orbit are returned beside them.
     #[inline(always)]
     pub(super) fn at<S: Real>(&self, t: S) -> SecularElements<S> {
         let (of, t2, epoch) = (S::of, t * t, &self.epoch);

@@ -1,4 +1,5 @@
-//! Osculating state from mean elements: long-period terms of J₃, Kepler's equation, short-period terms of J₂.
+//! Computation of the osculating state from mean elements: long-period terms of J₃, Kepler's equation, and
+//! short-period terms of J₂.
 //!
 //! Source: Spacetrack Report #3, section 6.
 
@@ -11,7 +12,7 @@ const MIN_ONE_PLUS_COS: f64 = 1.5e-12;
 /// step, rad.
 const KEPLER: (f64, usize, f64) = (1e-12, 10, 0.95);
 
-/// Position and velocity of the satellite, TEME.
+/// Position and velocity of the satellite in TEME axes.
 pub(super) struct OsculatingState<S> {
     /// Semi-latus rectum, Earth radii. If it is negative, the other values have no meaning.
     pub(super) p: S,
@@ -83,15 +84,15 @@ pub(super) fn osculating_state<S: Real>(
     }
 }
 
-/// Returns the sine and cosine of an angle after an increase by `d`, rad, from the sine and cosine before.
+/// Returns the sine and cosine of `α + d`, rad, given those of `α`.
 #[inline(always)]
 fn turned<S: Real>((sin, cos): (S, S), d: S) -> (S, S) {
     let (sin_d, cos_d) = d.sin_cos();
     (sin * cos_d + cos * sin_d, cos * cos_d - sin * sin_d)
 }
 
-/// Returns the sine and cosine of `E + ω`, found by Newton's method from `u = E + ω - axN sin(E + ω) + ayN
-/// cos(E + ω)`.
+/// Returns the sine and cosine of `E + ω`, the solution of `u = E + ω - axN sin(E + ω) + ayN cos(E + ω)` by
+/// Newton's method, with `axN` and `ayN` given as `ax` and `ay`.
 #[inline(always)]
 fn kepler<S: Real>(u: S, ax: S, ay: S) -> (S, S) {
     let (enough, steps, longest) = KEPLER;

@@ -1,5 +1,5 @@
-//! SGP4 and SDP4: application of the secular and then of the periodic perturbations. No state is kept between
-//! calls.
+//! Propagation by SGP4 and SDP4, which applies first the secular and then the periodic perturbations. No
+//! state is kept between calls.
 
 use super::constants::{Earth, EarthModel, Mean, wrap_angle};
 use super::deep_space::DeepSpace;

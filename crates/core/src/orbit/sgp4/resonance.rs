@@ -47,7 +47,7 @@ pub(super) struct Rates {
 
 impl Resonance {
     /// Returns the resonance of an orbit whose period is near one day, or near half a day at an eccentricity
-    /// of 0.5 or more; `None` for other orbits.
+    /// of 0.5 or more; `None` for other orbits. `sidereal` is the sidereal time at the epoch, rad.
     pub(super) fn new(mean: &Mean, rates: &Rates, sidereal: f64, earth: &Earth) -> Option<Self> {
         let Mean { n, e, i, node, perigee, anomaly } = *mean;
         let a = (n / earth.ke).powf(2.0 / 3.0); // 1/a
@@ -94,7 +94,7 @@ impl Resonance {
     /// Returns `λ̇`, rad/min, `ṅ`, rad/min², and `n̈`, rad/min³, at `time` minutes after the epoch.
     fn slopes(&self, time: f64, longitude: f64, n: f64) -> [f64; 3] {
         let (perigee, rate) = (self.perigee + self.perigee_rate * time, n + self.drift);
-        // d sin(p ω + q λ - φ) and its derivative in λ are Im and q Re of d e⁻ⁱᵠ (eⁱʷ)ᵖ (eⁱˡ)ᵠ
+        // d sin(p ω + q λ - φ) and its derivative with respect to λ are Im and q Re of d e⁻ⁱᵠ (eⁱʷ)ᵖ (eⁱˡ)ᵠ
         let (w, l) = (Complex::cis(perigee), Complex::cis(longitude));
         let (w, l) = ([w.conj(), Complex::ONE, w, w * w], [l, l * l, l * l * l]);
         let (mut n1, mut n2) = (0.0, 0.0);

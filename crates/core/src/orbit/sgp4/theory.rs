@@ -8,12 +8,12 @@ use std::sync::Arc;
 
 /// Interface of the reference implementation, which the caller has initialised with an element set.
 pub trait ExternalSgp4: Send + Sync + std::fmt::Debug {
-    /// Returns position (km) and velocity (km/s), TEME, `minutes` after the epoch, even if the satellite is
-    /// below the surface of the Earth.
+    /// Returns position (km) and velocity (km/s) in TEME axes, `minutes` after the epoch, even if the
+    /// satellite is below the surface of the Earth.
     ///
     /// # Errors
-    /// The error code of the reference implementation. For code 6 (decayed), the state is returned instead; if
-    /// there is no state, the error is a code that the reference implementation does not use.
+    /// The error code of the reference implementation. For code 6 (decayed), the state is returned instead;
+    /// if there is no state, the error is a code that the reference implementation does not use.
     fn at(&self, minutes: f64) -> Result<[[f64; 3]; 2], u8>;
 }
 
@@ -23,7 +23,7 @@ pub(super) enum Theory {
     External(Arc<dyn ExternalSgp4>),
 }
 
-/// State of the satellite, TEME, which may be below the surface of the Earth.
+/// State of the satellite in TEME axes. The satellite may be below the surface of the Earth.
 pub(super) struct State {
     /// Position, km.
     pub(super) position: Vector3<f64>,

@@ -4,7 +4,7 @@ use super::elements::{MeanElements, REV_DAY};
 use super::epoch::Epoch;
 use super::error::ElementSetError;
 
-/// Columns between the fields, counted from 1, which must be blank.
+/// Columns between the fields of line 1 and of line 2, counted from 1, which must be blank.
 const GAPS: [&[usize]; 2] = [&[2, 9, 18, 33, 44, 53, 62, 64], &[2, 8, 17, 26, 34, 43, 52]];
 
 /// Line of a TLE, with 69 ASCII characters.
@@ -113,7 +113,8 @@ impl<'a> Line<'a> {
 }
 
 impl MeanElements {
-    /// Parses the two lines of a TLE; trailing blanks are ignored.
+    /// Parses the two lines of a TLE; trailing blanks are ignored. The checksums are verified only if
+    /// `check_checksum` is true.
     ///
     /// # Errors
     /// [`ElementSetError`] with the number of the line and, for invalid characters, the column.
@@ -126,7 +127,8 @@ impl MeanElements {
             let (first, second) = (first.to_owned(), second.to_owned());
             return Err(ElementSetError::TwoSatellites { first, second });
         }
-        let satellite = satellite_number(first).ok_or_else(|| one.wrong(3, 7, "a satellite number"))?;
+        let satellite = satellite_number(first)
+            .ok_or_else(|| one.wrong(3, 7, "a satellite number: five digits, or a letter and four digits"))?;
         let year: i64 =
             one.columns(19, 20).trim().parse().map_err(|_| one.wrong(19, 20, "two digits of a year"))?;
         let day = one.decimal(21, 32)?;
