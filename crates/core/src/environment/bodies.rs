@@ -14,13 +14,13 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Stores the states of the bodies of `systems`; each system begins with its base.
+    /// Creates the blocks from the states of the bodies of `systems`, each of which begins with its base.
     pub fn new(systems: &[Vec<BodyState>]) -> Self {
         Self::of(systems, 0..systems.len())
     }
 
-    /// Stores the states of the bodies of `systems`, each beginning with its base; `numbers` are the systems'
-    /// numbers in the world.
+    /// Creates the blocks from the states of the bodies of `systems`, each of which begins with its base;
+    /// `numbers` are the systems' numbers in the world.
     pub(crate) fn of(systems: &[Vec<BodyState>], numbers: impl Iterator<Item = usize>) -> Self {
         let layout = BlockLayout::of(numbers.zip(systems.iter().map(Vec::len)));
         let blocks = systems.iter().flat_map(|bodies| bodies.chunks(WIDTH)).map(BodyBlock::new).collect();

@@ -25,7 +25,7 @@ pub struct BodyState {
     pub angular_velocity: Vector3<f64>,
 }
 
-/// Pose and velocity of bodies in `W`.
+/// Pose and velocity of bodies in `W`: centres of mass, m, and rotations from body axes to `W`.
 #[derive(Clone, Debug)]
 pub(crate) struct BodyMotion<T> {
     pub(crate) com: Vec3<T>,

@@ -44,12 +44,12 @@ impl BodyWrench {
         Ok(Self { body: body.into(), force, torque, point: Vector3::zeros(), start, end })
     }
 
-    /// Creates a wrench on the first system that is always active: a force (N) at the origin of a frame
-    /// (index) and a torque (N m), both in frame axes.
+    /// Creates an always active wrench on the first system: a force (N) at the origin of the frame with index
+    /// `frame` and a torque (N m), both in frame axes.
     ///
     /// # Errors
     /// [`EnvironmentError::NotFinite`] for a force or torque that is not finite;
-    /// [`EnvironmentError::UnknownFrame`].
+    /// [`EnvironmentError::UnknownFrame`] if `model` has no frame with this index.
     pub fn on_frame(
         model: &Model,
         frame: usize,

@@ -23,7 +23,10 @@ pub enum EnvironmentError {
         effect: &'static str,
     },
     /// An effect that requires the rotation of the Earth is used without an Earth.
-    #[error("{effect} requires the rotation of the Earth; pass `earth` to the run (in YAML, give an epoch)")]
+    #[error(
+        "{effect} requires the rotation of the Earth, but the run has no Earth; pass `earth` to the run (in YAML, \
+         give an epoch)"
+    )]
     NoEarth {
         /// Name of the effect.
         effect: &'static str,
@@ -41,7 +44,7 @@ pub enum EnvironmentError {
         what: ScenePoint,
         /// Distance from the planet's centre, m.
         distance: f64,
-        /// Smallest accepted distance, m.
+        /// Smallest accepted distance from the planet's centre, m.
         minimum: f64,
     },
     /// An input holds an infinite value or NaN.

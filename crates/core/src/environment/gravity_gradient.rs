@@ -10,11 +10,11 @@ use crate::spatial::{Real, Sym3, Vec3};
 
 /// Effect that applies the gravity-gradient torque to each body, about its centre of mass.
 ///
-/// `T_i = -ε_ijk (I G)_jk`, with the gradient `G` of the full field at the body, 1/s², and the inertia `I`
-/// about the centre of mass, kg m². In the field of a point mass, the torque is `T = (3μ/r³) r̂ × I r̂`, with
-/// `r` from the planet's centre to the centre of mass of the body. All quantities are in `W` axes. The motion
-/// of an articulated robot also requires the force on each body, which [`super::DifferentialGravity`]
-/// computes.
+/// `T_i = -ε_ijk (I G)_jk`, with the permutation symbol `ε_ijk`, the gradient `G` of the full field at the
+/// body, 1/s², and the inertia `I` about the centre of mass, kg m². In the field of a point mass with the
+/// gravitational parameter `μ`, the torque is `T = (3μ/r³) r̂ × I r̂`, with `r` from the planet's centre to
+/// the centre of mass of the body. All quantities are in `W` axes. The motion of an articulated robot also
+/// requires the force on each body, which [`super::DifferentialGravity`] computes.
 ///
 /// Source: Hughes, Spacecraft Attitude Dynamics, Wiley 1986, section 8.1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -85,11 +85,12 @@ impl GravityGradient {
     }
 }
 
-/// Returns the torque, N m, of a field with gradient `G` about the centre of mass; all quantities in the same
-/// axes.
+/// Returns the torque, N m, about the centre of mass in a field with the gradient `g`, `G`, on a body with
+/// the given `inertia`, `I`; all quantities are in the same axes.
 ///
-/// `T_i = ∫ ε_ijk x_j G_kl x_l dm = -ε_ijk (I G)_jk`, since `∫ x xᵀ dm = ½ tr(I) 1 - I` and `G` is symmetric:
-/// `T = Σ e_k × I G e_k`.
+/// `T_i = ∫ ε_ijk x_j G_kl x_l dm = -ε_ijk (I G)_jk` with the position `x` from the centre of mass, since
+/// `∫ x xᵀ dm = ½ tr(I) 1 - I` with the unit matrix `1`, and `G` is symmetric. In vectors, with the unit
+/// vectors `e_k`: `T = Σ e_k × I G e_k`.
 #[inline(always)]
 fn torque<S: Real>(g: &Sym3<S>, inertia: &Sym3<S>) -> Vec3<S> {
     let x = *inertia * Vec3::new(g.xx, g.xy, g.xz);

@@ -36,13 +36,14 @@ pub struct RadiationPressure {
 
 const NAME: &str = "radiation pressure";
 
-/// Mean solar flux at 1 au, W/m². Source: Kopp and Lean, Geophysical Research Letters 38, 2011 (1360.8).
+/// Mean solar flux at 1 au, W/m², rounded. Source: Kopp and Lean, Geophysical Research Letters 38, 2011, who
+/// give 1360.8 W/m².
 pub const SOLAR_FLUX: f64 = 1361.0;
 
 /// Equatorial radius of the Earth, which is used for the shadow, m. Source: WGS84.
 pub const SHADOW_RADIUS: f64 = 6_378_137.0;
 
-/// Distance from the base within which the light is assumed to be uniform, m.
+/// Distance from the centre of mass of the base within which the light is assumed to be uniform, m.
 ///
 /// Within this distance, in a low orbit with a penumbra 60 km wide, `ν` changes by 1/600 and the direction of
 /// light by 7e-10 rad.
@@ -67,7 +68,7 @@ impl RadiationPressure {
     }
 
     /// Returns the direction and pressure of the light at `r`, with the Sun at `sun`; both positions are from
-    /// the Earth's centre, m.
+    /// the Earth's centre, axes of `I`, m.
     fn light(&self, r: &Vector3<f64>, sun: &Vector3<f64>) -> Light<f64> {
         let to_sun = sun - r;
         let distance = to_sun.norm();

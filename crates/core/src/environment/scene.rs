@@ -1,4 +1,4 @@
-//! Input of the effects: robots, reference orbit and Earth at one instant.
+//! Scene in which effects are evaluated: robots, reference orbit and Earth at one instant.
 
 use nalgebra::Vector3;
 
@@ -25,8 +25,8 @@ pub struct Reference<'a> {
     pub in_free_fall: bool,
 }
 
-/// Quantities that depend only on the instant and the reference. They are computed on first use and shared by
-/// stages and steps.
+/// Cache of quantities that depend only on the instant and the reference. They are computed on first use and
+/// shared by stages and steps.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Ephemeris {
     sky: OnceCell<Sky>,
@@ -48,9 +48,9 @@ pub struct Scene<'a> {
     pub interval: (f64, f64),
     /// Simulation time of this evaluation, s.
     pub time: f64,
-    /// The reference orbit at this instant, if the run has one.
+    /// Reference orbit at this instant; `None` if the run has none.
     pub reference: Option<Reference<'a>>,
-    /// Rotation of the Earth, if the run has an Earth.
+    /// Earth with its rotation; `None` if the run has no Earth.
     pub earth: Option<&'a Earth>,
     /// States of the bodies at this instant.
     pub bodies: &'a Bodies,
@@ -61,7 +61,8 @@ pub struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    /// Calls `evaluate` with the scene of the bodies at `time`, s, within a step over `interval`, s.
+    /// Calls `evaluate` with the scene of `bodies` at `time`, s, within a step over `interval` (start and
+    /// end, s), and returns its result.
     ///
     /// Runs evaluate their effects in this way at every stage of a step.
     pub fn with<R>(

@@ -33,12 +33,12 @@ pub(crate) struct WrenchLanes<T> {
 }
 
 impl Wrenches {
-    /// Creates zero wrenches for systems with these numbers of bodies.
+    /// Creates zero wrenches; `counts` holds the number of bodies of each system.
     pub fn new(counts: &[usize]) -> Self {
         Self::with(BlockLayout::new(counts))
     }
 
-    /// Creates zero wrenches for these bodies.
+    /// Creates zero wrenches on `bodies`.
     pub(crate) fn on(bodies: &Bodies) -> Self {
         Self::with(bodies.layout.clone())
     }

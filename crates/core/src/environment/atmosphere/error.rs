@@ -100,14 +100,15 @@ pub enum AtmosphereError {
     Earth(#[from] EarthError),
 }
 
-/// Returns the part of a message that states the lower bound of the base of layer `index`, which is empty for
-/// the first layer; `previous` is the base of the layer before, m.
+/// Returns the part of a message that states the lower bound of the base of layer `index`, or an empty text
+/// for the first layer, which has no bound. `previous` is the base of the layer before, m.
 fn above_previous(index: usize, previous: f64) -> String {
     let lower = |before| format!(" above {} m, where layer {before} begins", short(previous));
     index.checked_sub(1).map_or_else(String::new, lower)
 }
 
-/// Returns `value`, or an error if it is not finite and positive.
+/// Returns `value`, or an error if it is not finite and positive. `expected` describes the accepted range in
+/// the message.
 pub(super) fn positive(
     name: &'static str,
     value: f64,

@@ -1,4 +1,4 @@
-//! Harris-Priester atmosphere: a density bulge that lags behind the Sun.
+//! Harris-Priester atmosphere, whose density has a bulge that lags behind the Sun.
 
 use super::error::AtmosphereError;
 use super::model::Atmosphere;
@@ -40,8 +40,8 @@ impl HarrisPriester {
         Ok(Self { exponent, lag })
     }
 
-    /// Returns the direction of the bulge in axes of `I`: the direction of the Sun, rotated by the lag about
-    /// the Earth's axis.
+    /// Returns the unit vector towards the apex of the bulge at `time`, s, in axes of `I`: the direction of
+    /// the Sun, rotated by the lag about the Earth's axis.
     fn bulge(&self, earth: &Earth, time: f64) -> Result<Vector3<f64>, AtmosphereError> {
         let sun = earth.sun(time)?.normalize();
         let axis = Unit::try_new(earth.angular_velocity(time), 0.0).unwrap_or_else(Vector3::z_axis);

@@ -37,7 +37,7 @@ pub struct LocalAtmosphere {
 }
 
 impl LocalAtmosphere {
-    /// Computes the local atmosphere about `centre`, axes of `I`, m.
+    /// Computes the local atmosphere about `centre`, axes of `I`, m, at simulation time `time`, s.
     ///
     /// # Errors
     /// The errors of the model at the centre, and those 100 m below the centre if the model also fails 100 m

@@ -18,8 +18,8 @@ pub trait Atmosphere: Send + Sync + std::fmt::Debug {
     fn density(&self, point: &AtmospherePoint<'_>) -> Result<f64, AtmosphereError>;
 }
 
-/// Computes the densities, kg/m³, at geodetic altitudes, m, latitudes and longitudes, rad, and simulation
-/// times, s; all arrays are `(n,)`.
+/// Writes to `out` the densities, kg/m³, at geodetic altitudes, m, latitudes and longitudes, rad, and
+/// simulation times, s. All arrays are `(n,)`.
 ///
 /// # Errors
 /// The error of the first point at which the model is not defined.
@@ -37,8 +37,8 @@ pub fn densities_over(
     Ok(())
 }
 
-/// Computes the densities `(n,)`, kg/m³, at positions `(n, 3)` from the Earth's centre, axes of `I`, m, and
-/// simulation times `(n,)`, s.
+/// Writes to `out` the densities `(n,)`, kg/m³, at positions `(n, 3)` from the Earth's centre, axes of `I`,
+/// m, and simulation times `(n,)`, s.
 ///
 /// # Errors
 /// The error of the first point at which the model is not defined.

@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 /// Point outside the Earth at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct AtmospherePoint<'a> {
-    /// Rotation of the Earth.
+    /// Earth, which defines the rotation between inertial and Earth-fixed axes.
     pub earth: &'a Earth,
     /// Simulation time, s.
     pub time: f64,
@@ -21,7 +21,8 @@ pub struct AtmospherePoint<'a> {
 }
 
 impl<'a> AtmospherePoint<'a> {
-    /// Computes the point at `position` from the Earth's centre, axes of `I`, m.
+    /// Computes the point at `position` from the Earth's centre, axes of `I`, m, at simulation time `time`,
+    /// s.
     ///
     /// # Errors
     /// [`AtmosphereError::BelowSurface`] for a position inside the Earth; [`AtmosphereError::Earth`] if the
@@ -32,7 +33,7 @@ impl<'a> AtmospherePoint<'a> {
         Self { earth, time, geodetic, position: *position, up: rot_fi.tr_mul(&up(&geodetic)) }.above_surface()
     }
 
-    /// Computes the point with geodetic coordinates.
+    /// Computes the point with the given geodetic coordinates at simulation time `time`, s.
     ///
     /// # Errors
     /// [`AtmosphereError::BelowSurface`] for a negative altitude; [`AtmosphereError::Value`] for a latitude
@@ -60,7 +61,7 @@ impl<'a> AtmospherePoint<'a> {
     }
 }
 
-/// Returns the upward unit normal of the ellipsoid, axes of `F`.
+/// Returns the upward unit normal of the ellipsoid in Earth-fixed axes `F`.
 fn up(geodetic: &Geodetic) -> Vector3<f64> {
     let ((slat, clat), (slon, clon)) = (geodetic.latitude.sin_cos(), geodetic.longitude.sin_cos());
     // (cos φ cos λ, cos φ sin λ, sin φ)

@@ -35,7 +35,8 @@ impl SpaceWeatherTable {
     /// if a run needs the value.
     ///
     /// # Errors
-    /// [`AtmosphereError::Table`] with the number of the line.
+    /// [`AtmosphereError::Table`], with the number of the line, for a missing column or row, an invalid date
+    /// or a value out of range.
     pub fn from_csv(text: &str) -> Result<Self, AtmosphereError> {
         let wrong = |line: usize, problem: String| AtmosphereError::Table { line: line + 1, problem };
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());

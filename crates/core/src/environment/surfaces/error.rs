@@ -44,7 +44,7 @@ pub enum SurfaceError {
     /// The normal of a plate is zero or not finite.
     #[error("the normal of plate {plate} is {normal}; give a finite vector that is not zero", normal = list(normal))]
     Normal {
-        /// Index of the plate.
+        /// Index of the plate, counted from 0.
         plate: usize,
         /// Given normal, in the axes of the frame.
         normal: [f64; 3],
@@ -111,7 +111,7 @@ pub enum SurfaceError {
     },
 }
 
-/// Returns `value` if it is finite and not negative.
+/// Returns `value`, or an error if it is negative or not finite.
 pub(in crate::environment) fn not_negative(name: &'static str, value: f64) -> Result<f64, SurfaceError> {
     if value.is_finite() && value >= 0.0 {
         return Ok(value);

@@ -8,7 +8,9 @@ use crate::spatial::{Real, Vec3};
 /// Two opposite faces of a box, or the two ends of a cylinder, in body axes with positions from the centre of
 /// mass.
 ///
-/// A stream strikes exactly one of the two faces, because `n·u` is equal at both: `n·(w × n) = 0`.
+/// A stream strikes exactly one of the two faces, because `n·u`, with the normal `n` and the velocity `u`
+/// relative to the atmosphere, is equal at both centroids: they differ by a multiple of `n`, and
+/// `n·(w × n) = 0` for every angular velocity `w`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct FacePair<T> {
     /// Area of each face, m².
@@ -24,8 +26,8 @@ pub(super) struct FacePair<T> {
 }
 
 impl FacePair<f64> {
-    /// Creates two faces with this area, m², at a `distance` from each other, m, along a unit normal and
-    /// symmetric about `centre`, m.
+    /// Creates two faces of the given area, m², normal to a unit vector, at a `distance` from each other, m,
+    /// and symmetric about `centre`, m.
     pub(super) fn new(area: f64, distance: f64, normal: Vec3<f64>, centre: Vec3<f64>) -> Self {
         Self { area, half: 0.5 * distance, normal, centre, moment: centre.cross(normal) }
     }

@@ -11,8 +11,8 @@ use crate::model::{Frame, Geometry, Model, Visual};
 use crate::spatial::{Mat3, Vec3};
 use std::f64::consts::PI;
 
-/// Returns the surface parts of all shapes fixed to a body, in body axes with positions from the centre of
-/// mass.
+/// Returns the surface parts of all shapes fixed to the body with index `body`, in body axes with positions
+/// from the centre of mass.
 pub(super) fn parts_of_body(model: &Model, body: usize, optics: &Optics) -> Result<Parts, SurfaceError> {
     let mut parts = Parts::default();
     for (frame, visual) in model.visuals() {
@@ -82,7 +82,8 @@ impl ShapePose {
         Ok(())
     }
 
-    /// Adds the two faces normal to axis `k`, at a `distance` from each other, m.
+    /// Adds the two faces of the given area, m², normal to axis `k` of the shape, at a `distance` from each
+    /// other, m.
     fn add_face_pair(&self, k: usize, area: f64, distance: f64, parts: &mut Parts) {
         parts.face_pairs.push(FacePair::new(area, distance, self.axis(k), self.pos));
     }

@@ -3,7 +3,8 @@
 use crate::environment::wrenches::WrenchLanes;
 use crate::spatial::{Real, Sym3, Vec3};
 
-/// Sums for drag: the force on a part at `c` is `-½ ρ C_D a u` with `u = v + w × c`, where `a` is in m³/s.
+/// Sums for drag. The force on a part at `c` is `-½ ρ C_D a u` with `u = v + w × c`, where `a`, m³/s, is the
+/// volume of air that the part sweeps per second, and `v`, `w` and `c` are defined at [`Self::wrench`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DragSums<S> {
     /// Sum `Σ a`, m³/s.
@@ -23,7 +24,7 @@ impl<S: Real> DragSums<S> {
         Self { sum: o, first: Vec3::zero(), second: Sym3::diagonal(o), torque: Vec3::zero() }
     }
 
-    /// Adds the term `a` of a part at the position `c`.
+    /// Adds the term `a`, m³/s, of a part at the position `c`, m.
     #[inline(always)]
     pub(super) fn add(&mut self, a: S, c: Vec3<S>) {
         let moment = c * a;
@@ -33,8 +34,8 @@ impl<S: Real> DragSums<S> {
     }
 
     /// Returns the wrench for `½ ρ C_D = 1`: `F = -Σ a (v + w × c)`, `T = T₀ - Σ a c × (v + w × c)`, where
-    /// `T₀` is the field `torque`, and `v` and `w` are the linear and angular velocity relative to the
-    /// atmosphere.
+    /// `T₀` is the field `torque`, `v` and `w` are the velocity of the centre of mass and the angular
+    /// velocity, both relative to the atmosphere, and `c` is the position of a part from the centre of mass.
     #[inline(always)]
     pub(super) fn wrench(&self, v: Vec3<S>, w: Vec3<S>) -> WrenchLanes<S> {
         // Σ a c × (w × c) = Σ a [(c·c) w - (c·w) c]
@@ -47,8 +48,8 @@ impl<S: Real> DragSums<S> {
     }
 }
 
-/// Sums for radiation pressure: the force on a part at `c` is `-a ŝ` along the light and `-b n` against the
-/// normal.
+/// Sums for radiation pressure. At a pressure of 1, the force on a part at `c` is the sum of `-a ŝ`, along
+/// the light, and `-b n`, against the normal `n`; the unit vector `ŝ` points to the Sun.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PressureSums<S> {
     /// Sum `Σ a`, m².

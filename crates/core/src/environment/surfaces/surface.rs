@@ -20,8 +20,8 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// Creates a cannonball: a surface with the same area, m², and coefficients in all directions, on which
-    /// all forces act at the centre of mass.
+    /// Creates a cannonball: a surface whose cross-section, m², and coefficients are equal in all directions.
+    /// All forces act at the centre of mass.
     ///
     /// # Errors
     /// [`SurfaceError::Value`] for a negative or non-finite value, and for a reflectivity above 2.
@@ -41,9 +41,9 @@ impl Surface {
     /// Derives the surface of a body from its shapes: boxes, cylinders, capsules and spheres.
     ///
     /// # Errors
-    /// [`SurfaceError::UnknownBody`], [`SurfaceError::NoShape`] for a body without shapes,
-    /// [`SurfaceError::Mesh`] and [`SurfaceError::Shape`] for other shapes, and [`SurfaceError::Value`] for
-    /// an invalid drag coefficient.
+    /// [`SurfaceError::UnknownBody`] if `model` has no body with this index, [`SurfaceError::NoShape`] for a
+    /// body without shapes, [`SurfaceError::Mesh`] and [`SurfaceError::Shape`] for other shapes, and
+    /// [`SurfaceError::Value`] for an invalid drag coefficient.
     pub fn from_shapes(
         model: &Model,
         body: usize,
@@ -63,8 +63,10 @@ impl Surface {
     /// Normals and centroids are in the axes of `frame`, centroids relative to its origin.
     ///
     /// # Errors
-    /// [`SurfaceError::UnknownBody`], [`SurfaceError::WrongLength`], [`SurfaceError::NoPlates`],
-    /// [`SurfaceError::Normal`], [`SurfaceError::Value`].
+    /// [`SurfaceError::WrongLength`] if the numbers of areas, normals and centroids differ,
+    /// [`SurfaceError::NoPlates`] if there are none, [`SurfaceError::UnknownBody`] if `model` does not have
+    /// the body of `frame`, [`SurfaceError::Normal`] for a normal that is zero or not finite, and
+    /// [`SurfaceError::Value`] for an invalid area, centroid or drag coefficient.
     pub fn plates(
         model: &Model,
         frame: &Frame,
@@ -101,7 +103,7 @@ impl Surface {
     }
 }
 
-/// Returns the node of a body.
+/// Returns the node of the body with index `body`, or an error if there is none.
 fn node_of(model: &Model, body: usize) -> Result<&Node, SurfaceError> {
     let count = model.nodes().len();
     model.nodes().get(body).ok_or(SurfaceError::UnknownBody { body: body.into(), count })
