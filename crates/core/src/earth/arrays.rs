@@ -10,7 +10,8 @@ fn check_length(name: &'static str, got: usize, expected: usize) -> Result<(), E
     if got == expected { Ok(()) } else { Err(EarthError::WrongLength { name, expected, got }) }
 }
 
-/// Fills row `index` of the result with `at(index, time)`.
+/// Fills each row of `rows` with `at(index, time)`, where `index` is the row's index and `time` its instant,
+/// s.
 fn fill_rows<const N: usize>(
     times: &[f64],
     rows: &mut [f64],
@@ -24,7 +25,8 @@ fn fill_rows<const N: usize>(
 }
 
 impl Earth {
-    /// Computes the rotations `rot_fi` (T, 3, 3), row-major, at the simulation times `times` (T,), s.
+    /// Computes the rotations `rot_fi` (T, 3, 3) from `I` to `F`, row-major, at the simulation times `times`
+    /// (T,), s.
     ///
     /// # Errors
     /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.
@@ -37,7 +39,8 @@ impl Earth {
         })
     }
 
-    /// Computes the angular velocities (T, 3) of `F` with respect to `I`, axes of `I`, rad/s.
+    /// Computes the angular velocities (T, 3) of `F` with respect to `I`, axes of `I`, rad/s, at the
+    /// simulation times `times` (T,), s.
     ///
     /// # Errors
     /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.
@@ -45,7 +48,8 @@ impl Earth {
         fill_rows(times, rates, |_, t| self.covers(t).map(|()| self.angular_velocity(t).into()))
     }
 
-    /// Computes the positions of the Sun (T, 3) from the Earth's centre, axes of `I`, m.
+    /// Computes the positions of the Sun (T, 3) from the Earth's centre, axes of `I`, m, at the simulation
+    /// times `times` (T,), s.
     ///
     /// # Errors
     /// The errors of [`Earth::sun`], and [`EarthError::WrongLength`] for arrays of the wrong length.
@@ -53,7 +57,8 @@ impl Earth {
         fill_rows(times, positions, |_, t| Ok(self.sun(t)?.into()))
     }
 
-    /// Computes the positions of the Moon (T, 3) from the Earth's centre, axes of `I`, m.
+    /// Computes the positions of the Moon (T, 3) from the Earth's centre, axes of `I`, m, at the simulation
+    /// times `times` (T,), s.
     ///
     /// # Errors
     /// The errors of [`Earth::moon`], and [`EarthError::WrongLength`] for arrays of the wrong length.
@@ -61,7 +66,8 @@ impl Earth {
         fill_rows(times, positions, |_, t| Ok(self.moon(t)?.into()))
     }
 
-    /// Converts positions (T, 3), m, from axes of `I` to axes of `F`.
+    /// Converts positions (T, 3), m, at the simulation times `times` (T,), s, from axes of `I` to axes of
+    /// `F`.
     ///
     /// # Errors
     /// The errors of [`Earth::covers`], and [`EarthError::WrongLength`] for arrays of the wrong length.
@@ -71,7 +77,7 @@ impl Earth {
     }
 
     /// Computes latitude (rad), longitude (rad) and altitude (m) on WGS84, (T, 3), from positions in axes of
-    /// `I`, (T, 3), m.
+    /// `I`, (T, 3), m, at the simulation times `times` (T,), s.
     ///
     /// # Errors
     /// The errors of [`Earth::covers`] and [`Geodetic::of`], and [`EarthError::WrongLength`] for arrays of

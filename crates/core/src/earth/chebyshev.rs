@@ -10,10 +10,11 @@ const BLOCK: usize = 32;
 type Coefficients<const N: usize> = [Vector3<f64>; N];
 type Block<const N: usize> = Box<[OnceLock<Coefficients<N>>; BLOCK]>;
 
-/// Vector function of time as Chebyshev series with `N` coefficients on intervals, each computed on first
-/// use.
+/// Interpolation of a vector function of time by Chebyshev series with `N` coefficients, one series per
+/// interval.
 ///
-/// The series of an interval depends only on the function, so results do not depend on earlier calls.
+/// The series of an interval is computed on first use. It depends only on the function, so results do not
+/// depend on earlier calls.
 #[derive(Clone, Debug)]
 pub(super) struct PiecewiseChebyshev<const N: usize> {
     start: f64,
@@ -54,8 +55,8 @@ impl<const N: usize> PiecewiseChebyshev<N> {
         series[0] + b1 * x - b2
     }
 
-    /// Returns the value of the interpolated function at `t`, s, as [`Self::value`] does, and its time
-    /// derivative, 1/s.
+    /// Returns the value of the interpolated function at `t`, s, as [`Self::value`] does, and its derivative
+    /// with respect to time, per second.
     pub(super) fn with_rate(
         &self,
         t: f64,

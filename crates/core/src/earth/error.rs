@@ -22,7 +22,7 @@ pub enum EarthError {
         text: String,
     },
     /// A quantity depends on the date, but no epoch is given.
-    #[error("{what} requires an epoch; set 'epoch', for example to '2024-03-01T12:00:00 UTC'")]
+    #[error("{what} requires an epoch, but none is given; set 'epoch', for example to '2024-03-01T12:00:00 UTC'")]
     NeedsEpoch {
         /// Name of the quantity.
         what: &'static str,
@@ -63,7 +63,7 @@ pub enum EarthError {
         name: &'static str,
         /// Given value.
         value: f64,
-        /// Number of the row of the table, counted from 0; `None` for constant parameters.
+        /// Index of the row of the table, counted from 0; `None` for constant parameters.
         row: Option<usize>,
         /// Accepted range.
         expected: &'static str,

@@ -35,8 +35,8 @@ pub struct Geodetic {
 const NEAREST: f64 = 50e3;
 
 impl Geodetic {
-    /// Computes the geodetic coordinates of a position relative to the Earth's centre, in Earth-fixed axes,
-    /// m.
+    /// Computes the geodetic coordinates on `ellipsoid` of a position relative to the Earth's centre, in
+    /// Earth-fixed axes `F`, m.
     ///
     /// # Errors
     /// [`EarthError::NearCentre`] if the position is within 50 km of the centre, and
@@ -74,7 +74,8 @@ impl Geodetic {
         Ok(Self { latitude, longitude, altitude })
     }
 
-    /// Returns the position from the Earth's centre, axes of `F`, m.
+    /// Returns the position from the Earth's centre, in Earth-fixed axes `F`, m, of these coordinates on
+    /// `ellipsoid`.
     pub fn position(&self, ellipsoid: &Ellipsoid) -> Vector3<f64> {
         let Ellipsoid { radius: a, flattening: f } = *ellipsoid;
         let e2 = f * (2.0 - f);
@@ -87,7 +88,7 @@ impl Geodetic {
     }
 }
 
-/// Returns the sine and cosine of the angle with tangent `y/x`.
+/// Returns the sine and cosine of the angle from the x axis to the point `(x, y)`.
 fn unit(y: f64, x: f64) -> (f64, f64) {
     let r = (x * x + y * y).sqrt();
     (y / r, x / r)

@@ -52,8 +52,8 @@ enum Rotation {
 }
 
 impl Earth {
-    /// Creates an Earth that rotates uniformly about z of `I`: by `angle`, rad, at time zero, and with the
-    /// rate `rate`, rad/s.
+    /// Creates an Earth that rotates uniformly about z of `I` at `rate`, rad/s; at time zero, `F` is rotated
+    /// from `I` by `angle`, rad.
     pub fn about_z(angle: f64, rate: f64) -> Self {
         Self { rotation: Rotation::AboutZ { angle, rate, inertial: None }, sun_moon: None }
     }
@@ -97,8 +97,8 @@ impl Earth {
         Ok(Self { sun_moon: Some(sun_moon), ..self })
     }
 
-    /// Returns the same Earth with other inertial axes. A uniform rotation without an epoch is compatible
-    /// with any axes and does not change.
+    /// Returns the same Earth with the inertial axes `axes`. A uniform rotation without an epoch is
+    /// compatible with any axes and does not change.
     pub fn in_axes(&self, axes: Axes) -> Self {
         let rotation = match &self.rotation {
             Rotation::AboutZ { angle, rate, inertial } => {
@@ -230,8 +230,8 @@ impl Earth {
     }
 }
 
-/// Returns an error unless the simulation time `t`, s, is between `from` and `to`, between which `what` is
-/// known.
+/// Returns an error unless the simulation time `t`, s, lies between `from` and `to`, the span in which the
+/// quantity named `what` is known.
 fn check_span(what: &'static str, t: f64, epoch: Epoch, (from, to): (f64, f64)) -> Result<(), EarthError> {
     if (from..=to).contains(&t) {
         return Ok(());

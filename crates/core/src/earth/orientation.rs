@@ -26,7 +26,7 @@ pub(super) struct Orientation {
 }
 
 impl Orientation {
-    /// Creates the orientation for a run that starts at `epoch`. The pole is interpolated between the two
+    /// Creates the orientation for a run whose time zero is `epoch`. The pole is interpolated between the two
     /// simulation times `span`, s.
     pub(super) fn new(
         epoch: Epoch,
@@ -66,8 +66,8 @@ impl Orientation {
         &self.parameters
     }
 
-    /// Returns the coordinates `X, Y` of the pole and the CIO locator `s` at `t`, from precession and
-    /// nutation, rad.
+    /// Returns the coordinates `X, Y` of the pole and the locator `s` of the celestial intermediate origin
+    /// (CIO) at `t`, s, from precession and nutation, rad.
     fn pole_at(&self, t: f64) -> Vector3<f64> {
         pole(self.epoch.centuries(t))
     }
@@ -98,8 +98,8 @@ impl Orientation {
         }
     }
 
-    /// Returns the polar motion `W = R₁(-y_p) R₂(-x_p)` to second order in the angles; the locator `s'` of
-    /// the terrestrial origin (0.05 mas) is neglected.
+    /// Returns the polar motion `W = R₁(-y_p) R₂(-x_p)` at `t`, s, to second order in the coordinates
+    /// `x_p, y_p` of the pole. The locator `s'` of the terrestrial origin (0.05 mas) is neglected.
     fn polar_motion(&self, t: f64) -> Matrix3<f64> {
         let [x, y] = self.parameters.polar_motion(t);
         let (cx, cy) = (1.0 - 0.5 * x * x, 1.0 - 0.5 * y * y);
@@ -161,8 +161,8 @@ impl PartialEq for Orientation {
     }
 }
 
-/// Returns the rotation from GCRF to the equator of the pole `X, Y`, which is `Mᵀ` of eq. 5.10 with `a = 1/(1
-/// + Z)`.
+/// Returns the rotation from GCRF to the equator of the pole `X, Y`, which is `Mᵀ` of the IERS Conventions
+/// (2010), eq. 5.10, with `a = 1/(1 + Z)`.
 fn equator(x: f64, y: f64) -> Matrix3<f64> {
     let z = (1.0 - x * x - y * y).sqrt();
     let a = 1.0 / (1.0 + z);

@@ -39,7 +39,7 @@ pub enum EarthParameters {
 /// Earth-orientation parameters at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EarthParameterRow {
-    /// Modified Julian date, UTC.
+    /// Modified Julian date of UTC, days.
     pub mjd: f64,
     /// Polar motion `x_p, y_p`, rad.
     pub polar_motion: [f64; 2],
@@ -69,7 +69,7 @@ impl EarthParameters {
 const FARTHEST_POLE: f64 = 5.0 * ARC_SECOND;
 
 impl Parameters {
-    /// Prepares the parameters for a run that starts at `epoch`.
+    /// Prepares the parameters for a run whose time zero is `epoch`.
     pub(super) fn new(given: &EarthParameters, epoch: Epoch) -> Result<Self, EarthError> {
         match given {
             EarthParameters::Constant { ut1_minus_utc, polar_motion } => {

@@ -14,7 +14,8 @@ impl EarthParameters {
     /// A `finals2000A` table ends before the first row without polar motion or UT1.
     ///
     /// # Errors
-    /// [`EarthError::Table`] with the number of the line.
+    /// [`EarthError::Table`], with the number of the line, for an empty file, another CSV header or a row
+    /// that cannot be parsed.
     pub fn read(text: &str) -> Result<Self, EarthError> {
         let is_data = |line: &&(usize, &str)| !line.1.trim().is_empty() && !line.1.starts_with('#');
         let lines: Vec<(usize, &str)> = text.lines().enumerate().collect();
@@ -76,8 +77,8 @@ fn csv_row(line: &str) -> ParsedRow {
     }
 }
 
-/// Parses a row of `finals2000A`, with the MJD in columns 8-15, polar motion in 19-27 and 38-46, and UT1 -
-/// UTC in 59-68.
+/// Parses a row of `finals2000A`, with the MJD in columns 8-15, polar motion in 19-27 and 38-46, and
+/// `UT1 - UTC` in 59-68.
 fn finals_row(line: &str) -> ParsedRow {
     let part = |from: usize, to: usize| line.get(from - 1..to.min(line.len())).unwrap_or("");
     let (x, y, ut1) = (part(19, 27), part(38, 46), part(59, 68));

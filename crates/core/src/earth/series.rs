@@ -7,6 +7,7 @@ use super::precession::polynomial;
 /// multiple `k` are multiplied by `(1 - 0.002516 T)` to the power `|k|`.
 pub(super) struct Series {
     pub(super) polynomial: &'static [f64],
+    /// Multiples of the arguments in `θ`, and the coefficients `a` and `b`, for each term.
     pub(super) terms: &'static [([i8; 8], [f64; 2])],
 }
 

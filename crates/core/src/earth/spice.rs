@@ -7,8 +7,8 @@ use super::error::EarthError;
 /// Largest accepted coefficient, km. It is far beyond the planets, but small enough that no series overflows.
 const FARTHEST_KM: f64 = 1e12;
 
-/// Positions of one body relative to another, as Chebyshev series on intervals of equal length (types 2 and
-/// 3).
+/// Positions of one body relative to another, as Chebyshev series on intervals of equal length (SPK types 2
+/// and 3).
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpiceSegment {
     /// Sign with which the positions enter the sum of segments: 1 or -1.
@@ -17,7 +17,7 @@ pub struct SpiceSegment {
     pub start: f64,
     /// Length of an interval, s.
     pub length: f64,
-    /// Number of coefficients of a series.
+    /// Number of coefficients of one component in one interval.
     pub count: usize,
     /// Coefficients of the three components, km: (3, intervals, count).
     pub coefficients: Vec<f64>,

@@ -141,15 +141,15 @@ pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
         let [least, most] = [1e-8, 1e-5].map(|ratio| short(ratio * radius.powi(3)));
         let radius = short(radius);
         let expected = format!(
-            "{least} to {most} m³/s² for a radius of {radius} m, a density of about 40 to 40 000 kg/m³"
+            "{least} to {most} m³/s² for a radius of {radius} m, which is a density of about 40 to 40 000 kg/m³"
         );
         return Err(GravityError::Units { name: "mu", value: mu, expected });
     }
     Ok(())
 }
 
-/// Describes an unnormalised `C20` of the Earth, -1.08e-3, which is √5 times the normalised value. Returns
-/// `None` for other values and other planets.
+/// Returns a description of `C20` if it is an unnormalised coefficient of the Earth, about -1.08e-3, which is
+/// √5 times the normalised value; `None` for other values and other planets.
 fn unnormalised_earth(mu: f64, series: &Series) -> Option<String> {
     let [c20, _] = series.get(2, 0);
     (is_earth(mu) && (0.9e-3..1.3e-3).contains(&c20.abs())).then(|| {

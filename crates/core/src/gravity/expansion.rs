@@ -39,7 +39,7 @@ impl Expansion {
         Sym3::of(&self.gradient) * d
     }
 
-    /// Returns true if all these positions are within [`LINEAR_RADIUS`] of the point of expansion.
+    /// Returns true if the positions in all lanes are within [`LINEAR_RADIUS`] of the point of expansion.
     #[inline(always)]
     pub(super) fn covers<S: Real>(&self, positions: Vec3<S>) -> bool {
         is_near(Vec3::of(&self.at), positions)
@@ -63,7 +63,7 @@ pub(super) fn is_near<S: Real>(a: Vec3<S>, b: Vec3<S>) -> bool {
     !S::any(S::of(LINEAR_RADIUS * LINEAR_RADIUS).less(d.dot(d)))
 }
 
-/// Cache of the last four expansions. Each depends only on its position.
+/// Cache of the last four expansions of a field. Each depends only on its position.
 #[derive(Debug, Default)]
 pub(super) struct ExpansionCache(Mutex<[Option<Expansion>; 4]>);
 

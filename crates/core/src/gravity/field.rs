@@ -139,12 +139,12 @@ impl GravityField {
         self.radius
     }
 
-    /// Returns the highest degree.
+    /// Returns the highest degree of the terms of the field.
     pub fn degree(&self) -> usize {
         self.degree
     }
 
-    /// Returns the highest order; a field of order 0 is symmetric about the z axis of `F`.
+    /// Returns the highest order of the terms; a field of order 0 is symmetric about the z axis of `F`.
     pub fn order(&self) -> usize {
         self.order
     }
@@ -186,7 +186,7 @@ impl GravityField {
     ///
     /// # Errors
     /// [`GravityError::WrongLength`] for arrays of the wrong length; otherwise the first error of
-    /// [`GravityField::acceleration`], after the rows before it were written.
+    /// [`GravityField::acceleration`]. The rows before that error have then been written.
     pub fn accelerations(&self, positions: &[f64], out: &mut [f64]) -> Result<(), GravityError> {
         self.at_each(positions, out, 3, |r, row| {
             row.copy_from_slice(self.acceleration(r)?.as_slice());

@@ -7,7 +7,8 @@ use super::series::Series;
 /// Reads the text of a `.gfc` file, up to `degree` if it is given; `file` is the name used in error messages.
 ///
 /// # Errors
-/// [`GravityError`] with the file and the line.
+/// [`GravityError`], with the file and the line, for an invalid header or row, missing or repeated
+/// coefficients, a field that varies with time, and coefficients that are not normalised or implausible.
 ///
 /// Source: Barthelmes and Förste, The ICGEM-format, GFZ Potsdam 2011.
 pub(super) fn read(file: &str, text: &str, degree: Option<usize>) -> Result<Coefficients, GravityError> {
@@ -138,8 +139,8 @@ fn index_of(word: Option<&&str>) -> Option<usize> {
     word?.parse().ok()
 }
 
-/// Parses a number with a C or Fortran exponent; returns `None` for any other text and for numbers that are not
-/// finite.
+/// Parses a number with a C or Fortran exponent; returns `None` for any other text and for numbers that are
+/// not finite.
 fn number(word: &str) -> Option<f64> {
     word.replace(['d', 'D'], "e").parse().ok().filter(|x: &f64| x.is_finite())
 }

@@ -21,8 +21,8 @@ pub(crate) struct FieldPoint {
 /// Gravity near a robot at one instant, excluding the planet's point mass, axes of `I`.
 ///
 /// Zonal fields in closed form are expanded about the robot. Other fields are expanded about the nearest
-/// point of a grid fixed in the planet or, if the robot travels farther than the grid spacing during the step,
-/// about the robot. The result depends only on the instant and the step, so a run that resumes from a
+/// point of a grid fixed in the planet or, if the robot travels farther than the grid spacing during the
+/// step, about the robot. The result depends only on the instant and the step, so a run that resumes from a
 /// checkpoint has identical bits.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalField<'a> {
@@ -88,8 +88,8 @@ impl LocalField<'_> {
         Ok(field + third)
     }
 
-    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s². If the expansion covers the bodies, the result is `G ρ` with
-    /// the gradient `G` at the centre of the expansion.
+    /// Returns `g(r_ref + ρ) - g(r_ref)`, m/s², with `ρ` (`offset`) as in [`Self::acceleration`]. If the
+    /// expansion covers the bodies, the result is `G ρ` with the gradient `G` at the centre of the expansion.
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`], and the errors of third bodies.
@@ -110,7 +110,7 @@ impl LocalField<'_> {
         Ok(field + third)
     }
 
-    /// Returns the gradient `∂g/∂r` at `r_ref + ρ`, 1/s².
+    /// Returns the gradient `∂g/∂r` at `r_ref + ρ`, 1/s², with `ρ` (`offset`) as in [`Self::acceleration`].
     ///
     /// # Errors
     /// [`GravityError::BelowSurface`], and the errors of third bodies.
@@ -131,7 +131,8 @@ impl LocalField<'_> {
         }
     }
 
-    /// Returns the expansion of the planet's field that covers all these positions, if there is one.
+    /// Returns the expansion of the planet's field that covers the positions in all lanes; `None` if there is
+    /// none.
     #[inline(always)]
     fn expansion<S: Real>(&self, at: Vec3<S>) -> Option<&Expansion> {
         // no loop, because an iterator would not be inlined
@@ -152,7 +153,7 @@ impl LocalField<'_> {
         Ok(rot_fi.transpose_mul(field.acceleration(&(*rot_fi * at).to_nalgebra())?.into()))
     }
 
-    /// Returns the planet's field at one position less the field at the reference, m/s².
+    /// Returns the planet's field at `offset` from the reference, m, less the field at the reference, m/s².
     fn field_difference(&self, offset: Vec3<f64>) -> Result<Vec3<f64>, GravityError> {
         let there = self.r_ref + offset;
         match self.expansion(self.r_ref).filter(|near| near.covers(there)) {

@@ -99,7 +99,7 @@ impl Gravity {
         self.field.is_none() && self.third_bodies.is_empty()
     }
 
-    /// Returns the planet's field without its point mass, if the gravity has one.
+    /// Returns the planet's field without its point mass; `None` if the gravity has no such field.
     pub fn field(&self) -> Option<&Arc<GravityField>> {
         self.field.as_ref()
     }
@@ -109,8 +109,8 @@ impl Gravity {
         &self.third_bodies
     }
 
-    /// Returns the epoch at time zero, if it is known. It is the epoch of the Earth with which the field
-    /// rotates or, if there is no field, the epoch of the positions of Sun and Moon.
+    /// Returns the epoch at time zero; `None` if it is not known. It is the epoch of the Earth with which the
+    /// field rotates or, if there is no field, the epoch of the positions of Sun and Moon.
     pub fn epoch(&self) -> Option<Epoch> {
         self.earth.as_ref().and_then(|earth| earth.epoch())
     }
@@ -131,7 +131,8 @@ impl Gravity {
     /// s; axes of `I`.
     ///
     /// # Errors
-    /// [`GravityError`] below the surface of a planet with a field, and the errors of third bodies.
+    /// [`GravityError::BelowSurface`] below the surface of a planet with a field, and the errors of third
+    /// bodies.
     #[inline]
     pub fn acceleration(&self, t: f64, r: &Vector3<f64>) -> Result<Vector3<f64>, GravityError> {
         let mut g = point_mass(self.mu, r);

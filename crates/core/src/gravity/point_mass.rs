@@ -3,7 +3,8 @@
 use crate::spatial::{Real, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// Returns the acceleration `g = -μ r / |r|³`, m/s², at position `r`, m, in the axes of `r`.
+/// Returns the acceleration `g = -μ r / |r|³`, m/s², of a point mass with the gravitational parameter `mu`,
+/// `μ`, m³/s², at position `r`, m, in the axes of `r`.
 ///
 /// All code uses this function, so that the residual acceleration of a reference in free fall is exactly
 /// zero.
@@ -13,7 +14,8 @@ pub(crate) fn point_mass(mu: f64, r: &Vector3<f64>) -> Vector3<f64> {
     r * (-mu / (r2 * r2.sqrt()))
 }
 
-/// Returns the gradient `∂g/∂r = μ/|r|³ (3 r̂ r̂ᵀ - 1)`, 1/s², at position `r`, m.
+/// Returns the gradient `∂g/∂r = μ/|r|³ (3 r̂ r̂ᵀ - 1)`, 1/s², of the field [`point_mass`] at position `r`,
+/// m, with the unit matrix `1`.
 pub(crate) fn point_mass_gradient(mu: f64, r: &Vector3<f64>) -> Matrix3<f64> {
     let r2 = r.norm_squared();
     (r * r.transpose() * (3.0 / r2) - Matrix3::identity()) * (mu / (r2 * r2.sqrt()))
@@ -28,7 +30,8 @@ pub(crate) fn point_mass_gradient(mu: f64, r: &Vector3<f64>) -> Matrix3<f64> {
 /// `-(μ/r³) (ρ - f r_ref)`, `f = q (3 + 3q + q²)/(1 + (1 + q)^{3/2})`, `q = ρ·(ρ + 2 r_ref)/r_ref²`,
 /// `r² = r_ref² (1 + q)`.
 ///
-/// Source: Battin, AIAA 1999, chapter 8, the disturbing function (Encke's form).
+/// Source: Battin, An Introduction to the Mathematics and Methods of Astrodynamics, AIAA 1999, chapter 8, the
+/// disturbing function (Encke's form).
 #[inline(always)]
 pub(crate) fn tide<S: Real>(mu: f64, r_ref: &Vec3<f64>, offset: Vec3<S>) -> (Vec3<S>, S) {
     let (s, r_ref_s) = (S::of, Vec3::<S>::of(r_ref));
@@ -47,8 +50,8 @@ pub(crate) fn tide<S: Real>(mu: f64, r_ref: &Vec3<f64>, offset: Vec3<S>) -> (Vec
     ((offset - r_ref_s * f) * (s(-mu) * a * inverse), distance)
 }
 
-/// Returns true if `mu`, m³/s², is that of the Earth in any published version, including the rounded value
-/// 4e14. No other planet has a similar value.
+/// Returns true if `mu`, m³/s², is within 1 % of the Earth's gravitational parameter, which includes the
+/// rounded value 4e14. No other planet has a similar value.
 pub(crate) fn is_earth(mu: f64) -> bool {
     (mu / 3.986_004_418e14 - 1.0).abs() < 1e-2 // as in onorbit_rs/visuals/earth_shape.py
 }

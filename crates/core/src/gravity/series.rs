@@ -2,7 +2,8 @@
 
 /// Fully normalised series `Σ (c V + s W)` over degrees `n` and orders `m ≤ n`.
 ///
-/// `V + i W = (R/r)ⁿ⁺¹ P̄nm(sin φ) exp(i m λ)`, with lengths in units of `R`.
+/// `V + i W = (R/r)ⁿ⁺¹ P̄nm(sin φ) exp(i m λ)`, with latitude `φ`, longitude `λ`, distance `r` and lengths in
+/// units of the reference radius `R`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Series {
     degree: usize,
@@ -10,7 +11,7 @@ pub(super) struct Series {
     terms: Vec<[f64; 2]>,
 }
 
-/// Axis along which a derivative is taken.
+/// Axis of differentiation.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Axis {
     X,
@@ -50,7 +51,8 @@ impl Series {
         all.filter(|&(n, m)| self.get(n, m) != [0.0; 2]).map(|(_, m)| m).max().unwrap_or(0)
     }
 
-    /// Returns the derivative along an axis, which is a series with one degree more.
+    /// Returns the derivative with respect to the coordinate along an axis. It is a series with one degree
+    /// more.
     ///
     /// With `Z = V + i W`: `∂z Znm = -(n-m+1) Zn+1,m`, `(∂x + i ∂y) Znm = -Zn+1,m+1`,
     /// `(∂x - i ∂y) Znm = (n-m+2)(n-m+1) Zn+1,m-1`; in normalised form, the factors are square roots of

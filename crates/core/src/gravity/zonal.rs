@@ -49,8 +49,8 @@ impl Zonal {
         (up * dot(&c, &p[1..]) - axial) * (self.mu / (distance * distance))
     }
 
-    /// Returns `g`, m/s², and its gradient `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂ ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂
-    /// r̂ᵀ - P''n ẑ ẑᵀ]`, 1/s².
+    /// Returns the acceleration `g`, m/s², and its gradient, 1/s²: `∂g/∂r = (μ/r³) Σ cn [P'n+1 1 + P''n+1 (r̂
+    /// ẑᵀ + ẑ r̂ᵀ) - P''n+2 r̂ r̂ᵀ - P''n ẑ ẑᵀ]` with the unit matrix `1`.
     pub(super) fn gradient(&self, r: &Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {
         let (c, up, u, distance) = self.at(r);
         let (p, pp) = (first(u), second(u));

@@ -4,7 +4,7 @@ use crate::number_text::{count, indices, list, short};
 use crate::orbit::OrbitError;
 use crate::spatial::SplineError;
 
-/// Errors of references that are invalid or cannot be evaluated.
+/// Errors of references: invalid arguments, or a reference that cannot be evaluated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ReferenceError {

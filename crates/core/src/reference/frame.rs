@@ -60,8 +60,8 @@ pub struct Target {
 }
 
 impl Target {
-    /// Creates a target with the pose `(rot_wt, pos_w)`, m, at simulation time zero, and with `velocity`,
-    /// m/s, and angular velocity `spin`, rad/s, in W axes.
+    /// Creates a target with the pose in W `(rot_wt, pos_w)`, m, at simulation time zero, and with
+    /// `velocity`, m/s, and angular velocity `spin`, rad/s, in W axes.
     ///
     /// # Errors
     /// [`ReferenceError::NotFinite`] for numbers that are not finite; [`ReferenceError::NotARotation`] for
@@ -119,10 +119,12 @@ pub(super) fn lvlh_motion(orbit: &dyn Orbit, t: f64) -> Result<TaskSample<f64>, 
     })
 }
 
-/// Returns the time derivative, rad/s², of the x component of L's angular velocity, which is `rate`, rad/s,
-/// at time `t`, s. Because it depends on the jerk of the orbit, it is computed by finite differences with
-/// steps of 1e-3 rad along the orbit, or less near the ends of its time span; 0 if the orbit has no frames
-/// near `t`.
+/// Returns the time derivative, rad/s², of the x component of L's angular velocity at time `t`, s, when the
+/// angular velocity is `rate`, rad/s.
+///
+/// The derivative depends on the jerk of the orbit. It is therefore computed by finite differences with steps
+/// of 1e-3 rad along the orbit, or less near the ends of its time span. The result is 0 if the orbit has no
+/// frames near `t`.
 ///
 /// With the component `x_k` at `t + k h`, `ẋ = [8 (x₁ − x₋₁) − (x₂ − x₋₂)]/12h`, and at an end
 /// `ẋ = ±(4 x_±1 − x_±2 − 3 x₀)/2h`.

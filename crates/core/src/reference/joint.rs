@@ -28,8 +28,8 @@ pub trait JointPath: Send + Sync + Debug {
     /// Returns the number of joints.
     fn count(&self) -> usize;
 
-    /// Computes the desired motion `t` seconds after the start of the path. The first positions are held
-    /// before the start, and the last positions after the end.
+    /// Writes to `out` the desired motion `t` seconds after the start of the path. The first positions are
+    /// held before the start, and the last positions after the end.
     fn sample(&self, t: f64, out: &mut JointSample);
 
     /// Returns the time at which the path comes to rest, s. It is 0 for a path that never moves and infinity

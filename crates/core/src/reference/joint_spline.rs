@@ -13,11 +13,11 @@ pub struct JointSpline {
 }
 
 impl JointSpline {
-    /// Creates the motion from rest to rest through `points` (K, n), rad or m, with or without stops at the
-    /// inner points.
+    /// Creates the motion of `count`, n, joints from rest to rest through `points` (K, n), rad or m. The
+    /// joints also stop at the inner points if `stops` is true.
     ///
-    /// If limits are given, one per joint, they determine the times. With stops, each piece takes the
-    /// shortest time that respects the limits. Without stops, the times of all pieces are scaled by a common
+    /// If limits are given, one per joint, they determine the times. With stops, each piece has the shortest
+    /// duration that respects the limits. Without stops, the times of all pieces are scaled by a common
     /// factor such that the whole path respects the limits.
     ///
     /// # Errors
@@ -79,9 +79,9 @@ impl JointSpline {
         Self::waypoints(start.len(), &points, timing, true)
     }
 
-    /// Creates the spline through samples of a motion: `positions` (K, n) at `times`, s, with their `rates`
-    /// (K, n) if known. The first positions are held before the first time, and the last positions after the
-    /// last time.
+    /// Creates the spline through samples of the motion of `count`, n, joints: `positions` (K, n), rad or m,
+    /// at `times` (K,), s, and `rates` (K, n), rad/s or m/s, or `None` if the rates are not known. The first
+    /// positions are held before the first time, and the last positions after the last time.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, or times

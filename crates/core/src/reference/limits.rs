@@ -19,8 +19,9 @@ const PEAK_RATE: f64 = 1.875;
 /// `u = ½ ± √3/6`.
 const PEAK_ACCELERATION: f64 = 5.773_502_691_896_258;
 
-/// Number of instants per piece at which peaks are searched. Peaks between these instants exceed the peaks
-/// found by a fraction of less than [`MARGIN`]; the result is therefore increased by this fraction.
+/// Number of intervals into which each piece is divided in the search for peaks. Peaks between the instants
+/// of the search exceed the peaks found by a fraction of less than [`MARGIN`]; the result is therefore
+/// increased by this fraction.
 const LOOKS: usize = 400;
 const MARGIN: f64 = 1e-4;
 
@@ -28,8 +29,8 @@ impl RateLimit {
     /// No limit on rate and acceleration.
     pub const NONE: Self = Self { rate: f64::INFINITY, acceleration: f64::INFINITY };
 
-    /// Returns the shortest duration, s, of the quintic over the distance `d`: `max(15/8 d/v, √(10/√3 d/a))`
-    /// for the limits `v` and `a`.
+    /// Returns the shortest duration, s, of the quintic over the distance `d` (`distance`), m or rad:
+    /// `max(15/8 d/v, √(10/√3 d/a))` with the limits `v` of the rate and `a` of the acceleration.
     pub fn time_for(&self, distance: f64) -> f64 {
         (PEAK_RATE * distance / self.rate).max((PEAK_ACCELERATION * distance / self.acceleration).sqrt())
     }
@@ -48,7 +49,7 @@ impl RateLimit {
     }
 
     /// Returns the factor by which the duration of a motion with the peak values `rate` and `acceleration`
-    /// must increase. A factor `k` divides rates by `k` and accelerations by `k²`.
+    /// must be multiplied to respect the limits. A factor `k` divides rates by `k` and accelerations by `k²`.
     fn stretch(&self, rate: f64, acceleration: f64) -> f64 {
         (rate / self.rate).max((acceleration / self.acceleration).sqrt())
     }
@@ -73,8 +74,8 @@ impl TaskLimits {
         self.angular.check(["angular_speed", "angular_acceleration"])
     }
 
-    /// Returns the factor by which the duration of `path` must increase to respect the limits. The path is
-    /// smooth between successive `times`, s.
+    /// Returns the factor by which the duration of `path` must be multiplied to respect the limits; it is
+    /// below 1 for a path that may be faster. The path is smooth between successive `times`, s.
     pub fn stretch(&self, path: &dyn TaskPath, times: &[f64]) -> f64 {
         let peak = instants(times).map(|t| path.sample(t)).fold(0.0, |peak: f64, now| {
             let (v, a) = (now.velocity, now.acceleration);
@@ -96,8 +97,8 @@ pub(super) fn check_joint_limits(limits: &[RateLimit]) -> Result<(), ReferenceEr
     limits.iter().enumerate().try_for_each(check)
 }
 
-/// Returns the factor by which the duration of `path` must increase so that all joints respect their limits.
-/// The path is smooth between successive `times`, s.
+/// Returns the factor by which the duration of `path` must be multiplied so that all joints respect their
+/// limits; it is below 1 for a path that may be faster. The path is smooth between successive `times`, s.
 pub(super) fn joint_stretch(limits: &[RateLimit], path: &dyn JointPath, times: &[f64]) -> f64 {
     let mut now = JointSample::new(path.count());
     let mut peak = 0.0_f64;

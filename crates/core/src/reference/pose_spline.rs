@@ -11,12 +11,13 @@ pub struct PoseSpline {
 }
 
 impl PoseSpline {
-    /// Creates the motion from rest to rest through `poses`, with or without stops at the inner poses.
+    /// Creates the motion from rest to rest through `poses`. The frame also stops at the inner poses if
+    /// `stops` is true.
     ///
     /// With stops, each piece is a straight line with the attitude on a geodesic. If limits are given, they
-    /// determine the times: with stops, each piece takes the shortest time that respects the limits; without
-    /// stops, the times of all pieces are scaled by a common factor such that the whole path respects the
-    /// limits.
+    /// determine the times: with stops, each piece has the shortest duration that respects the limits;
+    /// without stops, the times of all pieces are scaled by a common factor such that the whole path respects
+    /// the limits.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two poses, times that do not increase, successive attitudes half a
@@ -56,9 +57,10 @@ impl PoseSpline {
         }
     }
 
-    /// Creates the spline through samples of a motion at `times`, s. Their `velocities` (K, 6), if known, are
-    /// linear, m/s, then angular, rad/s, in the axes of the frame in which the poses are given. The first
-    /// pose is held before the first time, and the last pose after the last time.
+    /// Creates the spline through K samples of a motion at `times` (K,), s. The `velocities` (K, 6) are
+    /// linear, m/s, then angular, rad/s, in the axes of the frame in which the poses are given, or `None` if
+    /// they are not known. The first pose is held before the first time, and the last pose after the last
+    /// time.
     ///
     /// # Errors
     /// [`ReferenceError`] for fewer than two samples, wrong lengths, numbers that are not finite, times that
@@ -88,8 +90,8 @@ impl PoseSpline {
     }
 }
 
-/// Returns the times of the waypoints, s, starting at zero, or an error for a piece without duration, whose
-/// points coincide; `time_for` returns the duration of the piece between two points.
+/// Returns the times of the waypoints, s, starting at zero, or an error for two successive points that
+/// coincide. `time_for` returns the duration of the piece between two points, s.
 pub(super) fn rest_times<P>(
     points: &[P],
     time_for: impl Fn(&P, &P) -> f64,

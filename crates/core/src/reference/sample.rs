@@ -2,8 +2,8 @@
 
 use crate::spatial::{Mat3, Motion, Real, Vec3, pose_rows};
 
-/// Desired pose of a frame D, with the velocity and acceleration at its origin, in the axes in which the
-/// reference is given (W by default).
+/// Desired pose of a frame D, and the velocity and acceleration at its origin, in the axes of the reference,
+/// which are called W in the names of the fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskSample<S> {
     /// Rotation from D axes to W axes.
@@ -17,7 +17,7 @@ pub struct TaskSample<S> {
 }
 
 impl<S: Real> TaskSample<S> {
-    /// Returns a sample at rest.
+    /// Returns a sample at rest in the given pose.
     #[inline(always)]
     pub fn at_rest(rot_wd: Mat3<S>, pos_w: Vec3<S>) -> Self {
         Self { rot_wd, pos_w, velocity: Motion::zero(), acceleration: Motion::zero() }
@@ -25,7 +25,7 @@ impl<S: Real> TaskSample<S> {
 }
 
 impl TaskSample<f64> {
-    /// Returns the sample with its numbers in every lane.
+    /// Returns the sample with its numbers copied to every lane of `S`.
     #[inline(always)]
     pub fn lift<S: Real>(&self) -> TaskSample<S> {
         let motion = |m: &Motion<f64>| Motion::new(Vec3::of(&m.linear), Vec3::of(&m.angular));

@@ -52,7 +52,8 @@ impl Screw {
     }
 
     /// Creates the motion of [`Screw::new`] with a given duration, s, or with the shortest duration that
-    /// respects limits. `ramp` is an argument of [`TimeLaw::ramped`]; `None` selects the quintic time law.
+    /// respects given limits. `ramp` is the fraction of [`TimeLaw::ramped`]; `None` selects the quintic time
+    /// law.
     ///
     /// # Errors
     /// The errors of [`Screw::new`] and of the constructors of [`TimeLaw`].

@@ -27,7 +27,7 @@ impl Hold {
 ///
 /// # Errors
 /// [`ReferenceError::WrongLength`] for outputs of the wrong length, and the errors of
-/// [`TaskReference::sample`]. Rows before the error are written.
+/// [`TaskReference::sample`]. The rows of the instants before that error have then been written.
 pub fn task_table(
     reference: &TaskReference,
     in_own_frame: bool,

@@ -43,7 +43,7 @@ impl TaskReference {
         matches!(self.frame, ReferenceFrame::Base)
     }
 
-    /// Returns the frame in which the reference is given, if it belongs to another system.
+    /// Returns the frame in which the reference is given if it belongs to another system, otherwise `None`.
     pub fn moving_frame(&self) -> Option<&MovingFrame> {
         match &self.frame {
             ReferenceFrame::System(moving) => Some(moving),
@@ -61,8 +61,9 @@ impl TaskReference {
         self.path.duration()
     }
 
-    /// Returns the distance, m, and the angle, rad, between a frame at `(rot, pos)` and the start of the
-    /// reference at the time `start`, s.
+    /// Returns the distance, m, and the angle, rad, between a frame with the pose `(rot, pos)` and the start
+    /// of the reference at the time `start`, s. The pose is relative to the axes of
+    /// [`TaskReference::sample`].
     ///
     /// # Errors
     /// The errors of [`TaskReference::sample`].

@@ -25,7 +25,7 @@ impl TimeLaw {
         Ok(Self { duration, ramp: None })
     }
 
-    /// Creates a time law with a constant rate between two ramps, each of which takes the fraction `ramp` of
+    /// Creates a time law with a constant rate between two ramps, each of which lasts the fraction `ramp` of
     /// `duration` (s).
     ///
     /// # Errors
@@ -38,9 +38,9 @@ impl TimeLaw {
         Ok(Self { ramp: Some(ramp), ..law })
     }
 
-    /// Returns the time law of shortest duration with which the path that `path_with` returns respects
-    /// `limits`. The duration has a relative accuracy of 1e-4. `ramp` is an argument of [`TimeLaw::ramped`];
-    /// `None` selects the quintic time law.
+    /// Returns the time law of shortest duration with which a path respects `limits`. `path_with` returns the
+    /// path for a given time law. The duration has a relative accuracy of 1e-4. `ramp` is the fraction of
+    /// [`TimeLaw::ramped`]; `None` selects the quintic time law.
     ///
     /// # Errors
     /// [`ReferenceError::LimitNotPositive`] for an invalid limit, [`ReferenceError::Ramp`] for an invalid
@@ -62,7 +62,7 @@ impl TimeLaw {
         self.duration
     }
 
-    /// Returns `s` and its first two time derivatives at `t`, s.
+    /// Returns `s`, 0 to 1, and its first two time derivatives, 1/s and 1/s², `t` seconds after the start.
     pub fn at(&self, t: f64) -> (f64, f64, f64) {
         match self.ramp {
             None => quintic(t, self.duration),
