@@ -1,4 +1,4 @@
-//! Reader of text files named by the user, which must be regular files within a size limit.
+//! Reader of files named by the user, which must be regular files within a size limit.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};

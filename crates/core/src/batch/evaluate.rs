@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Number of states per task. The number is constant, so that results do not depend on the number of threads.
 const CHUNK: usize = 128;
 
-/// Evaluator of kernels for one robot, which reuses the workspace for single states.
+/// Evaluator of kernels for one robot. It reuses its workspace in all calls with a single state.
 #[derive(Clone, Debug)]
 pub struct Evaluator {
     plain: Workspace<f64>,

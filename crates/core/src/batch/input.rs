@@ -7,7 +7,7 @@ use crate::number_text::{count, indices, short, unlike};
 use crate::orbit::OrbitError;
 use thiserror::Error;
 
-/// Reason why the input of a batch is invalid.
+/// Errors of batches: invalid inputs, and results that are not finite.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum InputError {
@@ -19,7 +19,7 @@ pub enum InputError {
     Ragged { name: &'static str, width: usize, got: usize },
     #[error("the number of {what} is {got}; this function requires {expected}")]
     WrongCount { what: &'static str, expected: usize, got: usize },
-    #[error("output {output} has a capacity of {got}; it must be {expected}", got = count(*got, "number"))]
+    #[error("output {output} holds {got}; it must hold {expected}", got = count(*got, "number"))]
     WrongOutput { output: usize, expected: usize, got: usize },
     #[error("the number of states is {got}; expected 1; use Evaluator::many for several states")]
     NotSingle { got: usize },
@@ -54,8 +54,8 @@ pub enum InputError {
     )]
     NeedsOrbit,
     #[error(
-        "the robot has closed loops or mimic joints, with which a rollout does not evaluate ComputedTorque; use a Simulation, or \
-         give the rollout torques"
+        "the robot has closed loops or mimic joints, but a rollout supports ComputedTorque only without them; use a \
+         Simulation, or give the rollout torques"
     )]
     LoopedTask,
     #[error("threads is 0; it must be at least 1; omit it to use all cores")]
@@ -71,7 +71,7 @@ pub enum InputError {
     NotAnEllipse { name: &'static str, state: usize, value: f64, expected: &'static str },
 }
 
-/// Largest deviation of a quaternion from unit norm.
+/// Largest accepted deviation of the norm of a quaternion from 1.
 pub(super) const UNIT_NORM: f64 = 1e-6;
 
 /// Checks the widths and the number of rows of inputs and outputs, and that the frames of the call exist.
@@ -117,7 +117,7 @@ pub(super) fn check_shapes(call: &Call<'_>, outputs: &[RowsMut<'_>]) -> Result<(
     Ok(())
 }
 
-/// Checks that the robot has a frame.
+/// Checks that the robot has a frame with the index `frame`.
 pub(super) fn check_frame(model: &Model, frame: usize) -> Result<(), InputError> {
     let count = model.frames().len();
     if frame < count { Ok(()) } else { Err(InputError::UnknownFrame { frame, count }) }
@@ -129,7 +129,8 @@ pub(super) fn check_whole(name: &'static str, data: &[f64], width: usize) -> Res
     if got.is_multiple_of(width.max(1)) { Ok(()) } else { Err(InputError::Ragged { name, width, got }) }
 }
 
-/// Checks that all numbers are finite.
+/// Checks that all numbers are finite. `width` is the number of values per state, from which the error
+/// derives the index of the state.
 pub(super) fn check_finite(name: &'static str, data: &[f64], width: usize) -> Result<(), InputError> {
     // 0 · x is 0 only for a finite x, and a single pass of additions is cheap
     let sum: f64 = data.iter().map(|x| x * 0.0).sum();

@@ -14,7 +14,8 @@ use crate::spatial::{Force, Real, pose_rows};
 /// Largest number of outputs that a kernel has.
 pub(super) const OUTPUTS: usize = 5;
 
-/// Quantity that is computed from a state. Frames are given by index.
+/// Quantity that is computed from a state. Frames are given by index. The inputs per state are `q` `(nq,)`;
+/// `v`, `a`, `tau` and `dv` `(nv,)`; and `joint_acceleration` `(n,)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kernel {
     /// `q` → `(4, 4)` pose of a frame in W.
@@ -23,7 +24,7 @@ pub enum Kernel {
     FrameVelocity(usize),
     /// `q` → `(6, nv)` Jacobian of the twist at the frame origin, W axes.
     FrameJacobian(usize),
-    /// `q` → `(nv, nv)` mass matrix.
+    /// `q` → `(nv, nv)` mass matrix, kg, kg m and kg m².
     MassMatrix,
     /// `q, v` → `(nv,)` bias forces, N and N m.
     BiasForces,
@@ -31,8 +32,8 @@ pub enum Kernel {
     InverseDynamics,
     /// `q, v, tau` → `(nv,)` generalized accelerations, m/s² and rad/s².
     ForwardDynamics,
-    /// `q, v, tau` → `(nv,)` generalized accelerations with closed loops and mimic joints, and their `(m,)` constraint
-    /// forces, N and N m.
+    /// `q, v, tau` → `(nv,)` generalized accelerations with closed loops and mimic joints, and their `(m,)`
+    /// constraint forces, N and N m.
     ConstrainedForwardDynamics,
     /// `q` → `(m,)` errors of closed loops and mimic joints, m and rad.
     LoopErrors,
@@ -61,7 +62,7 @@ pub enum Kernel {
 }
 
 impl Kernel {
-    /// Returns the names of the inputs.
+    /// Returns the names of the inputs, in the order of the arguments.
     pub fn inputs(self) -> &'static [&'static str] {
         match self {
             Self::FramePose(_) | Self::FrameJacobian(_) | Self::MassMatrix => &["q"],
@@ -77,7 +78,8 @@ impl Kernel {
         }
     }
 
-    /// Returns the row width of an input. Names of configurations begin with `q`.
+    /// Returns the row width of the input `name`: the number of values per state. Names of configurations
+    /// begin with `q`.
     pub(super) fn width(name: &str, model: &Model) -> usize {
         match name {
             "joint_acceleration" => model.joint_count(),
@@ -107,7 +109,7 @@ impl Kernel {
         }
     }
 
-    /// Returns the row widths of the outputs.
+    /// Returns the row width of each output: the number of values per state.
     pub fn outputs(self, model: &Model) -> Vec<usize> {
         let (widths, count) = self.widths(model);
         widths[..count].to_vec()
@@ -137,7 +139,7 @@ impl Kernel {
         (widths, used.len())
     }
 
-    /// Computes the outputs for one state, or for one group of SIMD lanes.
+    /// Computes the outputs for the states in the lanes of `S`, which is a single state for a scalar.
     pub(super) fn evaluate<S: Real>(
         self,
         model: &Model,

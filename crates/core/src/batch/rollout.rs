@@ -48,13 +48,14 @@ pub struct Rollout<'a> {
 }
 
 impl Rollout<'_> {
-    /// Returns the number of rows recorded per state.
+    /// Returns the number of rows recorded per run.
     pub fn rows(&self) -> usize {
         self.record_every.map_or(1, |every| self.steps / every.max(1) + 1)
     }
 
-    /// Simulates the states `q0`, `(B, nq)`, and `v0`, `(B, nv)`, and writes the recorded states to `q`,
-    /// `(B, rows, nq)`, and `v`, `(B, rows, nv)`. The results are bit-identical for any number of threads.
+    /// Simulates one run from each of the initial states `q0`, `(B, nq)`, and `v0`, `(B, nv)`, and writes the
+    /// recorded states to `q`, `(B, rows, nq)`, and `v`, `(B, rows, nv)`, where `rows` is [`Rollout::rows`].
+    /// The results are bit-identical for any number of threads.
     ///
     /// # Errors
     /// [`InputError`] for invalid inputs, and [`InputError::Diverged`] for the first state that becomes
@@ -115,8 +116,8 @@ impl Rollout<'_> {
         }
     }
 
-    /// Simulates all runs. Returns the index of the first run whose state becomes non-finite, if there is
-    /// one.
+    /// Simulates all runs. Returns the index of the first run whose state becomes non-finite; `None` if all
+    /// states remain finite.
     fn all<S: Real>(
         &self,
         model: &Model,
@@ -269,8 +270,8 @@ impl<'a, S: Real> Lanes<'a, S> {
         );
     }
 
-    /// Returns the lane of the first run whose state is not finite. A state that has become non-finite
-    /// remains so.
+    /// Returns the lane of the first run whose state is not finite, or `None`. A state that has become
+    /// non-finite remains non-finite.
     fn diverged(&self) -> Option<usize> {
         let state = only(&self.state.trees);
         let numbers = || state.q.iter().chain(&state.v);

@@ -5,13 +5,14 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Number of threads of a batch, and the flag that stops it. `Option<usize>` converts to `Threads` without a
-/// flag.
+/// Number of threads of a batch, and the flag that stops the batch. `Option<usize>` converts to `Threads`
+/// without a flag.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Threads<'a> {
     /// Number of threads, or `None` for all cores.
     pub count: Option<usize>,
-    /// Flag that another thread sets to stop the batch early. The contents of the outputs are then undefined.
+    /// Flag that another thread sets to stop the batch early, or `None`. If the batch is stopped, the
+    /// contents of the outputs are undefined.
     pub stop: Option<&'a AtomicBool>,
 }
 

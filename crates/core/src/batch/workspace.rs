@@ -13,8 +13,8 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(super) struct Workspace<S> {
     kernel_data: KernelData<S>,
-    /// Mass, centre of mass and inertia of the robot's base, whose values `kernel_data` copies only when it
-    /// is allocated.
+    /// Mass, centre of mass and inertia of the robot's base, which `kernel_data` copies only when it is
+    /// allocated.
     base: (f64, Vec3<f64>, Sym3<f64>),
     inputs: [Vec<S>; 3],
     outputs: [Vec<S>; OUTPUTS],
@@ -77,7 +77,8 @@ impl<S: Real> Workspace<S> {
         )
     }
 
-    /// Loads the inputs. Returns true if all numbers are finite and all quaternions have unit norm.
+    /// Loads the inputs of the states in `range`. Returns true if all numbers are finite and all quaternions
+    /// have unit norm.
     #[inline(always)]
     fn read(&mut self, call: &Call<'_>, range: &Range<usize>) -> bool {
         let mut is_valid = true;

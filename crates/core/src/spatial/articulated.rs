@@ -40,7 +40,7 @@ impl<S: Real> ArticulatedInertia<S> {
         self.angular += i.about_origin;
     }
 
-    /// Returns `IA a`.
+    /// Returns the force `IA a` for the acceleration `a`.
     #[inline(always)]
     pub fn apply(&self, a: Motion<S>) -> Force<S> {
         Force::new(
@@ -77,7 +77,7 @@ impl<S: Real> ArticulatedInertia<S> {
         Self { linear: *a, coupling, angular }
     }
 
-    /// Returns `IA + U Wᵀ`, where `W` is a multiple of `U`.
+    /// Returns `IA + U Wᵀ`. `W` must be a multiple of `U`, so that the sum is symmetric.
     #[inline(always)]
     #[must_use]
     pub fn add_parallel(&self, u: Force<S>, w: Force<S>) -> Self {
@@ -112,7 +112,7 @@ impl<S: Real> ArticulatedInertia<S> {
     }
 }
 
-/// Factors of `IA⁻¹`, with which several right-hand sides can be solved.
+/// Factors of `IA⁻¹`, with which `IA⁻¹ f` can be computed for several forces `f`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InverseArticulated<S> {
     /// `A⁻¹`.
@@ -136,7 +136,8 @@ impl<S> InverseArticulated<S> {
 }
 
 impl<S: Real> InverseArticulated<S> {
-    /// Returns `IA⁻¹ f`: `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − (A⁻¹ H)ᵀ f)`, `v = A⁻¹ f − A⁻¹ H ω`.
+    /// Returns the motion `(v, ω) = IA⁻¹ (f, n)`: `ω = (I − Hᵀ A⁻¹ H)⁻¹ (n − (A⁻¹ H)ᵀ f)`,
+    /// `v = A⁻¹ f − A⁻¹ H ω`.
     #[inline(always)]
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
         let angular = self.angular * (f.angular - self.a_inv_h.transpose_mul(f.linear));

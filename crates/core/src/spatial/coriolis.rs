@@ -10,8 +10,9 @@ use std::ops::AddAssign;
 /// Coriolis operator `2B = v×* I − I v× + (I v) ×̄*` of one or several bodies with inertia `I` and twist `v`,
 /// where `f ×̄* m = m ×* f`.
 ///
-/// `2B m` is twice the Coriolis force summed over all points of the body: with `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ
-/// dm`, `2B m = (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular half `ω` of `m`.
+/// For a motion `m`, `2B m` is twice the Coriolis force summed over all points `r` of the body: with
+/// `p = ∫ ṙ dm` and `N = ∫ ṙ rᵀ dm`, `2B m = (2 ω × p, 2 (tr N ω − N ω))`. It depends only on the angular
+/// half `ω` of `m`.
 ///
 /// Source: Singh, Russell and Wensing, IEEE Robotics and Automation Letters 7(2), 2022.
 #[derive(Clone, Copy, Debug, Default)]

@@ -33,8 +33,8 @@ impl<S: Real> RigidInertia<S> {
         Force::at(v.at(self.com) * self.mass, self.about_com * v.angular, self.com)
     }
 
-    /// Returns the rate of change of the momentum, `I a + v ×* I v`, for the spatial acceleration `a = (a,
-    /// α)`:
+    /// Returns the rate of change `(f, n)` of the momentum, `I a + v ×* I v`, for the twist `(v, ω)` and the
+    /// spatial acceleration `(a, α)`:
     ///
     /// `f = m (a + α × c + ω × (v + ω × c))`, `n = I_c α + ω × I_c ω + c × f`.
     #[inline(always)]
@@ -118,7 +118,7 @@ impl<S: Real> SpatialInertia<S> {
     }
 }
 
-/// Factors of `I⁻¹`, with which several right-hand sides can be solved.
+/// Factors of `I⁻¹`, with which `I⁻¹ f` can be computed for several forces `f`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InverseInertia<S> {
     inverse_mass: S,
@@ -139,15 +139,15 @@ impl<S: Real> SpatialInertia<S> {
 }
 
 impl<S: Real> InverseInertia<S> {
-    /// Returns `I⁻¹ f` with the force `f = (f, n)` and the result about the centre of mass, where the linear
-    /// and angular parts decouple: `ω = I_c⁻¹ n`, `v = f/m`.
+    /// Returns the motion `(v, ω) = I⁻¹ (f, n)`, where both the motion and the force `(f, n)` are about the
+    /// centre of mass. There the linear and angular parts decouple: `ω = I_c⁻¹ n`, `v = f/m`.
     #[inline(always)]
     pub fn at_com(&self, f: Force<S>) -> Motion<S> {
         Motion::new(f.linear * self.inverse_mass, self.inverse_about_com * f.angular)
     }
 
-    /// Returns `I⁻¹ f` for the force `f = (f, n)` about the origin: `ω = I_c⁻¹ (n − c × f)`, `v = f/m − ω ×
-    /// c`.
+    /// Returns the motion `(v, ω) = I⁻¹ (f, n)`, both about the origin: `ω = I_c⁻¹ (n − c × f)`,
+    /// `v = f/m − ω × c`.
     #[inline(always)]
     pub fn apply(&self, f: Force<S>) -> Motion<S> {
         let angular = self.inverse_about_com * (f.angular - self.com.cross(f.linear));

@@ -4,7 +4,7 @@ use super::fused::Fused;
 use super::lanes::Lanes8;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Instruction sets for which the kernels are compiled, as levels.
+/// Instruction set for which the kernels are compiled; a higher level includes the lower ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum InstructionSet {
@@ -40,7 +40,7 @@ impl InstructionSet {
         ALLOWED.store(level as u8, Ordering::Relaxed);
     }
 
-    /// Returns the level with the given [`name`](Self::name), if there is one.
+    /// Returns the level with the given [`name`](Self::name); `None` if there is none.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|level| level.name() == name)
     }

@@ -2,8 +2,8 @@
 
 /// Returns the curvatures (second derivatives), (K, n), with which the third derivative is continuous at all
 /// inner knots, and the fourth derivative at the first and the last inner knot (not-a-knot condition).
-/// `values` and `slopes` are (K, n) for K `times`, s, with n = `width`. The spline is of order 6. Two or
-/// three points define a single polynomial.
+/// `values` and `slopes` are (K, n) for K `times`, s, with n = `width`. The error of the spline is of order 6
+/// in the spacing of the points. Two or three points define a single polynomial.
 pub(super) fn curvatures(times: &[f64], width: usize, values: &[f64], slopes: &[f64]) -> Vec<f64> {
     let mut out = vec![0.0; values.len()];
     for i in 0..width {

@@ -30,7 +30,7 @@ struct Piece {
 }
 
 impl RotationSpline {
-    /// Creates the spline that is at rest at each of the attitudes (K,), which it reaches at `times` (K,), s.
+    /// Creates the spline through the attitudes (K,) at `times` (K,), s, that is at rest at every attitude.
     ///
     /// # Errors
     /// [`SplineError`] for fewer than two points, wrong lengths, times that do not increase, or successive
@@ -41,7 +41,8 @@ impl RotationSpline {
     }
 
     /// Creates the spline through the attitudes (K,) at `times` (K,), s, whose angular velocities and
-    /// accelerations at the knots are those of the C² cubic spline through the quaternions with these `ends`.
+    /// accelerations at the knots are those of the C² cubic spline through the quaternions with the end
+    /// conditions `ends`.
     ///
     /// # Errors
     /// The errors of [`RotationSpline::resting`].
@@ -135,7 +136,8 @@ fn continuous(attitudes: &[Quat<f64>]) -> Vec<Quat<f64>> {
     out
 }
 
-/// Returns the angular velocity and acceleration of `exp(φ)` in body axes.
+/// Returns the angular velocity, rad/s, and angular acceleration, rad/s², of `exp(φ)` in body axes from the
+/// rotation vector `φ` (`phi`), rad, and its first two time derivatives.
 ///
 /// `ω = φ̇ − B φ×φ̇ + C φ×(φ×φ̇)` and its derivative, with `B = (1 − cos|φ|)/|φ|²` and `C = (|φ| −
 /// sin|φ|)/|φ|³`.
@@ -153,7 +155,7 @@ fn differential(phi: Vec3<f64>, rate: Vec3<f64>, phi_acceleration: Vec3<f64>) ->
     (omega, alpha)
 }
 
-/// Returns the rate `φ̇` of the rotation vector for the angular velocity `ω` in body axes.
+/// Returns the rate `φ̇`, rad/s, of the rotation vector `φ` for the angular velocity `ω` in body axes, rad/s.
 fn inverse_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
     let column = |axis: Vector3<f64>| differential(phi, axis.into(), Vec3::zero()).0.to_nalgebra();
     let jacobian = Matrix3::from_columns(&[Vector3::x(), Vector3::y(), Vector3::z()].map(column));
@@ -161,9 +163,9 @@ fn inverse_differential(phi: Vec3<f64>, omega: Vec3<f64>) -> Vec3<f64> {
     (inverse * omega.to_nalgebra()).into()
 }
 
-/// Returns `B` and `C` of [`differential`] as functions of `x = |φ|²`, and their derivatives in `x`. The
-/// series `Σ (−x)ᵏ/(2k+2)!` and `Σ (−x)ᵏ/(2k+3)!` have no cancellation at zero and an error of 1e-16 up to a
-/// full turn.
+/// Returns `[B, C]` of [`differential`] as functions of `x = |φ|²`, and their derivatives with respect to
+/// `x`. The series `Σ (−x)ᵏ/(2k+2)!` and `Σ (−x)ᵏ/(2k+3)!` have no cancellation at zero and an error of 1e-16
+/// up to a full turn.
 fn coefficients(x: f64) -> ([f64; 2], [f64; 2]) {
     let (mut value, mut slope) = ([0.0; 2], [0.0; 2]);
     let mut term = 0.5; // 1/(2k+2)! times (−1)ᵏ

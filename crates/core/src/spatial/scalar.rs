@@ -70,11 +70,11 @@ pub trait Real:
     #[must_use]
     fn abs(self) -> Self;
 
-    /// Returns the sine and cosine of an angle in rad, with an error below 2.3e-16 up to 1e5 rad.
+    /// Returns the sine and cosine of an angle in rad, with an absolute error below 2.3e-16 up to 1e5 rad.
     fn sin_cos(self) -> (Self, Self);
 
-    /// Computes the sines and cosines of many angles with the bits of [`sin_cos`](Real::sin_cos), several at
-    /// once if possible.
+    /// Writes to `out` the sines and cosines of many angles, rad, bit-identical to
+    /// [`sin_cos`](Real::sin_cos); several are computed at once if possible.
     #[inline(always)]
     fn sin_cos_each(angles: &[Self], out: &mut [(Self, Self)]) {
         for (angle, out) in angles.iter().zip(out) {
@@ -96,8 +96,9 @@ pub trait Real:
     /// Returns true if the mask is true in any lane; used to skip computations that no lane needs.
     fn any(mask: Self::Mask) -> bool;
 
-    /// Runs `kernel` with the scalar in which several right-hand sides of the same equations are computed at
-    /// once: lanes for a single state, and the scalar itself, with one right-hand side at a time, otherwise.
+    /// Runs `kernel`, which computes several right-hand sides of the same equations, with a suitable scalar.
+    /// For a single state with fused arithmetic, the scalar has one right-hand side per lane. Otherwise it is
+    /// the scalar itself, with one right-hand side at a time.
     #[inline(always)]
     fn solve_columns(kernel: impl ColumnKernel<Self>) {
         kernel.run(
@@ -113,7 +114,8 @@ pub trait Real:
     fn enter<R>(kernel: impl FnOnce() -> R) -> R;
 }
 
-/// Computation with several right-hand sides, one in each lane of `R`, for equations with coefficients in `S`.
+/// Computation with several right-hand sides, one in each lane of `R`, for equations with coefficients in
+/// `S`.
 pub trait ColumnKernel<S> {
     /// Runs the computation; `lift` returns a coefficient in every lane.
     fn run<R: Real>(self, lift: impl Fn(S) -> R + Copy);

@@ -2,7 +2,7 @@
 
 use super::scalar::Real;
 
-/// Largest angle, rad, for which the fast range reduction keeps all digits.
+/// Magnitude of an angle, rad, below which the fast range reduction keeps all digits.
 pub(super) const FAST_SINE_LIMIT: f64 = 1e5;
 
 /// Returns the sine and cosine of `x`, rad, for `|x| < 1e5`.

@@ -37,7 +37,7 @@ pub fn cholesky_factor<S: Real>(a: &mut [S], n: usize) {
     }
 }
 
-/// Computes `x ← A⁻¹ x` with the factors computed by [`cholesky_factor`].
+/// Replaces `x` (n,) by `A⁻¹ x`, where `l` holds the factors of `A` computed by [`cholesky_factor`].
 #[inline(always)]
 pub fn cholesky_solve<S: Real>(l: &[S], n: usize, x: &mut [S]) {
     for i in 1..n {

@@ -4,7 +4,7 @@ use super::quintic_spline::curvatures;
 use crate::number_text::{count, short, unlike};
 use thiserror::Error;
 
-/// Errors of points and times through which no curve can be constructed.
+/// Errors of points and times that do not define a curve.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SplineError {
@@ -18,7 +18,7 @@ pub enum SplineError {
     #[error("the curve has {got}; give at least {least}", got = count(*got, "point"))]
     TooFew { got: usize, least: usize },
     #[error(
-        "times[{index}] is {after} s, but the time before is {before} s; times must increase",
+        "times[{index}] is {after} s, but the time before it is {before} s; times must increase",
         before = short(*before), after = unlike(*after, &[*before])
     )]
     NotIncreasing { index: usize, before: f64, after: f64 },
@@ -107,8 +107,8 @@ impl Spline {
         Self::new(times, width, values, &slopes, &curvatures)
     }
 
-    /// Creates the spline of order 6 through `values` (K, n) at `times` (K,), s, with the given `slopes` (K,
-    /// n), which has a continuous third derivative.
+    /// Creates the spline through `values` (K, n) at `times` (K,), s, with the given `slopes` (K, n). The
+    /// spline has a continuous third derivative and an error of order 6 in the spacing of the points.
     ///
     /// # Errors
     /// The errors of [`Spline::new`].
@@ -139,8 +139,8 @@ impl Spline {
         &self.knots[3 * self.width * k..][..3 * self.width]
     }
 
-    /// Computes the value, slope and curvature at `t`, s; each is (n,). Outside the knots, slope and
-    /// curvature are zero.
+    /// Computes the value, slope and curvature at `t`, s; each is (n,). Outside the knots, the value of the
+    /// nearest end is returned, and slope and curvature are zero.
     pub fn sample(&self, t: f64, value: &mut [f64], slope: &mut [f64], curvature: &mut [f64]) {
         let (n, at) = (self.width, KnotInterval::of(&self.times, t));
         let (start, end) = (self.knot(at.segment), self.knot(at.segment + 1));
@@ -171,7 +171,7 @@ impl KnotInterval {
     }
 
     /// Returns the value, slope and curvature of the quintic polynomial between two knots; `start` and `end`
-    /// hold those of the knots. Outside the knots the curve is at rest.
+    /// hold those at the two knots. Outside the knots the curve is at rest.
     pub(crate) fn interpolate(&self, start: [f64; 3], end: [f64; 3]) -> [f64; 3] {
         let (h, u) = (self.length, self.u);
         if self.is_outside {
