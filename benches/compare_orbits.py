@@ -1,11 +1,14 @@
 """Times orbit propagation by this package and by other packages on PyPI, alternately.
 
-``pip install scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``, jobs ``sgp4``,
-``kepler`` and ``day``. Each round times this package and the other one, best of three runs; the output is
-the median ratio with its spread, and the accuracy. ``sgp4``: 1000 satellites at 1440 epochs against
-``SatrecArray``. ``kepler``: a million pairs of elements and time against the same equations vectorised in
-numpy. ``day``: one LEO day under J2 against SciPy's DOP853 at rtol 1e-12 and brahe's RKN1210 with its
-trajectory off and simple Earth rotation; errors are those against x87 extended precision.
+Run ``pip install scipy brahe``, then ``python benches/compare_orbits.py [ROUNDS] [JOB ...]``. Each round
+times this package and the other one, each by the best of three runs. The output is the median ratio with its
+spread, and the accuracy. The jobs are:
+
+- ``sgp4``: 1000 satellites at 1440 epochs, compared with ``SatrecArray``;
+- ``kepler``: a million pairs of elements and time, compared with the same equations vectorised in numpy;
+- ``day``: one day of a low Earth orbit under J2, compared with SciPy's DOP853 at rtol 1e-12 and with brahe's
+  RKN1210 without a stored trajectory and with simple Earth rotation. The errors are differences from an
+  integration in x87 extended precision.
 """
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ MU, RADIUS, J2 = 3.986004415e14, 6378136.3, 1.0826355e-3
 
 
 def best(job: Callable[[], Any]) -> float:
-    """Returns the shortest time of three runs, s."""
+    """Returns the shortest time of three calls of ``job``, s."""
     times = []
     for _ in range(3):
         start = time.perf_counter()
@@ -39,7 +42,7 @@ def best(job: Callable[[], Any]) -> float:
 
 
 def compare(title: str, theirs: Callable[[], Any], ours: Callable[[], Any], rounds: int) -> None:
-    """Times both jobs alternately and prints the ratio of their times, with its spread."""
+    """Times both jobs alternately and prints the median of the ratio ``theirs/ours``, with its spread."""
     pairs = [(best(theirs), best(ours)) for _ in range(rounds)]
     ratios = [a / b for a, b in pairs]
     a, b = (statistics.median(column) * 1e3 for column in zip(*pairs, strict=True))
@@ -48,7 +51,7 @@ def compare(title: str, theirs: Callable[[], Any], ours: Callable[[], Any], roun
 
 
 def element_sets(count: int) -> list[tuple[str, str]]:
-    """Returns random element sets (two lines) of low orbits of all inclinations."""
+    """Returns random element sets, two lines each, of low orbits with inclinations from 20° to 95°."""
     draw = np.random.default_rng(3)
 
     def line(text: str) -> str:
@@ -85,7 +88,7 @@ def sgp4(rounds: int) -> None:
     out = (np.empty(shape), np.empty(shape))
     _, r, _ = array.sgp4(jd, fraction)
     far = np.abs(oo.propagate(ours, 60 * minutes)[0] / 1e3 - r).max()
-    print(f"SGP4 states differ by at most {far:.1e} km (rounding of the times causes 3e-7)")
+    print(f"SGP4 positions differ by at most {far:.1e} km (rounding of the times causes 3e-7 km)")
     for threads, name in ((1, "one core"), (None, "all cores")):
 
         def many(threads: int | None = threads) -> None:
@@ -97,7 +100,11 @@ def sgp4(rounds: int) -> None:
 def numpy_kepler(
     a: Any, e: Any, i: Any, node: Any, periapsis: Any, anomaly: Any, t: Any, mu: float
 ) -> tuple[Any, Any]:
-    """Solves Kepler's equation with vectorised Newton steps, then rotates into inertial axes."""
+    """Returns positions, m, and velocities, m/s, (N, 3), on Kepler ellipses in inertial axes.
+
+    The arguments are semi-major axis, m, eccentricity, four angles, rad, time since the mean anomaly, s, and
+    the gravitational parameter, m³/s². Kepler's equation is solved with vectorised Newton steps.
+    """
     n = np.sqrt(mu / a**3)
     m = np.remainder(anomaly + n * t + np.pi, 2 * np.pi) - np.pi
     eccentric = m + e * np.sin(m)
@@ -139,7 +146,7 @@ def kepler(rounds: int) -> None:
         given = dict(zip(names, elements, strict=True))
         r, _ = numpy_kepler(*elements, t, MU)
         far = np.abs(oo.Kepler.states(t, **given, mu=MU)[0] - r).max()
-        print(f"Kepler states differ by at most {far:.1e} m, e below {most}")
+        print(f"Kepler positions differ by at most {far:.1e} m for eccentricities below {most}")
 
         def peer(elements: Any = elements) -> None:
             numpy_kepler(*elements, t, MU)
@@ -153,7 +160,7 @@ def kepler(rounds: int) -> None:
 
 
 def gravity(r: Any, mu: Any, radius: Any, j2: Any) -> Any:
-    """Returns the acceleration of an oblate planet at a position, m/s², in the precision of the arguments."""
+    """Returns the gravity, m/s², of an oblate planet at ``r``, m, in the precision of the arguments."""
     r2 = r @ r
     z2, k = 5 * r[2] ** 2 / r2, 1.5 * j2 * radius**2 / r2
     factor = np.array([1 - k * (z2 - 1), 1 - k * (z2 - 1), 1 - k * (z2 - 3)])
@@ -161,7 +168,10 @@ def gravity(r: Any, mu: Any, radius: Any, j2: Any) -> Any:
 
 
 def extended_day(r: Any, v: Any, mu: float, radius: float, j2: float) -> Any:
-    """Returns the final state in numpy's longdouble, by extrapolation of Stoermer's rule with 1 min steps."""
+    """Returns the position after a day, m, in numpy's longdouble.
+
+    The method is extrapolation of Stoermer's rule with steps of 1 min. ``r`` and ``v`` are the initial state.
+    """
     wide = np.longdouble
     mu, radius, j2 = wide(mu), wide(radius), wide(j2)
 
@@ -199,7 +209,7 @@ def day(rounds: int) -> None:
         return float(np.linalg.norm(end - extended_day(r0, v0, *constants).astype(float)))
 
     ours = integral(MU, RADIUS, J2)
-    print(f"error of this package: {error(ours(), (MU, RADIUS, J2)):.1e} m")
+    print(f"error of this package after a day: {error(ours(), (MU, RADIUS, J2)):.1e} m")
 
     from scipy.integrate import solve_ivp
 
@@ -211,7 +221,7 @@ def day(rounds: int) -> None:
     def dop853() -> Any:
         return solve_ivp(slope, (0, DAY), start, method="DOP853", rtol=1e-12, atol=1e-9).y[:3, -1]
 
-    print(f"error of DOP853: {error(dop853(), (MU, RADIUS, J2)):.1e} m")
+    print(f"error of SciPy's DOP853 after a day: {error(dop853(), (MU, RADIUS, J2)):.1e} m")
     compare("LEO day, SciPy DOP853 at rtol 1e-12", dop853, ours, rounds)
 
     import brahe as bh
@@ -231,13 +241,13 @@ def day(rounds: int) -> None:
         return np.array(orbit.current_state())[:3]
 
     constants = (bh.GM_EARTH, bh.R_EARTH, bh.J2_EARTH)
-    print(f"RKN1210 ends {error(rkn1210(), constants):.1e} m off, ours with its constants "
-          f"{error(integral(*constants)(), constants):.1e} m")  # fmt: skip
+    print(f"error of brahe's RKN1210 after a day: {error(rkn1210(), constants):.1e} m; of this package with "
+          f"brahe's constants: {error(integral(*constants)(), constants):.1e} m")  # fmt: skip
     compare("LEO day, brahe RKN1210", rkn1210, integral(*constants), rounds)
 
 
 def main() -> None:
-    """Runs the given jobs; default: all."""
+    """Runs the jobs named on the command line, or all jobs if none is named."""
     given = sys.argv[1:]
     rounds = int(given.pop(0)) if given and given[0].isdigit() else ROUNDS
     print(f"{oo.build_info()['instruction_set']}, {os.cpu_count()} cores, {rounds} rounds")

@@ -1,8 +1,9 @@
-"""Times forward dynamics of a free-floating robot alternately with SPART: ``make bench-spart``.
+"""Times forward dynamics of a free-floating robot by this package and by SPART: ``make bench-spart``.
 
-SPART's right-hand side, `space_robot_ode`, is one call through ctypes of C code by MATLAB Coder. The
-processor time of its C code alone is compared with a call from Python and with one state of a batch on one
-thread.
+The two are timed alternately. SPART's right-hand side, `space_robot_ode`, calls C code that MATLAB Coder
+generated, through ctypes. The processor time of the whole call is compared with a call of this package from
+Python. The processor time of the C code alone is compared with a call from Python and with one state of a
+batch on one thread.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ ROUNDS, CALLS, BATCH = 15, 500, 4096
 
 
 class Timed:
-    """Wrapper of SPART's library that records the time of its right-hand side without the Python code."""
+    """Wrapper of SPART's library that adds up in ``took`` the time, s, of the C code alone."""
 
     def __init__(self, library: Any) -> None:
         self.library, self.took = library, 0.0
@@ -41,7 +42,7 @@ class Timed:
 
 
 def seconds(job: Callable[[], object], calls: int) -> float:
-    """Returns the time of one call, s."""
+    """Returns the mean processor time of a call of ``job``, s, over ``calls`` calls."""
     begun = time.process_time()
     for _ in range(calls):
         job()
@@ -49,7 +50,7 @@ def seconds(job: Callable[[], object], calls: int) -> float:
 
 
 def compare(name: str, library: Timed) -> None:
-    """Prints the ratios of the times for a bundled robot."""
+    """Prints the ratios of SPART's times to those of this package for the bundled robot ``name``."""
     model, (engine, joints) = oo.robots.load(name), spart(oo.robots.path(name).read_text())
     state = random_state(model, np.random.default_rng(1), frames=1)
     order = [model.joint_names.index(joint) for joint in joints]
@@ -69,18 +70,18 @@ def compare(name: str, library: Timed) -> None:
         ours = seconds(lambda: model.forward_dynamics(state.q, state.v, state.tau), 10 * CALLS)
         one_of_many = seconds(lambda: model.forward_dynamics(*batch, threads=1), 5) / BATCH
         ratios.append((call / ours, alone / ours, alone / one_of_many))
-    print(f"{name}, nv {model.nv}, differs by {off:.0e}")
+    print(f"{name}, nv = {model.nv}: the accelerations differ by {off:.0e}; times of SPART divided by ours:")
     titles = (
-        "call from Python",
-        "SPART's C alone against a call from Python",
-        "SPART's C alone against a state of a batch",
+        "both called from Python",
+        "SPART's C code alone, compared with our call from Python",
+        "SPART's C code alone, compared with a state of our batch",
     )
     for title, column in zip(titles, zip(*ratios, strict=True), strict=True):
         print(f"  {title}: {statistics.median(column):.1f} ({min(column):.1f} to {max(column):.1f})")
 
 
 def main() -> None:
-    """Compares both humanoids."""
+    """Compares the engines on the bundled humanoids with one arm and with two arms."""
     spart(oo.robots.path("humanoid_torso").read_text())  # compiles SPART on first use
     library = Timed(spartpy._get_spart_lib())
     spartpy._get_spart_lib = lambda: library

@@ -1,7 +1,9 @@
-"""Cost of a bag, with pytest-benchmark: run by ``make bench-rust``, not by ``make test``.
+"""Benches of the export of a run as a bag, with pytest-benchmark.
 
-Fixed: the bundled humanoid with seven joints, moving freely in orbit. Varied: the number of rows. All topics
-are written, seven messages per row, to a temporary folder; the run itself is not timed.
+``make bench-rust`` runs them; ``make test`` does not.
+
+Fixed: the bundled humanoid with seven joints, without controllers, in orbit. Varied: the number of rows. All
+topics are written to a temporary folder, seven messages per row. The run itself is not timed.
 """
 
 from __future__ import annotations

@@ -1,9 +1,11 @@
-"""Cost of calls from Python, with pytest-benchmark: run by ``make bench-rust``, not by ``make test``.
+"""Benches of calls from Python, with pytest-benchmark.
 
-Fixed: the bundled humanoid, random states drawn once, arrays of float64. Varied: the function, one state or a
-thousand, the way in which columns of a run are read; for loading, the number of links. The algorithms
-themselves are timed in Rust; the function of group ``call`` does almost nothing, so its time is that of a
-call. Batches run on one thread.
+``make bench-rust`` runs them; ``make test`` does not.
+
+Fixed: the bundled humanoid, random states, arrays of float64, one thread. Varied: the function, the number of
+states (one or a thousand), the column of a run that is read, and, for loading, the number of links. The
+algorithms themselves are timed in Rust. The functions of the group ``call`` do almost nothing, so their time
+is that of a call.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-//! The kernels by name, with their states and results.
+//! Kernels that are timed, with their states and results.
 
 use onorbit_core::dynamics::{
     ClosedLoops, Data, FreeFloating, constrained_forward_dynamics, forward_dynamics, frame_drift,
@@ -7,18 +7,18 @@ use onorbit_core::dynamics::{
 use onorbit_core::model::Model;
 use onorbit_core::spatial::Real;
 
-/// Names of the kernels: forward dynamics, mass matrix, inverse dynamics, Jacobian and drift of the
-/// tool, `M*, c*, Jg, d` of it, and forward dynamics with the loops of the robot.
+/// Names of the kernels: forward dynamics, mass matrix, inverse dynamics, Jacobian and drift of the tool,
+/// reduced model (`M*, c*, Jg, d` of the tool), and forward dynamics with the loops of the robot.
 pub(crate) const KERNELS: [&str; 6] = ["aba", "crba", "rnea", "jacobian", "reduced", "constrained"];
 
-/// `q`, `v` and torques or accelerations of one state.
+/// Configuration `q`, velocity `v`, and generalized forces or accelerations `x` of one state.
 struct State<S> {
     q: Vec<S>,
     v: Vec<S>,
     x: Vec<S>,
 }
 
-/// Kernels, states and result buffers.
+/// Robot, states and workspace of the kernels.
 pub(crate) struct Kernels<'a, S> {
     model: &'a Model,
     tool: usize,
@@ -33,7 +33,8 @@ pub(crate) struct Kernels<'a, S> {
 }
 
 impl<'a, S: Real> Kernels<'a, S> {
-    /// `rows`: `q, v, x` of state after state.
+    /// Creates the workspace. `tool` is the index of the tool frame, and `rows` holds `q, v, x` of one state
+    /// after the other.
     pub(crate) fn new(model: &'a Model, tool: usize, rows: &[f64]) -> Self {
         let (nq, nv, o) = (model.nq(), model.nv(), S::of(0.0));
         let lift = |row: &[f64]| row.iter().map(|x| S::of(*x)).collect();
@@ -59,7 +60,8 @@ impl<'a, S: Real> Kernels<'a, S> {
         self.states.len()
     }
 
-    /// Computes state `k` and returns a number of the result, so that the compiler cannot omit the work.
+    /// Runs the kernel with the index `kernel` in [`KERNELS`] on state `k`, and returns one number of the
+    /// result, so that the compiler cannot omit the computation.
     #[inline(always)]
     pub(crate) fn run(&mut self, kernel: usize, k: usize) -> S {
         let Self { model, tool, states, data, loops, reduced, out, matrix, jacobian, drift } = self;
@@ -95,7 +97,7 @@ impl<'a, S: Real> Kernels<'a, S> {
         }
     }
 
-    /// All of the last result, matrices row by row.
+    /// Returns all numbers of the last result of the kernel with the index `kernel`, matrices row by row.
     pub(crate) fn output(&self, kernel: usize) -> impl Iterator<Item = S> {
         let reduced = &self.reduced;
         let parts: [&[S]; 4] = match kernel {

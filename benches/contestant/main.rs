@@ -1,14 +1,15 @@
-//! Kernels for one state, timed by `make bench` without Python.
+//! Program with which `make bench` times the kernels for one state, without Python.
 //!
-//! `contestant URDF STATES COUNT [SET]`: the robot; `COUNT` rows of `q, v, x` as raw `f64`, `x` being torques or
-//! accelerations; the highest instruction set to use. Then, line by line from standard input:
+//! Usage: `contestant URDF STATES COUNT [SET]`. `URDF` is the robot. The file `STATES` holds `COUNT` rows of
+//! `q, v, x` as raw `f64`, where `x` are generalized forces or accelerations. `SET` is the highest
+//! instruction set to use. The program then answers requests, one per line, from standard input:
 //!
 //! - `time KERNEL SECONDS` → `{"ns": …}`, nanoseconds per state: the median over passes through all states;
-//! - `result KERNEL FILE` → writes the results of all states to `FILE` as raw `f64`;
+//! - `result KERNEL FILE` → `{}`, after the results of all states were written to `FILE` as raw `f64`;
 //! - `flops KERNEL` → number of operations per state, by kind;
 //! - `peak SET SECONDS` → `{"gflops": …}`, peak throughput of one core with that instruction set.
 //!
-//! The C++ programs in `benches/peers` have the same protocol.
+//! The C++ programs in `benches/peers` answer `time` and `result` in the same way.
 #![allow(clippy::print_stdout)] // answers are printed
 
 mod kernels;
@@ -26,9 +27,9 @@ use std::io::{BufRead, stdin};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// The frame whose task is computed.
+/// Frame whose Jacobian, drift and reduced model are computed.
 const TOOL: &str = "tool";
-/// Frames that a loop connects rigidly, if the robot has them.
+/// Frames that a loop connects rigidly if the robot has both.
 const GRIPS: [&str; 2] = ["grip_a", "grip_b"];
 
 type Answer = Result<String, Box<dyn Error>>;
@@ -43,10 +44,17 @@ fn main() -> Result<(), Box<dyn Error>> {
     let model = if has_grips { model.closed(&[weld()])? } else { model };
     let rows = read(states)?;
     if rows.len() != count.parse::<usize>()? * (model.nq() + 2 * model.nv()) {
-        return Err(format!("{states} does not hold {count} states of the robot").into());
+        let width = model.nq() + 2 * model.nv();
+        return Err(format!(
+            "{states} holds {} numbers; expected {count} states of {width} numbers",
+            rows.len()
+        )
+        .into());
     }
     if let Some(set) = set.first() {
-        InstructionSet::limit(InstructionSet::named(set).ok_or("no such instruction set")?);
+        InstructionSet::limit(
+            InstructionSet::named(set).ok_or_else(|| format!("there is no instruction set named '{set}'"))?,
+        );
     }
     // kernels of one state have at most four lanes
     match InstructionSet::current() {
@@ -71,7 +79,7 @@ fn read(file: &str) -> Result<Vec<f64>, Box<dyn Error>> {
     Ok(bytes.as_chunks::<8>().0.iter().map(|word| f64::from_le_bytes(*word)).collect())
 }
 
-/// Answers until standard input ends.
+/// Answers the requests on standard input until it ends.
 fn serve<S: Real>(model: &Model, rows: &[f64]) -> Result<(), Box<dyn Error>> {
     let mut kernels = Kernels::<S>::new(model, model.frame(TOOL)?, rows);
     println!("{{\"ready\": \"{}\"}}", InstructionSet::current().name());
@@ -83,7 +91,7 @@ fn serve<S: Real>(model: &Model, rows: &[f64]) -> Result<(), Box<dyn Error>> {
             ["result", name, file] => result(&mut kernels, name, file),
             ["flops", name] => flops(model, rows, name),
             ["peak", set, seconds] => peak_flops::answer(set, seconds.parse()?),
-            _ => Err(format!("what is {line}?").into()),
+            _ => Err(format!("the request is '{line}'; expected time, result, flops or peak").into()),
         };
         println!("{}", answer?);
     }
@@ -91,7 +99,8 @@ fn serve<S: Real>(model: &Model, rows: &[f64]) -> Result<(), Box<dyn Error>> {
 }
 
 fn index(name: &str) -> Result<usize, Box<dyn Error>> {
-    KERNELS.iter().position(|kernel| *kernel == name).ok_or_else(|| format!("no kernel {name}").into())
+    let unknown = || format!("there is no kernel named '{name}'; expected one of {}", KERNELS.join(", "));
+    KERNELS.iter().position(|kernel| *kernel == name).ok_or_else(|| unknown().into())
 }
 
 fn time<S: Real>(kernels: &mut Kernels<'_, S>, name: &str, seconds: &str) -> Answer {

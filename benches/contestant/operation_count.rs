@@ -1,10 +1,10 @@
-//! A floating-point number that counts its arithmetic operations.
+//! Scalar type that counts arithmetic operations.
 
 use onorbit_core::spatial::Real;
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// Counted operations; signs, comparisons and selections are not counted.
+/// Kind of a counted operation. Changes of sign, absolute values, comparisons and selections are not counted.
 #[derive(Clone, Copy)]
 enum Operation {
     Sum,
@@ -28,7 +28,7 @@ fn count(operation: Operation) {
     DONE.set(done);
 }
 
-/// Returns the number of each operation in `work` as JSON.
+/// Runs `work` and returns the number of its operations of each kind, as JSON.
 pub(crate) fn during(work: impl FnOnce()) -> String {
     DONE.set([0; 6]);
     work();
@@ -37,7 +37,7 @@ pub(crate) fn during(work: impl FnOnce()) -> String {
     format!("{{{}}}", pairs.join(", "))
 }
 
-/// An `f64` whose arithmetic is counted.
+/// Number of type `f64` whose arithmetic operations are counted.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct CountedF64(f64);
 

@@ -1,4 +1,4 @@
-//! Peak throughput of one core: operations per second of independent multiply-adds.
+//! Measurement of the peak throughput of one core, in operations per second, with independent multiply-adds.
 
 use std::error::Error;
 use std::hint::black_box;
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 const CHAINS: usize = 12;
 const LINKS: usize = 10_000;
 
-/// Computes `x ← a x + b` in all chains, each in one register.
+/// Defines a function that computes `x ← a x + b` repeatedly in all chains, each in one register.
 macro_rules! chains {
     ($(#[$feature:meta])? $name:ident, $of:expr, |$x:ident, $a:ident, $b:ident| $mul_add:expr) => {
         $(#[$feature])?
@@ -45,7 +45,8 @@ mod wide {
         |x, a, b| x86::_mm512_fmadd_pd(*x, a, b)
     );
 
-    /// Numbers in a register of that instruction set, and the chains in them, where they are here.
+    /// Returns the number of lanes in a register of the instruction set, and the function that computes the
+    /// chains; `None` if the processor does not have this instruction set.
     pub(super) fn chains(set: &str) -> Option<(usize, fn())> {
         let has_four = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
         // SAFETY of both: the guard on the same line checks that the processor has the instructions
@@ -63,24 +64,28 @@ mod wide {
 
     chains!(two, |x: f64| [x; 2], |x, a, b| [x[0].mul_add(a[0], b[0]), x[1].mul_add(a[1], b[1])]);
 
-    /// Numbers in a register of that instruction set, and the chains in them, where they are here.
+    /// Returns the number of lanes in a register of the instruction set, and the function that computes the
+    /// chains; `None` if the processor does not have this instruction set.
     pub(super) fn chains(set: &str) -> Option<(usize, fn())> {
         (set == "fma" && cfg!(target_arch = "aarch64")).then_some((2, two))
     }
 }
 
-/// Returns the billions of operations per second with the lanes of an instruction set, as JSON.
+/// Returns the peak throughput with an instruction set, in 1e9 operations per second, as JSON. A multiply-add
+/// counts as two operations. `seconds` is the duration of the measurement.
 ///
-/// The peak for one number at a time is that of one lane; the compiler would vectorise chains of single numbers.
+/// The throughput of scalar instructions of a wider set is not measured, because the compiler would vectorise
+/// chains of single numbers. It is that of one lane.
 pub(crate) fn answer(set: &str, seconds: f64) -> Result<String, Box<dyn Error>> {
     let found = if set == "baseline" { Some((1, one as fn())) } else { wide::chains(set) };
-    let (lanes, chains) = found.ok_or_else(|| format!("this processor does not have {set}"))?;
+    let (lanes, chains) =
+        found.ok_or_else(|| format!("this processor does not have the instruction set '{set}'"))?;
     let gflops =
         (2 * CHAINS * LINKS * lanes) as f64 / fastest(chains, Duration::try_from_secs_f64(seconds)?) * 1e-9;
     Ok(format!("{{\"gflops\": {gflops}}}"))
 }
 
-/// Returns the shortest time of a call, s.
+/// Calls `chains` repeatedly for `seconds` and returns the shortest time of a call, s.
 fn fastest(chains: fn(), seconds: Duration) -> f64 {
     let (end, mut fastest) = (Instant::now() + seconds, f64::INFINITY);
     while Instant::now() < end {

@@ -1,5 +1,5 @@
-// MuJoCo's step in C of two craft in contact, with all features off that the scene does not need.
-// usage: contact SCENE.xml START STEPS; START holds stiffness and damping of a pad, then qpos and qvel
+// Times MuJoCo's step in C for two craft in contact, with all features disabled that the scene does not need.
+// Usage: contact SCENE.xml START STEPS, where START holds the stiffness and damping of a pad, then qpos and qvel.
 #include "contestant.hpp"
 #include <memory>
 #include <mujoco/mujoco.h>
@@ -26,11 +26,12 @@ struct Scene {
     std::copy(row + model->nq, row + model->nq + model->nv, data->qvel);
     for (int i = 0; i < steps; ++i) {
       mj_step(model.get(), data.get());
-      if (data->ncon != 4) throw std::runtime_error("a pad does not touch");
+      if (data->ncon != 4)
+        throw std::runtime_error("there are " + std::to_string(data->ncon) + " contacts; expected 4, one for each pad");
     }
   }
 
-  // qpos and qvel of one craft after the other
+  // Appends qpos and qvel of one craft after the other.
   void ends(Numbers& out) const {
     const int nq = model->nq / 2, nv = model->nv / 2;
     for (int craft = 0; craft < 2; ++craft) {

@@ -1,7 +1,7 @@
-// A program timed by `make bench`: runs jobs by name, requested line by line on standard input.
+// Protocol of a program timed by `make bench`: it runs jobs by name, requested line by line on standard input.
 //
 //   time JOB SECONDS  -> {"ns": ...}  nanoseconds of processor time per unit of work: the median over passes
-//   result JOB FILE   -> {}           writes what the job computes to FILE, as raw doubles
+//   result JOB FILE   -> {}           writes the results of the job to FILE, as raw doubles
 //
 // A pass computes all states once, so that inputs vary as in practice. The Rust program has the same protocol
 // (benches/contestant).
@@ -27,14 +27,14 @@ inline void use(const void* p) { asm volatile("" : : "r"(p) : "memory"); }
 
 inline Numbers read_numbers(const std::string& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in) throw std::runtime_error("cannot read " + file);
+  if (!in) throw std::runtime_error("cannot open the file " + file);
   Numbers out(static_cast<size_t>(in.tellg()) / sizeof(double));
   in.seekg(0);
   in.read(reinterpret_cast<char*>(out.data()), static_cast<std::streamsize>(out.size() * sizeof(double)));
   return out;
 }
 
-// Processor time of this process, ns, which excludes other processes.
+// Returns the processor time of this process, ns, which excludes other processes.
 inline double processor_time() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -46,7 +46,7 @@ struct Job {
   std::function<void(Numbers&)> result;
 };
 
-// `pass` does all the work once, `units` of it; `result` appends what it computes.
+// Creates a job: `pass` does all the work once, which is `units` units; `result` appends the results.
 template <class Pass, class Result>
 Job job(double units, Pass pass, Result result) {
   auto time = [units, pass](double seconds) {

@@ -1,6 +1,6 @@
-// An arm under computed torque in optimised C++ with Pinocchio and Eigen: the control law is evaluated once per
-// step, the torque is held, with fourth-order Runge-Kutta. There is no orbit, no wrench and no recording.
-// usage: controlled ROBOT STATES TASK
+// Times an arm under computed torque in optimised C++ with Pinocchio and Eigen. The control law is evaluated once
+// per step, and its torque is held during a step of fourth-order Runge-Kutta. There is no orbit, no external wrench
+// and no recording. Usage: controlled ROBOT STATES TASK.
 #include "reduced.hpp"
 #include <pinocchio/algorithm/aba.hpp>
 #include <pinocchio/algorithm/joint-configuration.hpp>
@@ -9,7 +9,7 @@ using namespace pinocchio;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Gains, steps and the path: p(t) = start + s d + s (1 - s) h, s the quintic from 0 to 1 over the duration.
+// Gains, steps and the path p(t) = start + s d + s (1 - s) h, where s is the quintic from 0 to 1 over the duration.
 struct Task {
   double kp, kd, self_motion, time_step, duration;
   int steps;
@@ -23,7 +23,7 @@ struct Task {
     for (int i = 0; i < 9; ++i) in >> rotation(i / 3, i % 3);
     start.rotation(rotation);
     for (Vector3d* x : {&start.translation(), &displacement, &height}) in >> (*x)[0] >> (*x)[1] >> (*x)[2];
-    if (!in) throw std::runtime_error("cannot read " + file);
+    if (!in) throw std::runtime_error("the file " + file + " does not hold a complete task");
   }
 
   void at(double t, Vector3d& p, Vector3d& velocity, Vector3d& acceleration) const {

@@ -1,5 +1,5 @@
-// Pinocchio's kernels for one state, instantiated here from its headers for this processor.
-// usage: kernels ROBOT STATES
+// Times Pinocchio's kernels for one state, instantiated here from its headers for this processor.
+// Usage: kernels ROBOT STATES.
 #include "reduced.hpp"
 #include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>

@@ -1,14 +1,14 @@
-// Pinocchio's forward dynamics of a robot whose two hands hold one load, instantiated here from its headers for
-// this processor: the load is part of the first hand, and a weld connects it to the second one.
-// usage: loops ROBOT STATES GRIPS
-//   GRIPS: index of the body, rotation (row by row) and position of the grip, for both hands
+// Times Pinocchio's forward dynamics of a robot whose two hands hold one load, instantiated here from its headers
+// for this processor. The load is part of the first hand, and a weld connects it to the second hand.
+// Usage: loops ROBOT STATES GRIPS, where GRIPS holds, for each hand, the index of the body, and the rotation (row by
+// row) and position of the grip.
 #include "robot.hpp"
 #include <pinocchio/algorithm/constrained-dynamics.hpp>
 #include <pinocchio/algorithm/loop-constrained-aba.hpp>
 
 using namespace pinocchio;
 
-// The weld between both grips; body k is moved by joint k + 1.
+// Reads the weld between both grips. Body k is moved by joint k + 1.
 static RigidConstraintModel read_weld(const Model& model, const std::string& file) {
   std::ifstream in(file);
   JointIndex joints[2];
@@ -22,7 +22,7 @@ static RigidConstraintModel read_weld(const Model& model, const std::string& fil
     for (int i = 0; i < 3; ++i) in >> position[i];
     grips[side] = SE3(rotation, position);
   }
-  if (!in) throw std::runtime_error("cannot read " + file);
+  if (!in) throw std::runtime_error("the file " + file + " does not hold two complete grips");
   return RigidConstraintModel(CONTACT_6D, model, joints[0], grips[0], joints[1], grips[1], LOCAL);
 }
 

@@ -1,5 +1,5 @@
-// MuJoCo's Runge-Kutta step in C, with all features off that this robot does not need.
-// usage: mujoco MODEL.xml STATES RUNS STEPS, from the first RUNS states
+// Times MuJoCo's Runge-Kutta step in C, with all features disabled that this robot does not need.
+// Usage: mujoco MODEL.xml STATES RUNS STEPS. The runs start from the first RUNS states.
 #include "contestant.hpp"
 #include <mujoco/mujoco.h>
 

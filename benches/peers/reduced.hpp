@@ -1,5 +1,5 @@
 // The reduced model of an arm on a free base, `M* qdd + c* = tau` and `xdd = Jg qdd + d`, from Pinocchio's
-// algorithms and Eigen's fixed-size matrices. N: joints.
+// algorithms and Eigen's fixed-size matrices. N is the number of joints.
 #pragma once
 #include "robot.hpp"
 #include <Eigen/Cholesky>
@@ -24,7 +24,7 @@ struct Reduced {
 
   explicit Reduced(long nv) : J(6, nv), dJ(6, nv) { J.setZero(), dJ.setZero(); }
 
-  // As in Pinocchio's documentation: Jdot of all joints from its algorithm.
+  // Computes the model as in Pinocchio's documentation, with Jdot of all joints from its algorithm.
   void by_jacobian_rate(const Robot& robot, pinocchio::Data& data, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
     using namespace pinocchio;
     crba(robot.model, data, q, Convention::WORLD);
@@ -37,8 +37,8 @@ struct Reduced {
     reduce(data, v);
   }
 
-  // With the fewest operations: CRBA in world axes computes placements and Jacobians, and the accelerations
-  // of the bias forces have the classical value Jdot v at the tool.
+  // Computes the model with the fewest operations: CRBA in world axes computes placements and Jacobians, and the
+  // accelerations of the bias forces yield the classical acceleration Jdot v of the tool.
   void by_acceleration(const Robot& robot, pinocchio::Data& data, const Eigen::VectorXd& q, const Eigen::VectorXd& v) {
     using namespace pinocchio;
     crba(robot.model, data, q, Convention::WORLD);

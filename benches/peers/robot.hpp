@@ -4,7 +4,7 @@
 #include <pinocchio/multibody.hpp>
 #include <pinocchio/spatial.hpp>
 
-// A body of the table: mass, centre of mass, inertia about it (xx xy xz yy yz zz).
+// Reads a body of the table: mass, centre of mass, and inertia about it (xx xy xz yy yz zz).
 inline pinocchio::Inertia read_body(std::istream& in) {
   double mass, xx, xy, xz, yy, yz, zz;
   Eigen::Vector3d com;
@@ -46,7 +46,7 @@ struct Robot {
     int carrier;
     in >> carrier;
     tool = model.addFrame(Frame("tool", at[carrier], read_offset(in), OP_FRAME));
-    if (!in) throw std::runtime_error("cannot read " + file);
+    if (!in) throw std::runtime_error("the file " + file + " does not hold a complete robot");
     model.gravity.setZero();
   }
 };

@@ -1,4 +1,4 @@
-"""``make bench``: times every kernel and run against other engines on this machine."""
+"""Compares the speed of kernels and runs with that of other engines on this machine: ``make bench``."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ def commit() -> str:
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python benches/versus", description=__doc__)
     parser.add_argument("--rounds", type=int, default=15)
-    parser.add_argument("--seconds", type=float, default=0.1, help="time of each program in a round")
-    parser.add_argument("--only", default="", help="rows whose name contains this; nothing is saved")
+    parser.add_argument("--seconds", type=float, default=0.1, help="duration of each program in a round, s")
+    parser.add_argument("--only", default="", help="measure only rows whose name contains this; save nothing")
     parser.add_argument(
         "--no-save", action="store_true", help="do not update benches/results.json and the page"
     )
@@ -65,7 +65,7 @@ def main() -> None:
             run["captures"] = captures(given.rounds, given.seconds)
             print(f"{CAPTURE}:", *report.captures(run["captures"]), sep="\n")
         else:
-            skipped.append(f"not measured: {CAPTURE}: mujoco-core not installed")
+            skipped.append(f"not measured: {CAPTURE}: mujoco-core is not installed")
     print(*skipped, *report.regressions(run, before), sep="\n")
     if not given.only and not given.no_save:
         report.append(run)

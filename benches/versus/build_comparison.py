@@ -1,4 +1,4 @@
-"""Times two builds of this project alternately and compares them."""
+"""Alternate timing of two builds of this project, and comparison of their times and results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SAME = (0.98, 1.02)  # range of ratios that count as equal speed
 
 @dataclass(frozen=True, eq=False)
 class Row:
-    """A row of ``make bench`` for one robot."""
+    """Row of ``make bench`` for the robot with ``nv`` velocities."""
 
     row: rows.Row
     nv: int
@@ -31,7 +31,11 @@ class Row:
 
 
 class BuildComparison:
-    """Ratios of the times of two builds in each round, for each row of one robot."""
+    """Times of two builds in each round, and their ratios ``other/here``, for each row of one robot.
+
+    ``ratios`` and ``times`` hold one number per round; the times are those of ``here``, ns. ``changes`` holds
+    the relative difference of the results of both builds.
+    """
 
     def __init__(self, other: Build, here: Build, folder: Path, selected: list[Row]) -> None:
         self.builds, self.folder = (other, here), folder
@@ -41,7 +45,10 @@ class BuildComparison:
         self.count = 0
 
     def round(self, seconds: float) -> None:
-        """Restarts both builds and times every row; the first build alternates between rounds."""
+        """Restarts both builds and times every row in blocks of at least ``seconds``, s.
+
+        The build that is timed first alternates from round to round.
+        """
         running: dict[tuple[Build, str], Contestant] = {}
         order = self.builds if self.count % 2 else self.builds[::-1]
         self.count += 1
@@ -69,13 +76,13 @@ class BuildComparison:
         return running[build, who]
 
     def change(self, row: Row) -> str:
-        """Returns the largest relative difference of the results as text; ``same bits`` if they are equal."""
+        """Returns the relative difference of the results of both builds, or ``same bits`` if it is 0."""
         change = self.changes[row]
         return f"{change:.0e}" if change else "same bits"
 
 
 def start(build: Build, who: str, folder: Path) -> Contestant:
-    """Starts a process of one build: the Rust program or the Python worker."""
+    """Starts the program ``who`` of a build, which is the Rust program or a Python worker."""
     if who in RUST:
         robot, states = RUST[who]
         command = [build.contestant, folder / robot, folder / states, STATES]
@@ -87,9 +94,11 @@ def start(build: Build, who: str, folder: Path) -> Contestant:
 
 
 def interval(ratios: list[float]) -> tuple[float, float]:
-    """Returns bounds of the median with at least 95 % confidence for any distribution.
+    """Returns the bounds of a confidence interval of the median, of at least 95 % for any distribution.
 
-    The k-th smallest and k-th largest of n: the median lies outside with probability `2 P(B(n, 1/2) < k)`.
+    The bounds are the k-th smallest and the k-th largest of the n ratios. The median lies outside with the
+    probability `2 P(B(n, 1/2) < k)`, where `B` is binomially distributed. Fewer than six ratios give no
+    bounds.
     """
     each, n = sorted(ratios), len(ratios)
     below, k = 1, 0  # number of the 2^n outcomes with at most k successes

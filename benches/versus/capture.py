@@ -1,6 +1,6 @@
-"""Times a capture of a rigid craft by another, and measures its accuracy: ``capture.py``.
+"""Worker process that times the capture of a rigid craft by another one, and measures its accuracy.
 
-The craft are rigidly connected at t = 0 at the point (1.5, 0, 0) m, by an event of this package and by a weld
+The craft are rigidly connected at t = 0 at the point (1.5, 0, 0) m, by an event of this package or by a weld
 constraint of MuJoCo.
 """
 
@@ -38,10 +38,11 @@ def words(numbers: Any) -> str:
 
 
 def errors(q: Any, v: Any) -> tuple[float, float]:
-    """Returns the loss of angular momentum, relative to its scale, and the largest gap, m.
+    """Returns the largest change of the total angular momentum, relative to a scale, and the largest gap, m.
 
-    `q` and `v` (2, T, 7 and 6) are the states of both craft in the layout of this package. The scale is
-    `Σ |r × m v + H|` before the capture.
+    `q` (2, T, 7) and `v` (2, T, 6) are the states of both craft in the layout of this package. The scale is
+    `Σ |r × m v + H|` at the start, with the angular momentum `H` of a craft about its centre of mass. The gap
+    is the distance of the grip points.
     """
     totals, scale, points = np.zeros((q.shape[1], 3)), 0.0, []
     for craft in range(2):
@@ -75,7 +76,10 @@ def ours() -> Job:
 
 
 def theirs(weld: str) -> Job:
-    """Returns the job of MuJoCo with attributes of the weld; a rollout has no loop in Python."""
+    """Returns the job of MuJoCo with the given XML attributes of the weld.
+
+    The job uses ``mujoco.rollout``, which has no loop in Python.
+    """
     bodies = "".join(
         BODY.format(i=i, pos=words(POSITIONS[i]), mass=MASSES[i], inertia=words(INERTIAS[i]))
         for i in range(2)

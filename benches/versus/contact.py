@@ -1,4 +1,4 @@
-"""Scene of two craft in contact: four pads of one press on a plate of the other, and its errors."""
+"""Scene of two craft in contact: four pads of one craft press on a plate of the other."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ FINER = 64  # factor by which the steps of the converged solutions are shorter
 
 
 class Pads:
-    """Spring and dashpot of each pad, N/m and N s/m, with the depth at the start, m, and the number of steps.
+    """Parameters of the pads: stiffness, N/m, and damping, N s/m, of each pad, and initial depth, m.
 
-    All pads press on the plate during the whole run.
+    ``steps`` is the number of steps of a run, during which all pads press on the plate.
     """
 
     def __init__(self, name: str, stiffness: float, damping: float, depth: float, steps: int) -> None:
@@ -38,7 +38,10 @@ SOFT, HARD = Pads("soft", 1e3, 10.0, 1e-3, 250), Pads("hard", 3e5, 200.0, 5e-5, 
 
 
 def start(model: oo.Model, pads: Pads) -> list[tuple[Array, Array]]:
-    """Returns configuration and velocity of both craft, whose arms move and whose bases turn slowly."""
+    """Returns the initial configuration and velocity of each craft.
+
+    Both bases rotate slowly, and the arm of the first craft moves.
+    """
     states = []
     for craft, (x, speed) in enumerate([(0.0, 0.0), (0.9 - pads.depth, -CLOSING)]):
         q, v = model.neutral(), np.zeros(model.nv)
@@ -49,7 +52,7 @@ def start(model: oo.Model, pads: Pads) -> list[tuple[Array, Array]]:
 
 
 def write(folder: Path, robot: Robot) -> None:
-    """Writes both craft as URDF, and the scene as MJCF with its start and parameters."""
+    """Writes to `folder` both craft as URDF, the scene as MJCF, and its initial states and pad parameters."""
     words = robots.text
     spheres = "".join(collision(words(pad), f'<sphere radius="{RADIUS}"/>') for pad in map(list, PADS))
     edges = words([2 * half for half in PLATE])
@@ -91,14 +94,17 @@ def simulation(folder: Path, pads: Pads, time_step: float = TIME_STEP) -> oo.Sim
 
 
 def ends(trace: Any) -> tuple[Array, Array]:
-    """Returns the last configurations and velocities of both craft, one row each."""
+    """Returns the final configurations (2, nq) and velocities (2, nv) of both craft."""
     return tuple(np.array([getattr(trace[name], x)[-1] for name in "ab"]) for x in "qv")  # type: ignore[return-value]
 
 
 def errors(model: oo.Model, pads: Pads, end: Array, converged: Array) -> dict[str, float]:
-    """Returns the errors of an end of both craft, one row of q and v each, and the momentum lost.
+    """Returns the errors of a final state, compared with a converged solution, and the momentum lost.
 
-    The energy is kinetic and relative; so is the momentum, to the sum of the magnitudes of both craft.
+    `end` and `converged` hold `q` and `v` of one craft after the other. `position_m` is the largest error of
+    a coordinate of a base, m, and `energy` the relative error of the kinetic energy. `momentum_lost` is the
+    change of the total momentum since the start, divided by the sum of the magnitudes of both craft; it is
+    the larger value of the linear and the angular part.
     """
     begin = np.array([np.hstack(state) for state in start(model, pads)])
     first, last, exact = (totals(model, rows.reshape(2, -1)) for rows in (begin, end, converged))
@@ -112,7 +118,7 @@ def errors(model: oo.Model, pads: Pads, end: Array, converged: Array) -> dict[st
 
 
 def totals(model: oo.Model, rows: Array) -> tuple[Array, float]:
-    """Returns the momentum of each craft about the origin of W, (2, 6), and the kinetic energy of both."""
+    """Returns the momentum of each craft about the origin of W, (2, 6), and the total kinetic energy, J."""
     q, v = (np.ascontiguousarray(part) for part in np.split(rows, [model.nq], axis=1))
     h = np.array(model.momentum(q, v))
     h[:, 3:] += np.cross(model.center_of_mass(q), h[:, :3])

@@ -1,4 +1,4 @@
-"""The programs that are timed for one robot, started on first use."""
+"""Programs that are timed for one robot. Each is started on first use."""
 
 from __future__ import annotations
 
@@ -43,13 +43,18 @@ NEEDS = {"pinocchio_calls": "pin", "mujoco_rollout": "mujoco-core", "mujoco_roll
 
 
 class Contestants:
-    """Processes by name: this package (`ours`, or `rust` without Python) and the other engines."""
+    """Processes by name: this package (`ours` in Python, `rust` without Python) and the other engines.
+
+    `missing` maps the names of programs that cannot be run to the reasons.
+    """
 
     def __init__(self, arms: int, ours: Path, peers: dict[str, Path], missing: dict[str, str]) -> None:
         self.folder = programs.BUILD / f"nv{6 + 7 * arms}"
         inputs.write(self.folder, arms)
         known = programs.versions()
-        self.missing = {name: f"{wheel} not installed" for name, wheel in NEEDS.items() if not known[wheel]}
+        self.missing = {
+            name: f"{wheel} is not installed" for name, wheel in NEEDS.items() if not known[wheel]
+        }
         self.running: dict[str, Contestant] = {}
         self.commands = {
             name: [ours, self.folder / f"{robot}.urdf", self.folder / f"{states}.bin", inputs.STATES]
@@ -64,7 +69,7 @@ class Contestants:
                 files = [self.folder / word if "." in word else word for word in given.split()]
                 self.commands[name] = [peers[program], *files]
         if arms == 1:
-            self.missing.setdefault("loops", "the robot has one hand")
+            self.missing.setdefault("loops", "the robot has only one hand")
 
     def __getitem__(self, name: str) -> Contestant:
         if name not in self.running:
@@ -74,7 +79,7 @@ class Contestants:
         return self.running[name]
 
     def result(self, name: str, job: str) -> Array:
-        """Returns the results of a job in the layout of this package."""
+        """Returns all results of a job of the program `name`, in the layout of this package."""
         rows = self[name].result(job, self.folder)
         if name not in QPOS:
             return rows

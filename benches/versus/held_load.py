@@ -1,4 +1,4 @@
-"""The humanoid with both hands on one load, which is part of the first hand and welded to the second one."""
+"""Humanoid with both hands on one load, which is part of the first hand and is welded to the second hand."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SEED = 6
 
 
 def write(folder: Path, robot: Robot, count: int) -> None:
-    """Writes the robot as URDF and as a table, both grips, and random states that close the loop."""
+    """Writes the robot as URDF and as a table, both grips, and `count` states that close the loop."""
     hand = robot.joints[HANDS[0] - 1]
     joints = list(robot.joints)
     joints[HANDS[0] - 1] = replace(hand, body=joined(hand.body, LOAD))
@@ -44,7 +44,7 @@ def write(folder: Path, robot: Robot, count: int) -> None:
 
 
 def joined(a: Body, b: Body) -> Body:
-    """Returns the body of two rigidly connected ones in the same axes."""
+    """Returns the body that consists of two rigidly connected bodies, which are given in the same axes."""
     mass, coms = a.mass + b.mass, [np.array(body.com) for body in (a, b)]
     com = (a.mass * coms[0] + b.mass * coms[1]) / mass
     inertia = np.zeros((3, 3))
@@ -57,7 +57,10 @@ def joined(a: Body, b: Body) -> Body:
 
 
 def grip(name: str, body: int, pose: Array) -> str:
-    """Returns a frame on a body in URDF, whose angles are those of Rz(yaw) Ry(pitch) Rx(roll)."""
+    """Returns the URDF elements of a frame on the body with index `body` at `pose`, (4, 4).
+
+    The angles of URDF are those of Rz(yaw) Ry(pitch) Rx(roll).
+    """
     rot = pose[:3, :3]
     angles = [
         np.arctan2(rot[2, 1], rot[2, 2]),
@@ -72,7 +75,10 @@ def grip(name: str, body: int, pose: Array) -> str:
 
 
 def closed_states(model: oo.Model, near: Array, count: int) -> tuple[Array, Array, Array]:
-    """Returns random configurations and velocities that close the loop, and random efforts."""
+    """Returns `count` random configurations and velocities that close the loop, and random efforts.
+
+    The joint positions are near those of the configuration `near`.
+    """
     rng = np.random.default_rng(SEED)
     q, v, x = np.tile(near, (count, 1)), *rng.uniform(-1.0, 1.0, (2, count, model.nv))
     q[:, :7] = rng.uniform(-1.0, 1.0, (count, 7))

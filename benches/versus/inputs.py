@@ -1,4 +1,4 @@
-"""Writes the input files of all programs: robot, states and task with equal numbers."""
+"""Writer of the input files: robot, states and tasks, with the same numbers for all programs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PASSIVE_RUNS = 8  # number of random states that are run
 
 
 def write(folder: Path, arms: int) -> None:
-    """Writes robot, states and tasks for a number of arms into `folder`."""
+    """Writes to `folder` the robot with the given number of arms, its states and its tasks."""
     folder.mkdir(parents=True, exist_ok=True)
     robot = robots.humanoid(arms)
     (folder / "robot.urdf").write_text(robots.urdf(robot))
@@ -55,27 +55,27 @@ def write(folder: Path, arms: int) -> None:
 
 
 def random_states(model: oo.Model, rng: np.random.Generator, count: int) -> tuple[Array, Array, Array]:
-    """Returns random states: any attitude, other coordinates, rates and efforts between -1 and 1."""
+    """Returns random configurations, velocities and efforts: any attitude, all other numbers from -1 to 1."""
     q = rng.uniform(-1.0, 1.0, (count, model.nq))
     q[:, 3:7] /= np.linalg.norm(q[:, 3:7], axis=1, keepdims=True)
     return q, rng.uniform(-1.0, 1.0, (count, model.nv)), rng.uniform(-1.0, 1.0, (count, model.nv))
 
 
 def reach(model: oo.Model) -> Array:
-    """Returns the initial configuration of humanoid_reach, also for a second arm."""
+    """Returns the initial configuration of humanoid_reach; a second arm has the same joint positions."""
     q = model.neutral()
     q[7:] = np.tile(REACH, (model.nv - 6) // 7)
     return q
 
 
 def arms_at_rest(model: oo.Model, rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Returns states of humanoids at rest near the initial configuration, which the first one has exactly."""
+    """Returns states of humanoids at rest: the first one as in `reach`, the others near it."""
     q = np.tile(reach(model), (ARMS, 1))
     q[1:, 7:] += rng.uniform(-0.02, 0.02, (ARMS - 1, model.nv - 6))
     return q, np.zeros((ARMS, model.nv)), np.zeros((ARMS, model.nv))
 
 
 def read(file: Path, *widths: int) -> list[Array]:
-    """Reads the columns of a binary file of rows."""
+    """Reads a binary file of rows and returns its columns as one array (N, width) for each of `widths`."""
     rows = np.fromfile(file).reshape(-1, sum(widths))
     return [np.ascontiguousarray(part) for part in np.split(rows, np.cumsum(widths)[:-1], axis=1)]

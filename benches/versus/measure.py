@@ -1,4 +1,4 @@
-"""Measures a row of the table, and the peak throughput of the processor."""
+"""Measurement of the rows of the table, of captures and contacts, and of the processor's peak throughput."""
 
 from __future__ import annotations
 
@@ -20,15 +20,18 @@ LANES = {"avx512": ("avx2+fma", "avx512"), "avx2+fma": ("avx2+fma",), "fma": ("f
 
 
 def measure(row: Row, nv: int, contestants: Contestants, rounds: int, seconds: float) -> dict[str, Any] | str:
-    """Measures a row; returns its entry in the results, or the reason why it cannot be measured."""
+    """Measures a row for the robot with `nv` velocities, in `rounds` rounds of `seconds` s for each program.
+
+    Returns the entry of the results, or the reason why the row cannot be measured.
+    """
     who, job = row.ours
     if row.peer in contestants.missing:
         return contestants.missing[row.peer]
     level = contestants["ours"].about["ready"]
     if who == "ours_avx2" and level != "avx512":
-        return f"this processor's best instruction set is {level}: see the row above"
+        return f"the best instruction set of this processor is {level}, which the row above measures"
     if job not in contestants[who].about.get("jobs", [job]):
-        return "this package does not have it"
+        return f"this package has no job {job}"
     off = difference(contestants.result(who, job), contestants.result(row.peer, row.jobs[0]), row.widths(nv))
     entries = [Entry(contestants[who], job), *(Entry(contestants[row.peer], name) for name in row.jobs)]
     ours, *others = alternate(entries, rounds, seconds)
@@ -57,7 +60,7 @@ CAPTURES = {
 
 
 def captures(rounds: int, seconds: float) -> list[dict[str, Any]]:
-    """Returns time and accuracy of a capture by this package and by welds of MuJoCo."""
+    """Returns the time and accuracy of a capture by this package and by two welds of MuJoCo."""
     who = Contestant([sys.executable, str(HERE / "capture.py")], core=CORE)
     times = dict(
         zip(CAPTURES, alternate([Entry(who, job) for job in CAPTURES], rounds, seconds), strict=True)
@@ -87,10 +90,10 @@ CONTACTS = {
 
 
 def contacts(contestants: Contestants, rounds: int, seconds: float) -> list[dict[str, Any]]:
-    """Returns time and accuracy of two craft in contact, with soft and with hard pads.
+    """Returns the time and accuracy of two craft in contact, with soft and with hard pads.
 
-    The errors of each engine are relative to its own solution with steps that are shorter by
-    `contact.FINER`, since the forces of MuJoCo differ by 1e-4.
+    The solution of each engine is compared with a solution of the same engine whose steps are shorter by the
+    factor `contact.FINER`, because the contact forces of MuJoCo differ from those of this package by 1e-4.
     """
     model, found = oo.Model.from_urdf(contestants.folder / "pads.urdf"), []
     for pads, peer in ((contact.SOFT, "contact"), (contact.HARD, "hard_contact")):
@@ -120,7 +123,10 @@ def contacts(contestants: Contestants, rounds: int, seconds: float) -> list[dict
 
 
 def ceiling(nv: int, contestants: Contestants) -> dict[str, Any]:
-    """Returns the operations per state of each kernel and the peak of a core in 1e9 operations per second."""
+    """Returns the operations per state of each kernel, and the peak of a core in 1e9 operations per second.
+
+    The kernels run on the robot with `nv` velocities. The peak is given for each instruction set.
+    """
     rust, level = contestants["rust"], contestants["ours"].about["ready"]
     return {
         "nv": nv,

@@ -1,4 +1,4 @@
-"""Times the rollouts of MuJoCo's wheel. ``mujoco_rollout.py FOLDER``."""
+"""Worker process that times the rollouts of MuJoCo's Python package: ``mujoco_rollout.py FOLDER``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Times this package from Python: ``ours.py FOLDER``. ``ONORBIT_INSTRUCTION_SET`` selects a lower set."""
+"""Worker process that times this package from Python: ``ours.py FOLDER``.
+
+The environment variable ``ONORBIT_INSTRUCTION_SET`` selects a lower instruction set.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,7 @@ path = oo.LineParabola(
 
 
 def output(kernel: Any, *given: Any) -> dict[str, Any]:
-    """Returns ``out=`` with arrays for the results, if the kernel supports it."""
+    """Returns the argument ``out`` with arrays for the results; empty if the kernel has no such argument."""
     result = kernel(*given, threads=1)
     try:
         kernel(*given, threads=1, out=result)
@@ -85,7 +88,10 @@ def controlled_rollout() -> Job:
 
 
 def reach(**environment: Any) -> Job:
-    """Returns the job of the scenario ``humanoid_reach`` with every step recorded."""
+    """Returns the job of the scenario ``humanoid_reach`` in `environment`, with every step recorded.
+
+    The result is the final state without the environment.
+    """
     control = {"controller": law, "reference": path, "tool": "tool", "time_step": inputs.TIME_STEP}
     run = oo.Simulation(model, arms_q[0], arms_v[0], **control, **environment)
     duration = inputs.REACH_STEPS * inputs.TIME_STEP
@@ -98,7 +104,7 @@ def reach(**environment: Any) -> Job:
 
 
 def touch(pads: contact.Pads, parts: int = 1) -> Job:
-    """Returns the job of two craft in contact with every step recorded."""
+    """Returns the job of two craft in contact, with steps divided by `parts` and every step recorded."""
     run = contact.simulation(folder, pads, contact.TIME_STEP / parts)
     steps = len(run.run(pads.duration)["a"].time) - 1
     return Job(steps, lambda: run.run(pads.duration), lambda: contact.ends(run.run(pads.duration)))

@@ -1,4 +1,4 @@
-"""Writes the measured part of ``docs/performance.md`` after every saved run."""
+"""Writer of the measured part of ``docs/performance.md``, which every saved run updates."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ Run = dict[str, Any]
 
 
 def flops(operations: dict[str, int]) -> int:
-    """Counts a fused multiply-add as two, a division or root as one, sine and cosine as their polynomials."""
+    """Returns the number of floating-point operations of a kernel.
+
+    A fused multiply-add counts as two, a division or root as one, and a pair of sine and cosine as the
+    operations of its polynomials.
+    """
     once = sum(operations[name] for name in ("add", "mul", "div", "sqrt"))
     return once + 2 * operations["mul_add"] + SINE_AND_COSINE * operations["sin_cos"]
 
@@ -43,7 +47,7 @@ def ratios(run: Run) -> list[str]:
 
 
 def limits(run: Run) -> list[str]:
-    """Returns the table of operations and times, for one state and for a batch with SIMD."""
+    """Returns the lines of the table of operations and times, for one state and for a batch with SIMD."""
     kinds = ("ns, one state", "of a lane's peak", "ns, in a batch", "of the lanes' peak")
     lines = head("kernel", "nv", "operations", *kinds)
     times = {(row["what"], row["nv"]): row["ours_ns"] for row in run["rows"]}

@@ -1,4 +1,4 @@
-"""Times Pinocchio's wheel from Python. ``pinocchio_calls.py FOLDER``."""
+"""Worker process that times calls of Pinocchio from Python: ``pinocchio_calls.py FOLDER``."""
 
 from __future__ import annotations
 

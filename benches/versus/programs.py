@@ -1,4 +1,7 @@
-"""Compiles the Rust program with cargo and the programs of other engines with g++ and PyPI's wheels."""
+"""Builds the programs to be timed: the Rust program with cargo, and those of other engines with g++.
+
+The headers and libraries of the other engines come from their wheels on PyPI.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,7 @@ BOOST = [f"-DBOOST_{limit}" for limit in [*BOOST, "MPL_CFG_NO_PREPROCESSED_HEADE
 
 
 def versions() -> dict[str, str]:
-    """Returns the versions of wheels and compilers; empty for missing ones."""
+    """Returns the versions of wheels and compilers by name; the text is empty for a missing one."""
     found = {}
     for wheel in (*WHEELS, "numpy"):
         try:
@@ -48,7 +51,7 @@ def versions() -> dict[str, str]:
 
 
 def ours() -> Path:
-    """Builds the Rust program with the flags of a release, without ``target-cpu``."""
+    """Builds the Rust program with the flags of a release, without ``target-cpu``, and returns its path."""
     command = ["cargo", "build", "--release", "-p", "onorbit-core", "--example", "contestant"]
     output = subprocess.run(
         [*command, "--message-format=json"], cwd=HERE.parents[1], check=True, capture_output=True, text=True
@@ -58,10 +61,13 @@ def ours() -> Path:
 
 
 def peers() -> tuple[dict[str, Path], dict[str, str]]:
-    """Compiles the C++ programs if their sources changed; returns them, and why others are missing."""
+    """Compiles the C++ programs whose sources or tools changed.
+
+    Returns the paths of the programs, and the reasons why others are missing, both by name.
+    """
     known = versions()
     if not known["g++"]:
-        return {}, dict.fromkeys(PROGRAMS, "no g++ on this machine")
+        return {}, dict.fromkeys(PROGRAMS, "g++ is not installed")
     lib = next(iter(SITE.glob("mujoco/libmujoco.so.*")), None)
     prefix = SITE / "cmeel.prefix" / "include"
     pinocchio = [*BOOST, f"-I{prefix}", f"-I{prefix / 'eigen3'}"]
@@ -74,7 +80,7 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
     for name, engine in PROGRAMS.items():
         option = options[engine]
         if absent := [wheel for wheel in needs[engine] if not known[wheel]]:
-            missing[name] = f"{', '.join(absent)} not installed"
+            missing[name] = f"{' and '.join(absent)} must be installed"
             continue
         source = PEERS / f"{name}.cpp"
         recipe = [
@@ -91,7 +97,7 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
             command = ["g++", *FLAGS, str(source), *option, "-o", str(program) + ".new"]
             running[name] = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     if running:
-        print(f"compiling {', '.join(running)} (once; Pinocchio's templates take minutes) ...", flush=True)
+        print(f"compiling {', '.join(running)}, which can take minutes the first time ...", flush=True)
     for name, compiler in running.items():
         errors = compiler.communicate()[1]
         if compiler.returncode:
@@ -103,7 +109,7 @@ def peers() -> tuple[dict[str, Path], dict[str, str]]:
 
 
 def processor() -> str:
-    """Returns the name of the processor, if known."""
+    """Returns the name of the processor, or ``unknown``."""
     file = Path("/proc/cpuinfo")
     lines = file.read_text().splitlines() if file.exists() else []
     return next((line.split(":")[1].strip() for line in lines if line.startswith("model name")), "unknown")

@@ -1,4 +1,4 @@
-"""Prints the table of results and keeps the history in ``benches/results.json``."""
+"""Table of results as text, and the history of results in ``benches/results.json``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def history() -> list[Run]:
 
 
 def append(run: Run) -> None:
-    """Appends a run with one line per row, so that changes are readable in a diff."""
+    """Appends a run to the history, with one line per row, so that changes are readable in a diff."""
     texts = []
     for one in [*history(), run]:
         head = [f"   {json.dumps(key)}: {json.dumps(value)}" for key, value in one.items() if key != "rows"]
@@ -27,13 +27,13 @@ def append(run: Run) -> None:
 
 
 def last_like(run: Run) -> Run | None:
-    """Returns the most recent earlier run on the same kind of machine."""
+    """Returns the most recent run of the history on the same kind of machine, or None."""
     like = [one for one in history() if one["machine"] == run["machine"]]
     return like[-1] if like else None
 
 
 def before_of(row: Run, before: Run | None) -> float | None:
-    """Returns the ratio of this row in an earlier run."""
+    """Returns the median ratio of this row in the earlier run `before`, or None if it has no such row."""
     rows = before["rows"] if before else []
     same = (one for one in rows if (one["what"], one["nv"]) == (row["what"], row["nv"]))
     return next((float(one["ratio"]["median"]) for one in same), None)
@@ -67,7 +67,7 @@ def line(row: Run, before: Run | None) -> str:
 
 
 def captures(entries: list[Run]) -> list[str]:
-    """Returns a line for each engine of the capture: time and accuracy."""
+    """Returns a line with time and accuracy for each engine of the capture."""
     return [
         f"{entry['engine']:<48} {entry['us_per_simulated_second'] / 1e3:.2f} ms per simulated second "
         f"({entry['ratio']['median']:.2f} times), angular momentum lost {entry['momentum_lost']:.0e}, "
@@ -77,7 +77,7 @@ def captures(entries: list[Run]) -> list[str]:
 
 
 def contacts(entries: list[Run]) -> list[str]:
-    """Returns a line for each engine and stiffness of two craft in contact: time and accuracy."""
+    """Returns a line with time and accuracy for each engine and stiffness of two craft in contact."""
     return [
         f"{entry['engine']:<38} {entry['pads']}: {entry['us_per_step']:6.2f} µs per step "
         f"({entry['ratio']['median']:.2f} times), {entry['steps']} steps, "
@@ -88,11 +88,16 @@ def contacts(entries: list[Run]) -> list[str]:
 
 
 def regressions(run: Run, before: Run | None) -> list[str]:
-    """Returns the rows whose ratio fell by more than 10 %, in every round below the previous median."""
+    """Returns a line for each row whose median ratio fell by more than 10 % since the run `before`.
+
+    The ratio must also be below the previous median in every round.
+    """
     lost = []
     for row in run["rows"]:
         last, ratio = before_of(row, before), row["ratio"]
         if last is not None and ratio["median"] < SLOWER * last and ratio["max"] < last:
             fraction = ratio["median"] / last
-            lost.append(f"SLOWER: {row['what']}, nv = {row['nv']}: {fraction:.0%} of the last ratio")
+            lost.append(
+                f"SLOWER: {row['what']}, nv = {row['nv']}: {fraction:.0%} of the ratio of the last run"
+            )
     return lost

@@ -1,4 +1,4 @@
-"""Builds two revisions of this project: the Rust contestant and the Python package of each."""
+"""Builds of two revisions of this project, each with the Rust program `contestant` and the Python package."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ PARTS = (*PARTS, "README.md", "pyproject.toml")
 
 @dataclass(frozen=True)
 class Build:
-    """A revision's name, its Rust program and the folder of its Python package."""
+    """Build of a revision: its name, its Rust program and the folder that contains its Python package."""
 
     name: str
     contestant: Path
@@ -34,7 +34,7 @@ class Build:
 
 
 def built(*trees: Path) -> list[Build]:
-    """Returns the builds of trees that were built in place."""
+    """Returns the builds of source trees that were built in place, or exits if one is not built."""
     builds = []
     for tree in trees:
         contestant, python = tree / "target/release/examples/contestant", tree / "python"
@@ -48,7 +48,7 @@ def built(*trees: Path) -> list[Build]:
 
 
 def compared(revision: str) -> list[Build]:
-    """Builds the revision and the working tree, including uncommitted changes, at the same path."""
+    """Builds a revision, then the working tree with its uncommitted changes, both at the same path."""
     other = git("rev-parse", "--verify", f"{revision}^{{tree}}")
     return [build(revision, other), build("the working tree", working_tree())]
 
@@ -63,7 +63,10 @@ def git(*words: str, **environment: str) -> str:
 
 
 def working_tree() -> str:
-    """Writes a tree object of all files that are not ignored, with a temporary index."""
+    """Writes a git tree object of all files that are not ignored and returns its hash.
+
+    A temporary index is used, so that nothing is staged.
+    """
     with tempfile.TemporaryDirectory() as folder:
         index = str(Path(folder) / "index")
         git("read-tree", "HEAD", GIT_INDEX_FILE=index)
@@ -72,7 +75,7 @@ def working_tree() -> str:
 
 
 def build(name: str, tree: str) -> Build:
-    """Builds a tree object of git, unless an equal tree was built before."""
+    """Builds a git tree object and returns the build, which is reused if an equal tree was built before."""
     content = git("ls-tree", tree, *PARTS)
     folder = AGAINST / hashlib.sha256(content.encode()).hexdigest()[:12]
     if not folder.exists():
@@ -92,7 +95,7 @@ def build(name: str, tree: str) -> Build:
 
 
 def export(tree: str) -> None:
-    """Writes the files of a tree object to the common path of all builds."""
+    """Writes the files of a git tree object to the common path of all builds."""
     shutil.rmtree(SOURCE, ignore_errors=True)
     SOURCE.mkdir(parents=True)
     with subprocess.Popen(["git", "archive", tree], cwd=ROOT, stdout=subprocess.PIPE) as archive:
@@ -101,7 +104,7 @@ def export(tree: str) -> None:
 
 
 def seed() -> None:
-    """Links the dependencies compiled in the working tree into the build folder, to reuse them."""
+    """Links the dependencies that were compiled in the working tree into the build folder, if it is new."""
     if TARGET.exists():
         return
     for part in (".fingerprint", "build", "deps"):

@@ -1,7 +1,8 @@
-"""The common robot of all programs: the bundled humanoid with one arm (nv = 13) or two (nv = 20).
+"""Common robot of all programs: the bundled humanoid with one arm (nv = 13) or two arms (nv = 20).
 
-Every number comes from the bundled URDF (Table 1 of the OnOrbitROS paper). The second arm is the first one
-mounted on the other side, so that all joints turn about x, y or z: Pinocchio's fastest joint types.
+Every number comes from the bundled URDF (Table 1 of the OnOrbitROS paper). The second arm is a copy of the
+first arm, mounted on the other side. All joints rotate about x, y or z, for which Pinocchio has its fastest
+joint types.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ REACH = np.array([0.5342, -2.341, -2.0077, -2.2249, -2.2693, -0.1342, -0.1974]) 
 
 @dataclass
 class Body:
-    """Mass, centre of mass, and inertia about the centre of mass (xx xy xz yy yz zz)."""
+    """Mass, kg, centre of mass, m, and inertia about the centre of mass (xx xy xz yy yz zz), kg m²."""
 
     mass: float
     com: list[float]
@@ -35,7 +36,10 @@ class Body:
 
 @dataclass
 class Joint:
-    """A revolute joint about a positive axis of its parent, and its child body."""
+    """Revolute joint about the axis x, y or z of its parent, at ``xyz``, m, with its child body.
+
+    ``parent`` is the index of the parent body.
+    """
 
     parent: int
     axis: str
@@ -45,7 +49,10 @@ class Joint:
 
 @dataclass
 class Robot:
-    """A robot: bodies by index, with base 0, and a tool frame on one of the bodies."""
+    """Robot with a tool frame at ``tool_xyz``, m, on the body ``tool``.
+
+    Body 0 is the base, and body ``k`` is the child of joint ``k - 1`` in ``joints``.
+    """
 
     base: Body
     joints: list[Joint] = field(default_factory=list)
@@ -63,7 +70,7 @@ def floats(element: xml.Element | None, name: str) -> list[float]:
 
 
 def humanoid(arms: int) -> Robot:
-    """Reads the robot from the bundled file and returns it with `arms` arms."""
+    """Reads the robot from the bundled URDF and returns it with the given number of arms, 1 or 2."""
     root = xml.parse(BUNDLED).getroot()
     bodies = {
         link.attrib["name"]: read_body(link)
@@ -110,7 +117,7 @@ def unit(axis: str) -> str:
 
 
 def urdf(robot: Robot, collision: str = "", frames: str = "") -> str:
-    """Returns the URDF text, with the <collision> elements of the base and the elements of further frames."""
+    """Returns the robot as URDF, with the elements `collision` in the base link and `frames` in the robot."""
 
     def link(name: str, body: Body, collision: str = "") -> str:
         names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -136,14 +143,14 @@ def urdf(robot: Robot, collision: str = "", frames: str = "") -> str:
 
 
 def table(robot: Robot) -> str:
-    """Returns the text that ``benches/peers/robot.hpp`` reads."""
+    """Returns the robot in the text format that ``benches/peers/robot.hpp`` reads."""
     lines = [str(len(robot.joints)), text(robot.base.numbers())]
     lines += [f"{j.parent} {j.axis} {text(j.xyz)} {text(j.body.numbers())}" for j in robot.joints]
     return "\n".join([*lines, f"{robot.tool} {text(robot.tool_xyz)}\n"])
 
 
 def mjcf(robot: Robot) -> str:
-    """Returns MJCF with a free base and hinges, without collision."""
+    """Returns the robot as MJCF with a free base and hinges, without collision geometry."""
     settings = '<option timestep="0.001" gravity="0 0 0" integrator="RK4"/>'
     return f"<mujoco>{ANGLES}{settings}<worldbody>{mjcf_bodies(robot)}</worldbody></mujoco>"
 
@@ -152,7 +159,7 @@ ANGLES = '<compiler angle="radian" autolimits="false"/>'
 
 
 def mjcf_bodies(robot: Robot, prefix: str = "", geoms: str = "") -> str:
-    """Returns the bodies in MJCF, with `geoms` on the base; inertias are xx yy zz xy xz yz."""
+    """Returns the bodies in MJCF, with names that begin with `prefix` and with `geoms` on the base."""
 
     def body(k: int, xyz: list[float], mass: Body, inside: str) -> str:
         order = [mass.inertia[i] for i in (0, 3, 5, 1, 2, 4)]

@@ -1,4 +1,4 @@
-"""The rows of the table, each a job that is compared for each robot."""
+"""Rows of the table. Each row is a job that is compared for each robot."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Row:
-    """A job of this package against jobs of one other engine, of which the fastest counts.
+    """Job of this package, compared with jobs of one other engine, of which the fastest counts.
 
-    `goal` is the ratio to reach, optionally by instruction set or nv; `parts` are the widths of the results
-    in a row, in terms of nq, nv and n.
+    `ours` names the program and its job, `peer` the other program and `jobs` its jobs. `goal` is the required
+    ratio, optionally by instruction set or nv; None means no requirement. `parts` lists the widths of the
+    results of a state, as products of nq, nv, n and numbers.
     """
 
     what: str
@@ -22,7 +23,7 @@ class Row:
     parts: str
 
     def minimum(self, nv: int, level: str) -> float | None:
-        """Returns the ratio to reach with this robot on this instruction set."""
+        """Returns the required ratio for this `nv` and this instruction set; None without requirement."""
         if not isinstance(self.goal, dict):
             return self.goal
         return self.goal.get(nv, self.goal.get(level))

@@ -1,4 +1,4 @@
-"""Times processes that answer line by line, alternating between them in short rounds."""
+"""Alternate timing, in short rounds, of processes that answer requests line by line."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ Array = NDArray[np.float64]
 
 
 class Contestant:
-    """A process that waits for jobs on its standard input, optionally bound to one core."""
+    """Process that answers requests on its standard input, optionally bound to one core.
+
+    ``about`` is the first line of its output, which describes the process.
+    """
 
     def __init__(self, command: list[str], *, core: int | None = None, **environment: str) -> None:
         if core is not None and hasattr(os, "sched_setaffinity"):
@@ -32,7 +35,7 @@ class Contestant:
         return self._answer()
 
     def time(self, job: str, seconds: float) -> float:
-        """Returns the nanoseconds per unit of work."""
+        """Returns the time of a unit of work of `job`, ns, measured for at least `seconds` s."""
         return float(self.ask("time", job, seconds)["ns"])
 
     def result(self, job: str, folder: Path) -> Array:
@@ -43,7 +46,9 @@ class Contestant:
     def _answer(self) -> dict[str, Any]:
         line = self.process.stdout.readline()
         if not line:
-            raise RuntimeError(f"{self.process.args} ended with {self.process.wait()}")
+            raise RuntimeError(
+                f"{' '.join(self.process.args)} ended with exit code {self.process.wait()}; see its output"
+            )
         answer: dict[str, Any] = json.loads(line)
         return answer
 
@@ -53,14 +58,18 @@ class Contestant:
 
 @dataclass(frozen=True)
 class Entry:
-    """A process and its job."""
+    """Job of a process, to be timed."""
 
     who: Contestant
     job: str
 
 
 def alternate(entries: list[Entry], rounds: int, seconds: float) -> list[list[float]]:
-    """Returns the nanoseconds per unit of every entry in every round; the first entry rotates."""
+    """Returns the times per unit of work, ns, of every entry in every round.
+
+    In each round, every entry is timed for `seconds` s. The entry that is timed first changes from round to
+    round.
+    """
     times: list[list[float]] = [[] for _ in entries]
     for entry in entries:
         entry.who.time(entry.job, 0.0)  # one pass to warm up
@@ -72,13 +81,17 @@ def alternate(entries: list[Entry], rounds: int, seconds: float) -> list[list[fl
 
 
 def ratios(theirs: list[float], ours: list[float]) -> dict[str, float]:
-    """Returns minimum, median and maximum over the rounds of how many times as fast this package is."""
+    """Returns the minimum, median and maximum of `theirs / ours` over the rounds."""
     each = sorted(a / b for a, b in zip(theirs, ours, strict=True))
     return {"min": each[0], "median": statistics.median(each), "max": each[-1]}
 
 
 def difference(ours: Array, theirs: Array, widths: list[int]) -> float:
-    """Returns the largest difference, relative to the largest number in each part of a state's results."""
+    """Returns the largest difference of the results, relative to the largest number of a part of the results.
+
+    The results of a state consist of parts with the given widths. Only states that both arrays contain are
+    compared.
+    """
     ours, theirs = (x.reshape(-1, sum(widths)) for x in (ours, theirs))
     count = min(len(ours), len(theirs))
     worst, at = 0.0, 0

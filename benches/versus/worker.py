@@ -1,4 +1,4 @@
-"""A Python process that times jobs on request, with the protocol of ``benches/peers/contestant.hpp``."""
+"""Worker process that times jobs on request, with the protocol of ``benches/peers/contestant.hpp``."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ import numpy as np
 
 @dataclass
 class Job:
-    """`run` does `units` of work; `result` returns the results (arrays with one row per state).
+    """Job of a worker: `run` does `units` of work, and `result` returns arrays with one row per state.
 
-    Processor time is measured, which excludes other processes; with several threads, wall-clock time.
+    With one thread, the processor time of the process is measured; with several threads, the wall-clock time.
     """
 
     units: int
@@ -27,7 +27,7 @@ class Job:
 
 
 def timed(job: Job, seconds: float) -> float:
-    """Returns the nanoseconds per unit, the median over passes."""
+    """Returns the time of a unit of work, ns: the median over calls of `run` during `seconds` s."""
     clock = time.process_time_ns if job.threads == 1 else time.perf_counter_ns
     passes, end = [], time.perf_counter() + seconds
     while not passes or time.perf_counter() < end:
@@ -38,7 +38,7 @@ def timed(job: Job, seconds: float) -> float:
 
 
 def serve(ready: str, jobs: dict[str, Job], **about: Any) -> None:
-    """Sends `about` and the names of the jobs, then answers requests until standard input ends."""
+    """Sends `ready`, `about` and the names of the jobs, then answers requests until standard input ends."""
     answer({"ready": ready, "jobs": list(jobs), **about})
     for line in sys.stdin:
         verb, name, last = line.split()

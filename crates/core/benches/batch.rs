@@ -1,5 +1,5 @@
-//! Batches on one thread: 1024 states of forward dynamics, and 1024 runs of 100 steps; times per state and
-//! step.
+//! Benches of batches on one thread: 1024 states of forward dynamics, and rollouts of 1024 runs of 100 steps.
+//! The throughput is given in states and in steps of one run.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
 
 mod common;

@@ -1,4 +1,5 @@
-//! Kernels on a torso with one (nv = 13) or two (nv = 20) seven-joint arms; states vary per call.
+//! Benches of the kernels on a torso with one (nv = 13) or two (nv = 20) seven-joint arms. The state varies
+//! from call to call.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
 
 mod common;

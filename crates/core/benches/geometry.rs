@@ -1,7 +1,7 @@
-//! Cost of a distance and of contact points.
+//! Benches of the distance and of the contact points of two shapes.
 //!
-//! Varies: the kinds of shapes, apart by 0.1 m or overlapping by 1 mm. Held: shapes of about 1 m. Poses change from call to
-//! call.
+//! Varied: the kinds of shapes, and their distance: 0.1 m apart or overlapping by 1 mm. Fixed: the size of
+//! the shapes, about 1 m. The poses vary from call to call.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros make an undocumented function
 
 #[path = "../tests/common/random_shapes.rs"]
@@ -14,7 +14,7 @@ use std::hint::black_box;
 
 const PAIRS: usize = 256;
 
-/// Pairs of kinds of shapes, as indices of [`KINDS`].
+/// Pairs of kinds of shapes that are timed, as indices into [`KINDS`].
 const COMBINATIONS: [(usize, usize); 7] = [(0, 2), (1, 1), (1, 2), (2, 2), (5, 5), (2, 3), (3, 3)];
 
 fn pairs(i: usize, j: usize, distance: f64) -> Vec<(Shape, Pose, Shape, Pose)> {

@@ -1,7 +1,8 @@
-//! Cost of a planet's field, and of the full field on a robot.
+//! Benches of a planet's field, and of the gravity effects on a robot with eight bodies.
 //!
-//! Varies: model and degree; whether the step began here (one expansion serves all bodies). Held: a position
-//! in a low orbit, one thread. The position changes slightly at every call, so that no cache is hit.
+//! Varied: the model and its degree. Fixed: a position in a low orbit, one thread. In the benches of the
+//! field, the position changes slightly at every call. The benches of the effects evaluate one scene
+//! repeatedly, so a single expansion of the field serves all bodies and calls.
 #![allow(missing_docs)] // criterion's macros make an undocumented function
 
 use std::hint::black_box;

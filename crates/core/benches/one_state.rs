@@ -1,7 +1,9 @@
-//! Nanoseconds per call of every kernel for one state, and per step of whole runs, as lines of `name<tab>ns`.
+//! Prints the time of a call of every kernel for one state, and of a step of whole runs, as lines of
+//! `name<tab>nanoseconds`.
 //!
-//! `cargo bench --bench one_state -- [robot.urdf [rounds [kernels | steps | name of a step]]]`: medians over the rounds, states
-//! vary from call to call. Made to be run alternately with the same kernels of another engine on the same robot.
+//! Usage: `cargo bench --bench one_state -- [robot.urdf [rounds [kernels | steps | name of a step]]]`. The
+//! times are medians over the rounds, and the state varies from call to call. The program can be run
+//! alternately with a program that times the same kernels of another engine on the same robot.
 #![allow(missing_docs, clippy::print_stdout)] // a program that prints
 
 mod common;
@@ -29,7 +31,7 @@ const STEPS: usize = 500;
 
 type Job<'a> = (&'static str, Box<dyn FnMut() -> f64 + 'a>);
 
-/// Nanoseconds per call of `f` over all states.
+/// Returns the mean time of a call of `f`, ns, over all states. The argument of `f` is the index of a state.
 fn timed(mut f: impl FnMut(usize)) -> f64 {
     (0..STATES).for_each(&mut f);
     let started = Instant::now();
@@ -39,7 +41,7 @@ fn timed(mut f: impl FnMut(usize)) -> f64 {
     started.elapsed().as_secs_f64() * 1e9 / (LOOPS * STATES) as f64
 }
 
-/// `n` numbers in -1..1, different for every seed.
+/// Returns `n` numbers from -1 to 1, which differ from seed to seed.
 fn numbers<S: Real>(n: usize, seed: usize) -> Vec<S> {
     (0..n).map(|i| S::of((12.9898 * i as f64 + 78.233 * seed as f64 + 0.1).sin())).collect()
 }
@@ -122,7 +124,7 @@ fn print(mut jobs: Vec<Job<'_>>, rounds: usize) {
     }
 }
 
-/// The arm swinging freely.
+/// Returns the simulation of the robot without controllers, with initial joint rates.
 fn passive(model: &Arc<Model>, record_every: usize) -> Simulation {
     let mut q = neutral(model);
     let v = numbers(model.nv(), 7);
@@ -130,7 +132,8 @@ fn passive(model: &Arc<Model>, record_every: usize) -> Simulation {
     Simulation { record_every, ..Simulation::new(Arc::clone(model), q, v) }
 }
 
-/// As `humanoid_reach`: an orbit, the gravity gradient, computed torque along a line.
+/// Returns a simulation similar to the scenario `humanoid_reach`: computed torque along a line and, if
+/// `in_orbit` is true, an orbit with the gravity gradient.
 fn reach(model: &Arc<Model>, in_orbit: bool) -> Result<Simulation, Box<dyn Error>> {
     const START: [f64; 7] = [0.3, 0.6, -0.4, 1.3, 0.2, 1.0, -0.3];
     let mut q = neutral(model);
@@ -154,7 +157,7 @@ fn reach(model: &Arc<Model>, in_orbit: bool) -> Result<Simulation, Box<dyn Error
     Ok(simulation)
 }
 
-/// Nanoseconds per step of `f`'s runs.
+/// Returns a job that runs `simulation` and returns the time of a step, ns.
 fn stepped(mut simulation: Simulation) -> Box<dyn FnMut() -> f64> {
     Box::new(move || {
         let started = Instant::now();

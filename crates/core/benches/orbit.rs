@@ -1,7 +1,7 @@
-//! Cost of one reference state, and of gravity on a robot.
+//! Benches of one state of a Kepler orbit, and of the gravity effects on a robot with eight bodies.
 //!
-//! Varies: the conic, and the number of bodies. Held: the size of the orbit, one thread. Times advance along
-//! the orbit so that no branch and no cached phase repeats.
+//! Varied: the conic. Fixed: the robot, one thread. In the benches of the conics, the time advances along the
+//! orbit, so that successive calls have different phases.
 #![allow(missing_docs)] // criterion's macros make an undocumented function
 
 use std::hint::black_box;

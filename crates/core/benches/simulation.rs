@@ -1,5 +1,7 @@
-//! One simulated step of 1 ms of a torso with a seven-joint arm: 1000 steps per run; the time is that of one
-//! step, including start and recording (every 100th step). Held: robot and state.
+//! Benches of a simulated step of 1 ms of a torso with a seven-joint arm.
+//!
+//! Fixed: the robot and its initial state. Varied: integrator, environment and control. Each run has 1000
+//! steps. The time is that of one step, including the start of the run and the recording of every 100th step.
 #![allow(missing_docs, clippy::unwrap_used)] // criterion's macros write undocumented items
 
 mod common;
@@ -28,7 +30,7 @@ const STEPS: usize = 1000;
 const STEP: f64 = 1e-3;
 const START: [f64; 7] = [0.3, 0.6, -0.4, 1.3, 0.2, 1.0, -0.3];
 
-/// The arm swinging freely.
+/// Returns the simulation of the robot without controllers, with initial joint rates.
 fn passive() -> Simulation {
     let model = torso(1);
     let mut q = neutral(&model);
@@ -37,7 +39,7 @@ fn passive() -> Simulation {
     Simulation { record_every: 100, time_step: STEP, ..Simulation::new(Arc::new(model), q, v) }
 }
 
-/// In orbit under the gravity gradient.
+/// Returns `simulation` on a low orbit, with the gravity gradient.
 fn in_orbit(mut simulation: Simulation) -> Simulation {
     let (r, v) = (Vector3::new(6_778e3, 0.0, 0.0), Vector3::new(0.0, 4_700.0, 6_100.0));
     simulation.orbit = Some(Arc::new(Kepler::from_state(r, v, MU_EARTH).unwrap()));
@@ -45,7 +47,7 @@ fn in_orbit(mut simulation: Simulation) -> Simulation {
     simulation
 }
 
-/// Tracking a line with computed torque.
+/// Returns `simulation` from rest, with computed torque along a line.
 fn controlled(mut simulation: Simulation) -> Simulation {
     simulation.systems[0].v.fill(0.0);
     let tool = simulation.systems[0].model.frame("arm0_link6").unwrap();
@@ -61,8 +63,9 @@ fn controlled(mut simulation: Simulation) -> Simulation {
     simulation
 }
 
-/// All effects: EGM2008 36 × 36, Sun and Moon, NRLMSISE-00 and radiation pressure on the faces of the bundled
-/// torso, with a reference integrated in the same field.
+/// Returns a simulation of the bundled torso with all effects: gravity of EGM2008 36 × 36, Sun and Moon,
+/// gravity gradient, drag in NRLMSISE-00 and radiation pressure on the faces of the robot. The reference
+/// orbit is integrated in the same field.
 fn with_all_effects() -> Simulation {
     let urdf = concat!(env!("CARGO_MANIFEST_DIR"), "/../../python/onorbit_rs/robots/humanoid_torso.urdf");
     let model = Arc::new(from_file(urdf.as_ref(), &Default::default()).unwrap());
@@ -92,7 +95,7 @@ fn with_all_effects() -> Simulation {
 
 type Group<'a> = BenchmarkGroup<'a, criterion::measurement::WallTime>;
 
-/// Times one step: criterion's iterations are steps, a thousand at a time.
+/// Times one step of `simulation`: criterion's iterations are steps, of which each run has a thousand.
 fn step(group: &mut Group<'_>, name: &str, mut simulation: Simulation) {
     group.bench_function(name, |b| {
         b.iter_custom(|iterations| {

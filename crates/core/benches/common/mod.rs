@@ -1,4 +1,4 @@
-//! The robot of all benches: a 93 kg torso with one (nv = 13) or two (nv = 20) seven-joint arms.
+//! Common robot of the benches: a 93 kg torso with one (nv = 13) or two (nv = 20) seven-joint arms.
 #![allow(missing_docs, unreachable_pub, clippy::unwrap_used)] // a bench that fails to build its robot may panic
 
 use nalgebra::{Isometry3, Matrix3, Vector3};

@@ -22,7 +22,9 @@ pub enum EarthError {
         text: String,
     },
     /// A quantity depends on the date, but no epoch is given.
-    #[error("{what} requires an epoch, but none is given; set 'epoch', for example to '2024-03-01T12:00:00 UTC'")]
+    #[error(
+        "{what} requires an epoch, but none is given; set 'epoch', for example to '2024-03-01T12:00:00 UTC'"
+    )]
     NeedsEpoch {
         /// Name of the quantity.
         what: &'static str,
