@@ -64,7 +64,7 @@ impl Surface {
     ///
     /// # Errors
     /// [`SurfaceError::WrongLength`] if the numbers of areas, normals and centroids differ,
-    /// [`SurfaceError::NoPlates`] if there are none, [`SurfaceError::UnknownBody`] if `model` does not have
+    /// [`SurfaceError::NoPlates`] for empty lists, [`SurfaceError::UnknownBody`] if `model` does not have
     /// the body of `frame`, [`SurfaceError::Normal`] for a normal that is zero or not finite, and
     /// [`SurfaceError::Value`] for an invalid area, centroid or drag coefficient.
     pub fn plates(
