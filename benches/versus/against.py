@@ -51,7 +51,7 @@ def selected_rows(given: argparse.Namespace) -> list[Row]:
     """Returns the selected rows of ``make bench`` that run on one thread, for each robot that has them."""
     robots = (13, 20) if given.nv is None else (given.nv,)
     rows = [row for row in ROWS if given.rows in row.what and row.ours[0] != "ours_all"]
-    rows = list({row.ours: row for row in reversed(rows)}.values())[::-1]  # rows with the same job are timed once
+    rows = list({row.ours: row for row in reversed(rows)}.values())[::-1]  # each job once
     if not rows:
         sys.exit(f"no row contains {given.rows!r}; the rows are: {', '.join(row.what for row in ROWS)}")
     pairs = itertools.product(robots, rows)
