@@ -3,16 +3,16 @@
 use super::kernels::Kernel;
 use crate::model::Model;
 
-/// Rows of an input array.
+/// Input array with one row per state.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<'a> {
     /// Values of all rows, one row after the other.
     pub data: &'a [f64],
-    /// Length of a row.
+    /// Number of values in a row.
     pub width: usize,
 }
 
-/// Rows of an output array, one after the other.
+/// Output array with one row per state, one after the other.
 pub type RowsMut<'a> = &'a mut [f64];
 
 /// External wrenches on the body of a frame, in frame axes about the frame origin, N and N m, linear first.

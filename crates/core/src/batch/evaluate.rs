@@ -79,7 +79,8 @@ impl Evaluator {
     }
 }
 
-/// Computes all states. Returns true if the inputs of all computed states are valid and their outputs finite.
+/// Computes all states. Returns true if the inputs of all computed states are valid and their outputs are
+/// finite.
 fn evaluate_all<S: Real>(
     call: &Call<'_>,
     outputs: &mut [RowsMut<'_>],

@@ -31,7 +31,7 @@ const BLOCK: usize = 64;
 #[repr(align(64))]
 struct BlockBuffer([f64; 8 * BLOCK]);
 
-/// Stores the first `count` lanes to rows.
+/// Stores the lanes to rows, as many as `strides` has states. This is the inverse of [`gather`].
 #[inline(always)]
 pub(super) fn scatter<S: Real>(from: &[S], strides: Strides, to: &mut [f64]) {
     let Strides { first, stride, count } = strides;

@@ -35,7 +35,8 @@ pub enum Kernel {
     /// `q, v, tau` → `(nv,)` generalized accelerations with closed loops and mimic joints, and their `(m,)`
     /// constraint forces, N and N m.
     ConstrainedForwardDynamics,
-    /// `q` → `(m,)` errors of closed loops and mimic joints, m and rad.
+    /// `q` → `(m,)` errors of closed loops and mimic joints, m and rad; `m` is the number of constraint
+    /// equations.
     LoopErrors,
     /// `q, v, a` → derivatives `∂τ/∂q`, `∂τ/∂v`, `∂τ/∂a` of the generalized forces `τ`, each `(nv, nv)`. Here
     /// and below, `∂/∂q` is the derivative with respect to `δ` of `q ⊕ δ`.
@@ -97,7 +98,7 @@ impl Kernel {
         )
     }
 
-    /// Returns the index of the kernel's frame, if it has one.
+    /// Returns the index of the kernel's frame; `None` if the kernel has none.
     pub(super) fn frame(self) -> Option<usize> {
         match self {
             Self::FramePose(frame)
@@ -257,7 +258,7 @@ impl<S: Real> KernelData<S> {
     }
 }
 
-/// Returns the first `N` outputs.
+/// Returns the first `N` outputs as slices.
 fn slices<S, const N: usize>(out: &mut [Vec<S>]) -> [&mut [S]; N] {
     let mut rows = out.iter_mut();
     std::array::from_fn(|_| rows.next().map(Vec::as_mut_slice).unwrap_or_default())

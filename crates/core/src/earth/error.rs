@@ -52,7 +52,7 @@ pub enum EarthError {
     NotFinite {
         /// Name of the input.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
     },
     /// An Earth-orientation parameter is implausible.
@@ -63,11 +63,11 @@ pub enum EarthError {
     Parameter {
         /// Name of the parameter.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
         /// Index of the row of the table, counted from 0; `None` for constant parameters.
         row: Option<usize>,
-        /// Accepted range.
+        /// Text that describes the accepted range.
         expected: &'static str,
     },
     /// A table of Earth-orientation parameters cannot be read.
@@ -115,9 +115,9 @@ pub enum EarthError {
     Segment {
         /// Name of the number.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
-        /// Accepted range.
+        /// Text that describes the accepted range.
         expected: &'static str,
     },
     /// A table of Earth-orientation parameters has too few rows to be interpolated.

@@ -53,7 +53,7 @@ impl Orientation {
         Self::with(epoch, Axes::Gcrf, parameters, span)
     }
 
-    /// Returns the same orientation with other inertial axes.
+    /// Returns the same orientation relative to the inertial axes `axes`.
     pub(super) fn in_axes(&self, axes: Axes) -> Self {
         Self { axes, ..self.clone() }
     }

@@ -10,7 +10,7 @@ use super::rotation::{r1, r3};
 /// One arc second, rad.
 pub(super) const ARC_SECOND: f64 = std::f64::consts::PI / 648_000.0;
 
-/// Returns the polynomial `c₀ + c₁ T + c₂ T² + …`.
+/// Returns the value of the polynomial `c₀ + c₁ T + c₂ T² + …` at `T` = `t`.
 pub(super) fn polynomial(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }

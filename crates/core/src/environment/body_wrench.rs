@@ -83,7 +83,7 @@ impl BodyWrench {
         }
     }
 
-    /// Returns the same wrench, acting on the system with this number in the world.
+    /// Returns the same wrench, acting on the system with the number `system` in the world.
     #[must_use]
     pub fn on_system(self, system: usize) -> Self {
         Self { body: BodyIndex { system, ..self.body }, ..self }

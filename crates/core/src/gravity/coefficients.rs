@@ -97,12 +97,13 @@ impl Coefficients {
         Ok(Self { model, mu, radius, series })
     }
 
-    /// Returns the highest degree.
+    /// Returns the highest degree of the coefficients.
     pub fn degree(&self) -> usize {
         self.series.degree()
     }
 
-    /// Returns the series up to the given degree and order.
+    /// Returns the series up to the given degree and order, or an error if the order exceeds the degree or
+    /// the degree that of the model.
     pub(super) fn truncated(&self, degree: usize, order: usize) -> Result<Series, GravityError> {
         if order > degree {
             return Err(GravityError::OrderAboveDegree { degree, order });
@@ -125,7 +126,8 @@ pub(super) fn check_degree(degree: usize) -> Result<usize, GravityError> {
     if (2..=HIGHEST).contains(&degree) { Ok(degree) } else { Err(GravityError::Degree { degree }) }
 }
 
-/// Returns an error for values that cannot belong to a planet in SI units.
+/// Returns an error if the gravitational parameter `mu`, m³/s², and the reference radius `radius`, m, cannot
+/// be those of a planet.
 pub(super) fn check_planet(mu: f64, radius: f64) -> Result<(), GravityError> {
     for (name, value, unit) in [("mu", mu, "m³/s²"), ("radius", radius, "m")] {
         if !(value.is_finite() && value > 0.0) {

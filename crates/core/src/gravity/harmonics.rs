@@ -21,7 +21,7 @@ pub(super) struct Harmonics {
     terms: Vec<Term>,
 }
 
-/// Term of one degree and order.
+/// Coefficients of one degree and order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Term {
     /// Recursion coefficients `a` and `b` of the next degree.

@@ -143,7 +143,7 @@ impl LocalField<'_> {
         }
     }
 
-    /// Returns the planet's field at the position `at`, m/s².
+    /// Returns the planet's field, m/s², at the position `at` from the planet's centre, axes of `I`, m.
     fn field(&self, at: Vec3<f64>) -> Result<Vec3<f64>, GravityError> {
         if let Some(near) = self.expansion(at) {
             return Ok(near.value_at(at));
@@ -165,14 +165,16 @@ impl LocalField<'_> {
         }
     }
 
-    /// Returns the gradient of the planet's field at one position, 1/s².
+    /// Returns the gradient of the planet's field, 1/s², at the position `at` from the planet's centre, axes
+    /// of `I`, m.
     fn field_gradient(&self, at: Vec3<f64>) -> Result<Sym3<f64>, GravityError> {
         let Some(field) = &self.gravity.field else { return Ok(Sym3::default()) };
         let rot_fi = &self.sky.rot_fi;
         Ok(Expansion::of(field, *rot_fi * at)?.rotated_back(rot_fi).gradient)
     }
 
-    /// Returns the sum of the gradients of the planet's field and of the third bodies at one position, 1/s².
+    /// Returns the sum of the gradients of the planet's field and of the third bodies, 1/s², at the position
+    /// `at` from the planet's centre, axes of `I`, m.
     fn gradient_at(&self, at: Vec3<f64>) -> Result<Sym3<f64>, GravityError> {
         let third = self.gravity.third_bodies_about(self.time, at)?.gradient;
         Ok(match self.expansion(at) {

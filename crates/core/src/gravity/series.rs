@@ -29,12 +29,13 @@ impl Series {
         self.degree
     }
 
-    /// Returns the coefficients `(c, s)` of a term, which are zero beyond the series.
+    /// Returns the coefficients `(c, s)` of the term of degree `n` and order `m`, which are zero beyond the
+    /// series.
     pub(super) fn get(&self, n: usize, m: usize) -> [f64; 2] {
         if n > self.degree || m > n { [0.0; 2] } else { self.terms[n * (n + 1) / 2 + m] }
     }
 
-    /// Returns a mutable reference to the coefficients `(c, s)` of a term.
+    /// Returns a mutable reference to the coefficients `(c, s)` of the term of degree `n` and order `m`.
     pub(super) fn at(&mut self, n: usize, m: usize) -> &mut [f64; 2] {
         &mut self.terms[n * (n + 1) / 2 + m]
     }

@@ -9,11 +9,11 @@ use crate::spatial::{self, Quat, RotationSpline, Spline, exp_so3};
 /// Behaviour of a path before its first point and after its last point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ends {
-    /// [`PathError::TimeOutOfPath`] is returned.
+    /// A state at such a time is an error, [`PathError::TimeOutOfPath`].
     #[default]
     Error,
     /// The path continues along a straight line with the velocity and the angular velocity of the nearest
-    /// end. Both are continuous there, but the acceleration drops to zero.
+    /// end. Both velocities are continuous at the end, but the acceleration jumps to zero.
     Coast,
 }
 
@@ -91,7 +91,7 @@ impl CustomPath {
         self.ends
     }
 
-    /// Returns true if attitudes were given.
+    /// Returns true if the path was created with attitudes.
     pub fn has_attitudes(&self) -> bool {
         self.attitude.is_some()
     }

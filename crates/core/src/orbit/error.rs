@@ -12,7 +12,7 @@ pub enum OrbitError {
     /// The gravity field cannot be evaluated.
     #[error(transparent)]
     Gravity(#[from] GravityError),
-    /// The two orbits are around different planets.
+    /// An orbit and its reference orbit are around different planets.
     #[error(
         "mu of the orbit is {mu} m³/s², but that of its reference orbit is {expected} m³/s²; give orbits around the same \
          planet",
@@ -32,7 +32,8 @@ pub enum OrbitError {
         /// Epoch of the orbit.
         epoch: String,
     },
-    /// The axes of the two orbits differ, and no Earth with an epoch is given to convert them.
+    /// The axes of an orbit and of its reference orbit differ, and no Earth with an epoch is given to convert
+    /// them.
     #[error(
         "the orbit has {orbit} axes, but its reference orbit has {reference} axes; give an earth with an epoch, which converts \
          them"
@@ -48,7 +49,7 @@ pub enum OrbitError {
     NotFinite {
         /// Name of the input.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
     },
     /// A quantity is out of its range.
@@ -56,9 +57,9 @@ pub enum OrbitError {
     OutOfRange {
         /// Name of the input.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
-        /// Accepted range.
+        /// Text that describes the accepted range.
         expected: &'static str,
     },
     /// A number is so large that products of several such numbers would overflow.
@@ -69,7 +70,7 @@ pub enum OrbitError {
     TooLarge {
         /// Name of the input.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
     },
     /// A quantity that must be positive is zero or negative.
@@ -77,13 +78,13 @@ pub enum OrbitError {
     NotPositive {
         /// Name of the input.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
     },
     /// The eccentricity is negative.
     #[error("eccentricity is {value}; it must be zero or greater", value = short(*value))]
     NegativeEccentricity {
-        /// Given value.
+        /// Given eccentricity.
         value: f64,
     },
     /// The sign of the semi-major axis contradicts the eccentricity.
@@ -231,7 +232,7 @@ pub enum OrbitError {
         time = short(*time), distance = unlike(*distance, &[*minimum]), minimum = short(*minimum)
     )]
     BelowSurface {
-        /// Time, s.
+        /// Simulation time, s.
         time: f64,
         /// Distance from the planet's centre, m.
         distance: f64,
@@ -273,18 +274,18 @@ pub enum OrbitError {
         time = short(*time), length = short(*length)
     )]
     StepTooShort {
-        /// Time, s.
+        /// Simulation time at which the step begins, s.
         time: f64,
-        /// Length of the step, s.
+        /// Length of the step, s; negative for an integration backwards in time.
         length: f64,
     },
     /// An element set cannot be read.
     #[error(transparent)]
     ElementSet(#[from] ElementSetError),
-    /// SGP4 has no state at this time.
+    /// SGP4 has no state at the requested time.
     #[error(transparent)]
     Sgp4(#[from] Sgp4Error),
-    /// A path cannot be built, or has no state at this time.
+    /// A path cannot be built, or has no state at the requested time.
     #[error(transparent)]
     Path(#[from] PathError),
 }

@@ -6,7 +6,7 @@ use crate::gravity::Gravity;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
-/// Reference orbit as a function of time.
+/// Orbit whose state is a function of time.
 pub trait Orbit: Send + Sync + std::fmt::Debug {
     /// Returns the gravitational parameter of the planet, m³/s²; `None` without a planet.
     fn mu(&self) -> Option<f64>;
@@ -59,7 +59,7 @@ pub trait Orbit: Send + Sync + std::fmt::Debug {
         true
     }
 
-    /// Returns the axes of `I`.
+    /// Returns the axes to which the name `I` refers for this orbit.
     fn axes(&self) -> Axes {
         Axes::default()
     }

@@ -76,7 +76,7 @@ impl<S: Real> Mat3<S> {
 }
 
 impl<S: Scalar> Mat3<S> {
-    /// Returns the matrix as a nalgebra type.
+    /// Returns the matrix as a nalgebra matrix.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Matrix3<f64> {
         Matrix3::from_columns(&[self.x.to_nalgebra(), self.y.to_nalgebra(), self.z.to_nalgebra()])

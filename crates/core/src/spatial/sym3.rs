@@ -66,7 +66,7 @@ impl<S: Real> Sym3<S> {
         self.add_parallel(u, u * s)
     }
 
-    /// Returns `A + u wᵀ`, which is symmetric because `w` is a multiple of `u`.
+    /// Returns `A + u wᵀ`. `w` must be a multiple of `u`, so that the sum is symmetric.
     #[inline(always)]
     #[must_use]
     pub fn add_parallel(&self, u: Vec3<S>, w: Vec3<S>) -> Self {
@@ -101,8 +101,8 @@ impl<S: Real> Sym3<S> {
         )
     }
 
-    /// Returns `A + m (c² 1 − c cᵀ)`, the shift of an inertia by `c` (parallel-axis theorem), where `h = m
-    /// c`.
+    /// Returns `A + m (c² 1 − c cᵀ)`, the shift of an inertia by `c` (parallel-axis theorem), where
+    /// `h = m c`.
     #[inline(always)]
     #[must_use]
     pub fn shift(&self, h: Vec3<S>, c: Vec3<S>) -> Self {
@@ -134,7 +134,7 @@ impl<S: Real> Sym3<S> {
 }
 
 impl<S: Scalar> Sym3<S> {
-    /// Returns the matrix as a nalgebra type.
+    /// Returns the matrix as a nalgebra matrix.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Matrix3<f64> {
         let [xx, yy, zz, xy, xz, yz] =

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
-/// Vector in three dimensions.
+/// Vector with three components.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Vec3<S> {
     /// First component.
@@ -115,7 +115,7 @@ impl<S: Real> Vec3<S> {
 }
 
 impl<S: Scalar> Vec3<S> {
-    /// Returns the vector as a nalgebra type.
+    /// Returns the vector as a nalgebra vector.
     #[inline(always)]
     pub fn to_nalgebra(self) -> Vector3<f64> {
         Vector3::new(self.x.value(), self.y.value(), self.z.value())

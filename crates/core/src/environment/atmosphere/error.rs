@@ -38,9 +38,9 @@ pub enum AtmosphereError {
     Value {
         /// Name of the parameter.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
-        /// Accepted range.
+        /// Text that describes the accepted range.
         expected: &'static str,
     },
     /// The base of a layer is not a finite altitude above the base of the previous layer.

@@ -84,8 +84,8 @@ impl Surfaces {
         Self::new(coverings, &[model.nodes().len()])
     }
 
-    /// Returns the names of the bodies of the system with this number and model that have mass but no
-    /// surface.
+    /// Returns the names of the bodies with mass but without a surface, in the system with the number
+    /// `system` and the given model.
     pub fn uncovered<'a>(&self, system: usize, model: &'a Model) -> Vec<&'a str> {
         let is_uncovered =
             |body: &usize| model.nodes()[*body].mass > 0.0 && !self.covers(BodyIndex { system, body: *body });
@@ -98,7 +98,7 @@ impl Surfaces {
         self.layout.systems().len()
     }
 
-    /// Returns true if any body of this system has a surface.
+    /// Returns true if any body of the system with the number `system` has a surface.
     pub(in crate::environment) fn covers_system(&self, system: usize) -> bool {
         let bodies = self.layout.systems().get(system).map_or(0..0, |rows| 0..rows.count);
         bodies.into_iter().any(|body| self.covers(BodyIndex { system, body }))

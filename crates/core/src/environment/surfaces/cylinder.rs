@@ -56,7 +56,8 @@ impl<S: Real> Cylinder<S> {
         sums.torque += axis.cross(u) * (along * S::of(PI / 4.0) * self.radius * area);
     }
 
-    /// Adds the radiation pressure on the illuminated half of the curved side.
+    /// Adds the force and torque of a radiation pressure of 1 on the illuminated half of the curved side,
+    /// with the unit vector `ŝ` (`to_sun`) to the Sun.
     ///
     /// `n = cos φ ŝ⊥ + sin φ a × ŝ⊥`, `n·ŝ = σ cos φ`, `dA = r L dφ`, `|φ| < π/2`, where `a` is the axis,
     /// `s⊥` the part of `ŝ` normal to the axis, `σ = |s⊥|`, `ŝ⊥ = s⊥/σ`, `n` the normal of the area `dA` at

@@ -12,9 +12,9 @@ pub enum SurfaceError {
     Value {
         /// Name of the input.
         name: &'static str,
-        /// Given value.
+        /// Given value, in SI units.
         value: f64,
-        /// Accepted range.
+        /// Text that describes the accepted range.
         expected: &'static str,
     },
     /// A surface reflects more light than it receives.

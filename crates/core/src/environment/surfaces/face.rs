@@ -58,7 +58,8 @@ impl<S: Real> Face<S> {
         sums.add(positive(normal_speed) * self.area, self.centroid);
     }
 
-    /// Adds the force terms of the face along `-ŝ` and `-n` to the sums for radiation pressure.
+    /// Adds the force terms of the face along `-ŝ` (`ŝ` is `to_sun`) and `-n` to the sums for radiation
+    /// pressure.
     ///
     /// The force on a face at its centroid is `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]`, where
     /// `cos θ = (n·ŝ)₊`. [`PressureSums::wrench`] computes the force for `P = 1`; `RadiationPressure`

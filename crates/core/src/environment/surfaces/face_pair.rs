@@ -61,8 +61,8 @@ impl<S: Real> FacePair<S> {
         S::select(speed.less(S::of(0.0)), -x, x)
     }
 
-    /// Adds the term `a = A |n·u|` of the exposed face to the sums for drag. The drag at the centroid of the
-    /// face is `F = -½ ρ C_D a u`.
+    /// Adds the term `a = A |n·u|` of the exposed face to the sums for drag, with `v` and `w` as in
+    /// [`DragSums::wrench`]. The drag at the centroid of the face is `F = -½ ρ C_D a u`.
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         // n·u = n·v + (c × n)·w
@@ -72,8 +72,8 @@ impl<S: Real> FacePair<S> {
         sums.add(normal_speed.abs() * self.area, centroid);
     }
 
-    /// Adds the force of radiation pressure, `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]`, on the
-    /// face that is turned towards the Sun.
+    /// Adds the force of radiation pressure, `F = -P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]` with
+    /// `P = 1`, on the face that is turned towards the Sun. The symbols are defined at `RadiationPressure`.
     #[inline(always)]
     pub(super) fn add_pressure(&self, to_sun: Vec3<S>, optics: &Optics<S>, sums: &mut PressureSums<S>) {
         let along = self.normal.dot(to_sun);

@@ -57,7 +57,7 @@ impl<S: Real> Optics<S> {
         S::of(1.0) - self.specular
     }
 
-    /// Returns the factor `2 (ρs cos θ + ρd/3)` of the force against the normal.
+    /// Returns the factor `2 (ρs cos θ + ρd/3)` of the force against the normal, where `cosine` is `cos θ`.
     #[inline(always)]
     pub(super) fn along_normal(&self, cosine: S) -> S {
         cosine.mul_add(S::of(2.0) * self.specular, S::of(2.0 / 3.0) * self.diffuse)

@@ -35,7 +35,8 @@ impl Sphere<Column8> {
 }
 
 impl<S: Real> Sphere<S> {
-    /// Adds the drag force on the sphere, `F = -½ ρ C_D A |u| u` at its centre.
+    /// Adds the term `a = A |u|` of the sphere to the sums for drag, with `v` and `w` as in
+    /// [`DragSums::wrench`]. The drag at the centre of the sphere is `F = -½ ρ C_D a u`.
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         let u = v + w.cross(self.centre);
@@ -43,7 +44,8 @@ impl<S: Real> Sphere<S> {
         sums.add(u.norm() * self.area, self.centre);
     }
 
-    /// Adds the force of radiation pressure on the sphere, `F = -P A C_R ŝ` at its centre.
+    /// Adds the force of radiation pressure on the sphere, `F = -P A C_R ŝ` at its centre with `P = 1`. The
+    /// unit vector `ŝ` points to the Sun.
     #[inline(always)]
     pub(super) fn add_pressure(&self, sums: &mut PressureSums<S>) {
         sums.push_along_light(self.area * self.reflectivity, self.centre);

@@ -25,7 +25,7 @@ pub(in crate::environment) struct SurfaceBlock {
 }
 
 impl SurfaceBlock {
-    /// Creates the block from at most eight surfaces.
+    /// Creates the block from the surfaces of at most eight bodies; `None` is a body without a surface.
     pub(super) fn new(surfaces: &[Option<Surface>]) -> Self {
         let surface = |i: usize| surfaces.get(i).and_then(Option::as_ref);
         Self {

@@ -49,7 +49,7 @@ pub(super) struct Ellipse<S> {
 }
 
 impl<S: Real> Ellipse<S> {
-    /// Returns the state at a mean anomaly in [-π, π].
+    /// Returns the state in perifocal axes at the mean anomaly `mean` in [-π, π], rad.
     #[inline(always)]
     pub(super) fn at(&self, mean: S) -> PerifocalState<S> {
         let Self { e, one_minus_e, periapsis: q, a, b, velocity_scale } = *self;
@@ -105,7 +105,7 @@ impl Period {
     }
 }
 
-/// Conic with the constants of the motion on it.
+/// Kind of conic, with the constants of the motion along the conic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Conic {
     /// Ellipse, `e < 1`, with the semi-axes `a` and `b`, m; the phase is the mean anomaly, rad.

@@ -14,7 +14,7 @@ pub(super) struct Double {
     pub(super) lo: f64,
 }
 
-/// `2π` to 32 digits.
+/// `2π` as a double-double number, to 32 digits.
 pub(super) const TAU: Double = Double { hi: std::f64::consts::TAU, lo: 2.449_293_598_294_706_4e-16 };
 
 impl From<f64> for Double {

@@ -39,8 +39,9 @@ pub struct Kepler {
     phase: f64,
     shape: Shape,
     conic: Conic,
-    /// Perifocal axes in `I`: unit vectors towards the periapsis and along the velocity there.
+    /// Unit vector towards the periapsis, in `I`.
     p_i: Vector3<f64>,
+    /// Unit vector along the velocity at the periapsis, in `I`.
     q_i: Vector3<f64>,
 }
 

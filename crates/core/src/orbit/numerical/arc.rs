@@ -34,7 +34,7 @@ pub(super) struct Arcs {
 #[derive(Debug)]
 struct Half {
     steps: Vec<Step>,
-    /// Start and length, s, of the next step.
+    /// Start of the next step, and its length, s, which is negative before the initial state.
     next: (Start, f64),
     /// Error that ended the integration in this direction; `None` while further steps are possible.
     ended: Option<OrbitError>,
@@ -77,8 +77,8 @@ impl Arcs {
         }
     }
 
-    /// Computes at most `most_steps` steps in each direction towards `times`. Returns true if no further step
-    /// is needed.
+    /// Computes at most `most_steps` steps in each direction towards `times`, s, in the given `field` (see
+    /// [`Arcs::state`]). Returns true if no further step is needed.
     pub(super) fn prepare(
         &self,
         times: &[f64],
@@ -157,12 +157,12 @@ impl Arcs {
 }
 
 impl Half {
-    /// Returns true if a step contains `t`, or if the steps cannot be extended to `t`.
+    /// Returns true if a step contains `t`, s, or if the steps cannot be extended to `t`.
     fn needs_no_step(&self, t: f64) -> bool {
         !t.is_finite() || self.ended.is_some() || self.state(t).is_some()
     }
 
-    /// Returns the state at `t` if a step contains it.
+    /// Returns the state at `t`, s; `None` if no step contains `t`.
     fn state(&self, t: f64) -> Option<OrbitState> {
         let ahead = |time: f64| if self.next.1 > 0.0 { time <= t } else { time >= t };
         if self.steps.is_empty() || (ahead(self.next.0.time) && t != self.next.0.time) {

@@ -22,7 +22,7 @@ pub enum ElementSetError {
         line: u8,
         /// First column of the field, counted from 1.
         column: usize,
-        /// Text in the column.
+        /// Text of the field.
         got: String,
         /// Description of the expected text.
         expected: &'static str,
@@ -46,9 +46,9 @@ pub enum ElementSetError {
          satellite"
     )]
     TwoSatellites {
-        /// Number in line 1.
+        /// Satellite number in line 1.
         first: String,
-        /// Number in line 2.
+        /// Satellite number in line 2.
         second: String,
     },
     /// An entry of a message is missing.
@@ -125,7 +125,7 @@ pub enum Sgp4Error {
     PerturbedEccentricity {
         /// Time since the epoch, s.
         time: f64,
-        /// Eccentricity with these perturbations.
+        /// Eccentricity with the perturbations by Sun and Moon.
         eccentricity: f64,
     },
     /// Error 4: the semi-latus rectum is negative.

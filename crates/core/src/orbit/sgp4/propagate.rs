@@ -82,8 +82,8 @@ impl Propagator {
         self.deep.is_none()
     }
 
-    /// Returns the states at several times, s after the epoch; `None` if there is no state at one of these
-    /// times, or if a state is below the surface.
+    /// Returns the states `time` seconds after the epoch, one per lane; `None` if SGP4 has no state at one of
+    /// these times, or if a state is below the surface.
     #[inline(always)]
     pub(super) fn at_lanes<S: Real>(&self, time: S) -> Option<OsculatingState<S>> {
         let SecularElements { mut mean, axis_factor, eccentricity_loss, longitude_gain } =

@@ -70,7 +70,7 @@ impl<'a> Line<'a> {
         }
     }
 
-    /// Parses the number in these columns, such as ` 34.2682`.
+    /// Parses the number in the columns `first..=last`, such as ` 34.2682`.
     fn decimal(&self, first: usize, last: usize) -> Result<f64, ElementSetError> {
         let text = self.columns(first, last).trim();
         let is_plain = text
@@ -81,7 +81,7 @@ impl<'a> Line<'a> {
         number.ok_or_else(|| self.wrong(first, last, "a decimal number"))
     }
 
-    /// Parses the digits in these columns, which follow an implied decimal point.
+    /// Parses the digits in the columns `first..=last`, which follow an implied decimal point.
     fn fraction(&self, first: usize, last: usize) -> Result<f64, ElementSetError> {
         let text = self.columns(first, last);
         let number =
@@ -89,7 +89,8 @@ impl<'a> Line<'a> {
         number.ok_or_else(|| self.wrong(first, last, "only digits"))
     }
 
-    /// Parses a sign, a fraction of five digits, and an exponent with its sign: ` 28098-4` is 0.28098e-4.
+    /// Parses the eight columns from `first` on, which hold a sign, a fraction of five digits, and an
+    /// exponent with its sign: ` 28098-4` is 0.28098e-4.
     fn with_exponent(&self, first: usize) -> Result<f64, ElementSetError> {
         let wrong = || {
             self.wrong(
