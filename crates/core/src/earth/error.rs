@@ -52,7 +52,7 @@ pub enum EarthError {
     NotFinite {
         /// Name of the input.
         name: &'static str,
-        /// Given value, in SI units.
+        /// Given value: infinite or NaN.
         value: f64,
     },
     /// An Earth-orientation parameter is implausible.
@@ -63,7 +63,7 @@ pub enum EarthError {
     Parameter {
         /// Name of the parameter.
         name: &'static str,
-        /// Given value, in SI units.
+        /// Given value, in the unit that `expected` states.
         value: f64,
         /// Index of the row of the table, counted from 0; `None` for constant parameters.
         row: Option<usize>,
@@ -115,7 +115,7 @@ pub enum EarthError {
     Segment {
         /// Name of the number.
         name: &'static str,
-        /// Given value, in SI units.
+        /// Given value, in the unit that `expected` states.
         value: f64,
         /// Text that describes the accepted range.
         expected: &'static str,

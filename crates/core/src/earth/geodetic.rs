@@ -13,7 +13,7 @@ pub struct Ellipsoid {
     pub flattening: f64,
 }
 
-/// World Geodetic System 1984.
+/// Ellipsoid of the World Geodetic System 1984.
 ///
 /// Source: NGA.STND.0036, version 1.0.0, 2014, table 3.1.
 pub const WGS84: Ellipsoid = Ellipsoid { radius: 6_378_137.0, flattening: 1.0 / 298.257_223_563 };

@@ -52,7 +52,7 @@ pub enum EnvironmentError {
     NotFinite {
         /// Name of the input.
         name: &'static str,
-        /// Given value, in SI units.
+        /// Given value: infinite or NaN.
         value: f64,
     },
     /// The interval of a wrench is empty.

@@ -22,8 +22,9 @@ pub(crate) struct FieldPoint {
 ///
 /// Zonal fields in closed form are expanded about the robot. Other fields are expanded about the nearest
 /// point of a grid fixed in the planet or, if the robot travels farther than the grid spacing during the
-/// step, about the robot. The result depends only on the instant and the step, so a run that resumes from a
-/// checkpoint has identical bits.
+/// step, about the robot. If only differences from a nearby reference are required, the midpoint between
+/// robot and reference replaces the robot. The result depends only on the instant and the step, so a run that
+/// resumes from a checkpoint has identical bits.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalField<'a> {
     gravity: &'a Gravity,

@@ -52,8 +52,8 @@ pub struct CustomPath {
 const LARGEST_TURN: f64 = 2.0;
 
 impl CustomPath {
-    /// Creates a path around a planet with gravitational parameter `mu`, m³/s², or without a planet if `mu`
-    /// is `None`.
+    /// Creates a path through `points` around a planet with gravitational parameter `mu`, m³/s², or without a
+    /// planet if `mu` is `None`. `ends` is the behaviour before the first and after the last point.
     ///
     /// # Errors
     /// [`PathError`] for invalid points; [`OrbitError::NotFinite`], [`OrbitError::TooLarge`] and

@@ -49,7 +49,7 @@ pub enum OrbitError {
     NotFinite {
         /// Name of the input.
         name: &'static str,
-        /// Given value, in SI units.
+        /// Given value: infinite or NaN.
         value: f64,
     },
     /// A quantity is out of its range.

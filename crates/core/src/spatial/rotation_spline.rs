@@ -80,7 +80,8 @@ impl RotationSpline {
         Self::new(times, attitudes, rates, &accelerations)
     }
 
-    /// Creates the spline from attitudes with angular velocities and accelerations in body axes.
+    /// Creates the spline through the attitudes at `times`, s, with the given angular velocities, rad/s, and
+    /// angular accelerations, rad/s², in body axes.
     fn new(
         times: &[f64],
         attitudes: &[Quat<f64>],

@@ -13,11 +13,12 @@ pub fn dot<S: Real>(a: &[S], b: &[S]) -> S {
     sum
 }
 
-/// Computes the square-root-free Cholesky factors `A = L D Lᵀ` of a positive definite `n × n` matrix in
-/// place.
+/// Replaces `a`, a positive definite matrix `A` (n, n), row-major, by its square-root-free Cholesky factors
+/// `A = L D Lᵀ`.
 ///
-/// Reads the lower triangle and replaces it by `L`. The diagonal receives the inverse pivots `1/D_ii`, by
-/// which the solver multiplies, instead of the unit diagonal of `L`. The upper triangle is used as workspace.
+/// Only the lower triangle of `A` is read; it is replaced by `L`. The diagonal receives the inverse pivots
+/// `1/D_ii`, by which [`cholesky_solve`] multiplies, instead of the unit diagonal of `L`. The upper triangle
+/// is used as workspace.
 #[inline(always)]
 pub fn cholesky_factor<S: Real>(a: &mut [S], n: usize) {
     for j in 0..n {

@@ -38,7 +38,7 @@ pub enum AtmosphereError {
     Value {
         /// Name of the parameter.
         name: &'static str,
-        /// Given value, in SI units.
+        /// Given value, in the unit that `expected` states.
         value: f64,
         /// Text that describes the accepted range.
         expected: &'static str,

@@ -41,8 +41,9 @@ impl Cylinder<Column8> {
 }
 
 impl<S: Real> Cylinder<S> {
-    /// Adds the drag on the part of the curved side that faces the stream, with `v` and `w` as in
-    /// [`DragSums::wrench`].
+    /// Adds the term `a = 2 r L |u⊥|` of the part of the curved side that faces the stream to the sums for
+    /// drag, and the torque about the axis centre. `r` is the radius, `L` the length, and `u⊥` the part of
+    /// the velocity normal to the axis; `v` and `w` are those of [`DragSums::wrench`].
     #[inline(always)]
     pub(super) fn add_drag(&self, v: Vec3<S>, w: Vec3<S>, sums: &mut DragSums<S>) {
         let (axis, area) = (self.axis, S::of(2.0) * self.radius * self.length);

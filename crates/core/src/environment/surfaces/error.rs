@@ -12,7 +12,7 @@ pub enum SurfaceError {
     Value {
         /// Name of the input.
         name: &'static str,
-        /// Given value, in SI units.
+        /// Given value, in the unit that `expected` states.
         value: f64,
         /// Text that describes the accepted range.
         expected: &'static str,

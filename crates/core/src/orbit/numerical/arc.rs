@@ -12,9 +12,9 @@ const TOLERANCE: f64 = 1e-14;
 const FIRST: f64 = 0.1;
 /// Length, in the same units, up to which a step counts as too short, so that the integration fails.
 const SHORTEST: f64 = 1e-9;
-/// Ratio of the next step to the longest step that the tolerance permits.
+/// Ratio of the length of the next step to the estimated longest length that the tolerance permits.
 const SAFETY: f64 = 0.9;
-/// Smallest and largest ratio of successive steps.
+/// Smallest and largest ratio of the lengths of successive steps.
 const CHANGE: (f64, f64) = (0.25, 2.0);
 /// Largest number of steps on either side of the initial state. They cover years of a low orbit and use 90 MB
 /// of memory.

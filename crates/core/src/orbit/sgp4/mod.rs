@@ -40,10 +40,11 @@ const LONGEST_TIME: f64 = 100.0 * 365.25 * 86_400.0;
 /// Step of the finite differences for the acceleration, s.
 const STEP: f64 = 30.0;
 
-/// Weights, multiplied by 180, of the central second difference of sixth order.
+/// Weights, multiplied by 180, of the central second difference of sixth order, at 0 to ±3 steps.
 const WEIGHTS: [f64; 4] = [-490.0, 270.0, -27.0, 2.0];
 
-/// Weights, multiplied by 60, of the central first difference of sixth order.
+/// Weights, multiplied by 60, of the central first difference of sixth order, at +1 to +3 steps; those at -1
+/// to -3 steps have the opposite sign.
 const SLOPE_WEIGHTS: [f64; 3] = [45.0, -9.0, 1.0];
 
 /// Orbit of an element set in TEME axes; simulation time zero is the epoch of the element set.
