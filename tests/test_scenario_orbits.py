@@ -173,7 +173,7 @@ def test_invalid_orbits_are_reported_with_their_place(
 
 def test_a_path_too_short_for_the_run_is_reported_before_the_run(tmp_path: Path) -> None:
     orbit = {"kind": "custom_path", "times": [0.05, 9.0], "positions": [[0, 0, 0], [1, 0, 0]]}
-    with pytest.raises(PathError, match=r"mine\.yaml:.*give times that cover the run"):
+    with pytest.raises(PathError, match=r"mine\.yaml:.*give points that cover this time"):
         orbit_of(written(tmp_path, orbit))
 
 
