@@ -15,7 +15,7 @@ pub struct ContactLaw {
     pub friction: Option<Friction>,
 }
 
-/// Rule for the length of steps while bodies touch.
+/// Settings of the evaluation of contacts and of the length of steps while bodies touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactSteps {
     /// Number of steps in half a period of the fastest oscillation of a contact. An elastic impact with a
@@ -24,23 +24,23 @@ pub struct ContactSteps {
     /// True if steps are shortened near touch-down and lift-off for exponents between 1 and 4, where equal
     /// steps reduce the order of the integrator.
     pub is_graded: bool,
-    /// Fraction of the energy of a contact that a step may gain or lose by the error of the integrator. Steps
-    /// with larger errors, which occur for example where the nearest faces or edges change, are repeated with
-    /// half the length.
+    /// Largest error of the energy in a step, as a fraction of the elastic energy of the contacts. Steps with
+    /// larger errors, which occur for example where the nearest faces or edges change, are repeated with half
+    /// the length.
     pub energy_error: f64,
     /// True if bounding spheres exclude pairs of pieces from the search for those that touch and for the
-    /// smallest gap, in runs with more than 16 pairs. The results are the same; without it every pair is
-    /// considered in every step.
+    /// smallest gap, in runs with more than 16 pairs. If false, every pair is considered in every step; the
+    /// results are the same.
     pub has_broad_phase: bool,
-    /// True if the forces at several points are the gradient of their elastic energy. False leaves out the
-    /// change of the weights and the sliding of the points along the faces: a negative control, which
-    /// creates and destroys energy.
+    /// True if the forces at several points are the gradient of their elastic energy. False omits the change
+    /// of the weights of the points and the sliding of the points along the faces, so that energy is created
+    /// and destroyed; this is a negative control for tests.
     pub is_conservative: bool,
 }
 
 impl Default for ContactSteps {
-    /// Returns 128 graded steps, with which an elastic impact of spheres changes the energy by a fraction of
-    /// about 1e-11, and an energy error of 1e-10 per step.
+    /// Returns settings with 128 graded steps per half period, with which an elastic impact of spheres
+    /// changes the energy by a fraction of about 1e-11, and with an energy error of 1e-10 per step.
     fn default() -> Self {
         Self {
             count: 128,
@@ -71,7 +71,7 @@ pub struct Contact {
     /// Pieces of the first and of the second side. The force of the contact acts on the second side, and the
     /// opposite force on the first.
     pub sides: [Vec<ContactSide>; 2],
-    /// Law; `None` if only the distance is observed.
+    /// Law of the forces; `None` if only the distance is recorded.
     pub law: Option<ContactLaw>,
     /// True if the sides may overlap at the start.
     pub may_start_overlapping: bool,
@@ -101,8 +101,8 @@ impl Contact {
         Ok(())
     }
 
-    /// Returns the contact with its systems renumbered by their positions in `numbers`, the systems of a
-    /// group; `None` if a system of the contact is not in the group.
+    /// Returns the contact with the indices of its systems in the world replaced by their positions in
+    /// `numbers`, the systems of a group; `None` if a system of the contact is not in the group.
     pub(crate) fn in_group(&self, numbers: &[usize]) -> Option<Self> {
         let mut own = self.clone();
         for side in own.sides.iter_mut().flatten() {
@@ -111,12 +111,13 @@ impl Contact {
         Some(own)
     }
 
-    /// Returns the system of the first piece of the first side; `None` if that side has no pieces.
+    /// Returns the index of the system of the first piece of the first side; `None` if that side has no
+    /// pieces.
     pub(crate) fn first_system(&self) -> Option<usize> {
         self.sides[0].first().map(|side| side.frame.system)
     }
 
-    /// Returns the systems of both sides, without repetition.
+    /// Returns the indices of the systems of both sides, in ascending order and without repetition.
     pub fn systems(&self) -> Vec<usize> {
         let mut all: Vec<usize> = self.sides.iter().flatten().map(|side| side.frame.system).collect();
         all.sort_unstable();

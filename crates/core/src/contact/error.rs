@@ -69,12 +69,12 @@ pub enum ContactError {
         /// Depth of the overlap, m.
         depth: f64,
     },
-    /// The distance between two shapes could not be computed.
+    /// A shape is invalid, or the distance between two shapes could not be computed.
     #[error("contact '{contact}': {source}")]
     Geometry {
         /// Name of the contact.
         contact: String,
-        /// Error of the distance or of a shape.
+        /// Error of the shape or of the computation of the distance.
         source: GeometryError,
     },
 }

@@ -6,14 +6,15 @@ use serde::{Deserialize, Serialize};
 
 /// Default damping ratio of the bristles.
 const DAMPING_RATIO: f64 = 0.1;
-/// Damping ratio below which slipping bristles are on the cone at once. Those with more damping approach it
-/// at the rate `σ/c`, which a step must resolve.
+/// Damping ratio below which slipping bristles lie on the friction cone immediately. Bristles with more
+/// damping approach the cone at the rate `σ/c`, with stiffness `σ` and damping `c`, which a step must
+/// resolve.
 const LEAST_RATIO: f64 = 0.01;
 
 /// Coulomb friction with elastic bristles.
 ///
-/// In contrast to the LuGre model, a contact whose load stays inside the friction cone returns to its place
-/// and does not creep, even under oscillating loads.
+/// In contrast to the LuGre model, a contact whose load stays inside the friction cone does not creep, even
+/// under oscillating loads, and returns to its initial position when the load is removed.
 ///
 /// Source: Dupont, Hayward, Armstrong and Altpeter, Single State Elastoplastic Friction Models, IEEE
 /// Transactions on Automatic Control 47(5), 2002, without a transition between elastic and plastic motion, as
@@ -26,7 +27,7 @@ pub struct Friction {
     pub kinetic_coefficient: f64,
     /// Tangential stiffness `σ`, N/m.
     pub stiffness: f64,
-    /// Tangential damping `c` of the bristles, N s/m; `None` selects the damping for a ratio of 0.1.
+    /// Tangential damping `c` of the bristles, N s/m; `None` selects a damping ratio of 0.1.
     pub damping: Option<f64>,
     /// Coefficient of kinetic torsional friction, m: the largest moment about the normal per unit of normal
     /// force; 0 for contact at a point.
@@ -38,7 +39,7 @@ pub struct Friction {
 pub struct Bristle {
     /// Tangential deflection `z` of the second body relative to the first, m.
     pub deflection: Vec3<f64>,
-    /// True if the contact slips.
+    /// True if the contact slips, false if it sticks.
     pub is_slipping: bool,
 }
 
@@ -47,7 +48,7 @@ pub struct Bristle {
 pub struct BristleDamping {
     /// Damping while the contact sticks.
     pub sticking: f64,
-    /// The same while it slips; 0 if the bristles are then on the cone at once.
+    /// Damping while the contact slips; 0 if slipping bristles lie on the friction cone immediately.
     pub slipping: f64,
 }
 
@@ -70,19 +71,19 @@ pub struct FrictionForce {
 
 impl Friction {
     /// Returns the friction under the normal force `normal`, N, at the sliding velocity `rate`, m/s, after
-    /// the elastic displacement `moved`, m, from the bristles `start`: the integral of
+    /// the elastic displacement `moved`, m, of the bristles from `start`. The displacement is the integral of
     /// [`FrictionForce::elastic_rate`]. All vectors are tangential.
     ///
     /// With the deflection `z`, the velocity `v = rate`, the normal force `N`, the stiffness `σ` and damping
     /// `c` of the bristles, and the coefficient `μ`, kinetic if `start` slips and otherwise static, the trial
     /// force is `f = σ z + c v`. A contact sticks while `|f| ≤ μ N`: `ż = v` and `F = −f`. Beyond this cone,
-    /// `F = −μ N f/|f|`, and bristles that slip carry this force, `σ z + c ż = μ N f/|f|`. The velocity `v −
-    /// ż` is that of the slip, parallel to the force. Force and deflection are continuous where the contact
-    /// begins or ceases to slip, but for the difference of static and kinetic friction.
+    /// `F = −μ N f/|f|`, and bristles that slip carry this force, `σ z + c ż = μ N f/|f|`. The velocity
+    /// `v − ż` is that of the slip, parallel to the force. Force and deflection are continuous where the
+    /// contact begins or ceases to slip, except for the difference between static and kinetic friction.
     ///
-    /// Without damping, slipping bristles have the length `μ N/σ` and turn towards the velocity, `ḋ = (1 −
-    /// d dᵀ) v/|z|`. For a constant velocity, the angle `φ` between both obeys `tan φ/2 = tan φ₀/2
-    /// exp(−s/|z|)` with the path `s`.
+    /// Without damping, slipping bristles have the length `μ N/σ` and turn towards the velocity,
+    /// `ḋ = (1 − d dᵀ) v/|z|`. Here `d` is the unit vector along the bristles. For a constant velocity, the
+    /// angle `φ` between `d` and `v` obeys `tan φ/2 = tan φ₀/2 exp(−s/|z|)` with the path `s`.
     ///
     /// Source of the return to the cone: Simo and Hughes, Computational Inelasticity, 1998, sections 1.2
     /// and 1.7.
@@ -113,8 +114,9 @@ impl Friction {
         FrictionForce { force: direction * -limit, bristle, elastic_rate: rate - direction * plastic, margin }
     }
 
-    /// Returns the friction of slipping bristles without damping, after the displacement `moved`, m. Inside
-    /// the cone they stick with `damping`, N s/m. The other arguments are those of [`Friction::after`].
+    /// Returns the friction of slipping bristles without damping, after the displacement `moved`, m. Bristles
+    /// inside the friction cone stick, with the damping `damping`, N s/m. The other arguments are those of
+    /// [`Friction::after`].
     fn on_cone(
         &self,
         start: &Bristle,
@@ -139,8 +141,8 @@ impl Friction {
         FrictionForce { force: direction * -limit, bristle, elastic_rate: rate, margin }
     }
 
-    /// Returns the damping of a contact with the reciprocal effective mass `mobility`, 1/kg; 0 if none is
-    /// given and `mobility` is 0.
+    /// Returns the damping of the bristles of a contact with the reciprocal effective mass `mobility`, 1/kg.
+    /// If no damping is given, it is 0 for `mobility` 0.
     pub fn damping_for(&self, mobility: f64) -> BristleDamping {
         // c = 2 ζ √(σ m)
         let with_ratio = |ratio: f64| {
@@ -152,9 +154,10 @@ impl Friction {
     }
 
     /// Returns the law of the moment about the normal, N m, as a function of the angle of twist, rad; `None`
-    /// without torsional friction. Its coefficients are in m, its stiffness in N m/rad and its damping in N m
-    /// s/rad. A patch with the effective radius `r = τ/μ`, of the coefficients `τ` of torsional and `μ` of
-    /// kinetic friction, has the torsional stiffness `σ r²`; `μ = 0` counts as 1.
+    /// without torsional friction. The coefficients of the returned law are in m, its stiffness in N m/rad
+    /// and its damping in N m s/rad. A patch with the effective radius `r = τ/μ`, where `τ` and `μ` are the
+    /// coefficients of torsional and kinetic friction, has the torsional stiffness `σ r²`; `μ = 0` is treated
+    /// as 1.
     pub fn torsion(&self) -> Option<Self> {
         if self.torsional == 0.0 {
             return None;
@@ -171,7 +174,8 @@ impl Friction {
         })
     }
 
-    /// Returns the elastic energy of bristles with the deflection `z`, m: `½ σ z²`, J.
+    /// Returns the elastic energy, J, of bristles with the deflection `z`, m, and the stiffness `σ`:
+    /// `½ σ z²`.
     pub fn elastic_energy(&self, deflection: Vec3<f64>) -> f64 {
         0.5 * self.stiffness * deflection.dot(deflection)
     }
@@ -201,7 +205,8 @@ fn unit(v: Vec3<f64>) -> Vec3<f64> {
 }
 
 /// Returns the unit vector along slipping bristles of length `length`, m, that pointed along `from`, after
-/// sliding by `path`, m, at the velocity `rate`, m/s. Without a velocity or a length, it is that of `from`.
+/// sliding by `path`, m, at the velocity `rate`, m/s. If the velocity or the length is zero, this is the
+/// direction of `from`.
 fn turned(from: Vec3<f64>, rate: Vec3<f64>, path: f64, length: f64) -> Vec3<f64> {
     let (from, to) = (unit(from), unit(rate));
     if rate.norm() == 0.0 || length <= 0.0 {

@@ -12,11 +12,12 @@ use std::sync::Arc;
 pub struct LinkShapes {
     /// Pieces, in the order of the systems and their links.
     pub sides: Vec<ContactSide>,
-    /// Defects of meshes, one line each; their convex hulls are used in spite of them.
+    /// Warnings about defects of meshes, one line each; the convex hulls of these meshes are used
+    /// nevertheless.
     pub warnings: Vec<String>,
 }
 
-/// Returns the collision shapes of the links that match `pattern`, a path `SYSTEM/LINK` in which `*` stands
+/// Returns the collision shapes of the links whose paths `SYSTEM/LINK` match `pattern`, in which `*` stands
 /// for any text. `systems` are the names and models of the systems, and `contact` is the name of the contact.
 ///
 /// # Errors

@@ -13,11 +13,11 @@ pub struct MaterialPair {
     pub kinetic_coefficient: f64,
 }
 
-/// Typical coefficients of clean, dry surfaces in air. Coatings, films of oxide and vacuum change them by
-/// factors; clean metals may seize in vacuum.
+/// Typical coefficients of clean, dry surfaces in air. Coatings, oxide films and vacuum may change the
+/// coefficients several times over; clean metals may seize in vacuum.
 ///
-/// The source gives 1.4 for sliding aluminium, which exceeds its static coefficient; the model of friction
-/// requires at most the static coefficient.
+/// The source gives 1.4 for sliding aluminium, which exceeds its static coefficient; because the friction
+/// model requires a kinetic coefficient of at most the static one, the table repeats the static coefficient.
 ///
 /// Source: Marks' Standard Handbook for Mechanical Engineers, 10th edition, 1996, table 3.2.1.
 pub const MATERIAL_PAIRS: [MaterialPair; 10] = [
@@ -42,7 +42,7 @@ const fn pair(
     MaterialPair { materials: [a, b], static_coefficient, kinetic_coefficient }
 }
 
-/// Returns the typical coefficients of two materials, in any order.
+/// Returns the typical coefficients of friction of two materials, which may be given in either order.
 ///
 /// # Errors
 /// A message with the known pairs and the most similar one, if the table does not contain the pair.

@@ -1,4 +1,4 @@
-//! Laws of contact: compliant normal forces and elastic-plastic friction.
+//! Contact laws: compliant normal forces and elastic-plastic friction.
 //!
 //! | Equation | Function |
 //! |-|-|
@@ -7,7 +7,8 @@
 //! | `d v₀ (1 + e) = ln[(1 + d v₀)/(1 − e d v₀)]` | [`dissipation_for`] |
 //! | `ż = v` inside the cone `\|σ z + c v\| ≤ μ N`, `\|z\| = μ N/σ` on it | [`Friction::after`] |
 //!
-//! The normal force `F` depends on the depth `x`; the other symbols are defined at the functions.
+//! The normal force `F` depends on the depth `x`; the other symbols are defined in the documentation of the
+//! functions.
 
 mod declared;
 mod error;

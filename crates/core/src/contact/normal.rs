@@ -3,7 +3,8 @@
 use super::error::{ContactError, at_least, positive};
 
 /// Law of the normal force, N, as a function of the depth `x`, m, and its rate `ẋ`, m/s, which is positive
-/// while the bodies approach each other. The force never pulls.
+/// while the bodies approach each other. Bodies that can separate exert no force where the law gives a
+/// negative value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NormalLaw {
     /// `F = k xⁿ (1 + d ẋ)`.
@@ -40,8 +41,8 @@ impl NormalLaw {
         }
     }
 
-    /// Returns a number that has the sign of [`NormalLaw::force`] at every depth `x > 0` and is zero where
-    /// the bodies begin to pull.
+    /// Returns a number that has the sign of [`NormalLaw::force`] at every depth `x > 0`, m, and the rate
+    /// `rate`, m/s. It is zero where the force changes from pressing to pulling.
     #[inline]
     pub fn pressing(&self, x: f64, rate: f64) -> f64 {
         match *self {
@@ -50,8 +51,8 @@ impl NormalLaw {
         }
     }
 
-    /// Returns the elastic part of the force, `k xⁿ`, N. A linear law is continued to negative depths, so
-    /// that the force is smooth where the bodies separate; for other exponents it is 0 there.
+    /// Returns the elastic part of the force, `k xⁿ`, N. At negative depths, a linear law gives a negative
+    /// force, so that the force is smooth where the bodies separate; for other exponents the force is 0.
     #[inline]
     pub fn elastic_force(&self, x: f64) -> f64 {
         let (stiffness, exponent) = (self.stiffness(), self.exponent());
@@ -76,7 +77,7 @@ impl NormalLaw {
         self.exponent() * self.stiffness() * x.max(0.0).powf(self.exponent() - 1.0)
     }
 
-    /// Returns the derivative of the force with respect to the rate of the depth, N s/m.
+    /// Returns the derivative of the force with respect to the rate of the depth, N s/m, at the depth `x`, m.
     pub fn tangent_damping(&self, x: f64) -> f64 {
         match *self {
             Self::HuntCrossley { dissipation, .. } => self.elastic_force(x).max(0.0) * dissipation,
@@ -108,9 +109,9 @@ impl NormalLaw {
         }
     }
 
-    /// Returns the depth, m, at which two bodies with the effective mass `mass`, kg, that are at the depth
-    /// `x`, m, and approach each other at `rate`, m/s, come to rest if nothing is dissipated: `½ m ẋ² + U(x)
-    /// = U(x_max)`.
+    /// Returns the depth `x_max`, m, at which two bodies come to rest if no energy is dissipated:
+    /// `½ m ẋ² + U(x) = U(x_max)`, with the elastic energy `U`. `mass` is their effective mass `m`, kg, `x`
+    /// their present depth, m, and `rate` the speed `ẋ` of their approach, m/s.
     pub fn largest_depth(&self, mass: f64, x: f64, rate: f64) -> f64 {
         let energy = 0.5 * mass * rate * rate + self.elastic_energy(x);
         let n = self.exponent();

@@ -2,8 +2,8 @@
 
 use super::error::{ContactError, positive};
 
-/// Returns the dissipation `d`, s/m, with which two bodies that approach each other at `speed`, m/s, separate
-/// at `restitution` times that speed in a central, collinear impact.
+/// Returns the dissipation `d`, s/m, of the law `F = k xⁿ (1 + d ẋ)` with which two bodies that approach each
+/// other at `speed`, m/s, separate at `restitution` times that speed in a central, collinear impact.
 ///
 /// With the restitution `e` and the speed `v₀`, `p = d v₀` is the root of `p (1 + e) = ln[(1 + p)/(1 − e p)]`
 /// in `0 < p < 1/e`, for every exponent, stiffness and mass.

@@ -22,7 +22,7 @@ pub struct Assembly {
 /// System of a tree, with the places of its joints and bodies in the tree.
 #[derive(Clone, Debug)]
 pub struct Member {
-    /// Number of the system in the world.
+    /// Index of the system in the world.
     pub system: usize,
     /// Index in the tree of each joint of the system.
     pub joints: Vec<usize>,
@@ -30,8 +30,8 @@ pub struct Member {
     pub bodies: Vec<BodyPlace>,
 }
 
-/// Body of a tree that contains a body of a system, and the pose of the system's body in the axes of the
-/// tree's body.
+/// Place of a body of a system in a tree: the body of the tree that contains it, and its pose in the axes of
+/// that body.
 #[derive(Clone, Copy, Debug)]
 pub struct BodyPlace {
     /// Index of the body in the tree.
@@ -42,11 +42,11 @@ pub struct BodyPlace {
     pub pos_kb: Vec3<f64>,
 }
 
-/// Assembles the trees into which `welds` connect the systems with these `models`. The names of links, joints
-/// and frames in the models must have the names of the systems as prefixes. Welds that connect systems which
-/// are already connected become closed loops of the tree. The root of a tree is the first of its systems in
-/// `roots`, or the system with the lowest number if `roots` contains none of them. Trees are in the order of
-/// `roots`, followed by the other trees in the order of their roots.
+/// Assembles the trees that result when `welds` connect the systems with these `models`. The names of links,
+/// joints and frames in the models must have the names of the systems as prefixes. A weld between two systems
+/// that are already connected becomes a closed loop of their tree. The root of a tree is the first of its
+/// systems in `roots`, or the system with the lowest index if `roots` contains none of them. Trees are in the
+/// order of `roots`, followed by the other trees in the order of their roots.
 ///
 /// # Errors
 /// [`ModelError`] if the model of a tree is not valid.
@@ -71,9 +71,10 @@ struct GrowingTree<'m> {
     model: Option<Model>,
     /// Systems of the tree, the root first.
     order: Vec<usize>,
-    /// Numbers of the captures whose welds connect the systems of the tree; the other welds close loops.
+    /// Indices of the capture events whose welds connect the systems of the tree; the other welds close
+    /// loops.
     joined_by: Vec<usize>,
-    /// For each joint that a seating motion moves: its name, its travel, rad (m), and the seating motion.
+    /// For each joint that a seating motion moves: its name, its travel, rad or m, and the seating motion.
     moving: Vec<(String, f64, Seating)>,
 }
 
@@ -96,8 +97,8 @@ impl<'m> GrowingTree<'m> {
         Ok(tree)
     }
 
-    /// Adds the captured system of a weld to the tree or, if `is_reversed`, the capturing system. The other
-    /// system is already in the tree.
+    /// Adds the captured system of a weld to a tree that contains the capturing system or, if `is_reversed`,
+    /// the capturing system to a tree that contains the captured system.
     fn add(&mut self, weld: &Weld, is_reversed: bool) -> Result<(), ModelError> {
         let (near, far) = if is_reversed { (weld.of, weld.by) } else { (weld.by, weld.of) };
         let Chain { joints, travels, pose } = weld.chain(&format!("capture {}", weld.capture), is_reversed);
@@ -114,8 +115,8 @@ impl<'m> GrowingTree<'m> {
         Ok(())
     }
 
-    /// Closes the loops of those welds that connect two systems which other welds have joined to the tree,
-    /// except between frames of the same body.
+    /// Adds a closed loop for each weld between two systems that other welds have already joined to the tree.
+    /// A weld between frames of the same body needs no loop.
     fn close_loops(&mut self, welds: &[Weld]) -> Result<(), ModelError> {
         let is_closing = |weld: &&Weld| {
             let are_here = [weld.by, weld.of].iter().all(|place| self.order.contains(&place.system));

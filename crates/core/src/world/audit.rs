@@ -11,7 +11,7 @@ const REST: f64 = 1e-9;
 /// momentum about that origin.
 const LEAST: f64 = 1e-3;
 
-/// Momentum of a system, and the scales relative to which its errors are stated.
+/// Momentum of a system, and the scales by which its errors are divided.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Balance {
     /// Linear momentum, N s, and angular momentum about a point, N m s, in W axes.
@@ -22,7 +22,8 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Computes the momentum and scales of a system about `point` in W, m.
+    /// Computes the momentum and scales of a system with configuration `q` and velocity `v` about `point` in
+    /// W, m.
     pub fn of(model: &Model, q: &[f64], v: &[f64], point: Vec3<f64>) -> Self {
         let mut data = Data::<f64>::new(model);
         kinematics(model, &mut data, q, v);
@@ -92,12 +93,12 @@ fn add_scales(scales: &mut [f64; 2], h: Force<f64>, about_point: Vec3<f64>, leve
     scales[1] += about_point.norm().max(LEAST * (lever.norm() * linear + h.angular.norm()));
 }
 
-/// Returns the kinetic energy, J, that corresponds to the change of a system's velocity from `before` to
-/// `after` at `q`.
+/// Returns the kinetic energy, J, of the change of a system's velocity from `before` to `after`, `(nv,)`, at
+/// the configuration `q`.
 ///
 /// If an impulse stops only the motions that a connection forbids, the energy lost is the energy of the
 /// velocity change: `T⁻ − T⁺ = ½ (v⁻ − v⁺)ᵀ M (v⁻ − v⁺)`, summed over the systems, with the kinetic energy
-/// `T` and the mass matrix `M`.
+/// `T`, the mass matrix `M` and the velocities `v⁻` before and `v⁺` after the impulse.
 pub fn energy_of_change(model: &Model, q: &[f64], before: &[f64], after: &[f64]) -> f64 {
     let change: Vec<f64> = after.iter().zip(before).map(|(after, before)| after - before).collect();
     energy(model, q, &change)

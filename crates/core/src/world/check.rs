@@ -7,7 +7,7 @@ use super::system::System;
 use crate::model::{BASE_NV, Model, Mount};
 use crate::reference::TimeLaw;
 
-/// Names that references use for frames or paths and that no system may have.
+/// Names that no system may have, because references use them for frames or paths.
 const RESERVED: [&str; 4] = ["world", "lvlh", "base", "path"];
 
 /// Largest accepted deviation of the norm of a quaternion from 1.
@@ -49,8 +49,8 @@ pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
 ///
 /// # Errors
 /// [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a
-/// capture within one system or one that would produce an invalid tree, a latch without a capture, numbers
-/// outside their range, or events that wait for themselves or each other.
+/// capture within one system, a capture that would produce an invalid tree, a latch without a capture, a
+/// value outside its range, or events that wait for themselves or each other.
 pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldError> {
     for (i, event) in events.iter().enumerate() {
         if events[..i].iter().any(|before| before.name == event.name) {
@@ -97,8 +97,8 @@ fn check_action(systems: &[System], events: &[Event], event: &Event) -> Result<(
         Action::Release { capture, impulse } => {
             let reason = match events.get(*capture).map(|event| &event.action) {
                 Some(Action::Capture { .. }) => "",
-                Some(_) => "is not a capture; give the number of a capture",
-                None => "does not exist; give the number of a capture",
+                Some(_) => "is not a capture; give the index of a capture",
+                None => "does not exist; give the index of a capture",
             };
             if !reason.is_empty() {
                 return Err(WorldError::UnknownEvent { event: name(), other: *capture, reason });
@@ -162,7 +162,7 @@ fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
         When::At(t) => check("the time", t, "s", LATER, is_time(t)),
         When::After { event: other, delay } => {
             if other >= events.len() {
-                let reason = "does not exist; give the number of an event of the world";
+                let reason = "does not exist; give the index of an event of the world";
                 return Err(WorldError::UnknownEvent { event: name(), other, reason });
             }
             check("the delay", delay, "s", LATER, is_time(delay))
@@ -175,7 +175,7 @@ fn check_when(events: &[Event], event: &Event) -> Result<(), WorldError> {
             let bounds = [envelope.within, envelope.slower_than].concat();
             let units = ["m", "rad", "m/s", "rad/s"];
             for (bound, unit) in bounds.into_iter().zip(units) {
-                check("a bound of the latch", bound, unit, "positive", bound > 0.0)?;
+                check("a value of 'within' or 'slower_than'", bound, unit, "positive", bound > 0.0)?;
             }
             check("held_for", envelope.held_for, "s", LATER, is_time(envelope.held_for))
         }

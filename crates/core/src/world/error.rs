@@ -33,7 +33,7 @@ pub enum WorldError {
          the index of another system and of one of its frames"
     )]
     ReferenceFrame { system: String, other: usize, frame: usize },
-    #[error("the event '{event}' connects two systems into a robot that is not valid: {source}")]
+    #[error("the event '{event}' would connect two systems to form an invalid robot: {source}")]
     Merged { event: String, source: ModelError },
     #[error(
         "the event '{event}' refers to system {system}, but the world has {known}; give one of these indices",

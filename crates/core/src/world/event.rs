@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Frame of a system, given by two indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FrameIndex {
-    /// Number of the system in the world.
+    /// Index of the system in the world.
     pub system: usize,
     /// Index of the frame in the model of the system.
     pub frame: usize,
@@ -14,7 +14,7 @@ pub struct FrameIndex {
 /// Brake of a system, given by two indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BrakeIndex {
-    /// Number of the system in the world.
+    /// Index of the system in the world.
     pub system: usize,
     /// Index among the brakes of the system.
     pub brake: usize,
@@ -35,9 +35,9 @@ pub struct Event {
 /// Condition under which an event happens.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// At a given time, s.
+    /// At the given time, s.
     At(f64),
-    /// After a delay, s, that begins with another event.
+    /// After a delay that begins when another event happens.
     After {
         /// Index of the other event.
         event: usize,
@@ -87,7 +87,7 @@ pub enum Action {
     },
     /// Removes the connection that a capture established.
     Release {
-        /// Number of the capture among the events.
+        /// Index of the capture among the events.
         capture: usize,
         /// Impulse of a spring on the system of the captured frame, N s and N m s, at the origin and in the
         /// axes of the capturing frame. The opposite impulse acts on the other system.
@@ -117,7 +117,7 @@ pub struct RigidPose {
     pub position: [f64; 3],
 }
 
-/// Motion of a captured frame to its nominal pose, after the capture has happened.
+/// Motion of a captured frame to its nominal pose, with the start time that the capture determined.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Seating {
     /// Start of the motion, s.
@@ -131,7 +131,7 @@ pub struct Seating {
 /// Rigid connection of two frames of different systems.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weld {
-    /// Number, among the events, of the capture that established the connection.
+    /// Index, among the events, of the capture that established the connection.
     pub capture: usize,
     /// Capturing frame.
     pub by: FrameIndex,

@@ -1,5 +1,5 @@
 //! Groups of systems that may interact during a run. Systems of different groups never interact, so each
-//! group is a separate run.
+//! group is integrated as a separate run.
 
 use super::event::{Action, Event, When};
 
@@ -30,8 +30,9 @@ impl Union {
     }
 }
 
-/// Returns the systems that an event involves, some possibly repeated: those of the capture, also for its
-/// release. For an event that waits for another event, these include the systems of that other event.
+/// Returns the indices of the systems that the event `number` involves, possibly with repetitions: both
+/// systems of a capture or of the capture that a release ends, or the system of a brake. For an event that
+/// waits for another event, these include the systems of that other event.
 pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
     let (mut all, mut at) = (Vec::new(), number);
     for _ in 0..=events.len() {
@@ -52,8 +53,8 @@ pub fn systems_of(events: &[Event], number: usize) -> Vec<usize> {
     all
 }
 
-/// Returns the groups of `count` systems, each with its systems in ascending order. `links` are additional
-/// pairs of systems that interact.
+/// Returns the groups of `count` systems, each as the indices of its systems in ascending order. `links` are
+/// pairs of systems that interact for reasons other than `events`.
 pub fn groups(count: usize, events: &[Event], links: &[(usize, usize)]) -> Vec<Vec<usize>> {
     let mut union = Union::new(count);
     for number in 0..events.len() {

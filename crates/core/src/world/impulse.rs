@@ -21,19 +21,19 @@ pub struct Moving<'a> {
     pub v: &'a [f64],
 }
 
-/// Returns the velocity `(nv,)` of a tree at `q` immediately after its systems have been rigidly connected;
-/// the first system is the root. Returns the closed loops of the tree as well, whose forces are then impulses.
-/// `given` are the indices and the rates, rad/s (m/s), of the joints with prescribed motion and, with rate 0, of
-/// the joints that brakes hold.
+/// Returns the velocity `(nv,)`, m/s and rad/s, of a tree at `q` immediately after its systems have been
+/// rigidly connected; the first system is the root. Also returns the closed loops of the tree, with impulses
+/// in place of forces. `given` are the indices and the rates, rad/s or m/s, of the joints with prescribed
+/// motion and, with rate 0, of the joints that brakes hold.
 ///
 /// The impulses of the connections do no work on motions that the tree permits, so the generalized momentum
 /// of the tree, less the impulses that close its loops, equals that of the systems: `M v⁺ = Σ J_kᵀ I_k V_k⁻`,
 /// summed over all bodies and rotors, with the mass matrix `M` and velocity `v⁺` of the tree, and the
-/// Jacobian `J_k`, inertia `I_k` and previous twist `V_k⁻` of a body. By Gauss's principle, `v⁺` is the
-/// motion that the tree and its closed loops permit and that is closest to the previous motion `v⁻` of the
+/// Jacobian `J_k`, inertia `I_k` and previous twist `V_k⁻` of a body. By Gauss's principle, `v⁺` is, of all
+/// motions that the tree and its closed loops permit, the one closest to the previous motion `v⁻` of the
 /// systems in the metric of the kinetic energy. Without closed loops, in the coordinates of the systems, it
-/// equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻` with their mass matrix `M`, the relative twist `J v` at the connection, and `Λ
-/// = (J M⁻¹ Jᵀ)⁻¹`.
+/// equals `v⁻ − M⁻¹ Jᵀ Λ J v⁻` with their mass matrix `M`, the relative twist `J v` at the connection, and
+/// `Λ = (J M⁻¹ Jᵀ)⁻¹`.
 pub fn connected_velocity(
     tree: &Model,
     q: &[f64],
@@ -73,8 +73,9 @@ pub fn connected_velocity(
     (v, loops)
 }
 
-/// Returns, for each closed loop of a tree at `q`, its name and its impulse on its second frame, N s and N m s, in
-/// the axes of W about the point of the loop in that frame. `loops` are those of [`connected_velocity`].
+/// Returns, for each closed loop of a tree at `q`, its name and its impulse on the body of its second frame,
+/// N s and N m s, in the axes of W. The angular part is about the point at which the loop is attached to that
+/// frame. `loops` are those of [`connected_velocity`].
 pub fn loop_impulses(tree: &Model, q: &[f64], loops: &ClosedLoops<f64>) -> Vec<(String, [f64; 6])> {
     let (mut data, rot_wb) = (Data::<f64>::new(tree), base_rotation::<f64>(q));
     positions(tree, &mut data, q);
@@ -87,10 +88,11 @@ pub fn loop_impulses(tree: &Model, q: &[f64], loops: &ClosedLoops<f64>) -> Vec<(
     (0..loops.closures().len()).map(impulse).collect()
 }
 
-/// Returns the change of velocity `(nv,)`, `Δv = M⁻¹ Jᵀ i` with the mass matrix `M` and the Jacobian `J` of
-/// `frame`, of a robot at `q` that is caused by an impulse `i` at the origin of the frame, N s and N m s in
-/// the axes of the frame. The rates of the joints `held`, whose motion is prescribed or which brakes hold, do not
-/// change, and the response keeps loops closed; `M` and `J` are those of the remaining free coordinates.
+/// Returns the change of velocity `(nv,)`, m/s and rad/s, that an impulse `i` at the origin of `frame` causes
+/// in a robot at `q`: `Δv = M⁻¹ Jᵀ i`, with the mass matrix `M` and the Jacobian `J` of the frame. The
+/// impulse, N s and N m s, is in the axes of the frame. The rates of the joints `held`, whose motion is
+/// prescribed or which brakes hold, do not change, and the response keeps loops closed; `M` and `J` are those
+/// of the remaining free coordinates.
 pub fn impulse_response(
     model: &Model,
     q: &[f64],

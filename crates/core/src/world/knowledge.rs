@@ -1,19 +1,19 @@
-//! Detection of systems that are known to other systems without any effect.
+//! Detection of entries of `knows` that have no effect.
 
 use super::event::{Action, Event};
 use super::groups::Union;
 use super::system::System;
 
-/// System that another system knows without effect, because captures connect the two only through systems
-/// that are not known, or not at all.
+/// Entry of `knows` without effect, because captures connect the two systems only through systems that are
+/// not known, or not at all.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IdleKnowledge {
-    /// Number of the system whose controllers know the other system.
+    /// Index of the system whose controllers know the other system.
     pub system: usize,
-    /// Number of the known system.
+    /// Index of the known system.
     pub known: usize,
-    /// Systems, on a shortest path of captures between the two, that are not known; empty if no captures
-    /// connect the two.
+    /// Indices of those systems on a shortest path of captures between the two that are not known; empty if
+    /// no captures connect the two.
     pub through: Vec<usize>,
 }
 
@@ -41,8 +41,8 @@ pub fn idle_knowledge(systems: &[System], events: &[Event]) -> Vec<IdleKnowledge
     found
 }
 
-/// Returns the systems on a shortest path, along `pairs`, between two of `count` systems, in order; empty if
-/// there is none.
+/// Returns the systems on a shortest path along `pairs` from the system `from` to the system `to`, in order;
+/// empty if there is no path. `count` is the number of systems.
 fn path(count: usize, pairs: &[[usize; 2]], from: usize, to: usize) -> Vec<usize> {
     let mut before = vec![None; count];
     let (mut queue, mut next) = (vec![from], 0);

@@ -1,4 +1,4 @@
-//! Worlds: several systems, their events, and the trees into which welds connect them.
+//! World of several systems, the events that connect and separate them, and the trees that welds form.
 
 mod assembly;
 mod audit;

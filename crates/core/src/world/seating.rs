@@ -15,7 +15,7 @@ use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector
 pub struct GivenJoint {
     /// Index of the joint in the tree.
     pub joint: usize,
-    /// Position at the end of the motion, rad (m); the position at the start is zero.
+    /// Position at the end of the motion, rad or m; the position at the start is zero.
     pub travel: f64,
     /// Start of the motion, s.
     pub start: f64,
@@ -24,8 +24,8 @@ pub struct GivenJoint {
 }
 
 impl GivenJoint {
-    /// Returns the position, rad (m), rate, rad/s (m/s), and acceleration, rad/s² (m/s²), of the joint at
-    /// `t`, s.
+    /// Returns the position (rad or m), the rate (rad/s or m/s) and the acceleration (rad/s² or m/s²) of the
+    /// joint at the time `t`, s.
     pub fn at(&self, t: f64) -> [f64; 3] {
         let (s, rate, acceleration) = self.law.at(t - self.start);
         [s, rate, acceleration].map(|x| x * self.travel)
@@ -36,8 +36,8 @@ impl GivenJoint {
 const STEPS: usize = 64;
 
 impl Seating {
-    /// Returns the times at which steps must end, s: the end of the motion and, if `time_step` (s) is long
-    /// compared with the motion, equally spaced times within it.
+    /// Returns the times at which steps must end, s: the end of the motion and, if the motion is shorter than
+    /// 64 steps of length `time_step`, s, equally spaced times within it.
     pub fn cuts(&self, time_step: f64) -> impl Iterator<Item = f64> + use<> {
         let Self { start, duration, .. } = *self;
         let parts = if duration < STEPS as f64 * time_step { STEPS } else { 1 };
@@ -45,8 +45,8 @@ impl Seating {
     }
 }
 
-/// Connection that a weld adds to a tree: moving joints, the travel of each, rad (m), and the constant pose
-/// after the last of them.
+/// Connection that a weld adds to a tree: moving joints, the travel of each, rad or m, and the constant pose
+/// of the connected frame after the last joint.
 pub(super) struct Chain {
     pub(super) joints: Vec<Joint>,
     pub(super) travels: Vec<f64>,

@@ -12,23 +12,28 @@ pub struct System {
     pub name: String,
     /// Model of the robot.
     pub model: Arc<Model>,
-    /// Initial configuration, `(nq,)`, m and rad.
+    /// Initial configuration, `(nq,)`: position of the base in W, m, its quaternion (x, y, z, w), then joint
+    /// positions, rad or m.
     pub q: Vec<f64>,
-    /// Initial velocity, `(nv,)`, m/s and rad/s.
+    /// Initial velocity, `(nv,)`: linear and angular velocity of the base in base axes, m/s and rad/s, then
+    /// joint rates, rad/s or m/s.
     pub v: Vec<f64>,
-    /// Controls of the joints. Joints without an active control have no motor torque, unless a stepper's
-    /// caller commands one.
+    /// Controls of the joints. A joint without an active control has no motor torque, unless the caller of a
+    /// stepper commands one.
     pub controls: Vec<Control>,
-    /// Time between two updates of the controllers, s; by default the controllers are updated at every step.
+    /// Time between two updates of the controllers, s; `None` to update the controllers at every step.
     pub control_period: Option<f64>,
-    /// Index of the frame that is recorded and compared with the reference.
+    /// Index of the frame whose pose is recorded and compared with the reference; `None` for a system without
+    /// a tool.
     pub tool: Option<usize>,
-    /// Reference pose of the tool, recorded for comparison if no control tracks the tool.
+    /// Reference of the tool that is recorded for comparison, although no control needs to track it; `None`
+    /// if only the references of controls are recorded.
     pub reference: Option<TaskReference>,
-    /// Largest accepted distance and angle between the tool and the start of its reference, m and rad.
+    /// Largest accepted distance, m, and angle, rad, between a frame and the start of its reference. The
+    /// second entry also applies to references of joint positions, rad or m.
     pub reference_start_tolerance: [f64; 2],
-    /// Numbers of those systems in the world whose models the controllers know. While they are connected to
-    /// this system, laws that use a model use the model of the connected tree.
+    /// Indices in the world of the systems whose models the controllers know. While such a system is
+    /// connected to this one, control laws use the model of the connected tree.
     pub knows: Vec<usize>,
     /// Coefficient of restitution of rigid stops at the position limits of joints; `None` for no stops.
     pub stops: Option<f64>,
