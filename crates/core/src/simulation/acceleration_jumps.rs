@@ -6,29 +6,29 @@ use crate::model::BASE_NV;
 use crate::spatial::Scalar;
 use serde::{Deserialize, Serialize};
 
-/// Velocity changes `h |Δq̈|/6` below this fraction of the largest rate of the joint are ignored here; step
-/// doubling measures such small errors.
+/// Fraction of the largest rate of a joint below which a velocity change `h |Δq̈|/6` is ignored, with the
+/// step length `h` and the jump `Δq̈` of the acceleration. Step doubling measures such small errors.
 const SMALL: f64 = 1e-6;
 
 /// Sums of the acceleration jumps of each joint over all steps. Step doubling, by contrast, measures only
 /// some of the steps.
 ///
 /// The last stage of a Runge-Kutta step is evaluated at a prediction of the state at the end of the step, and
-/// the first stage of the next step at that state itself. With the step length `h`, `h |Δq̈|/6` is the
-/// difference between the rate and an embedded third-order solution. For an oscillation with the angular
-/// frequency `ω` and `z = ω h`, this difference is `z⁴/72` of the amplitude of the rate, and the error of a
-/// step is `z⁵/120` of it, which equals `1.75 (z⁴/72)^(5/4)`.
+/// the first stage of the next step at that state itself. With the step length `h` and the jump `Δq̈` between
+/// both, `h |Δq̈|/6` is the difference between the joint rate and an embedded third-order solution. For an
+/// oscillation with the angular frequency `ω` and `z = ω h`, this difference is `z⁴/72` times the amplitude
+/// of the rate, and the error of a step is `z⁵/120 = 1.75 (z⁴/72)^(5/4)` times that amplitude.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct AccelerationJumps {
-    /// Joint accelerations in the last stage of the previous step, rad/s² (m/s²).
+    /// Joint accelerations in the last stage of the previous step, `(n,)`, rad/s² or m/s².
     ended: Vec<f64>,
-    /// Joint torques held during the previous step, `(n,)`, N m (N).
+    /// Joint torques held during the previous step, `(n,)`, N m or N.
     command: Vec<f64>,
     /// Length of the previous step, s.
     h: f64,
-    /// Sum `Σ (h |Δq̈|/6)^(5/4)` for each joint.
+    /// Sum `Σ (h |Δq̈|/6)^(5/4)` over all steps for each joint, `(n,)`, with rates in rad/s or m/s.
     pub(super) jumps: Vec<f64>,
-    /// Largest magnitude of the rate of each joint, rad/s (m/s).
+    /// Largest magnitude of the rate of each joint, `(n,)`, rad/s or m/s.
     pub(super) fastest: Vec<f64>,
 }
 
@@ -44,8 +44,8 @@ impl AccelerationJumps {
         [&self.ended, &self.command, &self.jumps, &self.fastest].map(Vec::len)
     }
 
-    /// Adds a step of length `h`, s. `is_smooth` is true if neither an event nor an impact occurs at the
-    /// start of the step.
+    /// Adds a step of length `h`, s, during which the joint torques `command`, `(n,)`, were held. `is_smooth`
+    /// is true if neither an event nor an impact occurs at the start of the step.
     #[inline]
     pub(super) fn add_step<S: Scalar>(
         &mut self,

@@ -16,13 +16,13 @@ use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
-/// Error estimates for the fixed-step integrators of the native engine. An adaptive integrator estimates its
-/// errors itself; the errors of an external engine are not estimated.
+/// Error estimates for runs with a fixed-step integrator of the native engine. An adaptive integrator
+/// estimates its errors itself; the errors of an external engine are not estimated.
 pub(super) struct Accuracy<S> {
     doubling: Option<StepDoubling<S>>,
     /// Checks that are evaluated at every step, one entry per tree; empty if every step is recorded.
     every_step: Vec<EveryStep>,
-    /// True if the base rows of inverse dynamics are checked for the current step.
+    /// True if the certificate checks the base rows of inverse dynamics for the current step.
     is_recorded: bool,
 }
 
@@ -43,19 +43,19 @@ impl<S: Scalar> Accuracy<S> {
         Ok(Self { doubling, every_step, is_recorded: false })
     }
 
-    /// Returns the arguments `doubles` and `checks` of [`Accuracy::of`], with which other trees are measured
-    /// in the same way.
+    /// Returns the arguments `doubles` and `checks` with which [`Accuracy::of`] creates the same measurements
+    /// for other trees.
     pub(super) fn measures(&self) -> (bool, bool) {
         (self.doubling.is_some(), !self.every_step.is_empty())
     }
 
-    /// Returns the errors and checks of a tree accumulated so far.
+    /// Returns the errors and checks of the tree with index `number` accumulated so far.
     pub(super) fn save(&self, number: usize) -> (Option<Errors>, Option<SavedChecks>) {
         let errors = self.doubling.as_ref().map(|doubling| doubling.errors[number].clone());
         (errors, self.every_step.get(number).map(EveryStep::save))
     }
 
-    /// Restores, for a tree, the values that [`Accuracy::save`] returned.
+    /// Restores the values that [`Accuracy::save`] returned for the tree with index `number`.
     pub(super) fn restore(&mut self, number: usize, (errors, checks): (Option<Errors>, Option<SavedChecks>)) {
         if let (Some(doubling), Some(errors)) = (&mut self.doubling, errors) {
             doubling.errors[number] = errors;
@@ -65,22 +65,23 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Completes the checks of the last step, which ended at time `t`, s. Requires base twists in
-    /// `state` that are projected onto the momentum, and the kinematics of `state` in `equations`.
+    /// Completes the checks of the last step, which ended at time `t`, s. Requires that the base twists in
+    /// `state` have been projected onto the momentum, and that `equations` contain the kinematics of `state`.
     pub(super) fn end_step(&mut self, t: f64, state: &State<S>, equations: &Equations<'_, S>) {
         for (every_step, (state, tree)) in self.every_step.iter_mut().zip(pairs(state, &equations.trees)) {
             every_step.end(t, state, tree);
         }
     }
 
-    /// Excludes the last step of a tree from the checks.
+    /// Excludes the last step of the tree with index `number` from the checks.
     pub(super) fn skip_step(&mut self, number: usize) {
         if let Some(every_step) = self.every_step.get_mut(number) {
             every_step.skip();
         }
     }
 
-    /// Starts the measurements of step number `step` over `interval`, s, before that step is computed.
+    /// Starts the measurements of the step with index `step` over `interval`, s, before that step is
+    /// computed.
     pub(super) fn start_step(
         &mut self,
         step: usize,
@@ -105,8 +106,8 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Estimates the errors of the step over `interval` that ended at `state`; `is_smooth` is true if neither
-    /// an event nor an impact occurs at the start of the step.
+    /// Estimates the errors of the step over `interval`, s, that ended at `state`; `is_smooth` is true if
+    /// neither an event nor an impact occurs at the start of the step.
     pub(super) fn measure_step(
         &mut self,
         interval: (f64, f64),
@@ -136,8 +137,8 @@ impl<S: Scalar> Accuracy<S> {
         Ok(())
     }
 
-    /// Records the end of a step whose base rows are checked. Writes the state at the end, with projected
-    /// base twists, and its accelerations to the buffers `(end, stages)`.
+    /// Records the end of a step whose base rows of inverse dynamics are checked. Writes the state at the
+    /// end, with projected base twists, and its accelerations to the buffers `(end, stages)`.
     fn record_end(
         &mut self,
         interval: (f64, f64),
@@ -171,8 +172,8 @@ impl<S: Scalar> Accuracy<S> {
         }
     }
 
-    /// Returns the error estimates of a tree after `steps` steps. `rotation_error` is the accumulated
-    /// attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator.
+    /// Returns the error estimates of the tree with index `number` after `steps` steps. `rotation_error` is
+    /// the accumulated attitude error of an adaptive integrator, rad; `None` for a fixed-step integrator.
     pub(super) fn estimates(&self, number: usize, steps: usize, rotation_error: Option<f64>) -> Estimates {
         let checks = self.every_step.get(number).map(EveryStep::checks);
         let Some(doubling) = &self.doubling else {

@@ -47,7 +47,8 @@ impl<S: Scalar> RunState<'_, S> {
         known.extend(found);
     }
 
-    /// Returns true if two frames belong to bodies that welds connect rigidly.
+    /// Returns true if `welds` without a seating motion connect the bodies of two frames, or if both frames
+    /// belong to the same body.
     fn are_rigid(&self, welds: &[Weld], a: FrameIndex, b: FrameIndex) -> bool {
         let body = |at: FrameIndex| (at.system, self.model(at.system).frames()[at.frame].body);
         let (mut found, mut next) = (vec![body(a)], 0);
@@ -63,7 +64,8 @@ impl<S: Scalar> RunState<'_, S> {
         found.contains(&body(b))
     }
 
-    /// Returns the attached controls that have been found so far in the run.
+    /// Returns the controls found so far in the run whose frames are rigidly connected to the frames that
+    /// they follow.
     pub(super) fn attached_controls(&self) -> Vec<AttachedControl> {
         let named = self.events.attached.iter().map(|attached| {
             let run = &self.systems[attached.frame.system];

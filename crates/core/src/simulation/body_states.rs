@@ -6,7 +6,7 @@ use crate::model::{Model, Node};
 use crate::spatial::{Force, Mat3, Motion, Real, Scalar, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
-/// Parts of a system that loads read and write. `data` holds the kinematics of its configuration.
+/// Parts of a system that loads read and write. `data` holds the kinematics of the configuration `q`.
 pub(super) struct LoadedSystem<'a, S> {
     pub(super) data: &'a mut Data<S>,
     pub(super) q: &'a [S],
@@ -14,7 +14,7 @@ pub(super) struct LoadedSystem<'a, S> {
     pub(super) frame_velocity: Vec3<S>,
 }
 
-/// Creates the bodies of systems, given by their numbers in the world and their models, at rest with their
+/// Creates the bodies of systems, given by their indices in the world and their models, at rest with their
 /// origins at the origin of W.
 pub(super) fn bodies_of(numbers: &[usize], models: &[&Model]) -> Bodies {
     let at_rest = |node: &Node| BodyState {
@@ -31,7 +31,8 @@ pub(super) fn bodies_of(numbers: &[usize], models: &[&Model]) -> Bodies {
 }
 
 impl<S: Scalar> LoadedSystem<'_, S> {
-    /// Writes the states of the bodies of the system at position `system` of the run to `bodies`.
+    /// Writes the states of the bodies of the system with index `system` in the run to `bodies`; velocities
+    /// are written only if `with_velocity` is true.
     pub(super) fn gather_bodies(&self, system: usize, with_velocity: bool, bodies: &mut Bodies) {
         let count = self.data.bodies.len();
         on_lanes!(count, L => self.gather_lanes::<L>(system, with_velocity, bodies));
@@ -73,8 +74,8 @@ impl<S: Scalar> LoadedSystem<'_, S> {
         );
     }
 
-    /// Writes the wrenches on the system at position `system` of the run to `data`, in base axes and about
-    /// the origins of the bodies.
+    /// Writes the wrenches on the bodies of the system with index `system` in the run to `data`, in base axes
+    /// and about the origins of the bodies.
     pub(super) fn scatter_wrenches(&mut self, system: usize, wrenches: &Wrenches) {
         on_lanes!(self.data.bodies.len(), L => self.scatter_lanes::<L>(system, wrenches));
     }
@@ -123,7 +124,7 @@ fn bodies_from<'a, S>(data: &'a Data<S>, first: usize) -> impl Fn(usize) -> &'a 
     move |i| &bodies[i.min(bodies.len() - 1)]
 }
 
-/// Gathers one vector per lane into a vector of lanes.
+/// Returns a vector whose lane `i` contains the vector `of(i)`.
 #[inline(always)]
 fn gather<'a, S: Scalar, L: Real>(of: impl Fn(usize) -> &'a Vec3<S>) -> Vec3<L> {
     Vec3::from_lanes(|i| of(i).map(|x| x.value()))

@@ -1,4 +1,4 @@
-//! Brakes that events engage and disengage.
+//! Application of events that engage and disengage brakes.
 
 use super::checkpoint::SystemProgress;
 use super::event_audit::{Applied, Snapshot};
@@ -11,14 +11,15 @@ use crate::spatial::{Scalar, Vec3};
 use crate::world::{Brake, BrakeIndex, FrameIndex};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns a brake with its present engagement.
+    /// Returns a brake, whose field `is_engaged` is up to date.
     pub(super) fn brake(&self, at: BrakeIndex) -> &Brake {
         &self.systems[at.system].brakes[at.brake]
     }
 
-    /// Engages a brake. A brake with an infinite slip torque stops its joint by an impulse,
-    /// `Δv = −M⁻¹ e_j q̇_j / (M⁻¹)_jj`, in which the closed loops and the other joints that brakes hold take part.
-    /// An external engine instead stops the joint during the next steps.
+    /// Engages a brake as the event with index `number`. A brake with an infinite slip torque stops its joint
+    /// by an impulse, `Δv = −M⁻¹ e_j q̇_j / (M⁻¹)_jj`, with the unit vector `e_j` and the rate `q̇_j` of the
+    /// joint. The mass matrix `M` is that of the motions that closed loops and other braked joints permit. An
+    /// external engine instead stops the joint during the next steps.
     pub(super) fn engage(&mut self, number: usize, at: BrakeIndex, t: f64) -> EventRecord {
         let (before, slip_torque) = (self.snapshots(), self.brake(at).slip_torque);
         let (tree, joint) = self.set_brake(at, true);
@@ -32,7 +33,7 @@ impl<S: Scalar> RunState<'_, S> {
         self.record_of_brake((number, EventKind::Engage, t), at, &before, (impulse, lost))
     }
 
-    /// Disengages a brake.
+    /// Disengages a brake as the event with index `number`.
     pub(super) fn disengage(&mut self, number: usize, at: BrakeIndex, t: f64) -> EventRecord {
         self.set_brake(at, false);
         self.record_of_brake((number, EventKind::Disengage, t), at, &self.snapshots(), (0.0, 0.0))
@@ -47,7 +48,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Engages or disengages a brake. Returns the number of its tree and the index of its joint in that tree.
+    /// Engages or disengages a brake. Returns the index of its tree and the index of its joint in that tree.
     fn set_brake(&mut self, at: BrakeIndex, is_engaged: bool) -> (usize, usize) {
         let brake = &mut self.systems[at.system].brakes[at.brake];
         brake.is_engaged = is_engaged;
@@ -66,8 +67,8 @@ impl<S: Scalar> RunState<'_, S> {
         (tree, in_tree)
     }
 
-    /// Returns the record of a brake that has been engaged or disengaged, with the impulse, N m s (N s), on its
-    /// joint and the energy lost, J.
+    /// Returns the record of a brake that has been engaged or disengaged, with the impulse, N m s or N s, on
+    /// its joint and the energy lost, J.
     fn record_of_brake(
         &self,
         (number, kind, time): (usize, EventKind, f64),

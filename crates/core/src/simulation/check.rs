@@ -19,12 +19,12 @@ impl Simulation {
     ///
     /// # Errors
     /// A [`SimulationError`] for the first invalid setting: an initial state of the wrong length, outside its
-    /// range or with a quaternion that does not have unit norm; a joint that starts beyond its limits when
+    /// range, or with a quaternion that does not have unit norm; a joint that starts beyond its limits when
     /// these are enforced; a time step, tolerance or other number outside its range; an effect or a gravity
-    /// field without the orbit that it requires; an effect that acts on no system, or twice on the same body;
-    /// an Earth whose epoch or axes differ from those of the orbit; invalid names, events, contacts or
-    /// controls; a setting that an external engine does not support; a reference without a tool; a reference
-    /// that starts too far from the tool or the joints that follow it.
+    /// field without the orbit that it requires; an effect that acts on no system, or two effects that count
+    /// the same force on a body twice; an Earth whose epoch or axes differ from those of the orbit; invalid
+    /// names, events, contacts or controls; a setting that an external engine does not support; a reference
+    /// without a tool; a reference that starts too far from the tool or the joints that follow it.
     pub fn check(&self) -> Result<(), SimulationError> {
         self.check_each(|system| check_state(&system.model, &system.q, &system.v))?;
         SimulationError::check_positive("time_step", self.time_step)?;
@@ -84,8 +84,8 @@ impl Simulation {
         })
     }
 
-    /// Rejects settings that only the native engine supports, because they need the tree of connected
-    /// systems.
+    /// Returns an error for settings that an external engine does not support, and for contacts, loops and
+    /// mimic joints that were not passed to it.
     fn check_engine(&self) -> Result<(), SimulationError> {
         let cannot = |name: &str, what, remedy| {
             Err(SimulationError::EngineOfWorld { name: name.to_owned(), what, remedy })
@@ -126,7 +126,7 @@ impl Simulation {
         let braked = self.systems.iter().find(|system| !system.brakes.is_empty());
         if let Some(system) = braked.filter(|_| !has_brakes) {
             let name = &system.brakes[0].name;
-            return cannot(name, "a brake", "remove the brake; friction of the joint can take its place");
+            return cannot(name, "a brake", "replace the brake by joint friction");
         }
         match self.systems.iter().find(|system| !system.knows.is_empty()) {
             Some(system) => {
@@ -136,8 +136,9 @@ impl Simulation {
         }
     }
 
-    /// Rejects effects that act on none of the systems, and effects that would count twice on a body. The
-    /// gravity that an orbit around a planet adds is included.
+    /// Returns an error for effects that act on none of the systems, and for pairs of effects that would
+    /// count the same force on a body twice. The effects include the gravity that an orbit around a planet
+    /// adds.
     fn check_effects(&self) -> Result<(), SimulationError> {
         let (effects, count) = (self.all_effects(), self.systems.len());
         for (k, effect) in effects.iter().enumerate() {
@@ -171,7 +172,7 @@ impl Simulation {
     }
 }
 
-/// Checks laws and shapes of the contacts, and that their names are unique.
+/// Checks the laws and shapes of the contacts, and that the names of the contacts are unique.
 fn check_contacts(contacts: &[Contact]) -> Result<(), ContactError> {
     for (number, contact) in contacts.iter().enumerate() {
         if contacts[..number].iter().any(|before| before.name == contact.name) {

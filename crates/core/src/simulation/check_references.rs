@@ -8,8 +8,8 @@ use crate::model::{BASE_NQ, Model};
 use crate::reference::{TaskReference, joint_start_offset};
 use crate::spatial::Vec3;
 
-/// Checks that a reference starts within `tolerance` (m, rad) of the pose of frame `frame` at configuration
-/// `q`.
+/// Checks that a reference starts within `tolerance`, m and rad, of the pose of the frame with index `frame`
+/// at the configuration `q`.
 pub(super) fn check_reference(
     model: &Model,
     q: &[f64],
@@ -34,9 +34,9 @@ pub(super) fn check_reference(
     Ok(())
 }
 
-/// Checks the references of those controls that are active from the start of the run. References of frames
-/// must start within `tolerance` (m, rad) of the frame. References of joint positions must start within the
-/// second entry of `tolerance` (rad, or m for prismatic joints) of the initial positions.
+/// Checks the references of those controls that are active from the start of the run. A reference of a frame
+/// must start within `tolerance`, m and rad, of the frame. A reference of joint positions must start within
+/// the second entry of `tolerance`, rad (m for prismatic joints), of the initial positions.
 pub(super) fn check_control_references(
     model: &Model,
     q: &[f64],

@@ -27,11 +27,11 @@ use serde::{Deserialize, Serialize};
 /// Largest number of steps of a run; counting to twice this number does not overflow.
 const MOST_STEPS: usize = usize::MAX / 2;
 
-/// State of a run that its trace does not contain. A run that resumes from a checkpoint, together with the
-/// rows recorded before it, gives results that are bit-identical to those of an uninterrupted run.
+/// State from which a run can resume, without the rows recorded so far. A run that resumes from a checkpoint
+/// and these rows gives results that are bit-identical to those of an uninterrupted run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// Version of this library. Other versions may round differently.
+    /// Version of the library that wrote the checkpoint. Other versions may round differently.
     version: String,
     /// Instruction set of the run. Other instruction sets round differently.
     instruction_set: String,
@@ -47,7 +47,7 @@ pub(super) struct GroupCheckpoint {
     pub(super) schedule: Schedule,
     pub(super) progress: Progress,
     pub(super) local_reference: Option<LocalReference>,
-    /// Wrenches that the caller of the stepper has commanded.
+    /// Wrenches that the caller of the stepper has commanded and that are still held.
     #[serde(default, skip_serializing_if = "WrenchCommands::is_empty")]
     pub(super) wrenches: WrenchCommands,
     pub(super) controllers: SavedControllers,
@@ -61,7 +61,7 @@ pub(super) struct Progress {
     pub(super) cursor: Cursor,
     pub(super) state: State<f64>,
     pub(super) step_control: Option<StepControl>,
-    /// Number of consecutive idle steps.
+    /// Number of consecutive idle steps, in which a mode changed after almost no progress.
     pub(super) idle_steps: usize,
     /// True if the elastic energy of contacts has jumped in the last step.
     #[serde(default)]
@@ -99,12 +99,13 @@ pub(super) struct SystemProgress {
 pub(super) struct WorldProgress {
     pub(super) members: SavedMembers,
     pub(super) events: Vec<EventState>,
-    /// Events that have happened; empty while a trial step is undone, which removes only its own events.
+    /// Records of the events that have happened; empty in the state that is saved before a trial step, which
+    /// removes its events from the list when it is undone.
     pub(super) records: Vec<EventRecord>,
     pub(super) attached: Vec<Attached>,
     pub(super) ledger: Ledger,
     pub(super) balance: GroupBalance,
-    /// Modes of the contacts.
+    /// Modes of all pairs of contact pieces.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) contacts: Vec<Mode>,
     /// Touches of the declared contacts.
@@ -124,11 +125,12 @@ pub(super) struct SavedControllers {
 /// State of the controllers and joint torques of one system.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct SystemControllers {
-    /// Joint torques that are held during the current step, `(n,)`, N m (N).
+    /// Joint torques that are held during the current step, `(n,)`, N m or N.
     pub(super) command: Vec<f64>,
-    /// Torques commanded by the caller of the stepper, `(n,)`, N m (N).
+    /// Torques commanded by the caller of the stepper, `(n,)`, N m or N; `None` for joints without a command.
     pub(super) commanded: Vec<Option<f64>>,
-    /// Accelerations requested for joints whose friction is compensated, `(n,)`, rad/s² (m/s²).
+    /// Accelerations that control laws request for joints whose friction they compensate, `(n,)`, rad/s² or
+    /// m/s²; `None` for other joints.
     pub(super) requested: Vec<Option<f64>>,
     /// Torques and requested accelerations before a trial step updated the controllers at the current cut;
     /// `None` without such an update.
@@ -136,7 +138,8 @@ pub(super) struct SystemControllers {
     pub(super) controls: Vec<ControlMemory>,
 }
 
-/// Returns the name of the instruction set used for single runs, which never use the widest SIMD lanes.
+/// Returns the name of the instruction set that runs use on this machine. It is at most the set with fused
+/// multiply-add, because only batches use wider SIMD lanes.
 fn own_instruction_set() -> &'static str {
     InstructionSet::current().min(InstructionSet::Fused).name()
 }
@@ -164,7 +167,7 @@ impl Checkpoint {
         first.map_or(0, |system| system.rows)
     }
 
-    /// Returns the checkpoint as JSON. Reading the text again gives bit-identical numbers.
+    /// Returns the checkpoint as JSON, from which [`Checkpoint::from_json`] restores every number bit by bit.
     pub fn to_json(&self) -> String {
         serde_json::to_string(self).expect("numbers, strings and lists can be written")
     }
@@ -188,7 +191,7 @@ impl Checkpoint {
         }
     }
 
-    /// Returns the checkpoints of the groups. Checks that there are `count` groups, and that this machine
+    /// Returns the checkpoints of the groups, after checking that there are `count` groups and that this run
     /// uses the instruction set of the checkpoint.
     pub(super) fn into_groups(self, count: usize) -> Result<Vec<GroupCheckpoint>, CheckpointError> {
         let own = own_instruction_set();
@@ -235,7 +238,8 @@ impl GroupCheckpoint {
         }
     }
 
-    /// Checks that the state is finite, the attitudes are unit quaternions, and the step control is valid.
+    /// Checks that the state and the commanded wrenches are finite, the attitudes are unit quaternions, and
+    /// the step control is valid.
     fn check_state(&self) -> Result<(), CheckpointError> {
         let Progress { state, step_control, .. } = &self.progress;
         let has_unit_attitude = |state: &TreeState<f64>| (attitude_norm(&state.q) - 1.0).abs() <= UNIT_NORM;

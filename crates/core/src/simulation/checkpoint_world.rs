@@ -32,7 +32,8 @@ impl<S: Scalar> RunState<'_, S> {
         Err(CheckpointError::Unreadable { reason: reason.to_owned() })
     }
 
-    /// Checks the numbers of contacts, and the systems of their touches.
+    /// Checks that the checkpoint has as many contacts and pairs of pieces as the run, and that touches refer
+    /// to systems of the run.
     pub(super) fn check_contacts(&self, progress: &Progress) -> Result<(), CheckpointError> {
         let (Progress { state, world, .. }, own) = (progress, &self.equations.contacts);
         let pieces = own.pairs();
@@ -49,7 +50,7 @@ impl<S: Scalar> RunState<'_, S> {
         Err(CheckpointError::Unreadable { reason })
     }
 
-    /// Checks the sizes of the states of systems that share trees. Requires that these systems have been
+    /// Checks the sizes of the states of systems that share trees. Requires that the connections have been
     /// restored.
     pub(super) fn check_members(&self, world: &WorldProgress) -> Result<(), CheckpointError> {
         let parts = &self.equations.members.parts;

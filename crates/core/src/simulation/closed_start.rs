@@ -1,4 +1,4 @@
-//! Start of a system with closed loops and mimic joints.
+//! Initial state of a system with closed loops and mimic joints.
 
 use super::error::SimulationError;
 use crate::dynamics::{
@@ -8,20 +8,21 @@ use crate::model::{BASE_NQ, BASE_NV, Constraint, Model};
 use crate::number_text::short;
 use crate::world::System;
 
-/// Largest opening of a loop at the start, m and rad, or m/s and rad/s, that is closed without `project`.
+/// Largest opening of a loop or deviation of a mimic joint at the start, m or rad (its rate: m/s or rad/s),
+/// that is corrected without `project`.
 const ACCEPTED: f64 = 1e-6;
-/// Largest opening of a loop, m and rad, that counts as closed.
+/// Largest opening, m or rad, of a loop that counts as closed.
 const CLOSED: f64 = 1e-11;
 
 impl System {
-    /// Returns the initial configuration and velocity with all loops closed, in the metric of the kinetic
-    /// energy the nearest ones to the given state. Mimic joints that start at zero follow their leaders. Joints that
+    /// Returns the initial configuration and velocity with all loops closed: those nearest to the given state
+    /// in the metric of the kinetic energy. Mimic joints that start at zero follow their leaders. Joints that
     /// brakes hold rigidly keep the rate zero.
     ///
     /// # Errors
-    /// [`SimulationError::OpenLoop`] for a loop without `project`, and [`SimulationError::OpenMimic`] for a
-    /// mimic joint, that is open or opens by more than 1e-6 m or rad (per second);
-    /// [`SimulationError::CannotClose`] for loops that cannot be closed together.
+    /// [`SimulationError::OpenLoop`] for a loop without `project` whose opening exceeds 1e-6 m or rad, or
+    /// changes by more than 1e-6 m/s or rad/s; [`SimulationError::OpenMimic`] for a mimic joint with such an
+    /// error; [`SimulationError::CannotClose`] for loops that cannot be closed together.
     pub(super) fn closed_start(&self) -> Result<[Vec<f64>; 2], SimulationError> {
         let (model, mut q, mut v) = (&*self.model, self.q.clone(), self.v.clone());
         if model.closures().is_empty() {
@@ -57,8 +58,8 @@ impl System {
     }
 }
 
-/// Sets each position and each rate of a mimic joint that is zero from the value of its leader. This is repeated,
-/// so that the values reach the end of a chain of mimic joints.
+/// Replaces each zero position and each zero rate of a mimic joint by the value that its leader prescribes.
+/// The function repeats this, so that the values reach the end of a chain of mimic joints.
 fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
     let [given_q, given_v] = [q.to_vec(), v.to_vec()];
     for _ in model.closures() {
@@ -74,8 +75,9 @@ fn follow_leaders(model: &Model, q: &mut [f64], v: &mut [f64]) {
     }
 }
 
-/// Checks that no closure without `project` is open, or opens, by more than [`ACCEPTED`]; `x` are the errors
-/// of all scalar constraints, or their rates, and `units` those of distances and angles in `x`.
+/// Checks that no loop or mimic joint without `project` has an error, or a rate of its error, above
+/// [`ACCEPTED`]. `x` are the errors of all scalar constraints, or their rates, and `units` the units of
+/// distances and angles in `x`.
 fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> Result<(), SimulationError> {
     for (i, closure) in loops.closures().iter().enumerate().filter(|(_, closure)| !closure.project) {
         let sizes = loops.magnitudes(i, x);
@@ -91,7 +93,7 @@ fn check_open(loops: &ClosedLoops<f64>, x: &[f64], units: [&'static str; 2]) -> 
     Ok(())
 }
 
-/// Returns a text with a distance and an angle, or their rates, and the `units` of both; zeros are left out.
+/// Returns a text with a distance and an angle, or their rates, and the `units` of both; zeros are omitted.
 fn opening(sizes: [f64; 2], units: [&str; 2]) -> String {
     let parts = sizes.iter().zip(units).filter(|(size, _)| **size > 0.0);
     let parts: Vec<String> = parts.map(|(size, unit)| format!("{} {unit}", short(*size))).collect();

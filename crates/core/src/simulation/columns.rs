@@ -23,12 +23,13 @@ pub enum Length {
     Joints,
     /// Number of bodies of the robot.
     Bodies,
-    /// Number of components of the tracking error of a control, `k`: 6 for a task, otherwise one per joint.
+    /// Number of components of the tracking error of a control, `k`: 6 if the control tracks a frame,
+    /// otherwise one per joint.
     Errors,
 }
 
 impl Length {
-    /// Returns the length for the robot `model`, or 1 if the robot does not determine it.
+    /// Returns the length for the robot `model`, or 1 for a length that does not depend on the robot.
     fn of(self, model: &Model) -> usize {
         match self {
             Self::Fixed(length) => length,
@@ -63,15 +64,15 @@ pub enum Condition {
     Always,
     /// A controller compensates Coulomb friction, and the native engine is used.
     FrictionCompensation,
-    /// The run has a tool.
+    /// The system has a tool.
     Tool,
-    /// The run has a tool with a reference.
+    /// The system has a tool with a reference.
     Reference,
     /// The run has an orbit.
     Orbit,
     /// The gravity mode is `carried` and the orbit is around a planet.
     Carried,
-    /// The run has a list of controls.
+    /// The system has a list of controls.
     Controls,
     /// The option `record_wrenches` is set.
     Wrenches,
@@ -113,16 +114,17 @@ pub struct Part {
 /// Description of a recorded quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Column {
-    /// Name of the attribute of a trace.
+    /// Name of the attribute of a trace that holds the column.
     pub name: &'static str,
-    /// Name in files; `*` stands for the name of a control, an effect, a contact or a loop.
+    /// Name of the column in files; `*` stands for the name of a control, an effect, a contact or a loop.
     pub path: &'static str,
-    /// Length of each axis.
+    /// Length of each axis, beginning with the rows.
     pub shape: &'static [Length],
     /// Unit of the values. If there are parts, the units of the parts are listed in order, separated by
     /// semicolons. The unit of dimensionless values is `1`.
     pub unit: &'static str,
-    /// Frame in which the values are expressed; empty if they do not depend on a frame.
+    /// Letter of the frame in which the values are expressed: `W`, `B` or `I`; empty if the values do not
+    /// depend on a frame.
     pub frame: &'static str,
     /// Description of the quantity.
     pub meaning: &'static str,
@@ -245,10 +247,10 @@ macro_rules! column {
     };
 }
 
-/// Passes the rows of the table to a macro that declares a field, a getter or a description for each row. A
-/// row consists of name, shape, unit, frame, condition, parts and meaning.
+/// Passes the rows of the table of columns to the macro `then`, which declares a field, a getter or a
+/// description for each row. A row consists of name, shape, unit, frame, condition, parts and meaning.
 ///
-/// The path of each of these columns equals its name.
+/// The path of each of these columns is the name of the column.
 #[macro_export]
 macro_rules! trace_columns {
     ($then:ident) => {
@@ -348,7 +350,7 @@ pub static LOOPS: Column = column!(
      and angle by which the loop is open."
 );
 
-/// Times at which the run changed to a new reference orbit.
+/// Times, s, at which the run changed to a new reference orbit.
 pub static REREFERENCED: Column = column!(
     rereferenced,
     "rereferenced",

@@ -1,7 +1,7 @@
 //! Angular momenta of several trees about their common centre of mass during a step.
 //!
-//! Forces between trees have no moment in total about any common point, at every stage. Moments about the
-//! centres of mass of the single trees lack this property, because their arms `c_i − c` change during the
+//! At every stage, the total moment of the forces between trees about any common point is zero. Moments about
+//! the centres of mass of the single trees lack this property, because their arms `c_i − c` change during the
 //! step. In a group with contacts, the angular impulses of all trees are therefore integrated about the
 //! common centre of mass `c`, and referred to the centres of mass of the trees at the end of the step.
 
@@ -27,9 +27,10 @@ pub(super) fn orbital_moment<S: Real>(trees: &[Tree<'_, S>], state: &State<S>, r
     )
 }
 
-/// Refers the moments in `rate` to the common centre of mass: adds `(c_i − c) × (F_i − m_i ΣF/m)` with the
-/// mass `m_i` of each tree and the total mass `m`. The second term is the inertial force in the frame of the
-/// common centre of mass, and vanishes in the sum. Requires the kinematics of `state` in the trees.
+/// Refers the moments of the external forces in `rate` to the common centre of mass `c`: adds
+/// `(c_i − c) × (F_i − m_i ΣF/m)` with the mass `m_i` of each tree and the total mass `m`. The second term is
+/// the inertial force in the frame of the common centre of mass; its moments sum to zero. Requires the
+/// kinematics of `state` in the trees.
 pub(super) fn refer_to_common_center<S: Real>(trees: &[Tree<'_, S>], state: &State<S>, rate: &mut Rate<S>) {
     S::enter(
         #[inline(always)]
@@ -62,7 +63,7 @@ pub(super) fn move_to_own_centers<S: Real>(trees: &[Tree<'_, S>], start: &State<
     );
 }
 
-/// Mass, centre of mass, and force or momentum `x_i` of a tree.
+/// Mass, kg, centre of mass in W, m, and force, N, or linear momentum, N s, `x_i` of a tree.
 #[derive(Clone, Copy)]
 struct Part<S> {
     mass: S,
@@ -84,7 +85,8 @@ impl<S: Real> Part<S> {
     }
 }
 
-/// Common centre of mass `c`, and `Σx/m`.
+/// Common centre of mass `c` in W, m, and the sum `Σx` of the forces or momenta of all trees divided by their
+/// total mass `m`.
 struct Common<S> {
     center: Vec3<S>,
     per_mass: Vec3<S>,
@@ -103,7 +105,8 @@ impl<S: Real> Common<S> {
         Self { center: first_moment * reciprocal, per_mass: total * reciprocal }
     }
 
-    /// Returns `(c_i − c) × (x_i − m_i Σx/m)`.
+    /// Returns `(c_i − c) × (x_i − m_i Σx/m)` for the tree `i` with the mass `m_i` and the centre of mass
+    /// `c_i`.
     #[inline(always)]
     fn relative_moment(&self, Part { mass, center, x }: Part<S>) -> Vec3<S> {
         (center - self.center).cross(x - self.per_mass * mass)

@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 /// Active connections of the systems of a run.
 #[derive(Debug, Default)]
 pub(super) struct Connections {
-    /// Models of the systems, with the names of the systems as prefixes of all names; empty if the run has no
-    /// events.
+    /// Models of the systems, with the names of the systems as prefixes of all links, joints and frames;
+    /// empty if the run has no events.
     prefixed: Vec<Model>,
     pub(super) active: ActiveWelds,
 }
@@ -19,12 +19,12 @@ pub(super) struct Connections {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct ActiveWelds {
     pub(super) welds: Vec<Weld>,
-    /// Roots of the trees that have, or have had, several members.
+    /// Indices of the systems that are the roots of trees that have, or have had, several members.
     pub(super) roots: Vec<usize>,
 }
 
 impl Connections {
-    /// Creates the connections of systems, given by name and model, before any event.
+    /// Creates the connections, empty before any event, of systems that are given by name and model.
     pub(super) fn new<'m>(
         systems: impl Iterator<Item = (&'m str, &'m Model)>,
         has_events: bool,
@@ -34,8 +34,8 @@ impl Connections {
         Ok(Self { prefixed: prefixed.collect::<Result<_, _>>()?, active: ActiveWelds::default() })
     }
 
-    /// Returns the systems that are connected to a system, including that system, in ascending order of their
-    /// numbers.
+    /// Returns the indices of the systems that are connected to a system, including that system, in ascending
+    /// order.
     pub(super) fn connected_to(&self, system: usize) -> Vec<usize> {
         let (mut found, mut next) = (vec![system], 0);
         while let Some(&system) = found.get(next) {
@@ -51,8 +51,8 @@ impl Connections {
         found
     }
 
-    /// Removes a weld, which separates its tree into two. In the tree that is left without a root, the system
-    /// that the weld connected becomes the root.
+    /// Removes the weld with index `weld`. If this separates its tree into two, the system that the weld
+    /// connected becomes the root of the tree that would have no root.
     pub(super) fn remove(&mut self, weld: usize) {
         let Weld { by, of, .. } = self.active.welds.remove(weld);
         for system in [by.system, of.system] {
@@ -71,7 +71,8 @@ impl Connections {
         self.active.roots.push(root);
     }
 
-    /// Returns the root of the tree that contains a system; `None` if the system has never been connected.
+    /// Returns the index of the root of the tree that contains a system; `None` if the system has never been
+    /// connected.
     fn root_of(&self, system: usize) -> Option<usize> {
         let tree = self.connected_to(system);
         self.active.roots.iter().copied().find(|root| tree.contains(root))
@@ -107,8 +108,9 @@ impl Connections {
         self.prefixed[system].frames().iter().map(|frame| tree.frame(&frame.name)).collect()
     }
 
-    /// Returns the pose of a frame in another frame of the same body of a tree; `None` if a frame is not in the tree or
-    /// they belong to different bodies.
+    /// Returns the pose of a frame in another frame of the same body of a tree; `None` if one of the frames
+    /// is not in the tree, or if the frames belong to different bodies. The pose consists of the rotation to
+    /// the axes of `other` and the position in these axes, m.
     pub(super) fn pose_in(
         &self,
         tree: &Model,
@@ -121,8 +123,9 @@ impl Connections {
         (frame.body == other.body).then(|| (rot, other.rot_kf.transpose_mul(frame.pos_kf - other.pos_kf)))
     }
 
-    /// Returns the name of each closure of a tree in the trace of a system: that of a loop of the system, or of the
-    /// capture that closes the loop; `None` for the loops of other systems. `name` returns the name of a capture.
+    /// Returns, for each loop or mimic joint of a tree, its name in the trace of a system: the name of the
+    /// loop in that system, or of the capture that closes the loop; `None` for those of other systems. `name`
+    /// returns the name of a capture from its index.
     pub(super) fn loops_in(
         &self,
         system: usize,

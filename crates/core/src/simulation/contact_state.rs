@@ -1,4 +1,4 @@
-//! Integrated quantities of a contact.
+//! Integrated quantities of a contact between two pieces.
 
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
@@ -7,14 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ContactState {
     /// Elastic part of the sliding displacement of the second side relative to the first, in axes of the
-    /// first side, m: all of it while the contact sticks, or slips without damping.
+    /// first side, m. While the contact sticks, or slips without damping, the whole displacement counts as
+    /// elastic.
     pub(super) slip: Vec3<f64>,
-    /// The same of the angle by which the second side turns about the normal relative to the first, rad.
+    /// Elastic part of the angle by which the second side turns about the normal relative to the first, rad.
     pub(super) turn: f64,
     /// Energy that the normal force has taken from the motion, J: dissipated, or stored elastically.
     pub(super) normal_work: f64,
-    /// Energy that the law of the normal force dissipates while the pieces press on each other, J. It is
-    /// the work without the elastic energy, but for errors of the integrator.
+    /// Energy that the law of the normal force dissipates while the pieces press on each other, J. Except for
+    /// errors of the integrator, it is `normal_work` less the elastic energy.
     pub(super) normal_loss: f64,
     /// Energy that friction has taken from the motion, J: dissipated, or stored in the bristles.
     pub(super) friction_work: f64,
@@ -29,7 +30,7 @@ pub(super) struct ContactState {
 pub(super) type ContactRate = ContactState;
 
 impl ContactState {
-    /// State without any contact so far.
+    /// State before the pieces have touched.
     pub(super) const ZERO: Self = {
         let zero = Vec3 { x: 0.0, y: 0.0, z: 0.0 };
         Self {

@@ -5,11 +5,11 @@ use super::trace_row::BaseMotion;
 use crate::spatial::{Quat, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
-/// Bound on the rounding error of the attitude in one step of the integrator, in units of ε. It covers a
-/// product of two unit quaternions and its normalisation.
+/// Bound on the rounding error of the attitude in one step of the integrator, in units of the machine
+/// epsilon. It covers a product of two unit quaternions and its normalisation.
 const QUATERNION: f64 = 8.0;
-/// Bound on the relative rounding error of a rotation, in units of ε. It covers the exponential of the step,
-/// the rates at both ends of the step, and this check.
+/// Bound on the relative rounding error of a rotation, in units of the machine epsilon. It covers the
+/// exponential of the step, the rates at both ends of the step, and this check.
 const TURN: f64 = 16.0;
 
 /// Sum of small rotation vectors in W, rad, and the square of the largest magnitude of its partial sums,
@@ -49,7 +49,7 @@ pub(in crate::simulation) struct Attitude {
     since: f64,
 }
 
-/// Safety factor for an interval that ends with a jump, where `snap` is taken from the neighbouring
+/// Safety factor for an interval that ends with a jump, where `snap` is the value of the neighbouring
 /// intervals.
 const JUMP: f64 = 4.0;
 
@@ -63,10 +63,10 @@ impl Attitude {
     /// accelerations `ω̇₀⁺` just after its start and `ω̇₁⁻` just before its end, in base axes. The first two
     /// terms are the integral of the cubic through the data. The third term is the commutator, which is
     /// missing if attitudes are composed from `exp(∫ω dt)`, however accurate the rates are. If a wrench jumps
-    /// at the second row, `ω̇₁⁻` may be unknown. It is then taken from the parabola through the other data:
-    /// `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. The error of the parabola is
-    /// `d h⁴/72` with the third derivative `d` of the rates, which is estimated from the neighbouring
-    /// intervals.
+    /// at the second row, `ω̇₁⁻` may be unknown. It is then computed from the parabola through the other
+    /// data: `ω̇₁⁻ = 2 (ω₁ − ω₀)/h − ω̇₀⁺`. The value with the smaller residual is used. The error of the
+    /// parabola is `d h⁴/72` with the third derivative `d` of the rates, which is estimated from the
+    /// neighbouring intervals.
     #[inline]
     pub(super) fn add(&mut self, before: &BaseMotion, now: &BaseMotion) {
         let h = now.time - before.time;
@@ -108,10 +108,12 @@ impl Attitude {
     }
 }
 
-/// Returns the rotation vector from attitude `q0` to `q1`, rad, accurate to a few ε of its length.
+/// Returns the rotation vector from attitude `q0` to `q1`, rad, with a relative error of a few times the
+/// machine epsilon.
 ///
-/// `q₀* q₁ = q₀* (q₁ − q₀) + |q₀|²`: the vector part follows from the difference, which is exact for
-/// neighbouring attitudes, so there is no cancellation. The norms of the quaternions cancel in the angle.
+/// `q₀* q₁ = q₀* (q₁ − q₀) + |q₀|²`: the vector part is computed from the difference `q₁ − q₀`, which is
+/// exact for neighbouring attitudes, so that no digits cancel. The quaternions need not have unit norm,
+/// because the angle does not depend on their norms.
 fn turn_between(q0: Quat<f64>, q1: Quat<f64>) -> Vec3<f64> {
     let w = q0.v.dot(q1.v) + q0.w * q1.w;
     let q1 = if w < 0.0 { Quat { v: -q1.v, w: -q1.w } } else { q1 };

@@ -8,8 +8,8 @@ use crate::model::{BASE_NV, Model, difference, integrate};
 use crate::spatial::{Force, Motion, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Bound on the relative rounding error of the momentum in a row, in units of ε. It covers the sums over the
-/// bodies, the rotation to W and the twist.
+/// Bound on the relative rounding error of the momentum in a row, in units of the machine epsilon. It covers
+/// the sums over the bodies, the rotation to W and the twist.
 const ROUNDING: f64 = 40.0;
 
 /// Largest residuals so far after subtraction of the rounding bounds, and the scales of the residuals. Each
@@ -77,7 +77,8 @@ impl BaseRows {
         largest.truncation = largest.truncation.max(truncation(h, before.v, before.a));
     }
 
-    /// Returns `Σ |I a| + |v ×* I v|` over the bodies: the linear part, N, and the angular part, N m.
+    /// Returns the scale of the inertial forces, `Σ |I a| + |v ×* I v|` over the bodies with their inertias
+    /// `I`, accelerations `a` and twists `v`: the linear part, N, and the angular part, N m.
     fn inertial(&self) -> [f64; 2] {
         let mut sum = [0.0; 2];
         for body in &self.data.bodies {
@@ -92,9 +93,10 @@ impl BaseRows {
         sum
     }
 
-    /// Returns bounds on the rounding errors of the two residuals of one step. They comprise the rounding
-    /// errors of momenta and impulses, relative to their magnitudes and divided by `h`, and the rounding
-    /// errors of the moments `v × m v`, whose exact value is zero.
+    /// Returns bounds on the rounding errors of the linear residual, N, and of the angular residual, N m, of
+    /// one step of length `h`, s. They comprise the rounding errors of momenta and impulses, relative to
+    /// their magnitudes and divided by `h`, and the rounding errors of the moments `v × m v`, whose exact
+    /// value is zero.
     fn rounding(&self, model: &Model, h: f64, rows: [&TraceRow<'_>; 2]) -> [f64; 2] {
         let (mut linear, mut angular, mut moments) = (0.0, 0.0, 0.0);
         for body in &self.data.bodies {
@@ -138,8 +140,9 @@ fn about_base(body: &BodyData<f64>) -> (Motion<f64>, Force<f64>) {
     (body.velocity.referred_to(-body.pos_b), momentum)
 }
 
-/// Returns `h² (w² + ẇ)`. `w` is the sum of the magnitudes of all rates and bounds the angular velocity of
-/// every body; `ẇ` is the sum of the magnitudes of all angular and joint accelerations.
+/// Returns `h² (w² + ẇ)`, the relative truncation error of a central difference over a step of length `h`, s.
+/// `w` is the sum of the magnitudes of all rates and bounds the angular velocity of every body; `ẇ` is the
+/// sum of the magnitudes of all angular and joint accelerations.
 fn truncation(h: f64, v: &[f64], a: &[f64]) -> f64 {
     let fastest =
         |x: &[f64]| Vec3::from_slice(&x[3..]).norm() + x[BASE_NV..].iter().map(|x| x.abs()).sum::<f64>();

@@ -5,10 +5,10 @@ use super::trace_row::MassMotion;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Bound on the relative rounding error of the position in one step, in units of ε.
+/// Bound on the relative rounding error of the position in one step, in units of the machine epsilon.
 const ROUNDING: f64 = 4.0;
 
-/// Gap between the recorded centre of mass and the position obtained by integrating the momentum.
+/// Gap, m, between the recorded centre of mass and the position obtained by integrating the momentum.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct CenterOfMass {
     gap: Vec3<f64>,
@@ -50,8 +50,8 @@ impl CenterOfMass {
         self.path
     }
 
-    /// Returns the largest gap divided by the sum of the path and the `size` of the robot, m. A gap within
-    /// the bound of rounding errors passes `gate`.
+    /// Returns the largest gap divided by the sum of the path and the `size` of the robot, m. The quotient of
+    /// a gap that rounding errors explain does not exceed `gate`.
     pub(super) fn error(&self, size: f64, gate: f64) -> f64 {
         relative(self.largest.sqrt(), self.path + size + self.rounding / gate)
     }

@@ -11,8 +11,8 @@ use super::trace_row::{RowReader, TraceRow};
 use crate::model::Model;
 use crate::simulation::trace::Trace;
 
-/// Computes the certificate of a run of `model` from its trace alone. If the trace has no rows, all errors
-/// are zero.
+/// Computes the certificate of a run of `model` from the trace of the run. If the trace has no rows, all
+/// errors are zero.
 pub fn certify(model: &Model, trace: &Trace) -> Certificate {
     let mut reader = RowReader::new(model, trace);
     let mut balance = Balance::default();

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Largest relative drift of momentum that passes, which allows for the rounding errors of millions of steps.
+/// Largest relative drift of momentum that passes. It allows for the rounding errors of millions of steps.
 pub(crate) const MOMENTUM: f64 = 1e-11;
 /// Largest relative error of the energy balance that passes. It corresponds to a fourth-order integrator that
 /// resolves the motion.
@@ -24,12 +24,12 @@ pub(super) const JOINT_STEP_DOUBLING: f64 = 5e-5;
 pub(super) const ORIGIN_STEP_DOUBLING: f64 = 1e-4;
 /// Largest distance, m, or angle, rad, by which a closed loop may be open.
 pub(super) const OPENING: f64 = 1e-11;
-/// Largest fraction of the commutator that may be missing from the attitude. The fraction is 1 for an
-/// integrator that does not integrate on the rotation group.
+/// Largest error of the attitude that passes, as a fraction of the commutator of successive angular
+/// velocities. The fraction is 1 for an integrator that does not integrate on the rotation group.
 pub(super) const ATTITUDE: f64 = 0.1;
 
-/// Errors of a trace with respect to the laws of mechanics. Each is relative to a nonzero scale, unless a
-/// unit is stated.
+/// Errors of a trace, measured by the laws of mechanics. Each is relative to a nonzero scale, unless a unit
+/// is stated.
 ///
 /// An integrator that integrates momentum conserves both momenta by construction; the other values are
 /// independent checks. Checks that compare successive steps are evaluated during the run if only some steps
@@ -39,33 +39,37 @@ pub(super) const ATTITUDE: f64 = 0.1;
 /// available.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Certificate {
-    /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` relative to the largest value of `Σ mₖ |vₖ − v_com|`
-    /// (for a single body, of the momentum scale of its spin) or, if larger, of `|P|`.
+    /// Drift of linear momentum: `max |P − P₀ − ∫F dt|` with the external force `F`, relative to the largest
+    /// value of `Σ mₖ |vₖ − v_com|`, with the masses `mₖ` and velocities `vₖ` of the bodies and the velocity
+    /// `v_com` of the centre of mass (for a single body, of the momentum scale of its rotation) or, if
+    /// larger, of `|P|`.
     pub linear_momentum_drift_rel: f64,
     /// Drift of angular momentum: `max |L − L₀ − ∫T dt|` relative to the largest value of `Σ |Lₖ|`, all about
-    /// the system's centre of mass.
+    /// the system's centre of mass, with the external moment `T` and the angular momenta `Lₖ` of the bodies.
     pub angular_momentum_drift_rel: f64,
-    /// Error of the energy balance: `max |E − E₀ − W|` relative to the sum of `Σ |ΔW|`, the largest energy in
-    /// the centre-of-mass frame and a thousandth of the largest energy in W. The scale is at least the energy
-    /// of a motion that covers a millionth of the robot's size in the duration of the run.
+    /// Error of the energy balance: `max |E − E₀ − W|`, with the kinetic energy `E` and the work `W`,
+    /// relative to the sum of `Σ |ΔW|`, the largest energy in the centre-of-mass frame and a thousandth of
+    /// the largest energy in W. The scale is at least the energy of a motion that covers a millionth of the
+    /// robot's size in the duration of the run.
     pub energy_balance_error_rel: f64,
-    /// Largest distance between the centre of mass and the integral of `P/m`, relative to the length of its
-    /// path plus the robot's size.
+    /// Largest distance between the centre of mass and the integral of `P/m`, with the linear momentum `P`
+    /// and the mass `m`, relative to the length of the path of the centre of mass plus the robot's size.
     pub center_of_mass_error_rel: Option<f64>,
-    /// Difference between the base rows of inverse dynamics, computed from differences of the recorded
-    /// velocities, and the mean external wrench, relative to the inertial forces of the bodies.
+    /// Largest difference between the base rows of inverse dynamics, with accelerations computed from
+    /// differences of the recorded velocities, and the mean external wrench of a step, relative to the
+    /// inertial forces of the bodies.
     pub base_rows_residual_rel: Option<f64>,
     /// Largest value of `base_rows_residual_rel` that passes: 1e-6 plus the truncation error of a central
-    /// difference, `O(dt²)`, and at most 0.1. Zero if the check does not apply.
+    /// difference, `O(dt²)`, and at most 0.1; `dt` is the length of a step. Zero if the check does not apply.
     pub base_rows_gate: f64,
     /// Difference between the recorded rotations and those computed from the recorded angular velocities,
-    /// relative to the sum of the accumulated commutator and the interpolation error of the rates. The value
-    /// is 1 for attitudes composed without the commutator, and far smaller for integration on the rotation
-    /// group.
+    /// relative to the sum of the accumulated commutator of successive angular velocities and the
+    /// interpolation error of the rates. The value is 1 for attitudes composed without the commutator, and
+    /// far smaller for integration on the rotation group.
     pub attitude_consistency: Option<f64>,
     /// Difference between the attitudes after a step and after two half steps, summed over the run, rad; for
-    /// an adaptive integrator, the sum of the error estimates of its steps. `None` if errors of steps are not
-    /// estimated.
+    /// an adaptive integrator, the sum of the error estimates of its steps. `None` if the errors of steps are
+    /// not estimated.
     pub attitude_step_doubling_rad: Option<f64>,
     /// Difference between the positions and rates after a step and after two half steps, summed over the run,
     /// for the joint with the largest value. Angles are in rad, displacements relative to the robot's size,

@@ -1,4 +1,4 @@
-//! Check that closed loops stay closed.
+//! Check that closed loops remain closed and mimic joints follow their leaders.
 
 use crate::model::{BASE_NQ, Constraint, Model};
 use crate::simulation::columns::LOOPS;

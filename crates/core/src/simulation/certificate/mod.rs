@@ -1,4 +1,4 @@
-//! Conservation certificate of a run: checks of a trace against the laws of mechanics.
+//! Conservation certificate of a run, which checks a trace against the laws of mechanics.
 
 mod attitude;
 mod balance;

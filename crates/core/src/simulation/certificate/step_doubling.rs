@@ -19,10 +19,10 @@ pub(super) struct StepDoubling<'a> {
 }
 
 impl StepDoubling<'_> {
-    /// Returns the largest error of any joint. The error of a position is in rad or relative to the robot's
-    /// size; the error of a rate is relative to the largest rate of the joint. Both are estimated by step
-    /// doubling, and the latter also from the jumps of the joint accelerations. Returns `None` without step
-    /// doubling or without joints.
+    /// Returns the largest relative error of any joint. The error of a position is in rad or relative to the
+    /// robot's size; the error of a rate is relative to the largest rate of the joint. Both are estimated by
+    /// step doubling, and the latter also from the jumps of the joint accelerations. Returns `None` without
+    /// step doubling or without joints.
     ///
     /// The balances of the whole robot do not reveal errors of light links; here, the error of each joint is
     /// relative to the motion of that joint.

@@ -17,7 +17,7 @@ pub(in crate::simulation) struct Stream {
     attitude: Attitude,
     center: CenterOfMass,
     base_rows: BaseRows,
-    /// Largest radius of gyration, m.
+    /// Largest radius of gyration of the robot in any row so far, m.
     size: f64,
 }
 
@@ -47,7 +47,8 @@ impl Stream {
         self.center.add(before.1, now.1);
     }
 
-    /// Adds the step between the two rows of `trace` to the check of the base rows.
+    /// Adds the step between the two rows of `trace` to the check of the base rows. Does nothing unless there
+    /// are two rows at different times.
     pub(in crate::simulation) fn add_rows(&mut self, model: &Model, trace: &Trace) {
         let mut reader = RowReader::new(model, trace);
         if reader.rows() < 2 || trace.time[1] <= trace.time[0] {

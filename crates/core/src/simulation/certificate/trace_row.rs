@@ -9,7 +9,8 @@ use crate::simulation::trace::Trace;
 use crate::spatial::{Quat, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Rotational motion of the base at one end of an interval; rates are in base axes, rad/s and rad/s².
+/// Rotational motion of the base at one end of an interval. Angular velocities and accelerations are in base
+/// axes, rad/s and rad/s².
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) time: f64,
@@ -19,9 +20,11 @@ pub(in crate::simulation) struct BaseMotion {
     pub(in crate::simulation) change_before: Vec3<f64>,
     /// Angular acceleration just after `time`.
     pub(in crate::simulation) change_after: Vec3<f64>,
-    /// Sum of the magnitudes of the rates of base and joints, which is the scale of their rounding errors.
+    /// Sum of the magnitudes of the rates of base and joints, rad/s or m/s, which is the scale of their
+    /// rounding errors.
     pub(in crate::simulation) rates: f64,
-    /// Sum of the magnitudes of the time derivatives of these rates, plus the square of `rates`.
+    /// Sum of the magnitudes of the time derivatives of these rates, rad/s² or m/s², plus the square of
+    /// `rates`.
     pub(in crate::simulation) changes: f64,
     /// True if a joint starts or stops at this instant, so that `change_before` is unknown.
     pub(in crate::simulation) is_cut: bool,
@@ -58,7 +61,7 @@ pub(in crate::simulation) struct MassMotion {
     pub(in crate::simulation) momentum: Vec3<f64>,
     /// Time integral of the external forces since the start of the run, N s.
     pub(in crate::simulation) impulse: Vec3<f64>,
-    /// External force, N, just before this instant if it is known, otherwise just after this instant.
+    /// External force, N, just before this instant or, if that is not known, just after it.
     pub(in crate::simulation) force_before: Vec3<f64>,
     /// External force just after this instant, N.
     pub(in crate::simulation) force_after: Vec3<f64>,
@@ -83,7 +86,8 @@ pub(super) struct TraceRow<'a> {
     pub(super) relative_momentum: f64,
     /// Momentum scale of the rotations, `Σ mₖ ρₖ |ωₖ|` with the radius of gyration `ρₖ` of each body, kg m/s.
     pub(super) spin: f64,
-    /// Sum of the angular momenta, `Σ |Lₖ|`, about the system's centre of mass, kg m²/s.
+    /// Sum of the magnitudes of the angular momenta of the bodies, `Σ |Lₖ|`, about the system's centre of
+    /// mass, kg m²/s.
     pub(super) angular: f64,
     /// Radius of gyration of the whole robot, m.
     pub(super) size: f64,
@@ -129,7 +133,7 @@ impl<'a> RowReader<'a> {
         }
     }
 
-    /// Returns the number of complete rows.
+    /// Returns the number of rows that include an acceleration.
     pub(super) fn rows(&self) -> usize {
         self.trace.rows().min(self.trace.acceleration.len() / self.model.nv())
     }
@@ -190,7 +194,7 @@ impl<'a> RowReader<'a> {
         Vec3::from_slice(&jump[3..])
     }
 
-    /// Returns the effort of the motor and of Coulomb friction on joint `j` just after a row, N m (N).
+    /// Returns the effort of the motor and of Coulomb friction on joint `j` just after a row, N m or N.
     fn effort(&self, row: usize, j: usize) -> f64 {
         let tau = Trace::row(&self.trace.tau, row, self.model.joint_count())[j];
         tau - self.model.joints()[j].friction * self.direction(row, j)
@@ -211,8 +215,8 @@ impl<'a> RowReader<'a> {
         row > 0 && (self.direction(row - 1, j) == 0.0) != (self.direction(row, j) == 0.0)
     }
 
-    /// Returns true if the joint is at rest in the intervals before and after a row. Whether friction, a stop or
-    /// a brake holds it or no effort acts on it, its acceleration does not jump.
+    /// Returns true if the joint is at rest in the intervals before and after a row. The acceleration of such
+    /// a joint does not jump at the row.
     fn is_held(&self, row: usize, j: usize) -> bool {
         let rate = Trace::row(&self.trace.v, row, self.model.nv())[BASE_NV + j];
         rate == 0.0 && self.direction(row - 1, j) == 0.0 && self.direction(row, j) == 0.0

@@ -7,23 +7,24 @@ use crate::contact::{Bristle, BristleDamping, ContactError, Friction, FrictionFo
 use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
-/// Least distance of pieces that count as far apart, as a fraction of the smaller reach and in addition to
-/// the distance that they may travel within the step.
+/// Pieces count as far apart if the distance of their bounding spheres exceeds this fraction of the smaller
+/// reach plus the distance that they may travel within the step. The reach of a piece is the radius of its
+/// bounding sphere about the origin of its frame.
 pub(super) const FAR: f64 = 0.1;
-/// Safety factor of the distance that pieces travel within the step at their present velocities.
+/// Safety factor for the distance that pieces travel within the step at their present velocities.
 pub(super) const TRAVEL: f64 = 3.0;
-/// Bristles without deflection that stick.
+/// Sticking bristles without deflection.
 const AT_REST: Bristle = Bristle { deflection: Vec3 { x: 0.0, y: 0.0, z: 0.0 }, is_slipping: false };
 /// Distance at which pieces touch after a step of length zero, relative to the rounding error of a distance.
 /// The kinematics before and after such a step differ by more than that error.
 const TOUCHING: f64 = 1e3;
-/// Relative tolerance within which a change of mode counts as reached.
+/// Relative tolerance within which the margin to a change of mode counts as zero.
 const REACHED: f64 = 1e-9;
 
 impl Touching {
-    /// Determines the mode for the step from `t` to `end`, s. A mode that was determined at `t` remains.
-    /// Returns the loading in the new mode; `None` if the pieces are far apart. `mobility` gives the mobility
-    /// of the sides at the point of contact.
+    /// Determines the mode for the step from `t` to `end`, s. A mode that was determined at `t` is kept.
+    /// Returns the loading in the new mode; `None` if the pieces are far apart. `mobility` returns the
+    /// reciprocal effective masses and inertia of the sides at the point of contact; see [`Mode::mobility`].
     pub(super) fn begin(
         &mut self,
         (t, end): (f64, f64),
@@ -70,24 +71,25 @@ impl Touching {
         Ok(Some(loading))
     }
 
-    /// Returns the rounding error of a distance, m.
+    /// Returns a bound on the rounding error of the distance of the pieces, m.
     pub(super) fn rounding(&self, [a, b]: &[SideMotion; 2]) -> f64 {
         16.0 * f64::EPSILON * (a.frame.pos.norm() + b.frame.pos.norm() + self.smaller_reach())
     }
 
-    /// Returns the smaller of the reaches of both sides, m.
+    /// Returns the smaller reach of both sides, m.
     pub(super) fn smaller_reach(&self) -> f64 {
         self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min)
     }
 
-    /// Returns true if bounding spheres show that the pieces cannot touch within `h` seconds.
+    /// Returns true if bounding spheres show that the pieces will not touch within `h`, s, unless they
+    /// accelerate strongly.
     pub(super) fn is_far(&self, [a, b]: &[SideMotion; 2], h: f64) -> bool {
         let [reach_a, reach_b] = [&self.sides[0], &self.sides[1]].map(|side| side.reach);
         let gap = (b.frame.pos - a.frame.pos).norm() - reach_a - reach_b;
         gap > FAR * reach_a.min(reach_b) + TRAVEL * h * self.fastest([a, b])
     }
 
-    /// Returns an upper bound of the speed at which points of the pieces approach each other, m/s.
+    /// Returns an upper bound on the present speed at which points of the pieces approach each other, m/s.
     pub(super) fn fastest(&self, [a, b]: [&SideMotion; 2]) -> f64 {
         let turning = |motion: &SideMotion, reach: f64| {
             if reach.is_finite() { motion.angular_velocity.norm() * reach } else { 0.0 }
@@ -113,7 +115,8 @@ impl Touching {
         }
     }
 
-    /// Returns the bristles and their twist at the start of the next step, which begins in `phase`.
+    /// Returns the bristles of sliding friction and those of torsional friction at the start of the next
+    /// step, which begins in `phase`.
     fn next_bristles(&self, phase: Phase, loading: &Loading, rounding: f64) -> [Bristle; 2] {
         let friction = self.law.as_ref().and_then(|law| law.friction).filter(|_| phase == Phase::Pressing);
         let Some(friction) = friction else { return [AT_REST; 2] };
@@ -135,9 +138,9 @@ impl Touching {
         [sliding, twisting]
     }
 
-    /// Returns the bristles of a contact that has just begun. The bristles slip if their damping exceeds the
-    /// limit of friction or, at a touch-down without a force, if their elastic force grows faster than that
-    /// limit.
+    /// Returns the bristles of pieces that have just touched, for the sliding speed or the rate of turn
+    /// `speed`, m/s or rad/s. The bristles slip if their damping exceeds the limit of friction or, at a
+    /// touch-down without a force, if their elastic force would grow faster than that limit.
     fn begun(
         &self,
         friction: &Friction,
@@ -157,8 +160,8 @@ impl Touching {
     }
 }
 
-/// Returns the bristles at the end of the last step, which they started as `before`. `rate` is the present
-/// sliding velocity, m/s, or rate of turn, rad/s, and `speed` its magnitude at the start of the step.
+/// Returns the bristles after the last step, which started with the bristles `before`. `rate` is the present
+/// sliding velocity, m/s, or rate of turn, rad/s, and `speed` its magnitude at the start of that step.
 fn continued(
     before: &Bristle,
     found: &FrictionForce,

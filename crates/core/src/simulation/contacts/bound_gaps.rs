@@ -1,4 +1,4 @@
-//! Selection of the pairs that can have the smallest gap of a contact.
+//! Selection of the pairs of pieces that can have the smallest gap of a contact.
 
 use super::Contacts;
 use crate::contact::ContactError;
@@ -7,9 +7,9 @@ use crate::simulation::tree::Tree;
 use crate::spatial::Real;
 
 impl Contacts {
-    /// Writes the lower bounds of the gaps of a contact, and returns an upper bound of the smallest gap, m.
-    /// Pairs with larger lower bounds do not have the smallest gap. Without a broad phase, every pair is to
-    /// be evaluated, and the upper bound is infinite.
+    /// Writes lower bounds of the gaps of all pairs of a contact to `self.gaps.bounds`, and returns an upper
+    /// bound of the smallest gap, m. Pairs with larger lower bounds do not have the smallest gap. Without a
+    /// broad phase, every pair must be evaluated, and the upper bound is infinite.
     pub(super) fn bound_gaps<S: Real>(
         &mut self,
         contact: usize,

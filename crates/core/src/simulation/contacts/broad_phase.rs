@@ -9,7 +9,8 @@ use crate::simulation::tree::Tree;
 use crate::spatial::{Real, Vec3};
 use std::collections::BTreeMap;
 
-/// Sphere in W, m, that contains what the pieces of a frame or of a system can reach within a step.
+/// Sphere in W, m, that contains all points that the pieces of a frame or of a system can reach within a
+/// step.
 #[derive(Clone, Copy, Debug)]
 struct Sphere {
     center: Vec3<f64>,
@@ -22,22 +23,22 @@ impl Sphere {
     }
 }
 
-/// Pairs of pieces by their frames, and pairs of frames by their systems.
+/// Pairs of pieces, grouped by their frames, and pairs of frames, grouped by their systems.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BroadPhase {
     /// Largest reach of the pieces of each frame, m.
     reaches: Vec<f64>,
-    /// Numbers of the frames of each system.
+    /// Indices of the frames of each system, in the list of the frames of all contacts.
     systems: Vec<Vec<usize>>,
     /// Pairs of systems with the pairs of their frames.
     blocks: Vec<([usize; 2], Vec<FramePair>)>,
-    /// Spheres of the frames.
+    /// Spheres of the frames during the next step.
     spheres: Vec<Sphere>,
-    /// Spheres of the systems.
+    /// Spheres of the systems during the next step.
     around: Vec<Sphere>,
 }
 
-/// Frames of the first and of the second side, and the numbers of the pairs of their pieces.
+/// Frames of the first and of the second side, and the indices of the pairs of their pieces.
 #[derive(Clone, Debug)]
 struct FramePair {
     frames: [usize; 2],
@@ -45,7 +46,7 @@ struct FramePair {
 }
 
 impl BroadPhase {
-    /// Creates the broad phase for pairs of pieces whose frames have been numbered, from 0 to `count`.
+    /// Creates the broad phase for pairs of pieces whose frames have indices below `count`.
     pub(super) fn new(list: &[Touching], count: usize) -> Self {
         let mut new = Self { reaches: vec![0.0; count], ..Self::default() };
         let mut known: BTreeMap<[usize; 2], BTreeMap<[usize; 2], Vec<usize>>> = BTreeMap::new();
@@ -71,8 +72,8 @@ impl BroadPhase {
         new
     }
 
-    /// Adds to `found`, in ascending order, the numbers of all pairs that may not be far apart during the
-    /// next `h` seconds, and of some others. Requires the kinematics of `state` in `trees`.
+    /// Adds to `found` the indices of all pairs that may not be far apart during the next `h`, s, and of some
+    /// other pairs, and sorts `found`. Requires the kinematics of `state` in `trees`.
     ///
     /// A pair is far apart if `|p_b − p_a| > r_a + r_b + FAR min(r_a, r_b) + TRAVEL h s`, with the origins
     /// `p` of the frames of its sides, the reaches `r`, and the speed `s` of at most

@@ -10,9 +10,9 @@ use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Real, Vec3};
 
 impl Contacts {
-    /// Leaves the forces to an external engine. The contacts still limit the length of steps and record
-    /// distances, normals and elastic energies. Touch-down and lift-off are not located, so the steps are not
-    /// graded.
+    /// Prepares the contacts for an external engine, which computes their forces. The contacts still limit
+    /// the length of steps and record distances, normals and elastic energies. Touch-down and lift-off are
+    /// not located, so the steps are not graded.
     pub(in crate::simulation) fn follow_engine(&mut self) {
         self.has_engine = true;
         self.steps.is_graded = false;
@@ -21,8 +21,9 @@ impl Contacts {
         }
     }
 
-    /// Returns, for each combination of pieces, true if the bodies of its two links are one of the connected
-    /// `pairs` of bodies, each given as (system, body). `body` returns the body of a frame.
+    /// Returns, for each pair of pieces, true if the bodies of its two links are one of the connected `pairs`
+    /// of bodies, each given as (system, body). `body` returns the body (system, body) of a frame (system,
+    /// frame).
     pub(in crate::simulation) fn held_by(
         &self,
         pairs: Vec<[(usize, usize); 2]>,
@@ -35,14 +36,14 @@ impl Contacts {
         self.list.iter().map(is_held).collect()
     }
 
-    /// Sets which combinations of pieces a connection of the external engine holds.
+    /// Sets, for each pair of pieces, whether a connection of the external engine holds both of its links.
     pub(in crate::simulation) fn set_held(&mut self, held: &[bool]) {
         self.list.iter_mut().zip(held).for_each(|(touching, held)| touching.is_held = *held);
         self.is_rigid = Vec::new();
     }
 
-    /// Adds the impulse and the work of a declared contact in a step of the engine to the state of its first
-    /// combination of pieces.
+    /// Adds the impulse and the work of the declared contact with index `contact` in a step of the engine to
+    /// the state of its first pair of pieces.
     pub(in crate::simulation) fn add_exchanged(
         &self,
         contact: usize,

@@ -1,11 +1,11 @@
-//! Touch-downs and lift-offs at the starts of steps.
+//! Detection of touch-downs and lift-offs at the starts of steps.
 
 use super::Contacts;
 use super::touches::Integrals;
 
 impl Contacts {
-    /// Finds the contacts that touch or separate at `t`, s, and adds their records to `happened`. Requires
-    /// the samples and the states of all pairs at `t`.
+    /// Finds the contacts that begin to touch or separate at `t`, s, and adds records of these events to
+    /// `happened`. Requires the samples and the states of all pairs at `t`.
     pub(super) fn update_touches(&mut self, t: f64) {
         let Self { list, states, touches, samples, happened, names, .. } = self;
         for (contact, (touch, sample)) in touches.iter_mut().zip(samples).enumerate() {

@@ -21,13 +21,13 @@ pub(super) struct FrameMotion {
 /// Motions of all frames at one instant, each computed on first use.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Frames {
-    /// For each frame, the number of its tree and its index in the model of the tree.
+    /// For each frame, the index of its tree and its index in the model of the tree.
     places: Vec<(usize, usize)>,
     motions: Vec<Option<FrameMotion>>,
 }
 
 impl Frames {
-    /// Returns the number of the frame at a place, which is added if it is new.
+    /// Returns the index of the frame at `place` (tree, frame) in this list, to which a new frame is added.
     pub(super) fn number(&mut self, place: (usize, usize)) -> usize {
         self.places.iter().position(|known| *known == place).unwrap_or_else(|| {
             self.places.push(place);
@@ -41,12 +41,12 @@ impl Frames {
         self.places.len()
     }
 
-    /// Discards the motions of the last state, before those of another state are computed.
+    /// Discards the stored motions, before those of another state are computed.
     pub(super) fn forget(&mut self) {
         self.motions.fill(None);
     }
 
-    /// Returns the motion of a frame. Requires the kinematics of `state` in `trees`.
+    /// Returns the motion of the frame with index `number`. Requires the kinematics of `state` in `trees`.
     pub(super) fn motion<S: Real>(
         &mut self,
         number: usize,

@@ -10,14 +10,15 @@ use std::ops::Range;
 /// Uncertainty of a distance, relative to all lengths from which it is computed.
 const UNCERTAIN: f64 = 1e-9;
 
-/// Bounds of the gaps of the pairs of pieces.
+/// Bounding spheres of all pieces, and lower bounds of the gaps of the pairs of one contact.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Gaps {
-    /// Numbers of the pairs of each contact.
+    /// Range of the indices of the pairs of each contact.
     pub(super) pairs: Vec<Range<usize>>,
-    /// For each piece of each contact, a pair and its side that have this piece, and the sphere of the piece.
+    /// For each piece of each contact: the index of a pair with this piece, the side of the piece (0 or 1),
+    /// and its bounding sphere.
     pieces: Vec<Vec<(usize, usize, BoundingSphere)>>,
-    /// For each pair, the pieces of its sides among those of its contact.
+    /// For each pair, the indices of the pieces of its two sides among the pieces of its contact.
     sides: Vec<[usize; 2]>,
     /// Centres of the spheres of one contact in W, m.
     centers: Vec<Vec3<f64>>,
@@ -48,9 +49,9 @@ impl Gaps {
         new
     }
 
-    /// Writes `|c_b − c_a| − r_a − r_b`, less the rounding errors, for the pairs of a contact to `bounds`,
-    /// with the centres `c` and radii `r` of the spheres of both pieces. `pose` returns the pose of a piece
-    /// in W.
+    /// Writes `|c_b − c_a| − r_a − r_b`, m, less a bound on the rounding error, for each pair of a contact to
+    /// `bounds`, with the centres `c` and radii `r` of the spheres of both pieces. `pose` returns the pose of
+    /// a piece in W.
     pub(super) fn bound(&mut self, contact: usize, list: &[Touching], mut pose: impl FnMut(&Side) -> Pose) {
         let Self { pairs, pieces, sides, centers, bounds } = self;
         let pieces = &pieces[contact];
@@ -69,8 +70,7 @@ impl Gaps {
         bounds.extend(sides[pairs[contact].clone()].iter().map(bound));
     }
 
-    /// Returns the pair with the lowest finite bound, counted from the first pair of the contact for which
-    /// `bounds` were written; `None` if all pairs are evaluated.
+    /// Returns the index in `bounds` of the pair with the lowest finite bound; `None` if no bound is finite.
     pub(super) fn lowest(&self) -> Option<usize> {
         let open = (0..self.bounds.len()).filter(|at| self.bounds[*at].is_finite());
         open.min_by(|a, b| self.bounds[*a].total_cmp(&self.bounds[*b]))

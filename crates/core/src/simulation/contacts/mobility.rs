@@ -10,8 +10,8 @@ use crate::world::impulse_response;
 
 /// Returns the change of relative velocity per unit impulse, 1/kg, along the normal and in the tangential
 /// direction in which it is largest, and the change of the relative rate of turn about the normal per unit
-/// angular impulse, 1/(kg m²): `nᵀ W n` for each direction `n`, with `W = J_A M_A⁻¹ J_Aᵀ + J_B M_B⁻¹ J_Bᵀ` of
-/// the Jacobians `J` at the point and the mass matrices `M` of both sides.
+/// angular impulse, 1/(kg m²): `nᵀ W n` for each direction `n`, with `W = J_A M_A⁻¹ J_Aᵀ + J_B M_B⁻¹ J_Bᵀ`,
+/// the Jacobians `J` of both sides at the point of contact and their mass matrices `M`.
 pub(super) fn mobility<S: Real>(
     sides: &[Side; 2],
     trees: &[Tree<'_, S>],
@@ -37,8 +37,8 @@ pub(super) fn mobility<S: Real>(
     [n, tangential, turns[0] + turns[1]]
 }
 
-/// Returns the change of the twist of the body at `point`, W axes, m/s and rad/s, after an impulse at that
-/// point.
+/// Returns the change of the twist of the body of `side`, at `point` in W axes, m/s and rad/s, that `impulse`
+/// at this point causes, W axes, N s and N m s.
 fn response<S: Real>(
     side: &Side,
     trees: &[Tree<'_, S>],

@@ -1,5 +1,5 @@
-//! Contacts between the bodies of a run: compliant forces at the stages of a step, modes that change only at
-//! cuts, and the length of steps while bodies touch.
+//! Contacts between the bodies of a run: compliant forces at the stages of a step, modes that change only
+//! between steps, and the length of steps while bodies touch.
 
 mod begin;
 mod bound_gaps;
@@ -41,22 +41,22 @@ use touching::{Loading, Touching};
 /// Number of pairs of pieces up to which bounding spheres cost more time than they save.
 const FEW: usize = 16;
 
-/// Contacts of a run, one entry per combination of convex pieces of both sides.
+/// Contacts of a run, evaluated for all pairs that consist of a convex piece of each side.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Contacts {
     list: Vec<Touching>,
-    /// Numbers of the pairs whose states are those of the simulation, in ascending order: all pairs that are
+    /// Indices, in ascending order, of the pairs whose states the simulation integrates: all pairs that are
     /// not far apart, or all pairs with an external engine.
     near: Vec<usize>,
-    /// Buffer for pairs that may be near.
+    /// Buffer for the indices of pairs that may be near.
     candidates: Vec<usize>,
-    /// States of all pairs; those of near pairs are not up to date.
+    /// States of all pairs; those of near pairs are updated only at the start of a step and for rows.
     states: Vec<ContactState>,
-    /// True for pairs whose state is not zero.
+    /// True for pairs whose state has been nonzero.
     has_touched: Vec<bool>,
-    /// True for pairs that are fixed to each other; empty if this is not known.
+    /// True for pairs whose pieces are rigidly connected to each other; empty until this is determined.
     is_rigid: Vec<bool>,
-    /// Instant at which the modes were determined, s; NaN if they are to be determined anew.
+    /// Instant at which the modes were determined, s; NaN if they must be determined again.
     begun_at: f64,
     broad_phase: BroadPhase,
     gaps: Gaps,
@@ -70,7 +70,7 @@ pub(crate) struct Contacts {
     /// Largest permitted energy error of the next step, J; infinite without contacts between faces or edges.
     pub(super) energy_error: f64,
     /// Work of the normal forces that is neither stored nor dissipated, J, at the start of the step and at
-    /// the last margin.
+    /// the last call of [`Self::margin`].
     pub(super) open_energies: [f64; 2],
     /// True if changes between sticking and slipping do not end a step.
     pub(super) ignores_slip: bool,
@@ -78,14 +78,16 @@ pub(crate) struct Contacts {
     touches: Vec<Touch>,
     /// Sums over the pieces of each declared contact at the start of the step.
     samples: Vec<Sample>,
-    /// Touch-downs and lift-offs that have not yet been taken, with the systems of the group.
+    /// Touch-downs and lift-offs that have not yet been moved to the events of the run. Indices of systems
+    /// are those in the group.
     pub(super) happened: Vec<EventRecord>,
     /// True if an external engine computes the forces.
     has_engine: bool,
 }
 
 impl Contacts {
-    /// Creates the contacts of a run before its first step. The places of their frames must then be set.
+    /// Creates the contacts of a run before its first step. [`Self::place`] must then set the places of their
+    /// frames if systems are not separate trees.
     pub(super) fn new(declared: &[Contact], steps: ContactSteps) -> Self {
         let mut list = Vec::new();
         for (contact, Contact { name, sides, law, may_start_overlapping }) in declared.iter().enumerate() {
@@ -162,7 +164,8 @@ impl Contacts {
         self.list.len()
     }
 
-    /// Sets, for every frame, the number of its tree and its index in the model of the tree.
+    /// Sets, for every frame, the index of its tree and its index in the model of the tree, as returned by
+    /// `place`.
     pub(super) fn place(&mut self, place: impl Fn(FrameIndex) -> (usize, usize)) {
         self.write_instant();
         for side in self.list.iter_mut().flat_map(|touching| &mut touching.sides) {
@@ -181,7 +184,7 @@ impl Contacts {
         self.is_rigid = Vec::new();
     }
 
-    /// Returns the loadings computed last, which a trial step overwrites.
+    /// Returns the loadings computed last, to restore them after a trial step.
     pub(super) fn loadings(&self) -> Vec<Option<Loading>> {
         self.near.iter().map(|&number| self.list[number].last).collect()
     }
@@ -229,7 +232,7 @@ impl Contacts {
         Ok(())
     }
 
-    /// Writes the time derivatives of the states of the contacts for the loadings computed last.
+    /// Writes the time derivatives of the states of the near pairs for the loadings computed last to `rates`.
     pub(super) fn rates(&self, rates: &mut Vec<ContactRate>) {
         rates.clear();
         rates.extend(self.near.iter().map(|&number| {
@@ -240,8 +243,8 @@ impl Contacts {
     }
 
     /// Determines the modes for the step from `t` to `end`, s, and returns the end of the step, which is
-    /// earlier than `end` while bodies touch. The states of contacts in `state` become those of the near
-    /// pairs. Requires the kinematics of `state` in the trees.
+    /// earlier than `end` while bodies touch. The function reduces the contact states in `state` to those of
+    /// the near pairs. Requires the kinematics of `state` in the trees.
     pub(super) fn begin<S: Real>(
         &mut self,
         (t, end): (f64, f64),
@@ -292,7 +295,8 @@ impl Contacts {
         Ok(t + (end - t) / count)
     }
 
-    /// Starts the states of the contacts: pieces that overlap begin with the elastic energy of their depth.
+    /// Initializes the states of the contacts: the work of pieces that overlap at the start is the elastic
+    /// energy at their depth.
     ///
     /// # Errors
     /// [`ContactError::Overlap`] if pieces overlap and their contact does not permit it.
@@ -322,8 +326,8 @@ impl Contacts {
         Ok(())
     }
 
-    /// Returns the smallest margin to the next change of mode, negative beyond the change. Requires the
-    /// kinematics of `state`, relative to W, in the trees.
+    /// Returns the smallest margin of any pair to its next change of mode; it is negative beyond the change.
+    /// Requires the kinematics of `state`, relative to W, in the trees.
     pub(super) fn margin<S: Real>(
         &mut self,
         trees: &[Tree<'_, S>],
@@ -369,7 +373,7 @@ impl Touching {
     }
 }
 
-/// Returns for each piece of a side whether the other side has it too.
+/// Returns, for each piece of a side, whether the other side contains the same piece.
 fn on_both(pieces: &[ContactSide], others: &[ContactSide]) -> Vec<bool> {
     let key =
         |piece: &ContactSide| (piece.frame, piece.pose, piece.shape.bounding_sphere(), piece.shape.name());

@@ -4,7 +4,7 @@ use crate::contact::Bristle;
 use crate::spatial::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Whether the bodies touch, and whether they may touch during the step.
+/// Phase of a contact: whether the bodies touch, and whether they may touch during the step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Phase {
     /// The bodies are too far apart to touch within the step.
@@ -23,7 +23,8 @@ pub(in crate::simulation) struct Mode {
     pub(super) phase: Phase,
     /// Bristles at the start of the step, in axes of the first side.
     pub(super) bristle: Bristle,
-    /// Twist of the bristles about the normal at the start of the step, rad, in the first component.
+    /// Bristles of torsional friction at the start of the step; the first component of the deflection is the
+    /// angle about the normal, rad.
     pub(super) twist: Bristle,
     /// Elastic angle about the normal at the start of the step, rad.
     pub(super) turn: f64,
@@ -36,10 +37,10 @@ pub(in crate::simulation) struct Mode {
     /// Reciprocals of the effective masses in the normal and in the tangential directions, 1/kg, and of the
     /// effective inertia about the normal, 1/(kg m²); zero before the bodies touch.
     pub(super) mobility: [f64; 3],
-    /// Amplitude of the recent oscillation of the contact, relative to its depth; at most 1.
+    /// Amplitude of the recent oscillation of the contact relative to its largest depth; at most 1.
     pub(super) activity: f64,
-    /// Distances from the next changes of mode that count as zero: of the gap or depth, m, of the force and
-    /// of friction. They let a step begin at a change of mode.
+    /// Numbers that are added to the margins of the gap or depth, m, of the force and of friction, so that a
+    /// step can begin at a change of mode.
     pub(super) slack: [f64; 3],
     /// Instant at which the mode was determined, s; negative before the first step, and [`Self::REPEATED`]
     /// after a step of length zero.
@@ -47,7 +48,7 @@ pub(in crate::simulation) struct Mode {
 }
 
 impl Mode {
-    /// Instant of a mode that is determined again at the same instant.
+    /// Value of [`Self::since`] for a mode that must be determined again at the same instant.
     pub(super) const REPEATED: f64 = -2.0;
 
     /// Mode before the first step.

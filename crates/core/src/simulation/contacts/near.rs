@@ -1,5 +1,5 @@
-//! Pairs of pieces that are not far apart. Only they are evaluated during a step, and only their states
-//! change.
+//! Pairs of pieces that are not far apart. Only these pairs are evaluated during a step, and only their
+//! states change.
 
 use super::mode::{Mode, Phase};
 use super::{Contacts, Touch};
@@ -9,7 +9,7 @@ use crate::simulation::tree::Tree;
 use crate::spatial::Real;
 
 impl Contacts {
-    /// Stores the states of the near pairs among those of all pairs.
+    /// Copies the states of the near pairs to the list of the states of all pairs.
     pub(super) fn keep(&mut self, states: &[ContactState]) {
         for (&number, state) in self.near.iter().zip(states) {
             self.states[number] = *state;
@@ -17,14 +17,14 @@ impl Contacts {
         }
     }
 
-    /// Returns the states of all pairs, given those of the near ones.
+    /// Returns the states of all pairs, of which those of the near pairs are `near`.
     pub(in crate::simulation) fn all_states(&self, near: &[ContactState]) -> Vec<ContactState> {
         let mut all = self.states.clone();
         self.near.iter().zip(near).for_each(|(&number, state)| all[number] = *state);
         all
     }
 
-    /// Returns the modes of all pairs, and the touches.
+    /// Returns the modes of all pairs and the touches of all contacts.
     pub(in crate::simulation) fn save(&self) -> (Vec<Mode>, Vec<Touch>) {
         let mut modes: Vec<Mode> = self.list.iter().map(|touching| touching.mode).collect();
         for number in self.known_far() {
@@ -33,7 +33,8 @@ impl Contacts {
         (modes, self.touches.clone())
     }
 
-    /// Restores what [`Self::save`] returned. The states are then those of all pairs.
+    /// Restores the modes and touches that [`Self::save`] returned. All pairs then count as near, so the next
+    /// state must contain the states of all pairs.
     pub(in crate::simulation) fn restore(&mut self, (modes, touches): (Vec<Mode>, Vec<Touch>)) {
         self.begun.clear();
         self.list.iter_mut().zip(modes).for_each(|(touching, mode)| touching.mode = mode);
@@ -42,8 +43,8 @@ impl Contacts {
         self.begun_at = f64::NAN;
     }
 
-    /// Writes the instant of the present modes to those of far pairs, before the modes are determined anew at
-    /// the same instant.
+    /// Stores the instant of the present modes in the modes of far pairs, before all modes are determined
+    /// again at the same instant.
     pub(super) fn write_instant(&mut self) {
         for number in self.known_far() {
             self.list[number].mode.since = self.begun_at;
@@ -51,15 +52,16 @@ impl Contacts {
         self.begun_at = f64::NAN;
     }
 
-    /// Lets the next step determine all modes although it begins at the same instant, after a step of length
-    /// zero: a change of mode so close to the start of a step would otherwise recur without end.
+    /// Marks all modes so that the next step determines them again, although it begins at the same instant
+    /// after a step of length zero. A change of mode so close to the start of a step would otherwise recur
+    /// without end.
     pub(in crate::simulation) fn repeat_instant(&mut self) {
         self.write_instant();
         self.list.iter_mut().for_each(|touching| touching.mode.since = Mode::REPEATED);
     }
 
-    /// Returns the pairs that are far apart since the start of the step; empty if the modes are to be
-    /// determined anew or the rigid pairs are not known.
+    /// Returns the indices of the pairs that have been far apart since the start of the step; empty if the
+    /// modes must be determined again or the rigid pairs have not been found.
     fn known_far(&self) -> Vec<usize> {
         if self.begun_at.is_nan() || self.is_rigid.len() < self.list.len() {
             return Vec::new();
@@ -69,7 +71,8 @@ impl Contacts {
         (0..is_far.len()).filter(|&number| is_far[number]).collect()
     }
 
-    /// Finds the pairs that are rigid, unless they are known; they become far.
+    /// Finds the pairs whose pieces are rigidly connected to each other, unless they are known, and sets
+    /// their phase to [`Phase::Far`].
     pub(super) fn find_rigid<S: Real>(&mut self, trees: &[Tree<'_, S>]) {
         if self.is_rigid.len() == self.list.len() {
             return;
@@ -79,8 +82,8 @@ impl Contacts {
         rigid.for_each(|(touching, _)| (touching.mode.phase, touching.last) = (Phase::Far, None));
     }
 
-    /// Writes the pairs that may not be far apart in the step from `t` to `end`, s, to `candidates`; the
-    /// others become far.
+    /// Writes the indices of the pairs that may not be far apart in the step from `t` to `end`, s, to
+    /// `candidates`, and sets the phase of the other pairs to [`Phase::Far`].
     pub(super) fn find_candidates<S: Real>(
         &mut self,
         (t, end): (f64, f64),

@@ -1,4 +1,4 @@
-//! Normal force of a contact, from all of its points.
+//! Normal force of a contact, summed over all of its points.
 
 use super::side::SideMotion;
 use crate::contact::NormalLaw;
@@ -12,12 +12,12 @@ pub(super) struct Pressure {
     pub(super) point: Vec3<f64>,
     /// Sum of the normal forces, N.
     pub(super) force: f64,
-    /// Force on the second side, N, W axes: along the normal for a single point, and for several points
-    /// tilted by as much as the surfaces.
+    /// Force on the second side, N, W axes. For a single point it is along the normal; for several points it
+    /// may be inclined like the surfaces.
     pub(super) on_b: Vec3<f64>,
     /// Moment on the second side about `point`, N m, W axes.
     pub(super) moment: Vec3<f64>,
-    /// Power taken from the motion, W.
+    /// Power that the force takes from the motion, W.
     pub(super) power: f64,
     /// Power dissipated, W.
     pub(super) loss: f64,
@@ -33,11 +33,11 @@ impl Pressure {
     /// `−f = Σ w_i F(x_i, ẋ_i) ∂x_i/∂ξ + Σ u(x_i) ∂w_i/∂ξ`,
     ///
     /// which is the gradient of `U` for an elastic law. The sum of the normal forces, `N = Σ w_i F_i`, acts
-    /// at `Σ w_i F_i p_i/N`, with the middles `p_i` of the points of both sides.
+    /// at `Σ w_i F_i p_i/N`, where `p_i` is the midpoint between the points of both sides.
     ///
-    /// A single point may pull: its force is continued beyond lift-off, which ends the step. Pieces that
-    /// separate without force (`is_pressing` false) and points that would pull dissipate their elastic
-    /// energy.
+    /// The force at a single point may pull within a step, because the law is evaluated beyond lift-off; the
+    /// step then ends at the lift-off. Pieces that separate without force (`is_pressing` is false), and
+    /// points of several that would pull, dissipate their elastic energy.
     pub(super) fn of(
         law: &NormalLaw,
         points: &[ContactPoint],

@@ -1,4 +1,4 @@
-//! Rows of the contacts.
+//! Computation of the rows of the contacts in the traces.
 
 use super::Contacts;
 use super::mode::Phase;
@@ -29,15 +29,15 @@ impl Contacts {
         self.names.len()
     }
 
-    /// Returns the system in whose trace a contact is recorded: that of its first side.
+    /// Returns the index of the system in whose trace a contact is recorded: that of its first side.
     pub(in crate::simulation) fn owner(&self, contact: usize) -> usize {
         let own = self.list.iter().find(|touching| touching.contact == contact);
         own.map_or(0, |touching| touching.sides[0].declared.system)
     }
 
-    /// Returns the row of a contact at `state`, in the order of the parts of
+    /// Returns the row of the contact with index `contact` at `state`, in the order of the parts of
     /// [`CONTACTS`](crate::simulation::CONTACTS). Requires the kinematics of `state` in the trees, and the
-    /// forces computed last.
+    /// loadings computed last.
     pub(in crate::simulation) fn row<S: Real>(
         &mut self,
         contact: usize,
@@ -92,7 +92,8 @@ impl Row {
         self.add_integrals(state, [normal, bristles]);
     }
 
-    /// Adds the integrals of a pair of pieces with these elastic energies, J.
+    /// Adds the integrals of a pair of pieces whose normal force and bristles store these elastic energies,
+    /// J.
     fn add_integrals(&mut self, state: &ContactState, [normal, bristles]: [f64; 2]) {
         self.dissipated += (state.normal_work - normal) + (state.friction_work - bristles);
         self.impulse += state.impulse;

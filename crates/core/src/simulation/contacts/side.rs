@@ -1,4 +1,4 @@
-//! Motion of one side of a contact.
+//! One side of a contact, and its motion.
 
 use super::frames::FrameMotion;
 use crate::dynamics::base_rotation;
@@ -13,13 +13,13 @@ use crate::world::FrameIndex;
 pub(super) struct Side {
     /// Frame to which the piece is declared to be fixed.
     pub(super) declared: FrameIndex,
-    /// Number of the tree, and index of the frame in the model of the tree.
+    /// Index of the tree, and index of the frame in the model of the tree.
     pub(super) place: (usize, usize),
-    /// Number of the frame among those of the contacts.
+    /// Index of the frame in the list of the frames of all contacts.
     pub(super) number: usize,
     pub(super) shape: Shape,
     pub(super) pose: Pose,
-    /// Number of the piece on its side of the contact.
+    /// Index of the piece among those of its side of the contact.
     pub(super) piece: usize,
     /// Distance from the origin of the frame to the farthest point of the shape, m; infinite for a
     /// half-space.
@@ -40,7 +40,7 @@ pub(super) struct SideMotion {
 }
 
 impl Side {
-    /// Returns the motion of the side, which is fixed to its frame.
+    /// Returns the motion of the side from the motion of its frame.
     #[inline]
     pub(super) fn motion(&self, motion: &FrameMotion) -> SideMotion {
         let FrameMotion { frame, velocity, angular_velocity } = *motion;
@@ -48,7 +48,7 @@ impl Side {
         SideMotion { shape, frame, velocity, angular_velocity }
     }
 
-    /// Adds a force, N, at a point in W and a moment, N m, to the wrench on the body of the side.
+    /// Adds a force, N, at `point` and a moment, N m, to the wrench on the body of the side; all are in W.
     pub(super) fn add_wrench<S: Real>(
         &self,
         trees: &mut [Tree<'_, S>],
@@ -73,7 +73,7 @@ impl Side {
 }
 
 impl SideMotion {
-    /// Returns the velocity of the material point at `point`, both in W, m/s.
+    /// Returns the velocity in W, m/s, of the material point of the side that is at `point` in W, m.
     pub(super) fn velocity_at(&self, point: Vec3<f64>) -> Vec3<f64> {
         self.velocity + self.angular_velocity.cross(point - self.frame.pos)
     }

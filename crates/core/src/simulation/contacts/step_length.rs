@@ -7,15 +7,16 @@ use crate::contact::{Bristle, ContactLaw, ContactSteps, Friction};
 use crate::geometry::Shape;
 use std::f64::consts::PI;
 
-/// Depth, as a fraction of the smaller reach, to which pieces that are apart may overlap at the end of a step
-/// before the instant of the touch-down is located.
+/// Depth, as a fraction of the smaller reach, to which pieces may overlap at the end of a step in which they
+/// touch, before the instant of the touch-down is located.
 const OVERLAP: f64 = 0.25;
-/// Exponent of the elastic force from which on its derivatives at zero depth do not limit the order of the
-/// integrator.
+/// Smallest exponent of the elastic force whose derivatives at zero depth do not limit the order of the
+/// integrator, apart from 1.
 const SMOOTH: f64 = 4.0;
-/// Least number of steps in half a period, with which the motion of a contact at rest is stable.
+/// Smallest number of steps in half a period with which the integration of a contact at rest is stable.
 const LEAST_STEPS: f64 = 8.0;
-/// Phase of an oscillation, rad, during which a previous amplitude still limits the step.
+/// Phase of an oscillation, rad, after which the influence of a previous amplitude on the step length has
+/// decreased by the factor e.
 const MEMORY: f64 = 4.0 * PI;
 
 /// Largest rates of a contact at the largest depth of its present motion.
@@ -26,13 +27,13 @@ struct Rates {
     frequencies: [f64; 2],
     /// Rates of decay of the motions along and across the normal, 1/s.
     decays: [f64; 2],
-    /// Rate at which slipping bristles approach the cone, 1/s.
+    /// Rate at which slipping bristles approach the friction cone, 1/s.
     relaxation: f64,
 }
 
 impl Rates {
-    /// Computes `√(k' W)` and `c' W`, with the tangent stiffness `k'` and damping `c'` and the reciprocal
-    /// effective mass `W`.
+    /// Computes the frequencies `√(k' W)` and the decay rates `c' W`, with the tangent stiffness `k'`, the
+    /// tangent damping `c'` and the reciprocal effective mass `W`.
     fn of(law: &ContactLaw, mode: &Mode, loading: &Loading) -> Self {
         let [normal, tangential, turning] = mode.mobility;
         let depth = law.normal.largest_depth(1.0 / normal, loading.depth.max(0.0), loading.rate);
@@ -69,15 +70,16 @@ impl Rates {
 }
 
 impl Touching {
-    /// Returns the longest permitted step, s, from a motion with this loading.
+    /// Returns the longest permitted step, s, from a state with these motions and this loading.
     ///
     /// While the bodies press on each other, the step is `h = π/(N ω)` with the largest rate `ω` of the
     /// contact and `N` steps. The local error is proportional to the amplitude `a` of the oscillation and to
-    /// `N⁻⁵`, so `N ∝ a^(1/4)` for a contact that comes to rest. For exponents `1 < n < 4`, derivatives of
-    /// `xⁿ` are unbounded at touch-down and lift-off, where the step is therefore shortened to `h
-    /// √(x/x_max)`. This restores order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
+    /// `N⁻⁵`, so that `N ∝ a^(1/4)` suffices for a contact that comes to rest. For exponents `1 < n < 4`,
+    /// derivatives of `xⁿ` are unbounded at touch-down and lift-off, where the step is therefore shortened to
+    /// `h √(x/x_max)`, with the depth `x` and its largest value `x_max` in the present motion. This restores
+    /// order four: the sum of the local errors `h⁵ x^(n−4)` then converges.
     ///
-    /// With an external engine (`has_engine`) the touch-down is not located. A step then ends after the
+    /// With an external engine (`has_engine`) the touch-down is not located. A step then extends beyond the
     /// touch-down by at most the length of a step during the impact.
     pub(super) fn longest_step(
         &self,
@@ -132,7 +134,7 @@ impl Touching {
 
     /// Returns the amplitude of the oscillation of the contact relative to its depth and to the length of
     /// slipping bristles: the present amplitude or, if larger, the previous amplitude, which decays within a
-    /// few periods. It is at most 1, and 1 for pieces that do not press on each other.
+    /// few periods. It is at most 1. For pieces that do not press on each other, it is 1.
     pub(super) fn activity(&self, t: f64, loading: &Loading) -> f64 {
         let Some(law) = &self.law else { return 1.0 };
         if self.mode.phase != Phase::Pressing || self.mode.mobility[0] == 0.0 {

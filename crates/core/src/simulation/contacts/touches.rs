@@ -1,5 +1,5 @@
-//! Touches of the declared contacts: each lasts from the instant at which the first pieces touch to the
-//! instant at which the last ones separate.
+//! Touches of the declared contacts. A touch lasts from the instant at which the first pieces touch to the
+//! instant at which the last pieces separate.
 
 use super::mode::Phase;
 use super::side::SideMotion;
@@ -11,13 +11,13 @@ use serde::{Deserialize, Serialize};
 
 /// Largest number of touches of a contact that are events. Later touches are only counted.
 const MOST_LISTED: usize = 1000;
-/// Depth, relative to the rounding error of the distance, that a touch must reach. Bodies that rest beside
-/// each other without a load touch and separate at random, at the level of rounding errors.
+/// Depth, relative to the rounding error of the distance, that a touch must reach to be counted. Rounding
+/// errors make bodies that rest beside each other without a load touch and separate at random.
 const LEAST_DEPTH: f64 = 1e3;
 /// Largest ratio of the lengths of two steps for which a parabola through their ends is used.
 const UNEQUAL: f64 = 8.0;
 
-/// Touch of a contact that is in progress or was the last, and totals of all touches.
+/// Present or last touch of a contact, and totals of all of its touches.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Touch {
     /// True while pieces touch.
@@ -28,7 +28,7 @@ pub(in crate::simulation) struct Touch {
     pub(super) largest_force: f64,
     /// Largest normal force since the last touch-down, N.
     peak_force: f64,
-    /// Systems of the pieces that touched first.
+    /// Indices in the group of the systems of the pieces that touched first.
     systems: [usize; 2],
     /// Point of the last touch-down, in W, m, about which the moments of the contact are integrated.
     pub(super) center: Vec3<f64>,
@@ -49,7 +49,7 @@ pub(super) struct Integrals {
     impulse: Vec3<f64>,
     /// Angular impulse on the second side, N m s.
     angular_impulse: Vec3<f64>,
-    /// Energy that the forces have taken from the motion, less the elastic energy, J.
+    /// Energy that the forces have dissipated, J: the energy taken from the motion less the elastic energy.
     pub(super) loss: f64,
 }
 
@@ -58,7 +58,8 @@ pub(super) struct Integrals {
 pub(super) struct Sample {
     /// Number of pairs of pieces that touch.
     pub(super) pieces: usize,
-    /// Largest depth of their present motion, relative to the rounding error of the distance.
+    /// Largest depth that the pieces reach in their present motion, relative to the rounding error of the
+    /// distance.
     depth: f64,
     /// Sum of the normal forces, N.
     force: f64,
@@ -88,7 +89,7 @@ impl Touch {
         }
     };
 
-    /// Returns the systems of the pieces that touched first.
+    /// Returns the indices in the group of the systems of the pieces that touched first.
     pub(in crate::simulation) fn systems(&self) -> [usize; 2] {
         self.systems
     }
@@ -113,7 +114,7 @@ impl Touch {
         };
     }
 
-    /// Adds the start of a step at `t`, s.
+    /// Updates the touch with the sample at the start of a step at `t`, s.
     pub(super) fn follow(&mut self, t: f64, sample: &Sample) {
         let now = (t, sample.force);
         let [before, last] = self.forces;
@@ -130,7 +131,7 @@ impl Touch {
         }
     }
 
-    /// Returns true if the touch is one of those that are events.
+    /// Returns true if the touch-down and the lift-off of the touch are recorded as events.
     pub(super) fn is_listed(&self) -> bool {
         self.count <= MOST_LISTED
     }
@@ -140,7 +141,7 @@ impl Touch {
         self.largest_force = self.largest_force.max(force);
     }
 
-    /// Returns the record of the touch-down.
+    /// Returns the record of the touch-down at `time`, s, of the contact `name`.
     pub(super) fn touch_down(&self, name: &str, time: f64) -> EventRecord {
         let Self { systems, center, .. } = *self;
         let mut point = [0.0; 3];
@@ -160,7 +161,8 @@ impl Touch {
         }
     }
 
-    /// Returns the record of the lift-off, with the changes of the integrals since the touch-down.
+    /// Returns the record of the lift-off at `time`, s, of the contact `name`, with the changes of the
+    /// integrals since the touch-down.
     pub(super) fn lift_off(&self, name: &str, time: f64, now: &Integrals) -> EventRecord {
         let change = |of: fn(&Integrals) -> Vec3<f64>| of(now) - of(&self.before);
         let linear = change(|integrals| integrals.impulse);
@@ -186,7 +188,7 @@ impl Integrals {
         Self { impulse: zero, angular_impulse: zero, loss: 0.0 }
     };
 
-    /// Returns the sum with the integrals of another pair of pieces.
+    /// Returns the sum of these integrals and those of another pair of pieces.
     pub(super) fn with(mut self, state: &ContactState) -> Self {
         self.impulse += state.impulse;
         self.angular_impulse += state.angular_impulse;
@@ -207,12 +209,12 @@ impl Sample {
         systems: [0; 2],
     };
 
-    /// Returns true if the present motion is more than a rounding error.
+    /// Returns true if pieces touch and their depth is not merely a rounding error.
     pub(super) fn is_noticeable(&self) -> bool {
         self.pieces > 0 && self.depth > LEAST_DEPTH
     }
 
-    /// Adds a pair of pieces.
+    /// Adds a pair of pieces with these motions and this loading.
     pub(super) fn add(&mut self, touching: &Touching, motions: &[SideMotion; 2], loading: &Loading) {
         if -loading.depth < self.gap {
             (self.gap, self.point) = (-loading.depth, loading.point);
@@ -239,8 +241,9 @@ impl Touching {
     }
 }
 
-/// Returns the largest value of the parabola through three points `(t, F)` if the middle one is the largest
-/// and the steps are not very unequal; otherwise the largest of the three values.
+/// Returns the largest value of the parabola through three points `(t, F)` if the middle value is the largest
+/// and the lengths of both steps differ by less than the factor [`UNEQUAL`]; otherwise the largest of the
+/// three values.
 fn vertex([a, b, c]: [(f64, f64); 3]) -> f64 {
     let (h, k) = (b.0 - a.0, c.0 - b.0);
     let (rise, fall) = ((b.1 - a.1) / h, (b.1 - c.1) / k);

@@ -1,4 +1,4 @@
-//! Contact between one convex piece of each side during a run.
+//! Forces and margins of a pair of pieces, one of each side of a contact.
 
 use super::mode::{Mode, Phase};
 use super::pressure::Pressure;
@@ -8,15 +8,15 @@ use crate::geometry::{Points, Proximity, touching_points};
 use crate::simulation::contact_state::{ContactRate, ContactState};
 use crate::spatial::Vec3;
 
-/// Contact between one convex piece of each side.
+/// Pair of convex pieces, one of each side of a contact.
 #[derive(Clone, Debug)]
 pub(super) struct Touching {
-    /// Number of the contact among those of the run.
+    /// Index of the contact among those of the run.
     pub(super) contact: usize,
     /// Name of the contact.
     pub(super) name: String,
     pub(super) sides: [Side; 2],
-    /// Law; `None` if only the distance is observed.
+    /// Law of the forces; `None` if only the distance is recorded.
     pub(super) law: Option<ContactLaw>,
     /// True if the pieces may overlap at the start.
     pub(super) may_start_overlapping: bool,
@@ -44,7 +44,7 @@ pub(in crate::simulation) struct Loading {
     pub(super) pressure: Option<Pressure>,
     /// Force on the second side, N.
     pub(super) force: Vec3<f64>,
-    /// Moment on the second side about the point, without that of torsional friction, N m.
+    /// Moment on the second side about `point`, without that of torsional friction, N m.
     pub(super) moment: Vec3<f64>,
     /// Sliding velocity of the second side relative to the first, in axes of the first side, m/s.
     pub(super) sliding: Vec3<f64>,
@@ -60,7 +60,7 @@ pub(in crate::simulation) struct Loading {
 }
 
 impl Touching {
-    /// Returns the distance of the pieces, and the force that the mode gives for their motion.
+    /// Returns the distance of the pieces and the forces in the present mode for their motion.
     #[inline]
     pub(super) fn evaluate(
         &self,
@@ -80,7 +80,7 @@ impl Touching {
         Ok((proximity, points))
     }
 
-    /// Returns the force in `phase` for pieces with this distance and these contact points.
+    /// Returns the forces in `phase` for pieces with this distance and these contact points.
     pub(super) fn loading(
         &self,
         phase: Phase,
@@ -136,7 +136,7 @@ impl Touching {
         }
     }
 
-    /// Adds the moment about the normal, which obeys the law of friction in one dimension.
+    /// Adds the moment about the normal, which obeys the same friction law in one dimension.
     fn add_torsion(&self, friction: &Friction, state: &ContactState, loading: &mut Loading) {
         let Some(torsion) = friction.torsion() else { return };
         let along = |x: f64| Vec3::new(x, 0.0, 0.0);
@@ -146,9 +146,9 @@ impl Touching {
         loading.torsion = Some(torsion.after(&self.mode.twist, moved, spin, normal, damping));
     }
 
-    /// Returns the work of the normal force of polyhedra that press on each other that is neither stored
-    /// nor dissipated, J: an error of the integrator, or of a jump of the elastic energy. It is 0 for other
-    /// pieces and in other phases.
+    /// Returns the work of the normal force, J, that is neither stored nor dissipated while polyhedra press
+    /// on each other. An error of the integrator or a jump of the elastic energy causes such work. It is 0
+    /// for other shapes and in other phases.
     pub(super) fn open_energy(&self, loading: &Loading, state: &ContactState) -> f64 {
         let is_exact = self.is_conservative
             && self.mode.phase == Phase::Pressing
@@ -157,8 +157,8 @@ impl Touching {
         pressure.map_or(0.0, |pressure| state.normal_work - state.normal_loss - pressure.elastic)
     }
 
-    /// Returns the distances from the next changes of mode, each negative beyond the change: that of the gap
-    /// or depth, m, that of the normal force and that of friction.
+    /// Returns the margins to the next changes of mode, each negative beyond the change: of the gap or depth,
+    /// m, of the normal force, and of friction.
     pub(super) fn margins(&self, loading: &Loading) -> [f64; 3] {
         let Some(law) = &self.law else { return [f64::INFINITY; 3] };
         let Loading { depth, rate, .. } = *loading;
@@ -177,7 +177,7 @@ impl Touching {
 }
 
 impl Loading {
-    /// Returns the magnitude of the normal force, N; zero while it would pull.
+    /// Returns the magnitude of the normal force, N; zero while the law gives a pulling force.
     pub(super) fn normal_force(&self) -> f64 {
         self.pressure.map_or(0.0, |pressure| pressure.force.max(0.0))
     }
@@ -187,7 +187,8 @@ impl Loading {
         self.torsion.map_or(0.0, |torsion| torsion.force.x)
     }
 
-    /// Returns the moment on the second side about the point, N m.
+    /// Returns the moment on the second side about the point of contact, W axes, N m, including torsional
+    /// friction.
     pub(super) fn total_moment(&self) -> Vec3<f64> {
         self.normal.scale_add(self.torque(), self.moment)
     }
@@ -198,7 +199,8 @@ impl Loading {
         -friction - self.torque() * self.spin
     }
 
-    /// Returns the time derivative of the state of the contact, with moments about `center` in W.
+    /// Returns the time derivative of the state of the contact, with the angular impulse about `center` in W,
+    /// m.
     pub(super) fn rates(&self, center: Vec3<f64>) -> ContactRate {
         ContactRate {
             slip: self.friction.map_or(self.sliding, |friction| friction.elastic_rate),
