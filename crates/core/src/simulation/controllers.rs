@@ -1,4 +1,4 @@
-//! Controllers of one system of a run, and desired pose of its tool.
+//! Controllers of one system of a run, and the desired pose of its tool.
 
 use super::error::SimulationError;
 use super::schedule::SAME_INSTANT;
@@ -14,7 +14,7 @@ pub(super) struct Controllers<'a, S> {
     pub(super) set: ControllerSet<'a, S>,
     tool: Option<usize>,
     reference: Option<&'a TaskReference>,
-    /// Sample of `reference` at the time of its last evaluation.
+    /// Sample of `reference` at its last evaluation; `None` before.
     sample: Option<TaskSample<f64>>,
 }
 
@@ -30,8 +30,8 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         Ok(Self { set, tool, reference, sample: None })
     }
 
-    /// Returns the desired pose of the tool at `t`, s, paired with true if the pose is relative to the base;
-    /// `None` if no reference is active. Requires the kinematics of `state` in `system`.
+    /// Returns the desired motion of the tool at `t`, s, and whether it is relative to the base; `None` if no
+    /// reference is active. Requires the kinematics of `state` in `system`.
     pub(super) fn desired(
         &mut self,
         t: f64,
@@ -50,8 +50,8 @@ impl<'a, S: Scalar> Controllers<'a, S> {
         }))
     }
 
-    /// Updates the controllers at `t`, s, and sets the torques of the system, which do not change if there
-    /// are no controls. Requires the kinematics of `state` in `system`.
+    /// Updates the controllers at `t`, s, and sets the joint torques of the system. Without controls, does
+    /// nothing. Requires the kinematics of `state` in `system`.
     pub(super) fn update(
         &mut self,
         t: f64,

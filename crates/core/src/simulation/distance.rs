@@ -11,9 +11,9 @@ const FINEST: f64 = 1e-9;
 /// System that starts far from the reference orbit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FarSystem {
-    /// Number of the system in the world.
+    /// Index of the system in the world.
     pub system: usize,
-    /// Distance of its base from the reference orbit, m.
+    /// Distance of the origin of its base from the reference orbit, m.
     pub distance: f64,
     /// Spacing of adjacent `f64` positions at this distance, m.
     pub resolution: f64,
@@ -23,9 +23,9 @@ pub struct FarSystem {
 }
 
 impl Simulation {
-    /// Returns the systems that start so far from the reference orbit that their positions lose digits, and
-    /// the systems that start beyond [`Simulation::rereference_beyond`] but cannot change to a local
-    /// reference orbit.
+    /// Returns the systems that start so far from the reference orbit that adjacent `f64` positions differ by
+    /// more than 1e-9 m, and the systems that start beyond [`Simulation::rereference_beyond`] but cannot
+    /// change to a local reference orbit.
     pub fn far_systems(&self) -> Vec<FarSystem> {
         let groups = groups(self.systems.len(), &self.events, &self.links());
         let is_grouped =

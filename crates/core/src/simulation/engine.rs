@@ -1,4 +1,4 @@
-//! External physics engines, which replace the native engine.
+//! Interface of external physics engines, which replace the native engine.
 
 use super::error::SimulationError;
 use crate::environment::BodyIndex;
@@ -19,18 +19,19 @@ pub trait Engine: Send {
     fn step(&mut self, input: &StepInput<'_>, output: &mut StepOutput) -> Result<(), SimulationError>;
 
     /// Returns the names of the contacts whose forces the engine computes, in the order of
-    /// [`StepOutput::contacts`].
+    /// [`StepOutput::contacts`]. By default there are none.
     fn contacts(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Returns the names of the closed loops and of the mimic joints whose constraints the engine satisfies, as
-    /// `SYSTEM/NAME`, or `NAME` for a single system.
+    /// Returns the names of the closed loops and of the mimic joints whose constraints the engine satisfies,
+    /// as `SYSTEM/NAME`, or `NAME` for a single system. By default there are none.
     fn loops(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Returns true if the engine holds the joints of engaged brakes; see [`StepInput::brakes`].
+    /// Returns true if the engine holds the joints of engaged brakes; see [`StepInput::brakes`]. The default
+    /// is false.
     fn supports_brakes(&self) -> bool {
         false
     }
@@ -46,9 +47,9 @@ pub struct StepInput<'a> {
     pub q: &'a [f64],
     /// Velocities at the start of the step, `(nv,)` of each system, m/s and rad/s.
     pub v: &'a [f64],
-    /// Joint torques, constant during the step, `(n,)` of each system, N m (N).
+    /// Joint torques, constant during the step, `(n,)` of each system, N m or N.
     pub tau: &'a [f64],
-    /// Connections that hold during the step.
+    /// Rigid connections that hold during the step.
     pub welds: &'a [BodyWeld],
     /// Brakes that are engaged during the step.
     pub brakes: &'a [EngagedBrake],
@@ -57,7 +58,7 @@ pub struct StepInput<'a> {
 /// Engaged brake of a joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EngagedBrake {
-    /// Index of the system.
+    /// Index of the system in the world.
     pub system: usize,
     /// Index of the joint among those of the system.
     pub joint: usize,
@@ -65,7 +66,8 @@ pub struct EngagedBrake {
     pub slip_torque: f64,
 }
 
-/// Rigid connection of two bodies of different systems, in the axes of their links as declared.
+/// Rigid connection of two bodies of different systems. Points and rotation are in the axes of the links, as
+/// the models declare them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyWeld {
     /// The two bodies, beginning with the body of the capturing frame.
@@ -85,12 +87,13 @@ pub struct StepOutput {
     pub v: Vec<f64>,
     /// Accelerations at the start of the step, `(nv,)` of each system, m/s² and rad/s².
     pub acceleration: Vec<f64>,
-    /// Impulse and work that each system receives during the step.
+    /// Impulse and work that each system receives during the step, in the order of the systems.
     pub systems: Vec<Exchange>,
     /// Time integral over the step of the moments of the external forces about the common centre of mass,
     /// with each force acting at the centre of mass of its system, W axes, N m s; zero for a single system.
     pub orbital: [f64; 3],
-    /// Force and exchange of each contact that the engine computes.
+    /// Force, impulse and work of each contact that the engine computes, in the order of
+    /// [`Engine::contacts`].
     pub contacts: Vec<ContactOutput>,
 }
 
@@ -114,7 +117,7 @@ pub struct Exchange {
     /// Time integral over the step of the external forces and of their moments about the centre of mass of
     /// the system, W axes, N s and N m s.
     pub impulse: [f64; 6],
-    /// Work done by motors and external wrenches during the step minus the energy that the joints dissipate,
+    /// Work done by motors and external wrenches during the step, less the energy that the joints dissipate,
     /// J.
     pub work: f64,
     /// Energy that the joints dissipate during the step, J.

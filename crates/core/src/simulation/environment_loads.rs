@@ -29,7 +29,7 @@ pub(super) struct EnvironmentLoads {
     /// Wrenches that the caller of the stepper has commanded.
     pub(super) commands: WrenchCommands,
     reads_velocities: bool,
-    /// Orbit on which the origin of W moves.
+    /// Orbit on which the origin of W moves; `None` for a run without an orbit.
     reference: Option<Arc<dyn Orbit>>,
     /// Reference orbit in free fall that replaces `reference` after the robot has drifted far from it; `None`
     /// before.
@@ -51,8 +51,8 @@ pub(super) struct EnvironmentLoads {
 }
 
 impl EnvironmentLoads {
-    /// Creates the loads of `effects` on the bodies of systems, given by their models and their numbers in
-    /// the world.
+    /// Creates the loads of `effects` on the bodies of systems, given by their indices in the world and their
+    /// models.
     pub(super) fn new(
         (numbers, models): (&[usize], &[&Model]),
         effects: Vec<Arc<dyn Effect>>,
@@ -85,7 +85,8 @@ impl EnvironmentLoads {
         self.local_reference.as_ref()
     }
 
-    /// Makes `local`, an orbit in free fall, the current reference orbit.
+    /// Sets `local`, an orbit in free fall, as the current reference orbit. Without a gravity field, does
+    /// nothing.
     pub(super) fn set_local_reference(&mut self, local: LocalReference) -> Result<(), SimulationError> {
         let (Some(gravity), Some(&time)) = (&self.gravity, local.times.last()) else { return Ok(()) };
         let orbit = Numerical::new(local.position.into(), local.velocity.into(), time, Arc::clone(gravity));
@@ -96,8 +97,8 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W; `None` if
-    /// there is no local reference orbit.
+    /// Returns the transformation at `t`, s, from the frame of the local reference orbit to W for a robot of
+    /// mass `mass`, kg; `None` if there is no local reference orbit.
     pub(super) fn shift(&mut self, t: f64, mass: f64) -> Result<Option<Shift>, SimulationError> {
         if self.local_reference.is_none() {
             return Ok(None);
@@ -161,8 +162,8 @@ impl EnvironmentLoads {
         Ok(())
     }
 
-    /// Adds the common wrenches to `self.wrenches` without the part that accelerates all bodies alike: `Fₖ −
-    /// mₖ ΣF/Σm`.
+    /// Adds the common wrenches to `self.wrenches` without the part that accelerates all bodies equally: each
+    /// force `Fₖ` becomes `Fₖ − mₖ ΣF/Σm`, with the masses `mₖ` of the bodies.
     fn add_relative_to_reference(&mut self) -> Result<(), EnvironmentError> {
         let total: Vector3<f64> = self.common.iter().map(|wrench| wrench.force).sum();
         let acceleration = total / self.bodies.iter().map(|(_, body)| body.mass).sum::<f64>();
@@ -210,7 +211,8 @@ fn state_and_rate(orbit: &dyn Orbit, t: f64) -> Result<(OrbitState, Vector3<f64>
 }
 
 impl EnvironmentLoads {
-    /// Computes the wrenches on the bodies of `systems`, which must be all systems of these loads.
+    /// Computes the wrenches of the effects on the bodies of `systems` at `t`, s, in a step over `interval`,
+    /// s. `systems` must contain all systems of these loads.
     pub(super) fn apply_to<S: Scalar>(
         &mut self,
         systems: &mut [LoadedSystem<'_, S>],

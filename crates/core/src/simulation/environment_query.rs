@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::spatial::Vec3;
 use std::sync::Arc;
 
-/// Environment of a run, which can be evaluated at any state of the systems.
+/// Environment of a run, which an external engine can evaluate at any state of the systems.
 #[derive(Debug)]
 pub struct EnvironmentQuery {
     systems: Vec<(Arc<Model>, Data<f64>)>,
@@ -26,12 +26,14 @@ impl Simulation {
 }
 
 impl EnvironmentQuery {
-    /// Computes the wrench on each body at time `t`, s, and state `(q, v)`, within the step `interval`, s.
-    /// `out`, `(bodies, 6)`, receives the force, N, through the centre of mass of the body and the torque, N
-    /// m, about it, in W axes. `q`, `v` and `out` hold the values of all systems, one system after another.
+    /// Computes the wrench of all effects on each body at time `t`, s, and state `(q, v)`, in a step over
+    /// `interval`, s. `out`, `(bodies, 6)`, receives the force, N, through the centre of mass of the body and
+    /// the torque, N m, about it, in W axes. `q`, `v` and `out` hold the values of all systems, one system
+    /// after another.
     ///
     /// # Errors
-    /// The errors of the orbit and of the effects.
+    /// [`SimulationError::Orbit`] and [`SimulationError::Environment`] if the orbit or an effect cannot be
+    /// evaluated.
     pub fn wrenches(
         &mut self,
         t: f64,

@@ -1,5 +1,5 @@
-//! Equations of motion of all trees of a run, which give the time derivatives of the state from the state,
-//! the loads and the joint torques.
+//! Equations of motion of all trees of a run, with which the time derivatives of the state are computed from
+//! the state, the loads and the joint torques.
 
 use super::common_center::{move_to_own_centers, orbital_moment, refer_to_common_center};
 use super::contacts::{Contacts, at_time};
@@ -84,7 +84,7 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.loads.apply(&mut self.trees, &mut self.members, state, t, interval)
     }
 
-    /// Computes the time derivatives of `state`. Requires its kinematics and loads in the trees.
+    /// Computes the time derivatives of `state`. Requires the kinematics and loads of `state` in the trees.
     pub(crate) fn rates(&mut self, state: &State<S>, rate: &mut Rate<S>) {
         let has_contacts = !self.contacts.is_empty();
         let is_loaded = has_contacts || self.loads.is_active();
@@ -117,23 +117,23 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         Ok(())
     }
 
-    /// Ends a step from `start` to `state`: with contacts, refers the angular impulses of the trees to their
-    /// own centres of mass.
+    /// Completes a step from `start` to `state`: in a run with contacts, refers the angular impulses of the
+    /// trees to their own centres of mass.
     pub(super) fn end_step(&self, start: &State<S>, state: &mut State<S>) {
         if !self.contacts.is_empty() && self.trees.len() > 1 {
             move_to_own_centers(&self.trees, start, state);
         }
     }
 
-    /// Starts the states of the contacts and checks that bodies overlap only where they may. Requires the
-    /// kinematics of `state` in the trees.
+    /// Initializes the states of the contacts and checks that bodies overlap only where the contact permits
+    /// it. Requires the kinematics of `state` in the trees.
     pub(super) fn start_contacts(&self, state: &mut State<S>) -> Result<(), SimulationError> {
         Ok(self.contacts.start(&self.trees, state)?)
     }
 
     /// Determines the modes of the contacts for the step from `t` to `end`, s, and returns the end of the
-    /// step, which is earlier than `end` while bodies touch. The states of contacts in `state` become those
-    /// of the near pairs. Requires the kinematics of `state` in the trees.
+    /// step, which is earlier than `end` while bodies touch. The function reduces the contact states in
+    /// `state` to those of the pairs that may touch. Requires the kinematics of `state` in the trees.
     pub(super) fn begin_contacts(
         &mut self,
         t: f64,
@@ -154,8 +154,9 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
             || self.trees.iter().any(|tree| tree.modes.is_active())
     }
 
-    /// Returns the smallest margin of any latch or contact, at `state` and at `t`, s, to its next change. If
-    /// there are latches or contacts, writes the kinematics of `state` relative to W to the trees.
+    /// Returns the smallest margin of any latch or contact to its next change at `state` and `t`, s; it is
+    /// negative beyond the change. If there are latches or contacts, writes the kinematics of `state`
+    /// relative to W to the trees.
     pub(super) fn margin(&mut self, t: f64, state: &State<S>) -> Result<f64, SimulationError> {
         if self.latches.is_empty() && self.contacts.is_empty() {
             return Ok(f64::INFINITY);
@@ -167,8 +168,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         Ok(latches.min(contacts))
     }
 
-    /// Returns the kinetic energy less the work done on all trees, J, which changes only by the error of the
-    /// integrator, and the sum of the magnitudes of both. Requires the kinematics of `state` relative to W in
+    /// Returns two sums over all trees: the kinetic energy less the work, J, which changes only by the error
+    /// of the integrator, and the magnitudes of both, J. Requires the kinematics of `state` relative to W in
     /// the trees.
     pub(super) fn energy_balance(&self, state: &State<S>) -> [S; 2] {
         let (mut balance, mut scale) = (S::of(0.0), S::of(0.0));
@@ -185,8 +186,8 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
         self.trees.iter().any(|tree| tree.modes.locked().is_some())
     }
 
-    /// Determines the modes of all joints for the step that starts at `state`. Requires its kinematics and
-    /// loads in the trees.
+    /// Determines the modes of all joints for the step that starts at `state`. Requires the kinematics and
+    /// loads of `state` in the trees.
     pub(crate) fn solve_modes(&mut self, state: &State<S>) {
         for (tree, state) in self.trees.iter_mut().zip(&state.trees) {
             tree.solve_modes(&state.q, &state.v);

@@ -170,7 +170,7 @@ pub enum SimulationError {
     Gravity(#[from] GravityError),
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
-    /// Error that an external engine reported, unchanged.
+    /// Error that an external engine reported.
     #[error(transparent)]
     Engine(Box<dyn std::error::Error + Send + Sync>),
     #[error(
@@ -187,7 +187,7 @@ pub enum SimulationError {
     Model(#[from] ModelError),
     #[error("an external engine does not support {what} ('{name}'); {remedy}, or use the native engine")]
     EngineOfWorld {
-        /// Name of the event or system.
+        /// Name of the event, system, contact, loop or brake.
         name: String,
         /// Setting that only the native engine supports.
         what: &'static str,
@@ -205,7 +205,7 @@ impl From<ControlError> for SimulationError {
     }
 }
 
-/// Run that ended early, with the rows recorded until then.
+/// Failure of a run, with the rows recorded before it.
 #[derive(Error)]
 #[error("{error}")]
 pub struct RunFailure {
@@ -243,7 +243,7 @@ impl std::fmt::Debug for RunFailure {
     }
 }
 
-/// Rounds to 1e-9 m (rad), which is far below any useful tolerance.
+/// Returns an offset rounded to 1e-9 m or rad, which is far below any useful tolerance.
 fn without_noise(offset: f64) -> f64 {
     (offset * 1e9).round() / 1e9
 }

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 /// Error estimates of a tree or of a system.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Estimates {
-    /// Attitude error, rad; `None` if it is not estimated.
+    /// Sum of the estimated attitude errors of the steps, rad; `None` if they are not estimated.
     pub(super) turn: Option<f64>,
-    /// Summed differences between steps and half steps: one entry for the base's origin, then one per joint.
-    /// Empty without step doubling.
+    /// Sums of the differences between a step and two half steps: one entry for the base's origin, then one
+    /// per joint. Empty without step doubling.
     pub(super) drifts: Vec<CoordinateDrift>,
     /// Results of the checks that need every step; `None` if they are not evaluated during the run.
     pub(super) checks: Option<PairChecks>,

@@ -1,4 +1,4 @@
-//! Audit of captures and releases: momentum, energy and relative motion before and after each event.
+//! Audit of captures, releases and brakes: momentum, energy and relative motion before and after each event.
 
 use super::equations::EquationsOfMotion;
 use super::recording::{EventKind, EventRecord};
@@ -8,28 +8,28 @@ use crate::model::Model;
 use crate::spatial::{Force, Motion, Scalar, Vec3};
 use crate::world::{Balance, FrameIndex, energy, energy_of_change};
 
-/// State of a system, in `f64`.
+/// Configuration and velocity of a system in its own coordinates.
 pub(super) struct Snapshot {
     pub(super) q: Vec<f64>,
     pub(super) v: Vec<f64>,
 }
 
-/// Capture or release that has been applied to the current state.
+/// Event of a capture, release or brake that has been applied to the current state.
 pub(super) struct Applied<'s> {
-    /// Number of the event.
+    /// Index of the event among those of the group.
     pub(super) number: usize,
     pub(super) kind: EventKind,
     /// Time of the event, s.
     pub(super) time: f64,
-    /// Capturing and captured frame.
+    /// Capturing and captured frame; for a brake, both entries are the frame with index 0 of its system.
     pub(super) frames: [FrameIndex; 2],
     /// States of all systems before the event.
     pub(super) before: &'s [Snapshot],
-    /// Systems whose change of momentum equals the impulse of the event.
+    /// Indices of the systems whose change of momentum equals the impulse of the event.
     pub(super) pushed: &'s [usize],
     /// Point in W about which the impulse is stated, m.
     pub(super) point: Vec3<f64>,
-    /// Work done by the spring of a release, J.
+    /// Work done by the spring of a release, J; for a brake, minus the energy that it dissipates.
     pub(super) spring_work: f64,
 }
 
@@ -96,9 +96,9 @@ impl<S: Scalar> RunState<'_, S> {
         sums
     }
 
-    /// Returns the relative velocities of the two frames after a capture, linear and angular, as fractions of
-    /// those before the capture, or of 1 m/s and 1 rad/s if these are larger. Returns zeros for a release and
-    /// with an external engine.
+    /// Returns the linear and the angular relative velocity of the two frames after a capture, as fractions
+    /// of those before the capture, or of 1 m/s and 1 rad/s if these are larger. Returns zeros for a release
+    /// and with an external engine.
     fn twist_left(&self, event: &Applied<'_>, after: &[Snapshot]) -> [f64; 2] {
         if event.kind != EventKind::Capture || self.mover.is_external() {
             return [0.0; 2]; // an external engine removes the relative velocity during the next steps
@@ -107,7 +107,7 @@ impl<S: Scalar> RunState<'_, S> {
         [relative_to(before.linear, after.linear), relative_to(before.angular, after.angular)]
     }
 
-    /// Returns the model of a system.
+    /// Returns the model of the system with index `system` in the group.
     pub(super) fn model(&self, system: usize) -> &Model {
         let EquationsOfMotion { trees, members, .. } = &self.equations;
         &members.system(system, trees, &self.state.trees).1.model
@@ -145,7 +145,7 @@ impl<S: Scalar> RunState<'_, S> {
 }
 
 /// Returns the magnitude of a velocity after an event relative to the magnitude before it, or relative to 1
-/// m/s (1 rad/s) if that is larger.
+/// m/s or 1 rad/s if that is larger.
 fn relative_to(before: Vec3<f64>, after: Vec3<f64>) -> f64 {
     after.norm() / before.norm().max(1.0)
 }

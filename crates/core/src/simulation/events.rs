@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 /// Progress of one event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct EventState {
-    /// Time at which the event happened, s; `None` until then. Releasing frames that are not connected has no
-    /// effect, but counts as well.
+    /// Time at which the event happened, s; `None` until then. A release of frames that are not connected has
+    /// no effect, but is also marked as having happened.
     pub(super) happened: Option<f64>,
     /// Time at which the event is due, s; `None` while it is unknown.
     pub(super) due: Option<f64>,
@@ -18,7 +18,7 @@ pub(super) struct EventState {
     pub(super) is_held: bool,
 }
 
-/// Control whose frame a capture has rigidly connected to the frame that the control follows. All numbers are
+/// Control whose frame a capture has rigidly connected to the frame that the control follows. All indices are
 /// those within the group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Attached {
@@ -35,7 +35,7 @@ pub(super) struct Events {
     /// Index of each event among all events of the world.
     pub(super) numbers: Vec<usize>,
     pub(super) states: Vec<EventState>,
-    /// Captures and releases, and touch-downs and lift-offs of contacts, that have happened.
+    /// Records of the captures, releases, brakes, touch-downs and lift-offs that have happened.
     pub(super) records: Vec<EventRecord>,
     /// Controls that follow a frame to which their own frame has been rigidly connected.
     pub(super) attached: Vec<Attached>,
@@ -48,7 +48,8 @@ impl Events {
         Self { states: states.collect(), list, numbers, records: Vec::new(), attached: Vec::new() }
     }
 
-    /// Returns the first event in the order of declaration that is due at `t`, s.
+    /// Returns the index of the first event, in the order of declaration, that is due at `t`, s; `None` if
+    /// there is none.
     pub(super) fn next_due(&self, t: f64, schedule: &Schedule) -> Option<usize> {
         let is_due = |state: &EventState| {
             state.happened.is_none() && state.due.is_some_and(|due| !schedule.is_later(due, t))
@@ -56,7 +57,8 @@ impl Events {
         self.states.iter().position(is_due)
     }
 
-    /// Records that an event happened at `t`, s, after which the events that wait for it have a due time.
+    /// Records that the event with index `number` happened at `t`, s, and sets the due times of the events
+    /// that wait for it.
     pub(super) fn happen(&mut self, number: usize, t: f64) {
         self.states[number].happened = Some(t);
         for (event, state) in self.list.iter().zip(&mut self.states) {
@@ -74,18 +76,18 @@ impl Events {
         open.filter_map(|state| state.due).collect()
     }
 
-    /// Returns the numbers, in the world, of the events that have happened.
+    /// Returns the indices in the world of the events that have happened.
     pub(super) fn happened(&self) -> Vec<usize> {
         let states = self.states.iter().zip(&self.numbers);
         states.filter(|(state, _)| state.happened.is_some()).map(|(_, number)| *number).collect()
     }
 
-    /// Returns the number of the event `name`; `None` if this group has no such event.
+    /// Returns the index in the group of the event `name`; `None` if this group has no such event.
     pub(super) fn find(&self, name: &str) -> Option<usize> {
         self.list.iter().position(|event| event.name == name)
     }
 
-    /// Checks that an event happens on command and has not happened yet.
+    /// Checks that the event with index `number` happens on command and has not happened yet.
     pub(super) fn check_trigger(&self, number: usize) -> Result<(), SimulationError> {
         let (event, state) = (&self.list[number], &self.states[number]);
         let reason = match event.when {

@@ -12,14 +12,14 @@ use crate::model::Model;
 use crate::spatial::{Quat, Scalar, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Motion at one end of a step.
+/// Motion of the base and of the centre of mass at one end of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct End {
     base: BaseMotion,
     whole: MassMotion,
 }
 
-/// Checks of one tree during a run.
+/// Checks of one tree that compare successive steps, evaluated during the run.
 pub(super) struct EveryStep {
     stream: Stream,
     /// Motion at the start of the current step. After the step, it also contains the accelerations and forces
@@ -61,8 +61,8 @@ impl EveryStep {
         self.start = None;
     }
 
-    /// Adds the step that ends at `state`. Requires a base twist that is projected onto the momentum, and the
-    /// kinematics of `state` in `system`.
+    /// Adds the step that ends at `state` at the time `t`, s. Requires that the base twist of `state` has
+    /// been projected onto the momentum, and that `system` contains the kinematics of `state`.
     pub(super) fn end<S: Scalar>(&mut self, t: f64, state: &TreeState<S>, system: &Tree<'_, S>) {
         if let Some(start) = self.start.take().filter(|start| start.base.time < t) {
             let mut now = End::of(t, state, system);
@@ -74,8 +74,8 @@ impl EveryStep {
         }
     }
 
-    /// Stores the start of a step before the step is computed. Requires the kinematics of `state` in
-    /// `system`.
+    /// Stores the start of a step at `t`, s, before the step is computed. Requires the kinematics of `state`
+    /// in `system`.
     pub(super) fn start<S: Scalar>(&mut self, t: f64, state: &TreeState<S>, system: &Tree<'_, S>) {
         self.start = Some(End::of(t, state, system));
     }
@@ -93,7 +93,8 @@ impl EveryStep {
         whole.force_before = value(step.last.wrench.linear);
     }
 
-    /// Records the start of a step whose base rows are checked. Requires kinematics and loads in `system`.
+    /// Records the start of a step whose base rows are checked. Requires the kinematics and loads of `state`
+    /// in `system`.
     pub(super) fn record_start<S: Scalar>(
         &mut self,
         t: f64,
@@ -105,8 +106,8 @@ impl EveryStep {
         self.record_end(t, state, system, loads)
     }
 
-    /// Records the end of a step whose base rows are checked. Requires a base twist that is projected onto
-    /// the momentum, and the kinematics and loads of the state in `system`.
+    /// Records the end of a step whose base rows are checked. Requires that the base twist of `state` has
+    /// been projected onto the momentum, and that `system` contains the kinematics and loads of `state`.
     pub(super) fn record_end<S: Scalar>(
         &mut self,
         t: f64,
@@ -132,8 +133,8 @@ impl EveryStep {
 }
 
 impl End {
-    /// Returns the motion at `state`, whose base twist must be projected onto the momentum, without
-    /// accelerations and forces.
+    /// Returns the motion at `state`, without accelerations and forces. Requires that the base twist of
+    /// `state` has been projected onto the momentum.
     fn of<S: Scalar>(time: f64, state: &TreeState<S>, system: &Tree<'_, S>) -> Self {
         let attitude = Quat { v: value(Vec3::from_slice(&state.q[3..])), w: state.q[6].value() };
         let rate = value(Vec3::from_slice(&state.v[3..]));

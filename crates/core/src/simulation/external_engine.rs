@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::spatial::{Force, Scalar, Vec3};
 use std::ops::Range;
 
-/// Largest accepted deviation from 1 of the norm of a quaternion that an engine returns.
+/// Largest accepted difference between 1 and the norm of a quaternion that an engine returns.
 const UNIT: f64 = 1e-9;
 
 /// External engine of a run. Each system, whether connected or not, is a tree of the run.
@@ -33,7 +33,8 @@ pub(super) struct ExternalEngine<'a> {
 }
 
 impl<'a> ExternalEngine<'a> {
-    /// Wraps an engine of systems with these models, and with contacts of these names.
+    /// Creates the buffers for an engine that moves systems with these models; `contacts` are the names of
+    /// the declared contacts.
     pub(super) fn new(engine: &'a mut dyn Engine, models: &[&Model], contacts: &[String]) -> Self {
         let computed = engine.contacts();
         let output = StepOutput::new(models, computed.len());
@@ -50,8 +51,8 @@ impl<'a> ExternalEngine<'a> {
         Self { engine, q, v, tau, ranges, welds, brakes, contacts, output, has_output: false }
     }
 
-    /// Returns the acceleration of a system at the start of the last step, `(nv,)`, m/s² and rad/s²; `None`
-    /// if that step failed.
+    /// Returns the acceleration of the system with index `system` at the start of the last step, `(nv,)`,
+    /// m/s² and rad/s²; `None` if that step failed.
     pub(super) fn first_acceleration(&self, system: usize) -> Option<&[f64]> {
         let [_, range] = &self.ranges[system];
         self.has_output.then(|| &self.output.acceleration[range.clone()])
@@ -64,8 +65,8 @@ impl<'a> ExternalEngine<'a> {
         done.work + done.weld_work
     }
 
-    /// Returns the output of the last step for a declared contact; `None` if that step failed, or if the
-    /// engine does not compute its force.
+    /// Returns the output of the last step for the declared contact with index `number`; `None` if that step
+    /// failed, or if the engine does not compute its force.
     pub(super) fn contact(&self, number: usize) -> Option<&ContactOutput> {
         let own = self.contacts[number]?;
         self.has_output.then(|| &self.output.contacts[own])
@@ -92,7 +93,7 @@ impl<'a> ExternalEngine<'a> {
         }
     }
 
-    /// Advances `state` over `interval` with the joint torques of the trees.
+    /// Advances `state` over `interval`, s, with the joint torques of the trees.
     pub(super) fn advance<S: Scalar>(
         &mut self,
         trees: &[Tree<'_, S>],
@@ -115,7 +116,8 @@ impl<'a> ExternalEngine<'a> {
         Ok(())
     }
 
-    /// Checks the output of a step of `trees` that started at `t`, s.
+    /// Checks that the output of a step of `trees` that started at `t`, s, is finite and has unit
+    /// quaternions.
     fn check_output<S: Scalar>(&self, trees: &[Tree<'_, S>], t: f64) -> Result<(), SimulationError> {
         let is_finite = |[q, v]: &&[Range<usize>; 2]| {
             let values = self.output.q[q.clone()].iter().chain(&self.output.v[v.clone()]);

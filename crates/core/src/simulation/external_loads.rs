@@ -1,4 +1,4 @@
-//! External loads on the trees: the interface between the equations of motion and the environment.
+//! Interface between the equations of motion and the environment, which computes external loads on the trees.
 
 use super::error::SimulationError;
 use super::members::Members;
@@ -18,7 +18,7 @@ pub(crate) trait ExternalLoads<S> {
         interval: (f64, f64),
     ) -> Result<(), SimulationError>;
 
-    /// Returns true if there are loads. Otherwise the wrenches on all bodies remain zero.
+    /// Returns true if there may be loads. Otherwise the wrenches on all bodies remain zero.
     fn is_active(&self) -> bool;
 }
 

@@ -1,4 +1,4 @@
-//! Connections and engaged brakes passed to the external engine, which maintains them by its own constraints.
+//! Conversion of connections and engaged brakes to the form in which the external engine receives them.
 
 use super::engine::{BodyWeld, EngagedBrake};
 use super::error::SimulationError;
@@ -10,7 +10,7 @@ use crate::spatial::{Quat, Scalar, Vec3};
 use crate::world::{FrameIndex, Weld};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Passes the active connections to the external engine.
+    /// Passes the active connections to the external engine, and marks the pairs of pieces that they hold.
     pub(super) fn pass_welds(&mut self) {
         let welds: Vec<_> = self.connections.active.welds.iter().map(|weld| self.body_weld(weld)).collect();
         let frames = |system: usize| self.equations.trees[system].model.frames();
@@ -57,8 +57,8 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Adds a row for the current state before an event, with the accelerations that the external engine
-    /// returns.
+    /// Adds a row of every system for the current state at `t`, s, before an event, with the accelerations
+    /// that the external engine returns.
     pub(super) fn record_before_event(&mut self, t: f64) -> Result<(), SimulationError> {
         self.record(t)?;
         let Self { state, equations, mover, systems, row_states, .. } = self;

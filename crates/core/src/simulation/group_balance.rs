@@ -1,5 +1,5 @@
-//! Certificate of a group of several systems: its momentum and energy over the whole run, including all
-//! events.
+//! Certificate of a group of several systems: balances of its momentum and energy over the whole run,
+//! including all events.
 
 use super::certificate::{Check, ENERGY, MOMENTUM};
 use crate::dynamics::Momentum;
@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 /// `E`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupBalance {
-    /// Numbers of the systems in the world.
+    /// Indices of the systems in the world.
     pub systems: Vec<usize>,
     /// Values of `P − ∫F dt`, N s, `L − ∫T dt`, N m s, and `E − W`, J, in the first row; `None` before that
     /// row.
@@ -75,12 +75,12 @@ impl GroupBalance {
         self.largest_energy = self.largest_energy.max(row.kinetic_energy);
     }
 
-    /// Returns the balance with `systems` as the numbers of its systems.
+    /// Returns the balance with `systems` as the indices of its systems in the world.
     pub(super) fn of_systems(self, systems: &[usize]) -> Self {
         Self { systems: systems.to_vec(), ..self }
     }
 
-    /// Returns the checks of the momentum and the energy.
+    /// Returns the checks of linear momentum, angular momentum and energy.
     pub fn checks(&self) -> Vec<Check> {
         let relative = |error: f64, scale: f64| if error == 0.0 { 0.0 } else { error / scale };
         let [linear, angular] = [0, 1].map(|part| relative(self.drift[part], self.scales[part]));

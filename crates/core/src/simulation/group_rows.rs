@@ -10,7 +10,7 @@ use crate::spatial::Scalar;
 use crate::world::Balance;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns the impulse, the work and the dissipated energy of the group at a state: the values of the
+    /// Returns the impulse, the work and the dissipated energy of the group at `state`: the values of the
     /// current trees plus those of previous trees.
     pub(super) fn totals(&self, state: &State<S>) -> Ledger {
         let mut all = self.ledger;
@@ -24,7 +24,8 @@ impl<S: Scalar> RunState<'_, S> {
         all
     }
 
-    /// Adds a row to the balance, for the state of the last recorded rows of the systems.
+    /// Adds a row to the balance for the last recorded rows of the systems, which belong to the current state
+    /// or, if `is_within_step`, to the state in the row buffer. Does nothing for a single system.
     pub(super) fn add_group_row(&mut self, is_within_step: bool) {
         if self.systems.len() < 2 {
             return;

@@ -28,18 +28,18 @@ impl SystemRow<'_> {
 
 /// Momentum and kinetic energy of several systems.
 pub(super) struct GroupSum {
-    /// Momentum, N s and N m s; the angular part is about the common centre of mass.
+    /// Momentum in W axes, N s and N m s; the angular part is about the common centre of mass.
     pub(super) momentum: Momentum<f64>,
     /// Sum of the kinetic energies in W, J.
     pub(super) kinetic_energy: f64,
-    /// Common centre of mass in W, m.
+    /// Position of the common centre of mass in W, m.
     pub(super) center: Vec3<f64>,
-    /// Velocity of the common centre of mass, m/s.
+    /// Velocity of the common centre of mass in W, m/s.
     pub(super) velocity: Vec3<f64>,
 }
 
 impl GroupSum {
-    /// Computes the sums over the systems.
+    /// Computes the sums over the rows of all systems.
     pub(super) fn of(systems: &[SystemRow<'_>]) -> Self {
         let (mut mass, mut linear, mut first_moment) = (0.0, Vec3::zero(), Vec3::zero());
         for system in systems {

@@ -1,4 +1,4 @@
-//! Application of events at a cut: captures and releases, and brakes that are engaged or disengaged.
+//! Application of events between two steps: captures and releases, and brakes that are engaged or disengaged.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -11,9 +11,9 @@ use crate::spatial::{Force, Quat, Scalar, Vec3};
 use crate::world::{Action, FrameIndex, RigidPose, Seat, Seating, Weld, WorldError, impulse_response};
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Applies the events that are due at `t`, s, in the order of their declaration. One row is recorded
-    /// before them and one after them. Requires kinematics with projected base twists in the equations of
-    /// motion.
+    /// Applies the events that are due at `t`, s, the start of a step over `interval`, s, in the order of
+    /// their declaration. One row is recorded before them and one after them. Requires the kinematics of the
+    /// current state, with projected base twists, in the equations of motion.
     pub(super) fn happen(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         if self.events.list.is_empty() {
             return Ok(());
@@ -37,7 +37,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds the touch-downs and lift-offs at the current cut to the events that have happened.
+    /// Moves the records of touch-downs and lift-offs from the contacts to the events that have happened.
     pub(super) fn take_touches(&mut self) {
         let Self { equations, events, numbers, .. } = self;
         for mut record in equations.contacts.happened.drain(..) {
@@ -46,7 +46,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Determines for which latches the conditions hold at `t`, s, and sets or clears the times at which
+    /// Determines which latches satisfy their conditions at `t`, s, and sets or clears the times at which
     /// their captures are due.
     fn update_latches(&mut self, t: f64) {
         let EquationsOfMotion { trees, latches, .. } = &mut self.equations;
@@ -60,8 +60,9 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns true if an event changes anything. The release of frames that are not connected does not, nor does
-    /// engaging an engaged brake.
+    /// Returns true if the event with index `number` has an effect. A release of frames that are not
+    /// connected has none, and neither has the engagement of an engaged brake or the disengagement of a
+    /// disengaged one.
     fn has_effect(&self, number: usize) -> bool {
         match self.events.list[number].action {
             Action::Capture { .. } => true,
@@ -121,8 +122,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(changed)
     }
 
-    /// Connects two frames: rigidly at their current relative pose or, with `seat`, by a motion from that
-    /// pose to a nominal pose.
+    /// Connects two frames at `t`, s: rigidly at their current relative pose or, with `seat`, by a motion
+    /// from that pose to a nominal pose. `number` is the index of the event.
     fn capture(
         &mut self,
         number: usize,
@@ -167,8 +168,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(record)
     }
 
-    /// Removes a connection. Then applies `impulse`, N s and N m s, to the system of the captured frame, and
-    /// the opposite impulse to the other system.
+    /// Removes the connection of the event with index `capture`. Then applies `impulse`, N s and N m s, to
+    /// the system of the captured frame, and the opposite impulse to the other system. The impulse acts at
+    /// the origin of the capturing frame and is in the axes of this frame.
     fn release(
         &mut self,
         number: usize,
@@ -195,8 +197,9 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Applies an impulse to the tree of the second frame and the opposite impulse to the tree of the first.
-    /// The impulse is given at the origin and in the axes of the first frame. Returns the work of the
-    /// impulses, J: `½ Σ iᵀ (u⁻ + u⁺)` with the twists `u` of the frames before and after.
+    /// The impulse, N s and N m s, acts at the origin of the first frame and is in the axes of this frame.
+    /// Returns the work of the impulses, J: `½ Σ iᵀ (u⁻ + u⁺)` over both frames, with the impulses `i` on
+    /// them and their twists `u⁻` before and `u⁺` after the impulses.
     fn push_apart(&mut self, frames: [FrameIndex; 2], impulse: [f64; 6], states: &[Snapshot]) -> f64 {
         let [(pose_by, twist_by), (pose_of, twist_of)] =
             frames.map(|place| self.pose_and_twist(place, states));

@@ -1,4 +1,4 @@
-//! Trees of connected systems whose models the controllers of a system know.
+//! Models of connected systems that the controllers of a system know.
 
 use super::error::SimulationError;
 use super::members::Place;
@@ -36,8 +36,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Writes the states of the connected systems to the tree that the controllers of a system know. Adds the
-    /// external wrenches if the controllers compensate them. Requires the states of the parts.
+    /// Writes the states of the connected systems to the tree that the controllers of the system with index
+    /// `number` know. Adds the external wrenches if the controllers compensate them. Requires up-to-date
+    /// states of the parts of trees.
     pub(super) fn update_known(&mut self, number: usize) {
         let members = &self.equations.members;
         let RunSystem { controllers, known_members, .. } = &mut self.systems[number];

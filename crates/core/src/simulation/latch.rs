@@ -6,15 +6,16 @@ use crate::dynamics::{frame_pose, frame_velocity};
 use crate::spatial::{Real, log_rotation};
 use crate::world::Envelope;
 
-/// Fraction by which a value may exceed its bound in the envelope because of rounding errors.
+/// Fraction by which a value may exceed its bound in the envelope, to allow for rounding errors.
 const ROUNDING: f64 = 1e-9;
 
-/// Latch that has not closed.
+/// Latch whose capture has not happened.
 #[derive(Clone, Debug)]
 pub(crate) struct Latch {
-    /// Number of the capture among the events.
+    /// Index of the capture among the events of the group.
     pub(super) event: usize,
-    /// Tree and frame index of the capturing frame and of the captured frame.
+    /// For the capturing and the captured frame, the index of the tree and the index of the frame in its
+    /// model.
     pub(super) frames: [(usize, usize); 2],
     pub(super) envelope: Envelope,
     /// True while the conditions hold.
@@ -42,12 +43,14 @@ impl Latch {
         values.iter().zip(bounds).map(|(value, bound)| 1.0 - value / bound).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns true if the conditions hold within the tolerance for rounding.
+    /// Returns true if the conditions hold within the tolerance for rounding; `inside` is a value of
+    /// [`Latch::inside`].
     pub(super) fn holds(inside: f64) -> bool {
         inside >= -ROUNDING
     }
 
-    /// Returns the margin to the next change of the latch. It is negative if the change is overdue.
+    /// Returns the margin to the next change of [`Latch::is_held`], negative if the change is overdue;
+    /// `inside` is a value of [`Latch::inside`].
     pub(super) fn margin(&self, inside: f64) -> f64 {
         if self.is_held { inside + 2.0 * ROUNDING } else { -inside }
     }

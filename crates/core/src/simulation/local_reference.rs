@@ -19,17 +19,18 @@ pub(super) struct LocalReference {
     pub(super) position: [f64; 3],
     /// Velocity of the robot's centre of mass at the change of reference, axes of I, m/s.
     pub(super) velocity: [f64; 3],
-    /// Linear momentum that all changes of reference so far have removed, kg m/s.
+    /// Linear momentum that all changes of reference so far have removed from the integrated motion, W axes,
+    /// kg m/s.
     pub(super) momentum_taken: [f64; 3],
-    /// Work in W less work in `W'`, J, except the part that results from the present velocity `ṡ` of the
-    /// frame.
+    /// Work in W less work in `W'`, J, without the part that results from the present velocity `ṡ` of the
+    /// frame `W'`.
     pub(super) work_ahead: f64,
     /// Times of all changes of reference up to this one, s.
     pub(super) times: Vec<f64>,
 }
 
-/// Transformation of a row from `W'` to W at one instant. It consists of the vector `s` (m), its first and
-/// second time derivatives, and the mass of the robot (kg).
+/// Transformation of a row from `W'` to W at one instant. It contains the vector `s`, m, its first and second
+/// time derivatives, the mass of the robot, kg, and the state of the reference orbit of W.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shift {
     /// State of the reference orbit of W.
@@ -43,8 +44,9 @@ pub(super) struct Shift {
 }
 
 impl Shift {
-    /// Computes the transformation from the states `state` of the local reference orbit and `reference` of
-    /// the reference orbit of W; `rate` is the time derivative of the position of the latter, m/s.
+    /// Computes the transformation for a robot of mass `mass`, kg, from the states `state` of the local
+    /// reference orbit and `reference` of the reference orbit of W; `rate` is the time derivative of the
+    /// position on the reference orbit of W, m/s.
     pub(super) fn between(
         local: &LocalReference,
         state: &OrbitState,
@@ -95,7 +97,8 @@ impl Shift {
         add(&mut v[..3], &(rot_bw * self.velocity));
     }
 
-    /// Transforms the acceleration of the last row from `W'` to W: `a = a' + Rᵀ s̈ − ω × Rᵀ ṡ`.
+    /// Transforms the acceleration of the last row from `W'` to W: `a = a' + Rᵀ s̈ − ω × Rᵀ ṡ` in base axes,
+    /// with the angular velocity `ω` and the rotation `R` from base axes to W axes.
     pub(super) fn transform_acceleration(&self, trace: &mut Trace, model: &Model) {
         let (nq, nv) = (model.nq(), model.nv());
         let rot_bw = last_attitude(trace, nq).transpose();
@@ -104,7 +107,7 @@ impl Shift {
         add(last(&mut trace.acceleration, nv, 3), &change);
     }
 
-    /// Returns the additional force in W on a body of mass `mass` (kg), N.
+    /// Returns the additional force in W, N, on a body of mass `mass`, kg.
     pub(super) fn inertial_force(&self, mass: f64) -> Vector3<f64> {
         self.acceleration * mass
     }
@@ -120,7 +123,7 @@ fn add(to: &mut [f64], v: &Vector3<f64>) {
     to.iter_mut().zip(v.iter()).for_each(|(to, v)| *to += v);
 }
 
-/// Returns the rotation `R_wb` from base axes to W axes of the last row.
+/// Returns the rotation `R_wb` from base axes to W axes in the last row.
 fn last_attitude(trace: &mut Trace, nq: usize) -> Matrix3<f64> {
     base_rotation::<f64>(last(&mut trace.q, nq, nq)).to_nalgebra()
 }

@@ -1,5 +1,5 @@
-//! Advance of a run to any time, and evaluation of the run at that time. A step that ends later is tried and
-//! then undone, so that the steps do not depend on the times at which the run is evaluated.
+//! Advance of a run to any time, and evaluation of the run at that time. A step that ends later is computed
+//! as a trial and then undone, so that the steps do not depend on the times at which the run is evaluated.
 
 use super::checkpoint::Progress;
 use super::equations::EquationsOfMotion;
@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 const MONITOR_EVERY: usize = 64;
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Computes all steps that end at or before `t`, s. Stops at the end of a step if the monitor returns
+    /// Computes all steps that end at or before `t`, s. Stops at the end of a step if `monitor` returns
     /// `Break`.
     pub(super) fn advance_to(
         &mut self,
@@ -64,7 +64,7 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Calls `work` and then restores the current state. While `work` runs, only rows before the time
-    /// `records_before` are recorded. The state of the controllers, which may be user-defined, is not
+    /// `records_before`, s, are recorded. The state of the controllers, which may be user-defined, is not
     /// restored: if `work` has updated them at the current cut, they are not updated there again.
     fn peek<R>(
         &mut self,
@@ -92,7 +92,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns the torques, N m (N), and the requested accelerations, rad/s² (m/s²), of the joints of every
+    /// Returns the torques, N m or N, and the requested accelerations, rad/s² or m/s², of the joints of every
     /// system.
     fn commands(&self) -> Vec<(Vec<S>, Vec<Option<f64>>)> {
         let EquationsOfMotion { trees, members, .. } = &self.equations;
@@ -137,7 +137,7 @@ impl<S: Scalar> RunState<'_, S> {
         result
     }
 
-    /// Ends the current step at the current time, which becomes the current cut.
+    /// Computes the current step up to the current time, where the next step then begins.
     pub(super) fn cut_at_current_time(&mut self) -> Result<(), SimulationError> {
         while self.schedule.is_later(self.time, self.schedule.now()) {
             let Some((interval, after)) = self.schedule.following() else { break };
@@ -147,8 +147,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Writes the configuration and the velocity of a system at the current time, relative to W, to `q` and
-    /// `v`.
+    /// Writes the configuration, `(nq,)`, and the velocity, `(nv,)`, of a system at the current time,
+    /// relative to W, to `q` and `v`.
     pub(super) fn read_state(
         &mut self,
         system: usize,

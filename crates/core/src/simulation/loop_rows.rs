@@ -11,8 +11,8 @@ use crate::spatial::{Real, Scalar, Vec3};
 use crate::world::{Action, Event};
 
 impl<S: Real> Tree<'_, S> {
-    /// Returns the name in the tree and the row of every closed loop at `state`. Requires the kinematics of `state`,
-    /// the loads and the modes of the joints.
+    /// Returns, for every closed loop at `state`, its name in the tree and its row in the order of the parts
+    /// of [`LOOPS`](super::LOOPS). Requires the kinematics of `state`, the loads and the modes of the joints.
     pub(super) fn loop_rows(&mut self, state: &TreeState<S>) -> Vec<(String, [f64; 11])> {
         if self.loops.is_empty() {
             return Vec::new();
@@ -46,8 +46,9 @@ impl<S: Real> Tree<'_, S> {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Adds the rows of the closed loops to the last rows. Requires the kinematics and loads of the state, or of the
-    /// state in the row buffer if `is_within_step`, in the equations of motion.
+    /// Adds the forces and openings of the closed loops to the last rows of all systems. Requires the
+    /// kinematics and loads of the state, or of the state in the row buffer if `is_within_step`, in the
+    /// equations of motion.
     pub(super) fn record_loops(&mut self, is_within_step: bool) {
         if self.systems.iter().all(|run| run.recorder.trace.loops.is_empty()) {
             return;
@@ -97,7 +98,8 @@ pub(super) fn recorded_loops(number: usize, model: &Model, events: &[Event]) -> 
     own.chain(closing).collect()
 }
 
-/// Returns true if the captures other than the event `number` may connect two systems.
+/// Returns true if captures other than the event with index `number` may connect two systems, directly or
+/// through other systems.
 fn others_connect(events: &[Event], number: usize, [a, b]: [usize; 2]) -> bool {
     let mut reached = vec![a];
     let mut next = 0;

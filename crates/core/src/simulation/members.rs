@@ -30,7 +30,7 @@ pub(crate) struct Members<'a, S> {
 
 /// System that shares its tree with other systems.
 pub(crate) struct Part<'a, S> {
-    /// Number of the tree.
+    /// Index of the tree.
     pub(super) tree: usize,
     /// Index of the system among the members of the tree.
     share: usize,
@@ -39,7 +39,8 @@ pub(crate) struct Part<'a, S> {
     pub(super) state: TreeState<S>,
     /// Kinematics, commanded torques and modes in the coordinates of the system.
     pub(super) own: Tree<'a, S>,
-    /// Sign of the base quaternion with which the quaternion is continuous when the system joins the tree.
+    /// Factor, 1 or −1, of the base quaternion with which the quaternion is continuous when the system joins
+    /// the tree.
     pub(super) sign: f64,
     /// Work less kinetic energy at the instant at which the system joined the tree, J.
     work_ahead: S,
@@ -57,12 +58,12 @@ pub(super) struct SavedPart {
 }
 
 impl<S: Real> Members<'_, S> {
-    /// Creates the places of systems that share no tree.
+    /// Creates the places of `count` systems, each of which is the only member of its tree.
     pub(crate) fn alone(count: usize) -> Self {
         Self { places: (0..count).map(Place::Tree).collect(), parts: Vec::new() }
     }
 
-    /// Returns the number of the tree at a place.
+    /// Returns the index of the tree that contains the system at a place.
     pub(super) fn tree_at(&self, place: Place) -> usize {
         match place {
             Place::Tree(tree) => tree,
@@ -70,7 +71,8 @@ impl<S: Real> Members<'_, S> {
         }
     }
 
-    /// Returns the state of a system and its tree, both in the coordinates of the system.
+    /// Returns the state and the equations of motion of the system with index `number`, both in the
+    /// coordinates of the system.
     pub(super) fn system<'m>(
         &'m self,
         number: usize,
@@ -97,9 +99,9 @@ impl<S: Scalar> Members<'_, S> {
 }
 
 impl<'a, S: Scalar> Part<'a, S> {
-    /// Creates the part for a system that joins a tree; `tree` is the number of the tree and `share` the
-    /// index of the member. `state` and `own` are those at the instant at which the system joins the tree,
-    /// before any impulse.
+    /// Creates the part for a system that joins a tree; `tree` is the index of the tree and `share` the index
+    /// of the system among its members. `state` and `own` are those at the instant at which the system joins
+    /// the tree, before any impulse.
     pub(super) fn new(
         (tree, share): (usize, usize),
         member: Member,
@@ -113,7 +115,7 @@ impl<'a, S: Scalar> Part<'a, S> {
         Self { tree, share, member, state, own, sign: 1.0, work_ahead, dissipated_before }
     }
 
-    /// Computes the state of the system, and its kinematics, from the kinematics of its tree.
+    /// Computes the state of the system and its kinematics from the state and the kinematics of its tree.
     pub(super) fn follow(&mut self, tree: &Tree<'_, S>, state: &TreeState<S>) {
         let base = &self.member.bodies[0];
         let body = &tree.data.bodies[base.body];
@@ -136,8 +138,8 @@ impl<'a, S: Scalar> Part<'a, S> {
         self.own.update_stage_kinematics(&mut self.state);
     }
 
-    /// Chooses the sign of the base quaternion so that it is continuous with `before`, (x, y, z, w). Requires
-    /// the kinematics of the tree.
+    /// Chooses the sign of the base quaternion so that the quaternion is continuous with `before`, (x, y, z,
+    /// w). Requires the kinematics of the tree.
     pub(super) fn choose_sign(&mut self, before: &[S]) {
         let dot: f64 = before.iter().zip(&self.state.q[3..]).map(|(a, b)| a.value() * b.value()).sum();
         if dot < 0.0 {
@@ -147,7 +149,7 @@ impl<'a, S: Scalar> Part<'a, S> {
     }
 
     /// Computes the impulse and the work of the system from the changes of its momentum and of its kinetic
-    /// energy. They include the impulse and the work of its connections. Requires the state and the
+    /// energy. Both include the effect of the connections to other systems. Requires the state and the
     /// kinematics of the system relative to W.
     pub(super) fn update_balance(&mut self) {
         let (h, energy, _) =
@@ -207,13 +209,13 @@ impl<'a, S: Scalar> Part<'a, S> {
         }
     }
 
-    /// Copies the modes of the joints from the tree.
+    /// Copies the modes of the joints of the system from those of the tree.
     pub(super) fn take_modes(&mut self, tree: &Tree<'_, S>) {
         self.own.modes.take(&tree.modes, &self.member.joints);
     }
 
-    /// Returns the acceleration of the system, `(nv,)`, from the acceleration `a` of its tree at `state`,
-    /// relative to W.
+    /// Returns the acceleration of the system, `(nv,)`, m/s² and rad/s², from the acceleration `a` of its
+    /// tree at `state`, relative to W.
     pub(super) fn acceleration(&self, tree: &Tree<'_, S>, state: &TreeState<S>, a: &[S]) -> Vec<S> {
         let ([q, v], a) = (state.values(), a.iter().map(|x| x.value()).collect::<Vec<f64>>());
         let mut data = Data::<f64>::new(&tree.model);

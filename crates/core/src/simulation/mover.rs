@@ -1,4 +1,4 @@
-//! Advance of the trees over a step, by the native engine or by an external engine.
+//! Choice between the native engine and an external engine, which advance the trees over a step.
 
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
@@ -14,7 +14,7 @@ use crate::spatial::Scalar;
 
 type Equations<'a, S> = EquationsOfMotion<'a, S, EnvironmentLoads>;
 
-/// Native integrator or external engine. The order of execution in a step is the same for both. With an
+/// Native engine or external engine of a run. The order of execution in a step is the same for both. With an
 /// external engine, every system remains a separate tree even while it is connected to others.
 pub(super) enum Mover<'a, S> {
     Native(StepMethod<S>),
@@ -31,7 +31,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Applies the impacts of joints that reach their stops. An external engine has its own stops instead.
+    /// Applies the impacts of joints that move into their stops. Does nothing with an external engine, which
+    /// handles stops itself.
     pub(super) fn resolve_impacts(&self, equations: &mut Equations<'_, S>, state: &mut State<S>) {
         if let Self::Native(method) = self {
             method.resolve_impacts(equations, state);
@@ -72,7 +73,7 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Advances `state` from the start of `interval` towards its end. Returns the time reached, s.
+    /// Advances `state` from the start of `interval`, s, towards its end. Returns the time reached, s.
     pub(super) fn advance(
         &mut self,
         equations: &mut Equations<'_, S>,
@@ -89,8 +90,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the acceleration of a tree at the start of the last step, `(nv,)`, m/s² and rad/s²; `None`
-    /// with an external engine.
+    /// Returns the acceleration of the tree with index `number` at the start of the last step, `(nv,)`, m/s²
+    /// and rad/s²; `None` with an external engine.
     pub(super) fn first_acceleration(&self, number: usize) -> Option<&[S]> {
         match self {
             Self::Native(method) => Some(&method.integration.stages.first[number].acceleration),
@@ -98,8 +99,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Adds the acceleration at the start of the last step to the row of a tree. If an external engine
-    /// returned no acceleration, removes the row instead.
+    /// Adds the acceleration at the start of the last step to the last row in `recorder`, which belongs to
+    /// the tree with index `number`. If an external engine returned no acceleration, removes the row instead.
     pub(super) fn complete_row(&self, number: usize, recorder: &mut Recorder, model: &Model) {
         match self {
             Self::Native(method) => {
@@ -112,8 +113,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Adds the force and the power at the start of the last step to the row of a contact that the external
-    /// engine computes.
+    /// Adds the force and the power at the start of the last step to the last row of the contact `name`, if
+    /// an external engine computes its force.
     pub(super) fn complete_contact(&self, contact: usize, name: &str, recorder: &mut Recorder) {
         if let Self::External(engine) = self
             && let Some(done) = engine.contact(contact)
@@ -122,8 +123,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the work done on a tree in the last step less the energy dissipated in its joints, J; `state`
-    /// is the state at the end of the step.
+    /// Returns the work done on the tree with index `number` in the last step less the energy dissipated in
+    /// its joints, J; `state` is the state at the end of the step.
     pub(super) fn work_of_step(&self, number: usize, state: &TreeState<S>) -> f64 {
         match self {
             Self::Native(method) => (state.work - method.integration.stages.start.trees[number].work).value(),
@@ -139,9 +140,9 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the state from which [`Mover::restore`] returns to the current step: the adaptive step control
-    /// (`None` for other methods), the number of consecutive idle steps, and whether the elastic energy of contacts
-    /// has jumped in the last step.
+    /// Returns the state that [`Mover::restore`] restores: the adaptive step control (`None` for other
+    /// methods), the number of consecutive idle steps, and whether the elastic energy of contacts has jumped
+    /// in the last step.
     pub(super) fn save(&self) -> (Option<StepControl>, usize, bool) {
         match self {
             Self::Native(method) => {
@@ -161,8 +162,8 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Returns the number of the first tree whose state is not finite, in `state` or in the last stage of the
-    /// integrator.
+    /// Returns the index of the first tree whose state is not finite, in `state` or in the last stage of the
+    /// integrator; `None` if all are finite.
     pub(super) fn first_diverged(&self, state: &State<S>) -> Option<usize> {
         state.trees.iter().enumerate().position(|(number, state)| match self {
             Self::Native(method) => !state.is_finite() || !method.integration.stages.is_finite(number),
@@ -170,8 +171,9 @@ impl<S: Scalar> Mover<'_, S> {
         })
     }
 
-    /// Returns the configuration and the velocity in the last finite state of a tree. This is `state` or, if
-    /// that is not finite, the state at the start of the step.
+    /// Returns the configuration and the velocity in the last finite state of the tree with index `number`.
+    /// With the native engine, this is the state at the start of the step if `state` is not finite; otherwise
+    /// it is `state`.
     pub(super) fn last_finite(&self, number: usize, state: &State<S>) -> [Vec<f64>; 2] {
         let current = &state.trees[number];
         match self {

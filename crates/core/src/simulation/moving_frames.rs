@@ -1,4 +1,4 @@
-//! Frames of a system in which references of other systems are given.
+//! Motion of the frames of a system in which references of other systems are given.
 
 use super::error::SimulationError;
 use super::run_state::RunState;
@@ -11,8 +11,8 @@ use crate::reference::TaskSample;
 use crate::spatial::Scalar;
 use crate::world::WorldError;
 
-/// Returns the motion in W of a frame of a tree. The acceleration is computed without motor torques and
-/// external wrenches.
+/// Returns the motion in W of the frame with index `frame` of a tree at `q` and `v`. The acceleration is
+/// computed without motor torques and external wrenches.
 fn motion(model: &Model, q: &[f64], v: &[f64], frame: usize) -> TaskSample<f64> {
     let mut data = Data::<f64>::new(model);
     kinematics(model, &mut data, q, v);

@@ -1,8 +1,8 @@
-//! Access to the only tree or system of a run with one robot.
+//! Access to the only tree or the only system of a run with one robot.
 //!
-//! Parts of a run support one robot only: the trace of such a run, the `q`, `v` and commands of its stepper,
-//! and its external engine. Every run of a rollout has one robot, too. These parts use the functions below;
-//! all other code supports a list of trees.
+//! Some parts of a run support only one robot: the trace of such a run, the `q`, `v` and commands of its
+//! stepper, and its external engine. Each run of a rollout also has one robot. These parts use the functions
+//! below; all other code supports a list of trees.
 
 /// Returns the only entry of a list with one entry per tree or system.
 pub(crate) fn only<T>(trees: &[T]) -> &T {

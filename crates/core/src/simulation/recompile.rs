@@ -20,7 +20,8 @@ use crate::world::{
 };
 use std::borrow::Cow;
 
-/// System between two assemblies: its state and its kinematics in its own coordinates.
+/// System that has been removed from its tree before the next assembly: its state and its kinematics in its
+/// own coordinates.
 struct Loose<'a, S> {
     state: TreeState<S>,
     own: Tree<'a, S>,
@@ -29,10 +30,10 @@ struct Loose<'a, S> {
 
 impl<'a, S: Scalar> RunState<'a, S> {
     /// Assembles the trees for the active connections at `t`, s. Trees whose members, closed loops and joints
-    /// with prescribed motion do not change are kept. The other trees receive the states of their members and
-    /// preserve their momenta. Requires the kinematics of the state, relative to W, in the trees, and the
-    /// states of the parts; afterwards the new trees hold their kinematics. With an external engine, the
-    /// connections are passed to the engine, and each system remains a tree.
+    /// with prescribed motion do not change remain the same. The other trees receive the states of their
+    /// members and preserve their momenta. Requires the kinematics of the state, relative to W, in the trees,
+    /// and the states of the parts; afterwards the new trees hold their kinematics. With an external engine,
+    /// the connections are passed to the engine, and each system remains a tree.
     ///
     /// Returns the impulses of the closed loops of the new trees; see [`loop_impulses`].
     pub(super) fn recompile(&mut self, t: f64) -> Result<Vec<(String, [f64; 6])>, SimulationError> {
@@ -92,14 +93,15 @@ impl<'a, S: Scalar> RunState<'a, S> {
         self.find_known()
     }
 
-    /// Finds the frames of the contacts in the trees.
+    /// Sets the places of the frames of the contacts in the trees.
     fn place_contacts(&mut self) {
         let mut contacts = std::mem::take(&mut self.equations.contacts);
         contacts.place(|place| self.frame_in_tree(place));
         self.equations.contacts = contacts;
     }
 
-    /// Finds the latches that are not closed and whose frames are in different trees.
+    /// Finds the latches whose captures have not happened and whose frames belong to systems that are not
+    /// connected.
     pub(super) fn find_latches(&mut self) {
         let mut latches = Vec::new();
         for (event, (declared, state)) in self.events.list.iter().zip(&self.events.states).enumerate() {
@@ -116,7 +118,8 @@ impl<'a, S: Scalar> RunState<'a, S> {
         self.equations.latches = latches;
     }
 
-    /// Returns the tree that contains a frame of a system, and the index of the frame in its model.
+    /// Returns the index of the tree that contains a frame of a system, and the index of the frame in the
+    /// model of the tree.
     pub(super) fn frame_in_tree(&self, place: FrameIndex) -> (usize, usize) {
         match self.equations.members.places[place.system] {
             Place::Tree(tree) => (tree, place.frame),
@@ -139,8 +142,8 @@ fn momentum_of<S: Scalar>(systems: &[Moving<'_>], center: Vec3<S>) -> Momentum<S
     Momentum { linear: lift(total.linear), angular: lift(total.angular) }
 }
 
-/// Starts the integration of the centres of mass of several trees from their momenta. A single tree does not
-/// need it. Requires the kinematics of the states in the trees.
+/// Initializes the centres of mass that are integrated from the momenta of several trees. For a single tree,
+/// the centre of mass is not integrated. Requires the kinematics of the states in the trees.
 pub(super) fn follow_centers<S: Real>(trees: &[Tree<'_, S>], states: &mut [TreeState<S>]) {
     let is_needed = states.len() > 1;
     for (tree, state) in trees.iter().zip(states) {
@@ -149,21 +152,21 @@ pub(super) fn follow_centers<S: Real>(trees: &[Tree<'_, S>], states: &mut [TreeS
     }
 }
 
-/// Trees before an assembly.
+/// Trees, states and parts before an assembly; each entry becomes `None` when the assembly has used it.
 struct Old<'a, S> {
     trees: Vec<Option<Tree<'a, S>>>,
     states: Vec<Option<TreeState<S>>>,
     parts: Vec<Option<Part<'a, S>>>,
     places: Vec<Place>,
-    /// Number of parts of each tree.
+    /// Number of the parts of each tree.
     sizes: Vec<usize>,
-    /// Impulses of the closed loops of new trees, by the names of the loops.
+    /// Names of the closed loops of new trees, with their impulses, N s and N m s.
     impulses: Vec<(String, [f64; 6])>,
 }
 
 impl<'a, S: Scalar> Old<'a, S> {
-    /// Returns the number of the tree that has exactly these members, these joints with prescribed motion and
-    /// the closed loops of `model`; `None` if no tree does or without a `model`.
+    /// Returns the index of the tree that has exactly these members, these joints with prescribed motion and
+    /// the closed loops of `model`; `None` if there is no such tree or no `model`.
     fn unchanged(&self, model: Option<&Model>, members: &[Member], given: &[GivenJoint]) -> Option<usize> {
         let tree = |system: usize| match self.places[system] {
             Place::Part(part) => self.parts[part].as_ref().map(|part| part.tree),
@@ -178,8 +181,8 @@ impl<'a, S: Scalar> Old<'a, S> {
         (is_same && has_given && has_loops && self.sizes[first] == members.len()).then_some(first)
     }
 
-    /// Returns a tree with several members, which receives the number `to`, and removes it from the old
-    /// trees.
+    /// Removes the tree with index `number`, which has several members, from the old trees and returns it.
+    /// Its index among the new trees is `to`.
     fn take_tree(
         &mut self,
         number: usize,
@@ -214,8 +217,8 @@ impl<'a, S: Scalar> Old<'a, S> {
     }
 }
 
-/// Joins systems at `t`, s, to a tree with this model, these members and these joints with prescribed motion.
-/// The tree receives the number `number`.
+/// Joins systems at `t`, s, into a tree with this model, these members and these joints with prescribed
+/// motion. The index of the tree is `number`.
 fn join<'a, S: Scalar>(
     (model, members, given): (Model, Vec<Member>, Vec<GivenJoint>),
     (number, t): (usize, f64),
@@ -265,7 +268,7 @@ fn join<'a, S: Scalar>(
     (tree, state)
 }
 
-/// Returns the joints, in the tree of `members`, that brakes hold rigidly.
+/// Returns the indices, in the tree of `members`, of the joints that brakes hold rigidly.
 fn held_joints<S: Real>(loose: &[Loose<'_, S>], members: &[Member]) -> impl Iterator<Item = usize> {
     let pairs = loose.iter().zip(members);
     pairs.flat_map(|(one, member)| one.own.modes.held().map(|joint| member.joints[joint]))
@@ -278,7 +281,8 @@ impl<S: Scalar> RunState<'_, S> {
         SavedMembers { active: self.connections.active.clone(), parts }
     }
 
-    /// Restores the connections; the state of the trees must be restored afterwards.
+    /// Restores the connections and the states of the systems that share trees; the states of the trees must
+    /// be restored afterwards.
     pub(super) fn restore_members(&mut self, saved: SavedMembers) -> Result<(), SimulationError> {
         if self.connections.active != saved.active {
             self.connections.active = saved.active;

@@ -1,4 +1,4 @@
-//! Rows of a run: at the start of steps, within steps, at impacts and at the end.
+//! Recording of rows: at the start of steps, within steps, at impacts and at the end of the run.
 
 use super::contacts::at_time;
 use super::environment_loads::EnvironmentLoads;
@@ -22,12 +22,13 @@ impl<S: Scalar> RunState<'_, S> {
             && (self.has_every_step || self.has_event || interval.grid_step.is_some_and(is_due))
     }
 
-    /// Adds a row of every system for the current state, whose kinematics are in the equations of motion.
+    /// Adds a row of every system at `t`, s, for the current state, whose kinematics are in the equations of
+    /// motion.
     pub(super) fn record(&mut self, t: f64) -> Result<(), SimulationError> {
         self.add_rows(t, false)
     }
 
-    /// Adds the rows whose times are within the last step and before the current cut.
+    /// Adds the rows that are due within the last step, before the current cut.
     pub(super) fn record_within_step(&mut self) -> Result<(), SimulationError> {
         while let Some((step, t)) = self.schedule.next_grid_step_passed() {
             if t >= self.records_before {
@@ -54,8 +55,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Applies the impacts of joints that reach their stops. If every step is recorded, adds one row before
-    /// and one row after the impacts, at the same time.
+    /// Applies the impacts of joints that move into their stops at `t`, s, the start of a step over
+    /// `interval`, s. If every step is recorded, adds one row before and one row after the impacts, at the
+    /// same time.
     pub(super) fn impacts(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         let mut pairs = self.equations.trees.iter().zip(&self.state.trees);
         if !pairs.any(|(system, state)| system.modes.is_active() && system.first_impact(state).is_some()) {
@@ -68,7 +70,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds a row before a jump of the velocities at the current cut.
+    /// Adds a row before a jump of the velocities at `t`, s, the start of a step over `interval`, s.
     pub(super) fn record_before_jump(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
         self.equations.apply_loads(t, interval, &self.state)?;
         if self.mover.is_external() {
@@ -83,8 +85,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds the last row: the state at the current cut, with the torques that would be held in a further
-    /// step.
+    /// Adds the last row: the state at the current cut, with the torques that would be held in another step.
     pub(super) fn record_end(&mut self) -> Result<(), SimulationError> {
         let t = self.schedule.now();
         let following = self.schedule.following().map(|(interval, _)| interval.end);
@@ -103,8 +104,9 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Adds a row of every system, without the acceleration, for the current state or, if `is_within_step`,
-    /// for the state in the row buffer. Requires the kinematics of that state in the equations of motion.
+    /// Adds a row of every system at `t`, s, without the acceleration, for the current state or, if
+    /// `is_within_step`, for the state in the row buffer. Requires the kinematics of that state in the
+    /// equations of motion.
     fn add_rows(&mut self, t: f64, is_within_step: bool) -> Result<(), SimulationError> {
         self.update_moving_frames(is_within_step);
         let Self { systems, equations, state, row_buffers, row_states, .. } = self;

@@ -22,7 +22,7 @@ use std::hint::black_box;
 /// Quantities that a run records in addition to its state.
 #[derive(Clone, Default)]
 pub(super) struct RecordOptions {
-    /// Index of the tool's frame.
+    /// Index of the frame of the tool; `None` without a tool.
     pub(super) tool: Option<usize>,
     /// True if the tool has a reference.
     pub(super) has_reference: bool,
@@ -61,15 +61,14 @@ impl RecordOptions {
 /// Recorder that adds rows to a trace without allocating memory.
 pub(super) struct Recorder {
     pub(super) trace: Trace,
-    /// Number of the system in the run.
+    /// Index of the system in the group.
     number: usize,
     options: RecordOptions,
-    /// Transformation of the last row to W; `None` if the row was not integrated about a local reference
-    /// orbit.
+    /// Transformation of the last row to W; `None` if the motion is integrated in W.
     shift: Option<Shift>,
     /// Number of values per row of each column.
     widths: Vec<usize>,
-    /// Number of rows that were removed by [`Recorder::drop_rows`].
+    /// Number of rows that [`Recorder::drop_rows`] has removed.
     dropped: usize,
 }
 
@@ -139,8 +138,9 @@ impl Recorder {
         Ok(())
     }
 
-    /// Adds a row for a state whose kinematics are in `system`. [`Recorder::record_acceleration`] must then
-    /// complete the row.
+    /// Adds a row at `t`, s, for a state whose kinematics are in `system`. `orbit` is the state of the
+    /// reference orbit, and `desired` the desired motion of the tool, with true if it is relative to the
+    /// base. [`Recorder::record_acceleration`] must then complete the row.
     pub(super) fn record_state<S: Scalar>(
         &mut self,
         t: f64,
@@ -164,8 +164,8 @@ impl Recorder {
         }
     }
 
-    /// Adds the residual of the reference orbit and the recorded wrenches on every body to the last row, and
-    /// transforms the row to W.
+    /// Adds the residual of the reference orbit at `t`, s, and the recorded wrenches on every body to the
+    /// last row, and transforms the row to W.
     pub(super) fn record_wrenches(
         &mut self,
         model: &Model,
@@ -193,14 +193,15 @@ impl Recorder {
         Ok(())
     }
 
-    /// Adds the row of the contact with this name to the last row.
+    /// Adds the values `row` of the contact `name` to the last row.
     pub(super) fn record_contact(&mut self, name: &str, row: &[f64]) {
         if let Some(column) = self.trace.contacts.iter_mut().find(|column| column.name == name) {
             column.values.extend_from_slice(row);
         }
     }
 
-    /// Adds rows of the closed loops, by name, to the last row; loops that are not closed have zeros.
+    /// Adds the values of the closed loops, given by name, to the last row. Loops that are not closed have
+    /// zeros.
     pub(super) fn record_loops(&mut self, rows: &[(String, [f64; 11])]) {
         for column in &mut self.trace.loops {
             let row = rows.iter().find(|(name, _)| *name == column.name);
@@ -208,7 +209,7 @@ impl Recorder {
         }
     }
 
-    /// Replaces the force and the power in the last row of the contact with this name.
+    /// Replaces the force and the power of the contact `name` in the last row by those in `done`.
     pub(super) fn record_contact_force(&mut self, name: &str, done: &ContactOutput) {
         let part = |name: &str| CONTACTS.parts.iter().find(|part| part.name == name).map(|part| part.start);
         let column = self.trace.contacts.iter_mut().find(|column| column.name == name);
@@ -295,8 +296,8 @@ impl Recorder {
         self.truncate(self.trace.rows().saturating_sub(1));
     }
 
-    /// Removes all rows except the first one and the last `keep`. The other rows are then not sufficient for
-    /// the checks that compare successive steps.
+    /// Removes all rows except the first one and the last `keep`. The remaining rows are then not sufficient
+    /// for the checks that compare successive steps.
     pub(super) fn drop_rows(&mut self, keep: usize) {
         let excess = self.trace.rows().saturating_sub(keep + 1);
         if excess == 0 {
@@ -314,7 +315,8 @@ impl Recorder {
         self.trace.rows() + self.dropped
     }
 
-    /// Removes the rows recorded after the first `recorded`, a value of [`Recorder::rows_recorded`].
+    /// Removes the rows recorded after the first `recorded` rows; `recorded` is a value that
+    /// [`Recorder::rows_recorded`] returned.
     pub(super) fn truncate_to(&mut self, recorded: usize) {
         self.truncate(recorded.saturating_sub(self.dropped));
     }
@@ -326,7 +328,7 @@ impl Recorder {
         }
     }
 
-    /// Completes the last row with the acceleration `a`, `(nv,)`.
+    /// Completes the last row with the acceleration `a`, `(nv,)`, m/s² and rad/s².
     pub(super) fn record_acceleration<S: Scalar>(&mut self, model: &Model, a: &[S]) {
         push(&mut self.trace.acceleration, a);
         if let Some(shift) = &self.shift {
@@ -335,7 +337,7 @@ impl Recorder {
     }
 }
 
-/// Returns the pose in W, with zero velocity, for a sample that is relative to the base.
+/// Returns the desired pose in W, with zero velocity, from a sample that is relative to the base.
 #[inline(always)]
 fn relative_to_base<S: Scalar>(q: &[S], relative: &TaskSample<S>) -> TaskSample<S> {
     let rot_wb = base_rotation(q);

@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 pub struct Recording {
     /// Trace of each system, in the order of the systems.
     pub systems: Vec<Trace>,
-    /// Events that happened, in order of time.
+    /// Records of the events that happened, in order of time.
     pub events: Vec<EventRecord>,
-    /// Balances of the groups that have several systems.
+    /// Balances of momentum and energy of the groups that have several systems.
     pub groups: Vec<GroupBalance>,
 }
 
@@ -24,7 +24,7 @@ impl Recording {
     /// If the run has several systems.
     pub fn only(self) -> Trace {
         let mut systems = self.systems;
-        assert_eq!(systems.len(), 1, "the run has several systems; take one of `systems`");
+        assert_eq!(systems.len(), 1, "the run has several systems; use one entry of `systems`");
         systems.remove(0)
     }
 
@@ -39,11 +39,11 @@ impl Recording {
 pub enum EventKind {
     /// Two systems were connected.
     Capture,
-    /// A connection was removed.
+    /// The connection of two systems was removed.
     Release,
-    /// Links of a contact began to touch.
+    /// The first links of a contact began to touch.
     TouchDown,
-    /// Links of a contact separated.
+    /// The last touching links of a contact separated.
     LiftOff,
     /// A brake was engaged.
     Engage,
@@ -56,7 +56,7 @@ impl EventKind {
     pub const ALL: [Self; 6] =
         [Self::Capture, Self::Release, Self::TouchDown, Self::LiftOff, Self::Engage, Self::Disengage];
 
-    /// Returns the name that results and messages use for the kind.
+    /// Returns the name of the kind in results and messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Capture => "capture",
@@ -68,7 +68,7 @@ impl EventKind {
         }
     }
 
-    /// Returns true for the events of a contact.
+    /// Returns true for a touch-down or a lift-off.
     pub fn is_of_contact(self) -> bool {
         matches!(self, Self::TouchDown | Self::LiftOff)
     }
@@ -83,8 +83,9 @@ pub struct EventRecord {
     pub kind: EventKind,
     /// Simulation time of the event, s.
     pub time: f64,
-    /// Numbers of the two systems, beginning with the capturing system. For a contact, the numbers of the
-    /// systems whose links touched first, in the order of the sides. For a brake, twice the number of its system.
+    /// Indices in the world of the two systems, beginning with the capturing system. For a contact, those of
+    /// the systems whose links touched first, in the order of the sides. For a brake, both entries are the
+    /// index of its system.
     pub systems: [usize; 2],
     /// Impulse on the second system and the systems connected to it, axes of W: linear, N s, then angular
     /// about `point`, N m s. For a lift-off, the impulse of the contact on the links of its second side since
@@ -95,7 +96,7 @@ pub struct EventRecord {
     /// the link that its joint moves.
     pub point: [f64; 3],
     /// Kinetic energy lost, J; negative if a spring added energy. For a lift-off, the energy dissipated since
-    /// the touch-down.
+    /// the touch-down; for a touch-down, zero.
     pub energy_lost: f64,
     /// Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes
     /// of the momenta of its bodies; zero for a contact, whose forces on both sides act at one point.
@@ -106,7 +107,7 @@ pub struct EventRecord {
     pub twist_left: [f64; 2],
     /// Error of the energy balance, relative to the larger of the kinetic energies before and after the
     /// event. For a capture, the change of the kinetic energy is compared with `½ Δvᵀ M Δv`, for a release
-    /// with the work of the spring. Zero while the motion of a seating capture drives joints.
+    /// with the work of the spring. Zero while a seating motion prescribes the motion of joints.
     pub energy_error: f64,
     /// Largest normal force since the touch-down, N; `None` unless the event is a lift-off. It is the largest
     /// value at the end of a step, or the maximum of the parabola through three such values.
@@ -114,7 +115,7 @@ pub struct EventRecord {
     pub peak_force: Option<f64>,
 }
 
-/// Largest error in the audit of an event that passes.
+/// Largest relative error in the audit of an event that passes.
 pub const AUDIT: f64 = 1e-11;
 
 impl EventRecord {
@@ -137,8 +138,7 @@ impl EventRecord {
         lines.map(|(name, value)| Check { name, value, gate: AUDIT }).collect()
     }
 
-    /// Returns true if momentum and energy are balanced and the connected frames do not move relative to each
-    /// other.
+    /// Returns true if every check of the audit passes.
     pub fn passed(&self) -> bool {
         self.checks().iter().all(Check::passed)
     }

@@ -8,8 +8,8 @@ use std::sync::Arc;
 /// Reference orbit about which a robot is integrated, with its states at the five instants used most
 /// recently.
 ///
-/// Stages of a step, and of successive steps, are often at the same instant. Without an orbit, the states are
-/// `None`.
+/// Stages of the same step or of successive steps often have the same instant. Without an orbit, the states
+/// are `None`.
 #[derive(Debug)]
 pub(super) struct ReferenceCache {
     orbit: Option<Arc<dyn Orbit>>,
@@ -34,7 +34,7 @@ impl ReferenceCache {
         self.orbit.as_deref()
     }
 
-    /// Returns the state and the ephemeris at `t`, s, during a step that ends at `end`, s.
+    /// Returns the state of the orbit and the ephemeris at `t`, s, during a step that ends at `end`, s.
     pub(super) fn at(&mut self, t: f64, end: f64) -> Result<&Instant, SimulationError> {
         if let Some(found) = self.instants.iter().position(|instant| instant.time == t) {
             self.instants[..=found].rotate_right(1);
@@ -52,7 +52,7 @@ impl ReferenceCache {
         Ok(self.store(t, Some(state)))
     }
 
-    /// Stores an instant in place of the instant that has not been used for the longest time.
+    /// Stores the state at `t`, s, in place of the instant that has not been used for the longest time.
     fn store(&mut self, t: f64, state: Option<OrbitState>) -> &Instant {
         self.instants.rotate_right(1);
         let instant = &mut self.instants[0];

@@ -9,8 +9,9 @@ use crate::spatial::{Scalar, Vec3};
 use nalgebra::Vector3;
 
 impl<S: Scalar> Tree<'_, S> {
-    /// Makes a local orbit in free fall, which starts at the centre of mass of this system, the reference of
-    /// `loads`, and transforms `state` to its frame. This system must be the only one on which `loads` act.
+    /// Sets a local orbit in free fall, which starts at `t`, s, at the centre of mass of this system, as the
+    /// reference orbit of `loads`, and transforms `state` to the frame of this orbit. This system must be the
+    /// only one on which `loads` act.
     ///
     /// The centre of mass `c` is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`, `P' =
     /// 0` with the position `p` of the base, the momentum `P` and the mass `m`. The kinetic energy in the new

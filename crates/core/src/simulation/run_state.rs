@@ -35,7 +35,7 @@ use std::sync::Arc;
 pub(super) struct RunState<'a, S> {
     /// Names of the systems and of their joints. All lists with one entry per system are in this order.
     pub(super) layout: Layout,
-    /// Number of each system in the world.
+    /// Index of each system in the world.
     pub(super) numbers: Vec<usize>,
     /// State at the current cut, the instant at which the current step begins.
     pub(super) state: State<S>,
@@ -44,11 +44,11 @@ pub(super) struct RunState<'a, S> {
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
     /// Frames of a system in which references of other systems are given, with systems specified by their
-    /// number in the group.
+    /// index in the group.
     pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,
     pub(super) ledger: Ledger,
-    /// Balance of the group; has no rows if the group consists of a single system.
+    /// Balance of momentum and energy of the group; empty if the group consists of a single system.
     pub(super) balance: GroupBalance,
     pub(super) mover: Mover<'a, S>,
     pub(super) step_settings: StepSettings,
@@ -63,7 +63,7 @@ pub(super) struct RunState<'a, S> {
     pub(super) time: f64,
     /// True if the controllers have been updated at the current cut.
     pub(super) controllers_updated: bool,
-    /// True while [`RunState::peek`] computes trial steps that have not yet updated the controllers.
+    /// True while [`RunState::peek`] computes a trial step that has not yet updated the controllers.
     pub(super) keeps_commands: bool,
     /// True if an event has happened at the current cut, for which a row is then due.
     pub(super) has_event: bool,
@@ -159,8 +159,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Passes the events that have happened to the controllers. Sets the times in the schedule at which
-    /// events are due and at which seating motions require the ends of steps.
+    /// Passes the indices of the events that have happened to the controllers, and sets the times in the
+    /// schedule at which events are due or seating motions require that a step ends.
     pub(super) fn events_changed(&mut self) {
         let step = self.schedule.time_step();
         let seatings = self.connections.active.welds.iter().filter_map(|weld| weld.seating);
@@ -189,7 +189,8 @@ impl<S: Scalar> RunState<'_, S> {
         })
     }
 
-    /// Restores the state of a checkpoint; `rows` holds the rows of each system recorded before it.
+    /// Restores the state of a checkpoint; `rows` contains the rows of each system recorded before the
+    /// checkpoint.
     pub(super) fn resume(&mut self, from: GroupCheckpoint, rows: Vec<Trace>) -> Result<(), SimulationError> {
         let counts: Vec<usize> = rows.iter().map(Trace::rows).collect();
         from.check(&self.layout, &self.schedule, &counts, self.events.list.len())?;
@@ -256,7 +257,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns the error estimates of a system over the whole run.
+    /// Returns the error estimates of the system with index `number` over the whole run.
     fn estimates(&self, number: usize) -> Estimates {
         let members = &self.equations.members;
         let place = members.places[number];
@@ -274,7 +275,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Stores the error estimates of the current trees before the trees change.
+    /// Stores the error estimates of each system so far, before the trees change.
     pub(super) fn conclude_trees(&mut self) {
         for number in 0..self.systems.len() {
             let estimates = self.estimates(number);

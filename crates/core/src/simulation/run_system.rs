@@ -1,4 +1,4 @@
-//! Controllers and recorder for each system of a run.
+//! Controllers, recorder and brakes of one system of a run.
 
 use super::checkpoint::SystemControllers;
 use super::controllers::Controllers;
@@ -14,29 +14,29 @@ use crate::orbit::OrbitState;
 use crate::spatial::Scalar;
 use crate::world::{Brake, Member};
 
-/// Controllers and recorder of one system.
+/// Controllers, recorder and brakes of one system.
 pub(super) struct RunSystem<'a, S> {
     pub(super) controllers: Controllers<'a, S>,
     pub(super) recorder: Recorder,
-    /// Torques, `(n,)`, N m (N), and requested accelerations before a trial step updated the controllers at
-    /// the cut of that step.
+    /// Torques, `(n,)`, N m or N, and requested accelerations, `(n,)`, rad/s² or m/s², before a trial step
+    /// updated the controllers at the cut of that step.
     pub(super) held: Option<(Vec<S>, Vec<Option<f64>>)>,
     /// True if an update of the controllers is due at the current cut.
     pub(super) is_due: bool,
-    /// Systems whose models the controllers know.
+    /// Indices in the group of the systems whose models the controllers know.
     pub(super) knows: Vec<usize>,
     /// Places of the systems in the tree whose model the controllers use; empty if none of the known systems
     /// is connected.
     pub(super) known_members: Vec<Member>,
     /// Error estimates of the previous trees that contained the system; `None` if its tree has never changed.
     pub(super) settled: Option<Estimates>,
-    /// Brakes, with their present engagement.
+    /// Brakes, whose fields `is_engaged` are up to date.
     pub(super) brakes: Vec<Brake>,
 }
 
 impl<S: Scalar> RunSystem<'_, S> {
-    /// Adds a row, without the acceleration, for a state whose kinematics are in `system`. `orbit` is the
-    /// state of the reference orbit.
+    /// Adds a row at `t`, s, without the acceleration, for a state whose kinematics are in `system`. `orbit`
+    /// is the state of the reference orbit.
     pub(super) fn add_row(
         &mut self,
         t: f64,
@@ -83,7 +83,7 @@ impl<S: Scalar> RunSystem<'_, S> {
         Ok(self.controllers.set.load(&controls)?)
     }
 
-    /// Returns the present outcomes of the goals.
+    /// Returns the present outcomes of the goals of the controls.
     pub(super) fn goal_results(&self, model: &Model) -> Vec<GoalResult> {
         let set = &self.controllers.set;
         let with_goal = set.controls().iter().enumerate().filter(|(_, control)| control.goal.is_some());

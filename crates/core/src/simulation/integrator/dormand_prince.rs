@@ -17,12 +17,12 @@ use crate::spatial::{Real, Vec3, dexp_inv_exact};
 const CHANGE: (f64, f64) = (0.2, 5.0);
 
 /// Fraction of the control period below which a step is short, and number of consecutive short steps after
-/// which the run ends with an error. Unstable controllers accelerate joints without bound; each control
-/// period would then take hours.
+/// which the run ends with an error. Without this limit, a run with unstable controllers, which accelerate
+/// joints without bound, could take hours for each control period.
 const SHORT: (f64, usize) = (1e-5, 1000);
 
-/// Error of a step, relative to the tolerance, above which the tolerance is considered to determine the step
-/// size.
+/// Error of a step, relative to the tolerance, above which a short step counts as one that the tolerance
+/// requires.
 const LIMITING: f64 = 1e-2;
 
 /// Stages of a step and the step-size control.
@@ -38,7 +38,7 @@ pub(super) struct DormandPrince<S> {
 }
 
 impl<S: Real> DormandPrince<S> {
-    /// Creates the method with the settings of a run.
+    /// Creates the method for the settings of a run; `rate` has the dimensions of the rates of the run.
     pub(super) fn new(rate: &Rate<S>, settings: &StepSettings) -> Self {
         let StepSettings { tolerance, duration, control_period, .. } = *settings;
         let tolerance = Tolerance::new(tolerance, duration);
@@ -82,8 +82,8 @@ impl<S: Real> DormandPrince<S> {
     }
 
     /// Computes a step from the start of `interval` to its end, or to an earlier time if the error would
-    /// otherwise exceed the tolerance. Returns the time reached, s. Requires kinematics and loads at the
-    /// start in `equations`.
+    /// otherwise exceed the tolerance. Returns the time reached, s. Requires the kinematics and loads of
+    /// `state` in `equations`.
     ///
     /// Proportional-integral control: `h' = 0.9 h ε^−0.17 ε₋₁^0.04`, where `ε` and `ε₋₁` are the errors of
     /// this step and of the last accepted step, relative to the tolerance.
@@ -139,9 +139,9 @@ impl<S: Real> DormandPrince<S> {
         }
     }
 
-    /// Returns the first step size to try, s. It is the size that step control has proposed or, in the first
-    /// step, `ε^⅕ / (ω + √ω̇)` with the tolerance `ε`, the largest rate `ω` and the largest acceleration
-    /// `ω̇`.
+    /// Returns the first step size to try, s. It is the size that the step control proposed after the
+    /// previous step or, in the first step, `ε^⅕ / (ω + √ω̇)` with the tolerance `ε`, the largest rate `ω`,
+    /// rad/s, and the largest acceleration `ω̇`, rad/s².
     fn initial_step(
         &mut self,
         stages: &Stages<S>,
@@ -160,8 +160,8 @@ impl<S: Real> DormandPrince<S> {
         steps.fold(f64::INFINITY, f64::min)
     }
 
-    /// Writes the state at `t`, s, within the last step. Its base twist is not yet projected onto the
-    /// momentum.
+    /// Writes the state at `t`, s, within the last step to `state`, by dense output. The base twist has not
+    /// yet been projected onto the momentum.
     pub(super) fn interpolate(&self, stages: &mut Stages<S>, t: f64, state: &mut State<S>) {
         let Stages { start, sum, first, .. } = stages;
         let h = self.span.1 - self.span.0;
@@ -176,15 +176,16 @@ impl<S: Real> DormandPrince<S> {
     }
 }
 
-/// Returns the largest rate of base and joints in the first lane, rad/s; `size` is the length, m, by which
-/// the linear velocity of the base is divided. Rates of prismatic joints in m/s count as rad/s.
+/// Returns the largest rate of base and joints in the first lane, rad/s. The linear velocity of the base is
+/// divided by the length `size`, m; rates of prismatic joints in m/s are treated as rad/s.
 fn fastest<S: Real>(v: &[S], size: f64) -> f64 {
     let linear = Vec3::from_slice(v).norm().lane(0) / size;
     let angular = Vec3::from_slice(&v[3..]).norm().lane(0);
     v[BASE_NV..].iter().map(|x| x.lane(0).abs()).fold(linear.max(angular), f64::max)
 }
 
-/// Returns the longest step, s, during which the rotation vectors of all bases stay well below a full turn.
+/// Returns the longest step, s, during which no base rotates by more than [`LARGEST_ROTATION`] at its present
+/// angular velocity.
 fn longest_step<S: Real>(stages: &Stages<S>) -> f64 {
     let longest = |start: &TreeState<S>| LARGEST_ROTATION / Vec3::from_slice(&start.v[3..]).norm().lane(0);
     stages.start.trees.iter().map(longest).fold(f64::INFINITY, f64::min)

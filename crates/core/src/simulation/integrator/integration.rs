@@ -31,8 +31,8 @@ impl<S: Real> Integration<S> {
         Self { integrator: settings.integrator, stages, bases, dormand_prince }
     }
 
-    /// Advances `state` from the start of `interval` to its end, or as far as the tolerance allows. Returns
-    /// the time reached, s. Requires kinematics and loads at the start in `equations`.
+    /// Advances `state` from the start of `interval`, s, to its end, or as far as the tolerance permits.
+    /// Returns the time reached, s. Requires the kinematics and loads of `state` in `equations`.
     pub(crate) fn advance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -45,8 +45,8 @@ impl<S: Real> Integration<S> {
         }
     }
 
-    /// Advances `state` over the whole of `interval` in one step. Requires kinematics and loads at the start
-    /// in `equations`.
+    /// Advances `state` over the whole of `interval`, s, in one step. Requires the kinematics and loads of
+    /// `state` in `equations`.
     pub(crate) fn step(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -65,8 +65,9 @@ impl<S: Real> Integration<S> {
         Ok(())
     }
 
-    /// Writes the state at `t`, s, within the last step of the adaptive integrator. Its base twist is not yet
-    /// projected onto the momentum. Fixed-step integrators have no dense output and leave `state` unchanged.
+    /// Writes the state at `t`, s, within the last step of the adaptive integrator to `state`. The base twist
+    /// has not yet been projected onto the momentum. Fixed-step integrators have no dense output and leave
+    /// `state` unchanged.
     pub(crate) fn interpolate(&mut self, t: f64, state: &mut State<S>) {
         if let Some(method) = &self.dormand_prince {
             method.interpolate(&mut self.stages, t, state);
@@ -83,12 +84,12 @@ impl<S: Real> Integration<S> {
         self.dormand_prince.is_some()
     }
 
-    /// Returns the state of the step control, if the integrator is adaptive.
+    /// Returns the state of the step control; `None` for a fixed-step integrator.
     pub(crate) fn control(&self) -> Option<&StepControl> {
         self.dormand_prince.as_ref().map(|method| &method.control)
     }
 
-    /// Continues with the step size of a step control that was used with different trees.
+    /// Continues with the step size and the error of a step control that was used with different trees.
     pub(crate) fn continue_from(&mut self, before: StepControl) {
         if let Some(method) = &mut self.dormand_prince {
             (method.control.step, method.control.error) = (before.step, before.error);

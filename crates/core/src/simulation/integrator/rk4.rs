@@ -11,7 +11,8 @@ use crate::spatial::{Real, Vec3, dexp_inv};
 /// Nodes `c`, as fractions of the step, and weights `b` of the second to fourth stages.
 const STAGES: [(f64, f64); 3] = [(0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
 
-/// Nyström weights `ā` of the base's origin at the stages: `p_i = p₀ + c h ṗ₀ + h² Σ ā_ij p̈_j`.
+/// Nyström weights `ā` of the position `p` of the base's origin at the stages:
+/// `p_i = p₀ + c_i h ṗ₀ + h² Σ ā_ij p̈_j`, with the node `c_i` of stage `i` and the step length `h`.
 ///
 /// The order conditions are satisfied up to order four: `Σ_j ā_ij = c_i²/2`, `Σ b_i ā_ij c_j = 1/24`. The
 /// last stage is exact for an acceleration that is linear in time.
@@ -92,7 +93,7 @@ pub(super) fn rk4<S: Real>(
     Ok(())
 }
 
-/// Computes the time derivatives of the rotation vectors at a stage, `dexp⁻¹(θ) ω`.
+/// Writes the time derivatives of the rotation vectors `θ` at a stage, `dexp⁻¹(θ) ω`, to `rate`.
 #[inline(always)]
 fn to_rotation_vector<S: Real>(bases: &[BaseStages<S>], trial: &State<S>, rate: &mut Rate<S>) {
     for ((base, trial), rate) in bases.iter().zip(&trial.trees).zip(&mut rate.trees) {
@@ -100,7 +101,7 @@ fn to_rotation_vector<S: Real>(bases: &[BaseStages<S>], trial: &State<S>, rate: 
     }
 }
 
-/// Writes the position of every base's origin to `to`.
+/// Writes the positions of the origins of all bases to `to`; see [`move_origin`].
 #[inline(always)]
 fn move_origins<S: Real>(
     bases: &[BaseStages<S>],
@@ -115,7 +116,9 @@ fn move_origins<S: Real>(
     }
 }
 
-/// Writes the position of the base's origin to `to`: `p₀ + h ṗ₀ + h² Σ w p̈`.
+/// Writes the position of the base's origin, `p₀ + h ṗ₀ + h² Σ w p̈` with the `weights` `w`, to `to`. At a
+/// stage, `h` is the time since the start of the step, but `h_squared` is the square of the whole step
+/// length.
 #[inline(always)]
 fn move_origin<S: Real>(
     base: &BaseStages<S>,

@@ -1,4 +1,4 @@
-//! Choice of the integrator, and its settings.
+//! Integrators that a run can use, and their settings.
 
 /// Integration method of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,7 +19,7 @@ pub enum Integrator {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StepSettings {
     pub(crate) integrator: Integrator,
-    /// Largest error of a step of the adaptive integrator, relative to the scales of the motion.
+    /// Largest permitted error of a step of the adaptive integrator, relative to the scales of the motion.
     pub(crate) tolerance: f64,
     /// Length of a regular step, s.
     pub(crate) time_step: f64,

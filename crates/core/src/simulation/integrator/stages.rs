@@ -7,15 +7,15 @@ use crate::simulation::state::{Rate, State};
 use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 
-/// States and rates at the stages of a step, allocated once.
+/// States and time derivatives at the stages of a step. The buffers are allocated once per run.
 pub(crate) struct Stages<S> {
     /// State at the start of the step, with velocities relative to the frames of the step.
     pub(crate) start: State<S>,
-    /// State at which the last stage was evaluated.
+    /// State at which the last stage was evaluated, with velocities relative to the frames of the step.
     pub(super) trial: State<S>,
     /// Time derivatives at the last stage.
     pub(crate) rate: Rate<S>,
-    /// Weighted sum of the time derivatives at the stages.
+    /// Weighted sum of the time derivatives at the stages of the step.
     pub(super) sum: Rate<S>,
     /// First stage of each tree.
     pub(crate) first: Vec<FirstStage<S>>,
@@ -58,8 +58,8 @@ impl<S: Real> Stages<S> {
         }
     }
 
-    /// Evaluates the first stage and changes to the moving frames of the step. Requires kinematics and loads
-    /// of `state` in `equations`.
+    /// Evaluates the first stage and changes to the moving frames of the step. Requires the kinematics and
+    /// loads of `state` in `equations`.
     pub(crate) fn evaluate_first(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -78,7 +78,8 @@ impl<S: Real> Stages<S> {
         }
     }
 
-    /// Ends the step at `state`: changes from the moving frames of the step to W.
+    /// Completes the step that ended at `state`: refers its velocities to W instead of the moving frames of
+    /// the step.
     pub(super) fn finish(
         &self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -111,7 +112,8 @@ impl<S: Real> Stages<S> {
         parts.map(|((start, first), last)| StepEnds { start, first, last })
     }
 
-    /// Returns `q` and `v` of a tree at the start of the last step, in the first lane.
+    /// Returns `q` and `v`, relative to W, of the tree with index `number` at the start of the last step, in
+    /// the first lane.
     pub(crate) fn start_state(&self, number: usize) -> [Vec<f64>; 2] {
         let start = &self.start.trees[number];
         let mut v = start.v.clone();
@@ -119,14 +121,15 @@ impl<S: Real> Stages<S> {
         [&start.q, &v].map(|x| x.iter().map(|x| x.lane(0)).collect())
     }
 
-    /// Returns true if the state of a tree in the last stage is finite.
+    /// Returns true if the state of the tree with index `number` in the last stage is finite.
     pub(crate) fn is_finite(&self, number: usize) -> bool {
         self.trial.trees[number].is_finite()
     }
 }
 
 impl<S: Real> FirstStage<S> {
-    /// Stores the acceleration and the external force at the start of the step, where the velocity is `v`.
+    /// Stores the acceleration and the external force at the start of the step from `rate`; `v` is the
+    /// velocity relative to the frame of the step.
     fn take(&mut self, rate: &TreeRate<S>, v: &[S]) {
         self.force = rate.wrench.linear;
         self.acceleration.copy_from_slice(&rate.a);
@@ -142,7 +145,7 @@ impl<S: Real> FirstStage<S> {
     }
 }
 
-/// Computes the weighted sum of stages, `Σ w_i k_i`.
+/// Computes `sum = Σ w_i k_i` over the stages `k_i` with the weights `w_i`.
 pub(super) fn combine<S: Real>(sum: &mut Rate<S>, stages: &[Rate<S>], weights: &[f64]) {
     sum.clear();
     for (k, &weight) in stages.iter().zip(weights).filter(|(_, weight)| **weight != 0.0) {

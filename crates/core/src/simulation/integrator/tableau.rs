@@ -6,7 +6,7 @@
 /// Nodes `c` of the second to seventh stages, as fractions of the step.
 pub(super) const C: [f64; 6] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
 
-/// Weights of the earlier stages in the second to seventh stages, one row per stage; the last row equals `B`.
+/// Weights of the earlier stages in the second to seventh stages, one row per stage; the last row is [`B`].
 pub(super) const A: [[f64; 6]; 6] = [
     [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
     [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
@@ -16,14 +16,14 @@ pub(super) const A: [[f64; 6]; 6] = [
     B,
 ];
 
-/// Weights of the fifth-order solution.
+/// Weights of the first six stages in the fifth-order solution; the weight of the seventh stage is zero.
 const B: [f64; 6] = [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0];
 
-/// Weights of the error estimate: fifth-order weights less fourth-order weights.
+/// Weights of the seven stages in the error estimate: fifth-order weights less fourth-order weights.
 pub(super) const E: [f64; 7] =
     [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339_200.0, 22.0 / 525.0, -1.0 / 40.0];
 
-/// Weights of the quartic term of the dense output.
+/// Weights of the seven stages in the quartic term of the dense output.
 const D: [f64; 7] = [
     -12_715_105_075.0 / 11_282_082_432.0,
     0.0,

@@ -1,4 +1,4 @@
-//! Error of a step of the embedded pair, relative to the tolerance.
+//! Computation of the error of a step of the embedded pair relative to the tolerance.
 
 use super::stages::{Stages, combine};
 use super::tableau::E;
@@ -12,13 +12,13 @@ use crate::simulation::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// Largest rotation of the base in a step, rad. The rotation vector must stay well below a full turn.
+/// Largest rotation of a base in a step, rad; the rotation vector must remain well below a full turn.
 pub(super) const LARGEST_ROTATION: f64 = 2.0;
 
 /// Lower bound of the scale of rate errors, as a fraction of the largest rate of the run.
 const SLOW: f64 = 1e-3;
 
-/// State of the step-size control. A run that resumes from it gives bit-identical results.
+/// State of the step-size control, from which a run can resume with bit-identical results.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepControl {
     /// Size of the next step to try, s; zero before the first step.
@@ -34,7 +34,7 @@ pub(crate) struct StepControl {
 /// Scales relative to which the errors of a tree are measured, and the errors of its attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TreeControl {
-    /// Largest rate, rad/s, and largest speed, m/s, so far.
+    /// Largest rate, rad/s, and largest speed, m/s, in the run so far.
     pub(crate) fastest: [f64; 2],
     /// Sum of the estimated attitude errors of all steps, rad.
     pub(crate) rotation_error: f64,
@@ -48,7 +48,8 @@ impl StepControl {
         Self { step: 0.0, error: 0.0, short_steps: 0, trees: vec![TreeControl::default(); trees] }
     }
 
-    /// Computes the sizes of those trees whose size is still zero. Requires kinematics in `equations`.
+    /// Computes the sizes of those trees whose size is still zero. Requires the kinematics of the current
+    /// state in `equations`.
     pub(super) fn measure_sizes<S: Real>(
         &mut self,
         equations: &EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -63,7 +64,8 @@ impl StepControl {
         }
     }
 
-    /// Adds the attitude errors of a step of length `h`, s; `errors` holds the error estimates of the rates.
+    /// Adds the attitude errors of a step of length `h`, s; `errors` holds the differences between the rates
+    /// of the fifth-order and of the fourth-order solution.
     pub(super) fn add_rotation_errors<S: Real>(&mut self, errors: &Rate<S>, h: f64) {
         for (control, error) in self.trees.iter_mut().zip(&errors.trees) {
             control.rotation_error += h * norm(error.rotation_rate);
@@ -71,14 +73,14 @@ impl StepControl {
     }
 }
 
-/// Largest permitted error of a step.
+/// Tolerance of a run, with which the error of a step is compared.
 #[derive(Clone, Debug)]
 pub(super) struct Tolerance {
     /// Relative tolerance `ε`.
     pub(super) epsilon: f64,
-    /// Duration of the run, s.
+    /// Duration of the run, or the longest interval of an open-ended run, s.
     horizon: f64,
-    /// Weight of the attitude error; a test sets it to zero.
+    /// Weight of the errors of attitude and angular velocity: 1, except in a test, which sets it to 0.
     pub(super) attitude_weight: f64,
 }
 
@@ -87,8 +89,8 @@ impl Tolerance {
         Self { epsilon, horizon, attitude_weight: 1.0 }
     }
 
-    /// Returns the largest error of any tree in the last step, relative to the tolerance; NaN if the step
-    /// must be rejected.
+    /// Returns the largest error of any tree in the last step of length `h`, s, relative to the tolerance;
+    /// NaN if the step must be rejected because it is not finite or rotates a base too far.
     ///
     /// The tolerance is `ε` times a scale. For the attitude and revolute joints, the scale is 1 rad; for
     /// prismatic joints, the radius of gyration of the tree; for the position of the base, that radius or, if
@@ -190,7 +192,7 @@ impl<'a, 's, S: Real> SystemStep<'a, 's, S> {
         self.tree.model.nodes()[j + 1].axis == Axis::Prismatic
     }
 
-    /// Returns the magnitude of the rate of a joint, rad/s (m/s): the larger of the values at both ends of
+    /// Returns the magnitude of the rate of joint `j`, rad/s or m/s: the larger of the values at both ends of
     /// the step.
     fn rate(&self, j: usize) -> f64 {
         let rate = |state: &TreeState<S>| state.v[BASE_NV + j].lane(0).abs();

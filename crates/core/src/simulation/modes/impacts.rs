@@ -7,7 +7,7 @@ use crate::simulation::tree_state::TreeState;
 use crate::spatial::{Force, Motion, Real};
 
 impl<S: Real> Tree<'_, S> {
-    /// Returns the first joint that moves into its stop, if any.
+    /// Returns the index of the first joint that moves into its stop; `None` if there is none.
     pub(in crate::simulation) fn first_impact(&self, state: &TreeState<S>) -> Option<usize> {
         (0..self.model.joint_count()).find(|&j| {
             let stop = self.modes.stop(j, state.q[BASE_NQ + j].lane(0));
@@ -19,10 +19,10 @@ impl<S: Real> Tree<'_, S> {
     /// `data`, which afterwards holds the kinematics after the impacts, without loads.
     ///
     /// `Δv = M⁻¹ e_j λ`, `λ = −(1 + e) q̇_j / (M⁻¹)_jj` with the unit vector `e_j` of joint `j`, its rate
-    /// `q̇_j` before the impact and the coefficient of restitution `e`. The momentum does not change, and the
-    /// dissipated energy is `−½ (1 − e) λ q̇_j`. Joints that rest at their stops stay locked as long as their
-    /// stops push against them. Friction exerts no impulse. If `is_endless`, joints do not rebound, which
-    /// ends an infinite sequence of bounces.
+    /// `q̇_j` before the impact and the coefficient of restitution `e`. The momentum of the tree does not
+    /// change, and the dissipated energy is `−½ (1 − e) λ q̇_j`. Joints that rest at their stops stay locked
+    /// as long as their stops push against them. Friction exerts no impulse. If `is_endless` is true, joints
+    /// do not rebound, which ends an infinite sequence of bounces.
     pub(crate) fn resolve_impacts(&mut self, state: &mut TreeState<S>, is_endless: bool) {
         let n = self.model.joint_count();
         for round in 0..4 * n + 4 {
@@ -32,9 +32,9 @@ impl<S: Real> Tree<'_, S> {
         }
     }
 
-    /// Reverses the rate of joint `j` by an impulse, with the coefficient of restitution `e`; 0 stops the joint.
-    /// Returns the impulse, N m s (N s), and the energy lost, J. Requires and updates the kinematics as
-    /// [`Tree::resolve_impacts`].
+    /// Reverses the rate of joint `j` by an impulse, with the coefficient of restitution `e`; 0 stops the
+    /// joint. Returns the impulse, N m s or N s, and the energy lost, J. Requires and updates the kinematics
+    /// like [`Tree::resolve_impacts`].
     pub(in crate::simulation) fn strike(&mut self, j: usize, e: f64, state: &mut TreeState<S>) -> (f64, f64) {
         let rate = state.v[BASE_NV + j].lane(0);
         let before = self.kinetic_energy(state);
@@ -62,8 +62,8 @@ impl<S: Real> Tree<'_, S> {
         kinetic_energy(&self.model, &self.data, &state.v)
     }
 
-    /// Writes the change of velocity caused by a unit impulse with this sign at joint `j` to `scratch`.
-    /// Returns `(M⁻¹)_jj`, the change of that joint's rate per unit impulse.
+    /// Writes the change of velocity caused by a unit impulse with the sign `sign`, 1 or −1, at joint `j` to
+    /// `scratch`. Returns `(M⁻¹)_jj`, the change of the rate of that joint per unit impulse.
     fn impulse_response(&mut self, j: usize, sign: f64, state: &TreeState<S>) -> f64 {
         let n = self.model.joint_count();
         for body in &mut self.data.bodies {

@@ -10,14 +10,14 @@ use crate::spatial::{Force, Motion, Real};
 const ROUNDING: f64 = 1e-10;
 
 impl<S: Real> Tree<'_, S> {
-    /// Determines the modes of the joints for the step that starts at `q` and `v`. Requires kinematics and
-    /// loads in `data`.
+    /// Determines the modes of the joints for the step that starts at `q` and `v`. Requires the kinematics
+    /// and loads of this state in `data`.
     ///
     /// Initially, all joints at rest are locked. A locked joint is released if holding it requires more
     /// torque than friction and stop provide, and a slipping joint that would accelerate against its
     /// direction of slip is locked again. With bounded torques and a positive definite inertia the solution
-    /// is unique. In each pass all inconsistent joints change their modes. After more than `n` passes, only
-    /// the first of them changes, which prevents cycles (Murty's rule).
+    /// is unique. In each pass all inconsistent joints change their modes. After more than `n` passes for `n`
+    /// joints, only the first inconsistent joint changes its mode, which prevents cycles (Murty's rule).
     ///
     /// Source: Murty, Linear Algebra and its Applications 7(1), 1974.
     pub(crate) fn solve_modes(&mut self, q: &[S], v: &[S]) {
@@ -52,8 +52,8 @@ impl<S: Real> Tree<'_, S> {
         self.scratch = a;
     }
 
-    /// Returns the new mode of a joint at rest: its direction of slip, −1 or 1, or 0 if it should stick.
-    /// Returns `None` if the present mode is consistent.
+    /// Returns the new mode of joint `j` if it is at rest: its direction of slip, −1 or 1, or 0 if it should
+    /// stick. Returns `None` if the joint moves or its present mode is consistent.
     fn mode_change(&self, j: usize, q: &[S], v: &[S], a: &[S]) -> Option<f64> {
         if v[BASE_NV + j].lane(0) != 0.0 {
             return None;
@@ -66,9 +66,9 @@ impl<S: Real> Tree<'_, S> {
         (a[BASE_NV + j].lane(0) * direction < 0.0).then_some(0.0)
     }
 
-    /// Returns the additional torque that a locked joint can hold before it slips, relative to the torques
-    /// that act on the joint, and the direction in which it would slip. Requires the holding torques of an
-    /// ABA recursion in `data`.
+    /// Returns the additional torque that locked joint `j` can hold before it slips, relative to the torques
+    /// that act on the joint, and the direction in which it would slip, −1 or 1. Requires the holding torques
+    /// of an ABA recursion in `data`.
     fn stick_margin(&self, j: usize, q: &[S]) -> (f64, f64) {
         let body = &self.data.bodies[j + 1];
         let (lowest, highest) = self.modes.torque_bounds(j, q[BASE_NQ + j].lane(0));
@@ -88,7 +88,7 @@ impl<S: Real> Tree<'_, S> {
     }
 
     /// Returns the smallest stick margin of the locked joints, which is negative if a joint should slip.
-    /// Requires kinematics and loads in `data`.
+    /// Requires the kinematics and loads of `q` and `v` in `data`.
     pub(super) fn least_stick_margin(&mut self, q: &[S], v: &[S]) -> f64 {
         self.update_joint_forces(v);
         let mut a = std::mem::take(&mut self.scratch);

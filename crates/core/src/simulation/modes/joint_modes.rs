@@ -1,4 +1,5 @@
-//! Modes of the joints during a step, which result from Coulomb friction and the stops at position limits.
+//! Modes of the joints during a step, which result from Coulomb friction, brakes and the stops at position
+//! limits.
 
 use super::engaged_brakes::EngagedBrakes;
 use crate::model::{BASE_NQ, BASE_NV, JointProperties, Model};
@@ -6,50 +7,51 @@ use crate::spatial::Real;
 use crate::world::GivenJoint;
 use serde::{Deserialize, Serialize};
 
-/// Distance, rad (m), from a position limit within which a joint is treated as being at the limit.
+/// Distance, rad or m, from a position limit within which a joint is treated as being at the limit.
 pub(in crate::simulation) const AT_LIMIT: f64 = 1e-12;
 
-/// Rate, rad/s (m/s), below which the friction compensation for an external engine changes continuously from
+/// Rate, rad/s or m/s, below which the friction compensation for an external engine changes continuously from
 /// one direction to the other.
 const TURN: f64 = 1e-2;
 
-/// Requested acceleration, rad/s² (m/s²), from which the friction compensation for an external engine fully
-/// assumes that a joint at rest will move.
+/// Requested acceleration, rad/s² or m/s², from which the friction compensation of a joint at rest for an
+/// external engine has its full value.
 const START: f64 = 1e-2;
 
-/// Modes of the joints during a step. They depend on the state at the start of the step and on the
+/// Modes of the joints during a step, which depend on the state at the start of the step and on the
 /// accelerations that the control laws request.
 ///
 /// A joint is at rest if its rate is exactly zero. A joint at rest with static friction `fs`, or at a stop,
 /// is locked while the torque `λ` required to hold it is within [`JointModes::torque_bounds`]. Kinetic
 /// friction opposes the motion of a joint.
 ///
-/// A law that compensates Coulomb friction states the acceleration that it requests for each of its joints.
-/// The motor of the joint then adds the friction torque. While the joint moves, this is the kinetic friction
-/// in the direction of the rate, whose sign changes at the same instant as that of the rate. At rest, if the
-/// law requests an acceleration, it is the static friction in the direction of the law's torque. Friction
-/// then has no effect on moving joints, but holds the joints that the law keeps at rest.
+/// A control law that compensates Coulomb friction provides the acceleration that it requests for each of its
+/// joints. The motor of the joint then adds the friction torque. While the joint moves, this is the kinetic
+/// friction in the direction of the rate, whose sign changes at the same instant as that of the rate. At
+/// rest, if the law requests an acceleration, it is the static friction in the direction of the law's torque.
+/// Friction then has no effect on moving joints, but holds the joints that the law keeps at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct JointModes {
-    /// Kinetic friction, N m (N).
+    /// Kinetic friction of each joint, N m or N.
     friction: Vec<f64>,
-    /// Static friction, N m (N), which is at least the kinetic friction.
+    /// Static friction of each joint, N m or N, which is at least the kinetic friction.
     static_friction: Vec<f64>,
-    /// Accelerations that a law requests for the joints whose friction it compensates, rad/s² (m/s²). Zero
-    /// means that a joint at rest is to stay at rest.
+    /// Accelerations that control laws request for the joints whose friction they compensate, rad/s² or m/s²;
+    /// `None` for other joints. Zero means that a joint at rest should remain at rest.
     requested: Vec<Option<f64>>,
-    /// Lower and upper position limit of each joint, rad (m); infinite without stops.
+    /// Lower and upper position limit of each joint, rad or m; infinite without stops.
     limits: Vec<(f64, f64)>,
-    /// Brakes that are engaged.
+    /// Slip torques of the engaged brakes.
     brakes: EngagedBrakes,
-    /// Coefficient of restitution of the stops of each joint.
+    /// Coefficient of restitution of the stops of each joint, from 0 to 1.
     pub(super) restitution: Vec<f64>,
     is_active: bool,
     /// True if the system has brakes, engaged or not.
     has_brakes: bool,
     locked: Vec<bool>,
     any_locked: bool,
-    /// Direction of slip, −1, 0 or 1, of each joint with friction.
+    /// Direction of slip of each joint, −1 or 1; 0 for joints that do not slip. For an external engine, a
+    /// number from −1 to 1.
     direction: Vec<f64>,
     /// Joints whose positions are prescribed functions of time. They are locked: their accelerations do not
     /// depend on torques.
@@ -151,8 +153,8 @@ impl JointModes {
         self.has_brakes
     }
 
-    /// Engages the brake of joint `j` with this slip torque, N m (N), or disengages it (0). A brake with an
-    /// infinite slip torque locks the joint, which must be at rest by the start of the next step.
+    /// Engages the brake of joint `j` with this slip torque, N m or N, or disengages the brake (0). A brake
+    /// with an infinite slip torque locks the joint, which must be at rest by the start of the next step.
     pub(in crate::simulation) fn set_brake(&mut self, j: usize, slip_torque: f64) {
         self.brakes.set(j, slip_torque);
         self.locked[j] = self.brakes.holds(j);
@@ -164,7 +166,7 @@ impl JointModes {
         self.brakes.holds(j)
     }
 
-    /// Returns the joints that brakes hold rigidly.
+    /// Returns the indices of the joints that brakes hold rigidly.
     pub(in crate::simulation) fn held(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.locked.len()).filter(|&j| self.brakes.holds(j))
     }
@@ -199,8 +201,7 @@ impl JointModes {
         }
     }
 
-    /// Copies the modes during a step from those of a tree; `joints` are the indices of the joints in the
-    /// tree.
+    /// Copies the modes from those of a tree; `joints` are the indices in the tree of these joints.
     pub(in crate::simulation) fn take(&mut self, tree: &Self, joints: &[usize]) {
         for (own, &joint) in joints.iter().enumerate() {
             (self.locked[own], self.direction[own]) = (tree.locked[joint], tree.direction[joint]);
@@ -225,14 +226,15 @@ impl JointModes {
         self.is_active
     }
 
-    /// Returns an array that is true for locked joints, `(n,)`; `None` if no joint is locked.
+    /// Returns an array, `(n,)`, that is true for locked joints; `None` if no joint is locked.
     pub(in crate::simulation) fn locked(&self) -> Option<&[bool]> {
         self.any_locked.then_some(&self.locked[..])
     }
 
-    /// Returns an array that is true for the joints that a projection onto closed loops must not move, `(n,)`: locked
-    /// joints, and joints at rest that friction, a brake or a stop can hold. A joint that has come to rest must keep the
-    /// rate zero, since a rounding error of its rate would count as motion. `None` if there are no such joints.
+    /// Returns an array that is true for the joints that a projection onto closed loops must not move,
+    /// `(n,)`: locked joints, and joints at rest that friction, a brake or a stop can hold. The rate of a
+    /// joint that has come to rest must remain exactly zero, because a rounding error of the rate would be
+    /// treated as motion. `None` if there are no such joints.
     pub(in crate::simulation) fn kept_at_rest<S: Real>(&self, q: &[S], v: &[S]) -> Option<Vec<bool>> {
         let is_kept = |j: usize| self.locked[j] || self.is_at_rest(j, q, v);
         let kept: Vec<bool> = (0..self.locked.len()).map(is_kept).collect();
@@ -246,7 +248,7 @@ impl JointModes {
         v[BASE_NV + j].lane(0) == 0.0 && can_be_held()
     }
 
-    /// Returns an array that is true for locked joints, `(n,)`.
+    /// Returns an array, `(n,)`, that is true for locked joints.
     pub(super) fn is_locked_each(&self) -> &[bool] {
         &self.locked
     }
@@ -255,19 +257,19 @@ impl JointModes {
         self.locked[j]
     }
 
-    /// Sets the direction in which a joint slips, −1 or 1, or locks the joint (0).
+    /// Sets the direction in which joint `j` slips, −1 or 1, or locks the joint (0).
     pub(super) fn set_slip(&mut self, j: usize, direction: f64) {
         (self.locked[j], self.direction[j]) = (direction == 0.0, direction);
         self.any_locked = self.locked.contains(&true);
     }
 
-    /// Returns the kinetic friction of joint and brake in the direction of slip, N m (N), which is subtracted
-    /// from the joint torque.
+    /// Returns the kinetic friction of joint `j` and its brake, N m or N, with the sign of the direction of
+    /// slip; it is subtracted from the joint torque.
     fn drag(&self, j: usize) -> f64 {
         (self.friction[j] + self.brakes.torque(j)) * self.direction[j]
     }
 
-    /// Returns the torques that the motors add during the step to compensate friction, `(n,)`, N m (N);
+    /// Returns the torques that the motors add during the step to compensate friction, `(n,)`, N m or N;
     /// `None` for joints without compensation.
     pub(in crate::simulation) fn compensations(&self) -> impl Iterator<Item = Option<f64>> {
         let drag =
@@ -275,31 +277,32 @@ impl JointModes {
         self.requested.iter().zip(drag).map(|(requested, drag)| requested.map(|_| drag))
     }
 
-    /// Returns the kinetic friction less its compensation, N m (N). If a law compensates the friction of the
-    /// joint, this is the friction of the brake.
+    /// Returns the kinetic friction of joint `j` less its compensation, N m or N, with the sign of the
+    /// direction of slip. If a law compensates the friction of the joint, this is the friction of the brake.
     pub(in crate::simulation) fn remaining_drag(&self, j: usize) -> f64 {
         if self.requested[j].is_some() { self.brakes.torque(j) * self.direction[j] } else { self.drag(j) }
     }
 
     /// Returns the accelerations requested for the joints whose friction a control law compensates, `(n,)`,
-    /// rad/s² (m/s²).
+    /// rad/s² or m/s²; `None` for other joints.
     pub(crate) fn requested(&self) -> &[Option<f64>] {
         &self.requested
     }
 
-    /// Returns the accelerations of [`JointModes::requested`] as a mutable slice, to which laws write.
+    /// Returns the accelerations of [`JointModes::requested`] as a mutable slice, to which control laws
+    /// write.
     pub(crate) fn requested_mut(&mut self) -> &mut [Option<f64>] {
         &mut self.requested
     }
 
-    /// Returns true if the joint has any friction, or a brake that can slip.
+    /// Returns true if joint `j` has static friction, or an engaged brake that can slip.
     pub(super) fn has_friction(&self, j: usize) -> bool {
         self.static_friction[j] > 0.0 || self.brakes.torque(j) > 0.0
     }
 
-    /// Returns the largest torque with which friction and a brake that can slip hold a joint at rest, N m (N).
-    /// Without the friction of the joint if the motor compensates it, that is, if a law requests a nonzero
-    /// acceleration.
+    /// Returns the largest torque with which friction and a brake that can slip hold joint `j` at rest, N m
+    /// or N. The friction of the joint is omitted if the motor compensates it, that is, if a control law
+    /// requests a nonzero acceleration.
     pub(super) fn holding_friction(&self, j: usize) -> f64 {
         let friction =
             if self.requested[j].is_some_and(|a| a != 0.0) { 0.0 } else { self.static_friction[j] };
@@ -314,16 +317,17 @@ impl JointModes {
         self.limits[j]
     }
 
-    /// Returns the stop at which a joint at `q` rests: 1 for the upper stop, −1 for the lower stop, 0 for
-    /// neither.
+    /// Returns the stop that joint `j` touches at the position `q`, rad or m: 1 for the upper stop, −1 for
+    /// the lower stop, 0 for neither.
     pub(super) fn stop(&self, j: usize, q: f64) -> f64 {
         let (lower, upper) = self.limits[j];
         f64::from(q >= upper) - f64::from(q <= lower)
     }
 
-    /// Returns the bounds of the torque with which friction and a stop hold a joint at rest: `−fs..fs`,
-    /// unbounded on the side on which a stop pushes. For a joint with prescribed motion, or one that a brake
-    /// holds rigidly, both bounds are infinite.
+    /// Returns the bounds, N m or N, of the torque with which friction and a stop hold joint `j` at rest at
+    /// the position `q`, rad or m: `−fs` and `fs` with the static friction `fs`, but no bound on the side on
+    /// which a stop pushes. For a joint with prescribed motion, or one that a brake holds rigidly, both
+    /// bounds are infinite.
     pub(super) fn torque_bounds(&self, j: usize, q: f64) -> (f64, f64) {
         if self.is_given(j) || self.brakes.holds(j) {
             return (f64::NEG_INFINITY, f64::INFINITY);
@@ -334,8 +338,8 @@ impl JointModes {
         (lowest, highest)
     }
 
-    /// Sets the initial guess of the modes: joints at rest that friction, a brake or a stop can hold are locked, and
-    /// all other joints slip.
+    /// Sets the initial guess of the modes: joints at rest that friction, a brake or a stop can hold, and
+    /// joints with prescribed motion, are locked; all other joints are free.
     pub(super) fn lock_joints_at_rest<S: Real>(&mut self, q: &[S], v: &[S]) {
         for j in 0..self.locked.len() {
             let rate = v[BASE_NV + j].lane(0);
@@ -350,8 +354,8 @@ impl JointModes {
     ///
     /// In such an engine joints creep instead of sticking, and the sign of a small rate is arbitrary. Within
     /// ±[`TURN`] the compensation therefore changes continuously from one direction to the other. The
-    /// transition is shifted in the direction of the requested acceleration, fully for accelerations of
-    /// [`START`] and more.
+    /// transition is shifted in the direction of the requested acceleration, with full effect for
+    /// accelerations of [`START`] and more.
     pub(in crate::simulation) fn compensate_by_rate<S: Real>(&mut self, v: &[S]) {
         for (j, requested) in self.requested.iter().enumerate() {
             let start = requested.map_or(0.0, |a| (a / START).clamp(-1.0, 1.0));
@@ -366,7 +370,7 @@ impl JointModes {
         self.loss_of(model, v, 0..model.joint_count())
     }
 
-    /// Returns the power that damping and friction of some joints dissipate, W.
+    /// Returns the power that damping and friction of the given joints dissipate, W.
     #[inline(always)]
     pub(in crate::simulation) fn loss_of<S: Real>(
         &self,

@@ -1,4 +1,5 @@
-//! Margins of the joints of a tree to the next change of mode, and corrections of the state at such a change.
+//! Margins of the joints of a tree to the next change of a mode, and corrections of the state at such a
+//! change.
 
 use super::joint_modes::AT_LIMIT;
 use crate::model::{BASE_NQ, BASE_NV};
@@ -6,7 +7,7 @@ use crate::simulation::tree::Tree;
 use crate::simulation::tree_state::TreeState;
 use crate::spatial::Real;
 
-/// Step of one tree, from `start` to `end`.
+/// One tree with its states at the start and at the end of a step.
 pub(super) struct ModesOfStep<'a, 's, S> {
     pub(super) tree: &'a Tree<'s, S>,
     pub(super) start: &'a TreeState<S>,
@@ -20,14 +21,15 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         0..self.tree.model.joint_count()
     }
 
-    /// Returns the smallest margin of the joints that are not locked.
+    /// Returns the smallest margin of the joints that are not locked; it is negative beyond a change of mode.
     pub(super) fn least_margin(&self) -> f64 {
         let margin = |j| self.slip_margin(j).min(self.limit_margin(j));
         self.joints().map(margin).fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the rate of a slipping joint in its direction of slip, relative to the rates at both ends of
-    /// the step; infinity for other joints, for joints without friction, or if slip is ignored.
+    /// Returns the rate at the end of the step of slipping joint `j` in its direction of slip, relative to
+    /// the sum of the magnitudes of its rates at both ends of the step; infinity for other joints, for joints
+    /// without friction, and if slip is ignored.
     fn slip_margin(&self, j: usize) -> f64 {
         let modes = &self.tree.modes;
         let direction = modes.direction(j);
@@ -38,8 +40,8 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         direction * last / (first.abs() + last.abs()).max(f64::MIN_POSITIVE)
     }
 
-    /// Returns the distance of a joint from the nearer limit, relative to the distance at the start of the
-    /// step; infinity for locked joints and for joints without stops.
+    /// Returns the distance of joint `j` from its nearer position limit at the end of the step, relative to
+    /// the distance at the start of the step; infinity for locked joints and for joints without stops.
     fn limit_margin(&self, j: usize) -> f64 {
         let modes = &self.tree.modes;
         let (lower, upper) = modes.limits(j);
@@ -51,13 +53,14 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
         (distance(last) + AT_LIMIT) / (distance(first).abs() + AT_LIMIT)
     }
 
-    /// Returns the first joint that would start to slip and immediately reverse its direction.
+    /// Returns the index of the first joint that would start to slip and immediately reverse its direction;
+    /// `None` if there is none.
     pub(super) fn first_that_slips_back(&self) -> Option<usize> {
         let slips_back = |j: &usize| self.start.v[BASE_NV + j].lane(0) == 0.0 && self.slip_margin(*j) <= 0.0;
         self.joints().find(slips_back)
     }
 
-    /// Returns the rate of the first joint that came to rest or reached its stop, rad/s (m/s): the larger of
+    /// Returns the rate of the first joint that came to rest or reached its stop, rad/s or m/s: the larger of
     /// the magnitudes at both ends of the step; `None` if there is no such joint.
     pub(super) fn rate_of_first_stopped(&self) -> Option<f64> {
         let rate = |state: &TreeState<S>, j: usize| state.v[BASE_NV + j].lane(0).abs();
@@ -68,8 +71,8 @@ impl<S: Real> ModesOfStep<'_, '_, S> {
 }
 
 impl<S: Real> Tree<'_, S> {
-    /// Removes rounding errors at an event: sets the rates of joints that came to rest to zero, and moves
-    /// joints that are beyond a limit to the limit.
+    /// Removes rounding errors at a change of mode: sets the rates of joints that came to rest to zero, and
+    /// moves joints that are beyond a position limit to that limit.
     pub(super) fn snap_to_event(&self, start: &TreeState<S>, state: &mut TreeState<S>) {
         let modes = &self.modes;
         for j in 0..self.model.joint_count() {

@@ -9,19 +9,20 @@ use crate::simulation::integrator::{Integration, StepSettings};
 use crate::simulation::state::State;
 use crate::spatial::Real;
 
-/// Number of consecutive idle steps after which friction stops joints only at the ends of steps and
-/// restitution is zero, so that infinite sequences of bounces end.
+/// Number of consecutive idle steps after which changes of slip no longer end a step and impacts have no
+/// restitution, so that infinite sequences of such changes and of bounces end.
 const MOST_IDLE_STEPS: usize = 32;
-/// Fraction of a regular step below which a step is idle, unless a joint came to rest or reached its stop
-/// during the step.
+/// Length, as a fraction of a regular step, below which a step is idle if no joint came to rest or reached
+/// its stop during the step.
 const IDLE: f64 = 1e-6;
-/// Displacement, rad or m, below which a step is idle although the joint came to rest or reached its stop.
+/// Displacement, rad or m, of a joint that came to rest or reached its stop below which the step is idle.
 const STILL: f64 = 1e-9;
-/// Length to which a step may be shortened to improve its energy balance, relative to the length without
-/// changes of modes. A fraction of a length that ends at a jump of the elastic energy would let the steps
-/// approach the jump without ever passing it.
+/// Smallest length to which a step may be shortened to improve its energy balance, relative to its length
+/// before any mode change was located. If the reference were a length that ends at a jump of the elastic
+/// energy, the steps would approach the jump without passing it.
 const SHORTEST: f64 = 1e-4;
-/// Rounding error of the energy balance, relative to the sum of the kinetic energies and of the works.
+/// Bound on the rounding error of the energy balance, relative to the sum of the magnitudes of the kinetic
+/// energies and of the work.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
@@ -32,11 +33,11 @@ pub(crate) struct StepMethod<S> {
     pub(crate) integration: Integration<S>,
     start: State<S>,
     settled: State<S>,
-    /// True if a change of the direction of slip does not end a step.
+    /// True if changes between slip and rest do not end a step.
     ignores_slip: bool,
-    /// Number of consecutive idle steps.
+    /// Number of consecutive idle steps, which end at a change of a mode after almost no progress.
     pub(crate) idle_steps: usize,
-    /// True if the elastic energy has jumped in the last step.
+    /// True if the elastic energy of contacts jumped in the last step.
     pub(crate) has_jumped: bool,
     time_step: f64,
 }
@@ -54,13 +55,14 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Resets the method at the start of another run.
+    /// Resets the counters of the method at the start of another run.
     pub(crate) fn reset(&mut self) {
         (self.idle_steps, self.has_jumped) = (0, false);
     }
 
-    /// Applies the impacts at `state`. Requires its kinematics, with projected base twists, in `equations`,
-    /// which afterwards hold the kinematics after the impacts. The loads must then be computed again.
+    /// Applies the impacts of joints that move into their stops at `state`. Requires the kinematics of
+    /// `state`, with projected base twists, in `equations`, which afterwards contain the kinematics after the
+    /// impacts. The loads must then be computed again.
     pub(crate) fn resolve_impacts(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -74,8 +76,8 @@ impl<S: Real> StepMethod<S> {
         }
     }
 
-    /// Advances `state` from the start of `interval` towards its end and returns the time reached, s.
-    /// Requires projected base twists, and kinematics, loads and joint modes in `equations`.
+    /// Advances `state` from the start of `interval`, s, towards its end and returns the time reached, s.
+    /// Requires projected base twists in `state`, and its kinematics, loads and joint modes in `equations`.
     pub(crate) fn advance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -113,10 +115,10 @@ impl<S: Real> StepMethod<S> {
         Ok(reached)
     }
 
-    /// Shortens the step over `interval`, which ended at `state`, until the energy balance at its end agrees
-    /// with `balance`, which holds at its start, or its length is at most `shortest`, s. Returns the time
-    /// reached, s. A force that jumps within a step, for example where the nearest faces of two bodies change,
-    /// causes an error of the balance that is proportional to the square of the step length.
+    /// Shortens the step from `start` to `end`, s, which ended at `state`, until the energy balance at its
+    /// end agrees with `balance`, J, the value at its start, or its length is at most `shortest`, s. Returns
+    /// the time reached, s. A force that jumps within a step, for example where the nearest faces of two
+    /// bodies change, causes an error of the balance that is proportional to the square of the step length.
     fn close_energy_balance(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -168,8 +170,8 @@ impl<S: Real> StepMethod<S> {
         parts.map(move |((tree, start), end)| ModesOfStep { tree, start, end, ignores_slip })
     }
 
-    /// Returns the fraction of the step at which a mode changes, and moves `state` there; returns 1 if no
-    /// mode changes.
+    /// Returns the fraction of the step `whole` at which the first mode changes, and sets `state` to the
+    /// state there; returns 1 if no mode changes.
     ///
     /// The fraction is found by regula falsi (Illinois variant) on the length of the step, so that the state
     /// at the change has the order of accuracy of the integrator.
@@ -225,7 +227,8 @@ impl<S: Real> StepMethod<S> {
         Ok(high)
     }
 
-    /// Repeats the step over a fraction of its length and returns the margin at the end.
+    /// Repeats the step `whole` over a fraction of its length and returns the margin at the end; see
+    /// [`StepMethod::margin`].
     fn repeat_step(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -241,8 +244,8 @@ impl<S: Real> StepMethod<S> {
         self.margin(equations, state, (whole.0, end))
     }
 
-    /// Returns the margin to the next change of the mode of a joint, a latch or a contact. It is negative if
-    /// the change is overdue.
+    /// Returns the margin at `state`, the end of a step over `interval`, s, to the next change of the mode of
+    /// a joint, a latch or a contact. The margin is negative if the change is overdue.
     fn margin(
         &mut self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
@@ -270,8 +273,8 @@ impl<S: Real> StepMethod<S> {
         self.modes_of(equations, state).map(|step| step.least_margin()).fold(f64::INFINITY, f64::min)
     }
 
-    /// Locks the first joint that would start to slip and immediately reverse its direction. Returns true if
-    /// there is such a joint.
+    /// Locks the first joint that would start to slip and immediately reverse its direction. Returns false if
+    /// there is no such joint.
     fn keep_stuck(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
