@@ -1,9 +1,9 @@
-//! Schedule of a run: its cuts, which are the instants at which steps begin and end. Cuts are on a regular
-//! grid, at control ticks, and at events, where loads or torques may be discontinuous.
+//! Schedule of a run, which determines its cuts: the instants at which steps begin and end. Cuts are on a
+//! regular grid, at control ticks, and at events, where loads or torques may be discontinuous.
 
 use serde::{Deserialize, Serialize};
 
-/// Fraction of a step below which two instants are treated as equal.
+/// Difference, as a fraction of a regular step, below which two instants are treated as equal.
 pub(super) const SAME_INSTANT: f64 = 1e-9;
 /// Longest interval of an adaptive run without a planned end, as a multiple of the regular step.
 pub(super) const LONGEST_INTERVAL: f64 = 1e6;
@@ -16,7 +16,7 @@ pub(super) struct Interval {
     pub(super) start: f64,
     /// End of the interval, s.
     pub(super) end: f64,
-    /// Number of the grid step that begins at the start of the interval; `None` if the start is not a grid
+    /// Index of the grid step that begins at the start of the interval; `None` if the start is not a grid
     /// point.
     pub(super) grid_step: Option<usize>,
     /// True if an event occurs at the start of the interval, where wrenches or torques may then be
@@ -29,7 +29,7 @@ pub(super) struct Interval {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Schedule {
     time_step: f64,
-    /// Planned end of the run, s.
+    /// Planned end of the run, s; `None` for an open-ended run.
     duration: Option<f64>,
     /// Clocks of the controllers, one per system.
     clocks: Vec<Clock>,
@@ -50,7 +50,8 @@ pub(super) struct Clock {
     pub(super) switches: Vec<f64>,
 }
 
-/// Current position in a schedule: the current cut, s, and the numbers of the next grid point and event.
+/// Current position in a schedule: the current cut, s, and the indices of the next grid point and of the next
+/// event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Cursor {
     now: f64,
@@ -59,8 +60,9 @@ pub(super) struct Cursor {
 }
 
 impl Schedule {
-    /// Creates a schedule with events at these times, s, of which those that are not finite are ignored. Each
-    /// clock ticks at least at time zero; the switches of clocks are cuts as well.
+    /// Creates a schedule with grid points at the multiples of `time_step`, s, and events at the times
+    /// `events`, s, of which those that are not finite are ignored. Each clock ticks at least at time zero;
+    /// the switches of clocks are also cuts.
     pub(super) fn new(
         time_step: f64,
         duration: Option<f64>,
@@ -81,7 +83,8 @@ impl Schedule {
         }
     }
 
-    /// Returns the schedule without cuts at grid points, which then determine only the times of rows.
+    /// Returns the schedule without cuts at grid points; the grid points then determine only the times of
+    /// rows.
     pub(super) fn without_grid_steps(self) -> Self {
         Self { cuts_at_grid: false, ..self }
     }
@@ -119,7 +122,8 @@ impl Schedule {
         self.time_step
     }
 
-    /// Returns true if another schedule has the same cuts; the current positions may differ.
+    /// Returns true if another schedule has the same cuts, apart from events that became known during the
+    /// run; the current positions may differ.
     pub(super) fn has_cuts_of(&self, other: &Self) -> bool {
         *self == Self { at: self.at, due: self.due.clone(), ..other.clone() }
     }
@@ -152,8 +156,8 @@ impl Schedule {
         self.duration.map(|duration| (duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize)
     }
 
-    /// Returns an upper bound of the number of intervals of the run, apart from events that become known
-    /// during it; `None` without a planned end.
+    /// Returns an upper bound of the number of intervals of the run, without those that events create which
+    /// become known during the run; `None` without a planned end.
     pub(super) fn intervals(&self) -> Option<usize> {
         let duration = self.duration?;
         let ticks = |period: f64| if period == self.time_step { 0.0 } else { (duration / period).ceil() };
@@ -167,31 +171,32 @@ impl Schedule {
         (SAME_INSTANT * self.time_step).max(4.0 * f64::EPSILON * self.at.now)
     }
 
-    /// Returns true if `t` is the current cut.
+    /// Returns true if `t`, s, equals the current cut within the tolerance for comparing instants.
     pub(super) fn is_now(&self, t: f64) -> bool {
         (t - self.at.now).abs() <= self.tolerance()
     }
 
-    /// Returns true if `t` is later than `other` by more than the tolerance for comparing instants.
+    /// Returns true if `t`, s, is later than `other`, s, by more than the tolerance for comparing instants.
     pub(super) fn is_later(&self, t: f64, other: f64) -> bool {
         t > other + self.tolerance()
     }
 
-    /// Returns true if the controllers of a system are due at `t`, s.
+    /// Returns true if an update of the controllers of the system with index `system` is due at `t`, s.
     pub(super) fn is_tick(&self, system: usize, t: f64) -> bool {
         let Clock { period, switches } = &self.clocks[system];
         let is_now = |instant: f64| (instant - t).abs() <= self.tolerance();
         is_now(nearest_tick(t, *period) * period) || switches.iter().any(|&switch| is_now(switch))
     }
 
-    /// Returns the first regular tick of a clock after the current cut, s.
+    /// Returns the first regular tick after the current cut, s, of a clock with this `period`, s.
     fn next_tick(&self, period: f64) -> f64 {
         let count = nearest_tick(self.at.now, period); // a product, so that rounding errors do not accumulate
         let nearest = count * period;
         if nearest > self.at.now + self.tolerance() { nearest } else { (count + 1.0) * period }
     }
 
-    /// Returns true if the counters agree with the current cut, and `t` is in the interval that begins there.
+    /// Returns true if the indices of the next grid point and event agree with the current cut, and `t`, s,
+    /// is in the interval that begins at that cut.
     pub(super) fn is_consistent(&self, t: f64) -> bool {
         let Cursor { now, next_grid, next_event } = self.at;
         let is_next = |count: usize, period: f64| {
@@ -210,7 +215,7 @@ impl Schedule {
     }
 
     /// Returns the interval that begins at the current cut, and the position at its end; `None` at the
-    /// planned end.
+    /// planned end of the run.
     pub(super) fn following(&self) -> Option<(Interval, Cursor)> {
         let Cursor { now, mut next_grid, mut next_event } = self.at;
         if self.duration.is_some_and(|duration| now >= duration - self.tolerance()) {
@@ -242,13 +247,13 @@ impl Schedule {
         Some((interval, Cursor { now: end, next_grid, next_event }))
     }
 
-    /// Ends the current interval at `t`, which becomes the current cut.
+    /// Ends the current interval at `t`, s, which becomes the current cut.
     pub(super) fn cut_at(&mut self, t: f64) {
         self.at.now = t;
     }
 
-    /// Returns the number and the time, s, of the next grid step that begins before the current cut, and
-    /// advances past it; `None` if there is no such step.
+    /// Returns the index and the start time, s, of the next grid step that begins before the current cut, and
+    /// advances past this step; `None` if there is no such step.
     pub(super) fn next_grid_step_passed(&mut self) -> Option<(usize, f64)> {
         let step = self.at.next_grid;
         let instant = step as f64 * self.time_step;
@@ -258,7 +263,7 @@ impl Schedule {
     }
 }
 
-/// Returns the number of the tick nearest to `t`, s.
+/// Returns the index of the regular tick nearest to `t`, s, for ticks at the multiples of `period`, s.
 fn nearest_tick(t: f64, period: f64) -> f64 {
     // uses an integer conversion, because rounding is a library call on processors without SSE 4.1
     (t / period + 0.5) as u64 as f64

@@ -18,49 +18,50 @@ use std::sync::Arc;
 pub struct Simulation {
     /// Systems of the world; usually a single robot.
     pub systems: Vec<System>,
-    /// Events that connect and separate systems.
+    /// Events that connect and separate systems, or engage and disengage brakes.
     pub events: Vec<Event>,
     /// Contacts between the collision shapes of links.
     pub contacts: Vec<Contact>,
-    /// Length of steps while bodies touch.
+    /// Settings of the evaluation of contacts and of the length of steps while bodies touch.
     pub contact_steps: ContactSteps,
-    /// Reference orbit, on which the origin of W moves.
+    /// Reference orbit, on which the origin of W moves; `None` for motion without gravity in an inertial
+    /// frame W.
     pub orbit: Option<Arc<dyn Orbit>>,
-    /// Gravity field of the run. By default it is the field of the orbit or, if the orbit has none, that of a
+    /// Gravity field of the run. `None` selects the field of the orbit or, if the orbit has none, that of a
     /// point mass.
     pub gravity: Option<Arc<Gravity>>,
-    /// Orientation of the Earth, which some effects require.
+    /// Orientation of the Earth, which some effects require; `None` if no effect requires it.
     pub earth: Option<Arc<Earth>>,
-    /// Determines whether the robot drifts away from a reference orbit that is not in free fall (`True`) or
-    /// is carried along with that orbit (`Carried`).
+    /// Determines whether the systems fall freely and thus drift away from a reference orbit that is not in
+    /// free fall (`True`), or move along with that orbit (`Carried`).
     pub gravity_mode: GravityMode,
     /// Effects in addition to gravity.
     pub effects: Vec<Arc<dyn Effect>>,
     /// Length of fixed steps and spacing of the grid, s.
     pub time_step: f64,
-    /// External engine that replaces the native engine, if any. It has its own integrator, friction and
-    /// stops, and no local reference orbit.
+    /// External engine that replaces the native engine; `None` for the native engine. It has its own
+    /// integrator, friction and stops, and no local reference orbit.
     pub engine: Option<Box<dyn Engine>>,
     /// Integrator of the native engine.
     pub integrator: Integrator,
-    /// Permitted error of a step of the adaptive integrator. Errors of the attitude and of revolute joints
-    /// are relative to 1 rad, those of lengths to the robot's size or its distance from the origin of W, and
-    /// those of rates to the magnitude of the rates.
+    /// Permitted relative error of a step of the adaptive integrator. Errors of the attitude and of revolute
+    /// joints are relative to 1 rad, those of lengths to the robot's size or its distance from the origin of
+    /// W, and those of rates to the magnitude of the rates.
     pub tolerance: f64,
     /// Distance between the base and the reference orbit, m, beyond which integration continues about a local
     /// reference orbit in free fall. The reference orbit is kept in `Carried` mode, without gravity, with an
     /// external engine, for systems that may interact with others, and if a control or `reference` depends on
     /// the position in W.
     pub rereference_beyond: f64,
-    /// If true, the wrench of every effect on every body is recorded.
+    /// True if the wrench of every effect on every body is recorded.
     pub record_wrenches: bool,
-    /// Number of steps from one recorded row to the next.
+    /// Number of grid steps from one recorded row to the next.
     pub record_every: usize,
 }
 
 impl Simulation {
-    /// Creates a simulation of one robot without environment and controls, using RK4 with steps of 1 ms, each
-    /// of which is recorded.
+    /// Creates a simulation of one robot with the initial configuration `q` and velocity `v`, without
+    /// environment and controls. It uses RK4 with steps of 1 ms, each of which is recorded.
     pub fn new(model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
         let name = model.name().to_owned();
         Self::of(vec![System::new(&name, model, q, v)])

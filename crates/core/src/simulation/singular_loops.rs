@@ -1,4 +1,4 @@
-//! Closed loops that have been in a singular configuration during a run.
+//! Search for closed loops that have been in a singular configuration during a run.
 
 use super::run_state::RunState;
 use super::singularity_watch::SingularLoop;
@@ -7,8 +7,9 @@ use super::tree_state::TreeState;
 use crate::spatial::{Real, Scalar};
 
 impl<S: Real> Tree<'_, S> {
-    /// Returns the loops whose constraints have become dependent, with the time, s. Requires the projected state of
-    /// the cut at `t`, s.
+    /// Returns the names of the loops and mimic joints whose constraints have become linearly dependent, each
+    /// with the time, s. Requires that `state` is the state at `t`, s, after its projection onto the momentum
+    /// and the loops.
     fn find_singular(&mut self, t: f64, state: &TreeState<S>) -> Vec<(String, f64)> {
         if self.loops.is_empty() {
             return Vec::new();
@@ -25,7 +26,8 @@ impl<S: Real> Tree<'_, S> {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Finds the loops that have become singular. Requires the projected state of the cut at `t`, s.
+    /// Finds the loops that have become singular. Requires that the current state is that at `t`, s, after
+    /// its projection onto the momentum and the loops.
     pub(super) fn find_singular_loops(&mut self, t: f64) {
         let has_loops = self.equations.trees.iter().any(|tree| !tree.loops.is_empty());
         if !has_loops || self.mover.is_external() {

@@ -1,46 +1,49 @@
 //! Detection of singular configurations of closed loops during a run.
 
-/// Pivot of a row relative to its largest one in the run below which the configuration counts as singular. A pivot is
-/// proportional to the square of the distance from the singular configuration, so this is 1 % of a typical distance.
+/// Ratio of the pivot of a row to its largest pivot in the run below which the configuration counts as
+/// singular. A pivot is proportional to the square of the distance from the singular configuration, so this
+/// ratio corresponds to 1 % of a typical distance.
 const SINGULAR: f64 = 1e-4;
-/// Relative pivot of a row from which the configuration is regular again.
+/// Ratio of the pivot of a row to its largest pivot in the run above which the configuration is regular
+/// again.
 const REGULAR: f64 = 1e-3;
-/// Smallest pivot that is distinguished from zero; that of a redundant row is always smaller.
+/// Smallest pivot that is distinguished from zero; the pivot of a redundant row is always smaller.
 const ZERO: f64 = 1e-10;
 
-/// Closed loop, or mimic joint, whose constraints became dependent in a singular configuration.
+/// Closed loop or mimic joint whose constraints became linearly dependent in a singular configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SingularLoop {
     /// Name of the system.
     pub system: String,
     /// Name of the loop, of the capture that closes it, or of the mimic joint.
     pub name: String,
-    /// Time at which the run came near the configuration for the first time, s.
+    /// Time at which the run came near the singular configuration for the first time, s.
     pub time: f64,
 }
 
-/// Pivots of the rows of closed loops during a run.
+/// Watch on the pivots of the constraint rows of closed loops during a run. A pivot vanishes where a row is
+/// linearly dependent on other rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SingularityWatch {
     rows: Vec<WatchedRow>,
-    /// Joints that the constraints could not move, `(n,)`.
+    /// True for joints that were kept at rest in the last update, `(n,)`; `None` if there were none.
     kept: Option<Vec<bool>>,
 }
 
 #[derive(Clone, Debug)]
 struct WatchedRow {
     largest: f64,
-    /// Smallest pivot since the last singular configuration that was reported, and its time, s.
+    /// Smallest pivot since the last reported singular configuration, and the time of this pivot, s.
     least: (f64, f64),
     is_reported: bool,
-    /// True while the pivot grows after a reported configuration.
+    /// True while the pivot grows after a reported singular configuration.
     is_leaving: bool,
 }
 
 impl SingularityWatch {
-    /// Returns the rows that have become singular, each with the time, s, given the pivots at `t`, s. The pivots
-    /// depend on the joints that are `kept` at rest, so a change of these starts anew. A run that starts in a singular
-    /// configuration is recognized when it has left it.
+    /// Returns the indices of the rows that have become singular, each with the time, s, from the `pivots` of
+    /// all rows at `t`, s. The pivots depend on which joints are `kept` at rest, so a change of these joints
+    /// restarts the watch. A start in a singular configuration is recognized only after the run has left it.
     pub(super) fn update(
         &mut self,
         t: f64,

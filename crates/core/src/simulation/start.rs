@@ -17,7 +17,8 @@ use crate::world::{groups, systems_of};
 use std::sync::Arc;
 
 impl Simulation {
-    /// Runs for `duration` seconds from the initial state. Repeated calls give bit-identical results.
+    /// Runs the simulation for `duration`, s, from the initial state. Repeated calls give bit-identical
+    /// results.
     ///
     /// # Errors
     /// The errors of [`Simulation::start`] and [`Stepper::advance_to`]. The failure contains the rows
@@ -34,7 +35,7 @@ impl Simulation {
 
     /// Starts a run that the caller advances. `duration` is the planned end of the run, s, or `None` for an
     /// open-ended run. The last step ends at `duration`. The step sizes of the adaptive integrator and the
-    /// number of step-doubling probes also depend on it.
+    /// number of step-doubling probes also depend on `duration`.
     ///
     /// # Errors
     /// The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not
@@ -44,12 +45,13 @@ impl Simulation {
     }
 
     /// Resumes a run of the same simulation from a checkpoint and the rows of each system recorded before it.
-    /// The results are bit-identical to those of an uninterrupted run. The default of `duration`, s, is that
-    /// of the checkpoint.
+    /// The results are bit-identical to those of an uninterrupted run. `duration` is the planned end of the
+    /// run, s; `None` selects that of the checkpoint.
     ///
     /// # Errors
-    /// The errors of [`Simulation::start`], and [`SimulationError::Checkpoint`] for a checkpoint with a
-    /// different robot, schedule or instruction set.
+    /// The errors of [`Simulation::start`], and [`SimulationError::Checkpoint`] for a checkpoint of a run
+    /// with different systems, a different schedule or a different instruction set, for a damaged checkpoint,
+    /// and for `rows` that do not belong to it.
     pub fn resume(
         &mut self,
         duration: Option<f64>,
@@ -144,9 +146,9 @@ impl Simulation {
         }
     }
 
-    /// Returns pairs of systems that interact although no event connects them: because they may touch, or
-    /// because a control of one of them waits for an event that involves the other, or tracks a frame of the
-    /// other.
+    /// Returns pairs of systems, as indices in the world, that interact although no event connects them:
+    /// because they may touch, or because a control of one system waits for an event that involves the other
+    /// system or tracks a frame of the other system.
     pub(super) fn links(&self) -> Vec<(usize, usize)> {
         let waiting = self.systems.iter().enumerate().flat_map(|(system, declared)| {
             declared.controls.iter().filter_map(move |control| match control.begin {
@@ -190,7 +192,7 @@ impl Simulation {
         self.settings().environment_loads(&numbers, &models)
     }
 
-    /// Returns the effects of the scenario, plus gravity if the orbit is around a planet.
+    /// Returns the effects of the simulation, followed by gravity if the orbit is around a planet.
     pub(super) fn all_effects(&self) -> Vec<Arc<dyn Effect>> {
         let mut effects = self.effects.clone();
         if self.orbit.as_ref().is_some_and(|orbit| orbit.mu().is_some()) {

@@ -50,7 +50,7 @@ pub(super) struct Shared {
     pub(super) gravity_mode: GravityMode,
     /// Effects, including gravity.
     pub(super) effects: Vec<Arc<dyn Effect>>,
-    /// Name of each effect in the trace.
+    /// Name of the column of each effect in the trace.
     pub(super) effect_names: Vec<String>,
     pub(super) time_step: f64,
     pub(super) has_engine: bool,
@@ -61,14 +61,14 @@ pub(super) struct Shared {
     /// True if wrenches are recorded and a control follows external commands.
     pub(super) takes_commands: bool,
     pub(super) record_every: usize,
-    /// Contacts. In the settings of a group, they specify systems by their number in the group.
+    /// Contacts. In the settings of a group, they specify systems by their index in the group.
     pub(super) contacts: Vec<Contact>,
     pub(super) contact_steps: ContactSteps,
 }
 
 impl Shared {
-    /// Returns the settings of a group of systems, including only those effects that act on one of its
-    /// systems.
+    /// Returns the settings of the group of systems with the indices `numbers` in the world, with only those
+    /// effects and contacts that act on systems of the group.
     pub(super) fn of_group(&self, numbers: &[usize]) -> Self {
         let is_own = |effect: &Arc<dyn Effect>| numbers.iter().any(|&system| effect.acts_on(system));
         let named = self.effects.iter().zip(&self.effect_names).filter(|(effect, _)| is_own(effect));
@@ -77,7 +77,8 @@ impl Shared {
         Self { effects, effect_names, contacts, ..self.clone() }
     }
 
-    /// Creates the run of the systems with these numbers, at its initial state.
+    /// Creates the run of `systems`, whose indices in the world are `numbers`, at its initial state.
+    /// `duration` is the planned end of the run, s; `None` for an open-ended run.
     pub(super) fn run_state<'a, S: Scalar>(
         &self,
         duration: Option<f64>,
@@ -160,8 +161,9 @@ impl Shared {
         Ok(run)
     }
 
-    /// Returns the model and creates the tree, the controllers and the recorder of system `number` of the
-    /// group `numbers`. The recorder reserves memory for `rows` rows.
+    /// Returns the model of the system with index `number` in the group, and creates its tree, controllers
+    /// and recorder. `numbers` are the indices in the world of the systems of the group. The recorder
+    /// reserves memory for `rows` rows.
     fn run_system<'a, S: Scalar>(
         &self,
         (number, numbers): (usize, &[usize]),
@@ -203,7 +205,7 @@ impl Shared {
         Ok((model, Tree::new(Cow::Borrowed(model), stops).with_brakes(brakes), run))
     }
 
-    /// Returns the settings of the integrator for systems that are integrated together.
+    /// Returns the settings of the integrator for systems that are integrated together until `duration`, s.
     fn step_settings(&self, duration: Option<f64>, systems: &[&mut System]) -> StepSettings {
         let Self { integrator, tolerance, time_step, .. } = *self;
         let controlled = systems.iter().filter(|system| !system.controls.is_empty());
@@ -213,7 +215,8 @@ impl Shared {
         StepSettings { integrator, tolerance, time_step, control_period, duration }
     }
 
-    /// Creates the loads of the environment on the bodies of systems with these numbers and models.
+    /// Creates the loads of the environment on the bodies of systems with these indices in the world and
+    /// these models.
     pub(super) fn environment_loads(&self, numbers: &[usize], models: &[&Model]) -> EnvironmentLoads {
         EnvironmentLoads::new(
             (numbers, models),
@@ -270,8 +273,8 @@ impl Shared {
         self.integrator == Integrator::DormandPrince
     }
 
-    /// Creates the schedule of the run. Steps of an adaptive integrator end at grid points only if there are
-    /// latches or contacts, and at control ticks only if there are controls.
+    /// Creates the schedule of a run with the planned end `duration`, s. Steps of an adaptive integrator end
+    /// at grid points only if there are latches or contacts, and at control ticks only if there are controls.
     fn schedule(&self, duration: Option<f64>, systems: &[&mut System], events: &[Event]) -> Schedule {
         // in `Carried` mode, the acceleration of the reference orbit, including its jumps, does not act on
         // the robot
@@ -315,7 +318,8 @@ fn tracks_world(system: &System) -> bool {
             .any(|Control { law, .. }| law.joint_reference().is_none() && law.external().is_none())
 }
 
-/// Returns the number, within the group, of a system of the world; `None` if it belongs to another group.
+/// Returns the index in the group of the system with the index `system` in the world; `None` if it belongs to
+/// another group.
 fn local(numbers: &[usize], system: usize) -> Option<usize> {
     numbers.iter().position(|number| *number == system)
 }
@@ -324,7 +328,7 @@ fn lift<S: Scalar>(x: &[f64]) -> Vec<S> {
     x.iter().map(|x| S::of(*x)).collect()
 }
 
-/// Returns the frames in which references of a group are given, with systems specified by their number in the
+/// Returns the frames in which references of a group are given, with systems specified by their index in the
 /// group.
 fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameIndex, MovingFrame)> {
     let moving = systems.iter().flat_map(|system| system.moving_frames());
@@ -335,8 +339,8 @@ fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameInd
     moving.filter_map(place).collect()
 }
 
-/// Returns the events of the systems with these numbers, with systems and events specified by their number in
-/// the group.
+/// Returns the events of the systems with the indices `numbers` in the world, with systems and events
+/// specified by their index in the group.
 fn events_of(numbers: &[usize], events: &[Event]) -> Events {
     let is_own =
         |event: &usize| systems_of(events, *event).iter().all(|&system| local(numbers, system).is_some());

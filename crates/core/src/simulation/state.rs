@@ -6,15 +6,15 @@ use super::tree_state::{TreeRate, TreeState};
 use crate::spatial::{Real, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// State of all trees of a run, in the order of the run.
+/// State of all trees of a run, in the order of the trees.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct State<S> {
     pub(crate) trees: Vec<TreeState<S>>,
     /// Time integral of the moments of the external forces about the common centre of mass of all trees, with
     /// each force acting at the centre of mass of its tree, W axes, N m s; zero for a single tree.
     pub(crate) orbital: Vec3<S>,
-    /// Integrals of the pairs of pieces that are not far apart, in ascending order of their numbers; of all
-    /// pairs at the start of a run and in checkpoints. Empty without contacts.
+    /// Integrals of the pairs of pieces that are not far apart, in ascending order of the indices of the
+    /// pairs; of all pairs at the start of a run and in checkpoints. Empty without contacts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) contacts: Vec<ContactState>,
 }
@@ -65,7 +65,7 @@ impl<S: Real> State<S> {
         self.contacts.clone_from(&from.contacts);
     }
 
-    /// Stores `from ⊕ h rate`; see [`TreeState::move_from`].
+    /// Stores `from ⊕ h rate` with the step `h`, s; see [`TreeState::move_from`].
     #[inline(always)]
     pub(crate) fn move_from(&mut self, from: &Self, rate: &Rate<S>, h: S) {
         for ((to, from), rate) in self.trees.iter_mut().zip(&from.trees).zip(&rate.trees) {
@@ -91,7 +91,7 @@ impl<S: Real> Rate<S> {
         }
     }
 
-    /// Computes `self += s · other`, for weighted sums of stages.
+    /// Adds `s · other` to these rates, for weighted sums of stages.
     #[inline(always)]
     pub(crate) fn accumulate(&mut self, other: &Self, s: S) {
         for (sum, other) in self.trees.iter_mut().zip(&other.trees) {
@@ -115,7 +115,7 @@ impl<S: Real> Rate<S> {
         self.contacts.clone_from(&from.contacts);
     }
 
-    /// Sets to zero the rates that `accumulate` sums.
+    /// Sets the rates that [`Rate::accumulate`] sums to zero.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         self.trees.iter_mut().for_each(TreeRate::clear);

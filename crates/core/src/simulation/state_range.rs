@@ -1,9 +1,9 @@
-//! Range check of the initial state.
+//! Check that the initial state is within the accepted ranges.
 
 use super::error::SimulationError;
 use crate::model::{Axis, BASE_NV, Model, QUATERNION};
 
-/// Largest accepted deviation of the norm of an initial quaternion from 1.
+/// Largest accepted difference between the norm of an initial quaternion and 1.
 pub(super) const UNIT_NORM: f64 = 1e-6;
 /// Largest accepted distance from the reference orbit, m (a tenth of a light year), and largest accepted
 /// joint position, rad or m.
@@ -13,7 +13,8 @@ const LIGHT: f64 = 299_792_458.0;
 /// Largest accepted angular velocity and joint rate, rad/s; products of larger values may overflow.
 const FASTEST: f64 = 1e9;
 
-/// Rejects positions and rates whose products would overflow in the first step.
+/// Returns an error for the first velocity that reaches the speed of light or [`FASTEST`], or the first
+/// position that reaches [`FARTHEST`].
 pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), SimulationError> {
     let slides = |index: usize| match index {
         0..3 => true,
@@ -42,7 +43,7 @@ pub(super) fn check_range(model: &Model, q: &[f64], v: &[f64]) -> Result<(), Sim
     Ok(())
 }
 
-/// Returns the unit of the position of a joint.
+/// Returns the unit of the position of the joint with index `joint`.
 pub(super) fn unit_of(model: &Model, joint: usize) -> &'static str {
     if matches!(model.nodes()[joint + 1].axis, Axis::Prismatic) { "m" } else { "rad" }
 }

@@ -1,4 +1,4 @@
-//! One step of a run. The numbers of the operations are those in the order of execution in `docs/design.md`.
+//! One step of a run. The numbers in the comments are those of the order of execution in `docs/design.md`.
 
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -12,8 +12,8 @@ use crate::spatial::{Scalar, Vec3};
 
 impl<S: Scalar> RunState<'_, S> {
     /// Computes a step that starts at the current cut, which is the start of `interval`. The step ends at
-    /// `end`, or earlier: at an event that became known during the run, at the first change of the mode of a
-    /// joint, latch or contact, while bodies touch, or if the tolerance requires a shorter step.
+    /// `end`, s, or earlier: at an event that became known during the run, at the first change of the mode of
+    /// a joint, latch or contact, while bodies touch, or if the tolerance requires a shorter step.
     pub(super) fn step_to(&mut self, end: f64, interval: &Interval) -> Result<(), SimulationError> {
         let start = interval.start;
         self.order_of_execution(end, interval).map_err(|error| self.name_divergence(error, start))?;
@@ -41,8 +41,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 
     /// Computes kinematics, events, impacts, loads, controllers and modes at the start of a step in
-    /// `interval` that is to end at `end`. The function is also used for the last row, after which there is
-    /// no step. Returns the end of the step, s, which is earlier than `end` if an event has made a cut within
+    /// `interval` whose planned end is `end`, s. The function also prepares the last row, which no step
+    /// follows. Returns the end of the step, s, which is earlier than `end` if an event has become due within
     /// the interval, or while bodies touch.
     pub(super) fn begin(&mut self, interval: &Interval, end: f64) -> Result<f64, SimulationError> {
         let t = interval.start;
@@ -73,9 +73,10 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(end)
     }
 
-    /// Computes the loads and updates the controllers that are due. Controllers that compensate the
-    /// environment are updated after the loads have been computed, and all others before. The compensated
-    /// loads are those of the whole interval, even if the step ends earlier.
+    /// Computes the loads for the step from the start of `interval` to `end`, s, and updates the controllers
+    /// that are due. Controllers that compensate the environment are updated after the loads have been
+    /// computed, and all others before. The compensated loads are those of the whole interval, even if the
+    /// step ends earlier.
     fn loads_and_controllers(&mut self, interval: &Interval, end: f64) -> Result<(), SimulationError> {
         let t = interval.start;
         let is_due = self.find_due(t);
@@ -100,7 +101,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Returns true if any system has controls, which need the state in the coordinates of their system.
+    /// Returns true if any system has controls, which require the state in the coordinates of their system.
     fn has_controls(&self) -> bool {
         self.systems.iter().any(|run| !run.controllers.set.controls().is_empty())
     }
@@ -124,8 +125,8 @@ impl<S: Scalar> RunState<'_, S> {
         self.systems.iter().any(|run| run.is_due)
     }
 
-    /// Updates the controllers that are due, for the systems whose value of `compensates_environment` equals
-    /// the argument.
+    /// Updates the controllers that are due at `t`, s: those that compensate loads of the environment if
+    /// `compensates_environment` is true, otherwise the others.
     fn update_controllers(&mut self, t: f64, compensates_environment: bool) -> Result<(), SimulationError> {
         for number in 0..self.systems.len() {
             let run = &self.systems[number];
@@ -185,7 +186,8 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(reached)
     }
 
-    /// Changes to a new local reference orbit if a system has drifted far from its current reference orbit.
+    /// Changes to a new local reference orbit at `t`, s, if a system has drifted too far from its current
+    /// reference orbit.
     pub(super) fn rereference_if_far(&mut self, t: f64) -> Result<(), SimulationError> {
         let EquationsOfMotion { trees, loads, .. } = &mut self.equations;
         for (number, (tree, state)) in trees.iter_mut().zip(&mut self.state.trees).enumerate() {
@@ -197,15 +199,15 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Replaces errors that are consequences of divergence. If the state is not finite, an error such as the
-    /// overflow of a torque, or the evaluation of an orbit or effect at a non-finite position, becomes
-    /// [`SimulationError::Diverged`].
+    /// Returns the error with which a step from `t`, s, ends, after replacing errors that are consequences of
+    /// divergence. If the state is not finite, an error such as the overflow of a torque, or the evaluation
+    /// of an orbit or effect at a non-finite position, becomes [`SimulationError::Diverged`].
     pub(super) fn name_divergence(&self, error: SimulationError, t: f64) -> SimulationError {
         let is_overflow = matches!(&error, SimulationError::Control(ControlError::Overflow { .. }));
         if is_overflow || self.mover.first_diverged(&self.state).is_some() { self.diverged(t) } else { error }
     }
 
-    /// Returns [`SimulationError::Diverged`] with the last finite state.
+    /// Returns [`SimulationError::Diverged`] at `time`, s, with the last finite state.
     fn diverged(&self, time: f64) -> SimulationError {
         let number = self.mover.first_diverged(&self.state).unwrap_or(0); // if all are finite, a torque overflowed
         let [q, v] = self.mover.last_finite(number, &self.state);

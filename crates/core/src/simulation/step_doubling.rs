@@ -1,4 +1,4 @@
-//! Step doubling: estimates of the errors of the attitude, the base's origin and the joints from the
+//! Step doubling, which estimates the errors of the attitude, the base's origin and the joints from the
 //! differences between a step and two half steps.
 
 use super::acceleration_jumps::AccelerationJumps;
@@ -20,17 +20,18 @@ use serde::{Deserialize, Serialize};
 const EVERY: usize = 256;
 /// Smallest number of probes of a run, unless the run has fewer steps.
 const LEAST: usize = 5;
-/// Additional steps that are probed early in a long run, where transients occur.
+/// Indices of additional steps that are probed early in a long run, where transients occur.
 const EARLY: [usize; 3] = [4, 16, 64];
-/// Number of ε of the subtracted values below which a difference is treated as a rounding error.
+/// Difference of two values, in units of the machine epsilon times their magnitude, below which it is treated
+/// as a rounding error.
 const ROUNDING: f64 = 16.0;
 
-/// Step doubling: from time to time, repeats a step as two half steps, and sums the differences between the
-/// resulting states.
+/// Step doubling of a run: some steps are repeated as two half steps, and the differences between the
+/// resulting states are summed.
 ///
 /// A local error of order `p + 1` is smaller by a factor of `2^p` after two half steps. For the fourth-order
-/// Runge-Kutta method, the difference therefore equals the local error within a sixteenth. The sum bounds the
-/// error of a run unless the motion amplifies errors, as chaotic motion does.
+/// Runge-Kutta method, the difference therefore equals the local error up to a sixteenth of that error. The
+/// sum bounds the error of a run unless the motion amplifies errors, as chaotic motion does.
 pub(super) struct StepDoubling<S> {
     whole: State<S>,
     halved: State<S>,
@@ -38,7 +39,7 @@ pub(super) struct StepDoubling<S> {
     start: Vec<Data<S>>,
     /// Number of steps between two probes.
     every: usize,
-    /// Sum of the magnitudes of all accelerations of each tree at the start of the step.
+    /// Sum of the magnitudes of all accelerations of each tree at the start of the step, rad/s² or m/s².
     changes: Vec<f64>,
     /// Errors of each tree.
     pub(super) errors: Vec<Errors>,
@@ -47,9 +48,10 @@ pub(super) struct StepDoubling<S> {
 /// Errors of one tree, measured by the probes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Errors {
-    /// Number of the step of the last probe.
+    /// Index of the step of the last probe.
     pub(super) step: usize,
-    /// Attitude difference at the last probe and its sum over the steps before the probe, rad.
+    /// Attitude difference at the last probe, and the sum of such differences over the steps before the
+    /// probe, rad.
     turn: [f64; 2],
     /// Differences for the base's origin, then for every joint.
     pub(super) drifts: Vec<Drift>,
@@ -82,7 +84,7 @@ impl Errors {
     }
 
     /// Returns the summed differences of a coordinate over the first `steps` steps. Coordinate 0 is the
-    /// base's origin; the joints follow.
+    /// base's origin; coordinate `j + 1` is joint `j`.
     pub(super) fn drift(&self, coordinate: usize, steps: usize) -> CoordinateDrift {
         let drift = &self.drifts[coordinate];
         let [position, rate] = drift.until((steps - self.step) as f64);
@@ -123,12 +125,12 @@ impl<S: Scalar> StepDoubling<S> {
         }
     }
 
-    /// Returns true if step `step` is probed.
+    /// Returns true if the step with index `step` is probed.
     pub(super) fn is_due(&self, step: usize) -> bool {
         step.is_multiple_of(self.every) || self.every == EVERY && EARLY.contains(&step)
     }
 
-    /// Probes step number `step` over `interval`, s, if a probe is due. The kinematics and loads in
+    /// Probes the step with index `step` over `interval`, s, if a probe is due. The kinematics and loads in
     /// `equations` are restored bit by bit.
     pub(super) fn probe(
         &mut self,
@@ -154,8 +156,8 @@ impl<S: Scalar> StepDoubling<S> {
         Ok(())
     }
 
-    /// Computes one whole step and two half steps from `state`, and stores the sums of the magnitudes of the
-    /// accelerations at the start.
+    /// Computes one whole step over `interval`, s, and two half steps from `state`, and stores the sums of
+    /// the magnitudes of the accelerations at the start.
     fn repeat(
         &mut self,
         interval: (f64, f64),
@@ -189,7 +191,8 @@ impl<S: Scalar> StepDoubling<S> {
 
 impl Errors {
     /// Stores the differences between the states after one step of length `h`, s, from `start` and after two
-    /// half steps. `changes` is the sum of the magnitudes of all accelerations.
+    /// half steps. `changes` is the sum of the magnitudes of all accelerations, rad/s² or m/s², and `mass`
+    /// the mass of the tree, kg.
     fn compare<S: Scalar>(
         &mut self,
         start: &TreeState<S>,

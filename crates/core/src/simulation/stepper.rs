@@ -9,11 +9,11 @@ use std::ops::ControlFlow;
 
 /// Run that the caller advances; see [`Simulation::start`](super::Simulation::start).
 ///
-/// The steps are those of [`Simulation::run`](super::Simulation::run), whatever the times to which the run is
-/// advanced.
+/// The steps are those of [`Simulation::run`](super::Simulation::run), independent of the times to which the
+/// run is advanced.
 pub struct Stepper<'a> {
     pub(super) groups: Vec<Group<'a>>,
-    /// Group of each system, and number of the system in the group.
+    /// Index of the group of each system, and index of the system in the group.
     pub(super) places: Vec<(usize, usize)>,
     /// Length of a regular step, s.
     time_step: f64,
@@ -26,11 +26,10 @@ pub(super) struct Group<'a> {
     pub(super) run: Box<dyn Steps + 'a>,
 }
 
-/// Number of regular steps by which one of several groups advances before the next group does.
+/// Number of regular steps by which one of several groups advances before the next group advances.
 const STEPS_IN_TURN: f64 = 64.0;
 
-/// Rounding error of the time, as a fraction of `STEPS_IN_TURN` steps, that is accepted at the end of an
-/// advance.
+/// Accepted rounding error of the time at the end of an advance, as a fraction of `STEPS_IN_TURN` steps.
 const TURN_ROUNDING: f64 = 1e-6;
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -64,7 +63,8 @@ impl<'a> Stepper<'a> {
     /// Advances the run by `dt`, s.
     ///
     /// # Errors
-    /// [`SimulationError::NotPositive`] for `dt`, and the errors of [`Stepper::advance_to`].
+    /// [`SimulationError::NotPositive`] for `dt` that is not positive and finite, and the errors of
+    /// [`Stepper::advance_to`].
     pub fn advance(&mut self, dt: f64) -> Result<(), SimulationError> {
         self.advance_to(self.time_after(dt)?)
     }
@@ -72,7 +72,7 @@ impl<'a> Stepper<'a> {
     /// Returns the current time plus `dt`, s.
     ///
     /// # Errors
-    /// [`SimulationError::NotPositive`] for `dt`.
+    /// [`SimulationError::NotPositive`] for `dt` that is not positive and finite.
     pub fn time_after(&self, dt: f64) -> Result<f64, SimulationError> {
         SimulationError::check_positive("dt", dt)?;
         Ok(self.time() + dt)
@@ -91,7 +91,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// Advances the run like [`Stepper::advance_to`], but stops at the end of a step if the monitor returns
-    /// `Break`.
+    /// `Break`. Returns `Break` if the monitor has stopped the advance.
     ///
     /// # Errors
     /// The errors of [`Stepper::advance_to`].
@@ -106,7 +106,8 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Advances all groups to `t`, s. Several groups advance alternately, by a few steps each.
+    /// Advances all groups to `t`, s. Several groups advance in turn, by [`STEPS_IN_TURN`] regular steps
+    /// each.
     fn advance_groups(&mut self, t: f64, monitor: Monitor<'_>) -> Result<ControlFlow<()>, SimulationError> {
         if let [group] = &mut self.groups[..] {
             return group.run.advance_to(t, monitor);
@@ -129,8 +130,8 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// Writes the configuration `(nq,)` and the velocity `(nv,)` of a system at the current time to `q` and
-    /// `v`.
+    /// Writes the configuration, `(nq,)`, m and rad, and the velocity, `(nv,)`, m/s and rad/s, of the system
+    /// with index `system` at the current time to `q` and `v`.
     ///
     /// # Errors
     /// The errors of a step, which end the run; [`SimulationError::Ended`] if the run has ended.
@@ -141,8 +142,9 @@ impl<'a> Stepper<'a> {
         self.ended_by(result)
     }
 
-    /// Sets the joint torques `tau`, `(n,)`, N m (N), of a system, which are held from the current time on.
-    /// `None` leaves the torque of a joint unchanged. The current step ends at the current time.
+    /// Sets the joint torques `tau`, `(n,)`, N m or N, of the system with index `system`, which are held from
+    /// the current time on. `None` leaves the torque of a joint unchanged. The current step ends at the
+    /// current time.
     ///
     /// # Errors
     /// [`SimulationError::WrongLength`] and [`SimulationError::NotFinite`] for `tau`,
@@ -168,7 +170,8 @@ impl<'a> Stepper<'a> {
         Ok(Checkpoint::new(groups.collect::<Result<_, _>>()?))
     }
 
-    /// Returns the rows of a system recorded so far. A row at the current time is not included.
+    /// Returns the rows of the system with index `system` recorded so far. A row at the current time is not
+    /// included.
     pub fn rows(&self, system: usize) -> &Trace {
         let (group, system) = self.places[system];
         self.groups[group].run.rows(system)
@@ -194,8 +197,8 @@ impl<'a> Stepper<'a> {
         Ok(Recording::of(self.groups.iter().map(|group| &group.numbers[..]).zip(parts)))
     }
 
-    /// Returns the row of each system at the current time, as if the run ended now. The rows before it are
-    /// not copied, so the cost does not depend on their number.
+    /// Returns the row of each system at the current time, as if the run ended now. Earlier rows are not
+    /// copied, so the cost does not depend on their number.
     ///
     /// # Errors
     /// The errors of [`Stepper::recording`].
@@ -206,11 +209,11 @@ impl<'a> Stepper<'a> {
         Ok(self.places.iter().map(|(group, system)| std::mem::take(&mut parts[*group][*system])).collect())
     }
 
-    /// Ends the run at the current time and returns its recording. After an error, this contains the rows
-    /// before the error.
+    /// Ends the run at the current time and returns its recording. After an error, the recording contains the
+    /// rows before the error.
     ///
     /// # Errors
-    /// The error that occurs when the last row is computed, with the rows before it;
+    /// The error that occurs when the last row is computed, with the rows before that row;
     /// [`SimulationError::Ended`] if the run has already been finished.
     pub fn finish(&mut self) -> Result<Recording, RunFailure> {
         let last_row = match self.status {
@@ -238,7 +241,7 @@ impl<'a> Stepper<'a> {
         self.status == Status::Failed
     }
 
-    /// Returns the run of the group of a system, and the number of the system in the group.
+    /// Returns the run of the group of a system, and the index of the system in the group.
     pub(super) fn run_of(&mut self, system: usize) -> (&mut (dyn Steps + 'a), usize) {
         let (group, system) = self.places[system];
         (&mut *self.groups[group].run, system)

@@ -11,9 +11,9 @@ use crate::control::{Control, External, ExternalCommand, Interface};
 use crate::spatial::Scalar;
 
 impl Stepper<'_> {
-    /// Sends a command to a control with the law [`External`](crate::control::External). The command takes
-    /// effect at the next control tick, or at the current time if that is a tick, and is held until the next
-    /// command.
+    /// Sends a command to the control named `control` of the system with index `system`, whose law is
+    /// [`External`](crate::control::External). The command takes effect at the next control tick, or at the
+    /// current time if that is a tick, and is held until the next command.
     ///
     /// # Errors
     /// [`SimulationError::Control`] for an invalid command, and for a control that does not exist, does not
@@ -30,7 +30,7 @@ impl Stepper<'_> {
         run.send(system, control, command)
     }
 
-    /// Checks a command to a control without sending it.
+    /// Checks a command to a control without sending the command.
     ///
     /// # Errors
     /// The errors of [`Stepper::send`].
@@ -45,12 +45,13 @@ impl Stepper<'_> {
         self.groups[group].run.check_send(system, control, command)
     }
 
-    /// Applies a wrench at the origin of a frame of a system, given by its index, from the current time until
-    /// the next wrench on the same frame. The current step ends at the current time.
+    /// Applies a wrench at the origin of the frame with index `frame` of the system with index `system`, from
+    /// the current time until the next wrench on the same frame. The current step ends at the current time.
     ///
     /// # Errors
-    /// [`SimulationError::UnknownFrame`], [`SimulationError::NotFinite`], [`SimulationError::Ended`] and,
-    /// with an external engine, [`SimulationError::EngineOfWorld`]; the run does not change. The errors of a
+    /// [`SimulationError::UnknownFrame`] for a frame that does not exist, [`SimulationError::NotFinite`] for
+    /// a wrench that is not finite, [`SimulationError::Ended`] if the run has ended, and
+    /// [`SimulationError::EngineOfWorld`] with an external engine; the run does not change. The errors of a
     /// step end the run.
     pub fn wrench(
         &mut self,
@@ -92,7 +93,7 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Sets those joint torques that are given; they are held from the current time on.
+    /// Sets those joint torques, N m or N, that are not `None`; they are held from the current time on.
     pub(super) fn command(&mut self, system: usize, tau: &[Option<f64>]) -> Result<(), SimulationError> {
         self.cut_at_current_time()?;
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;

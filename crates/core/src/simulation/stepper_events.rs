@@ -1,4 +1,4 @@
-//! Events of a run that the caller advances with a stepper.
+//! Events of a run, as seen by the caller of a stepper.
 
 use super::attached::AttachedControl;
 use super::error::SimulationError;
@@ -8,7 +8,8 @@ use super::stepper::Stepper;
 use crate::world::WorldError;
 
 impl Stepper<'_> {
-    /// Triggers an event that happens on command, at the current time, where the current step ends.
+    /// Triggers the event named `name`, which must happen on command, at the current time. The current step
+    /// ends at this time.
     ///
     /// # Errors
     /// [`SimulationError::World`] for an event that does not exist, has already happened, or does not happen
@@ -31,7 +32,7 @@ impl Stepper<'_> {
         Err(WorldError::NoSuchEvent { name: name.to_owned(), known }.into())
     }
 
-    /// Returns the events that have happened during completed steps, in order of time.
+    /// Returns the records of the events that have happened during completed steps, in order of time.
     pub fn events(&self) -> Vec<&EventRecord> {
         let mut all: Vec<_> = self.groups.iter().flat_map(|group| group.run.records()).collect();
         all.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -39,13 +40,13 @@ impl Stepper<'_> {
     }
 
     /// Returns the controls found so far whose frames a capture has rigidly connected to the frames that they
-    /// follow, so that their errors cannot be reduced.
+    /// follow, so that the controls cannot reduce their errors.
     pub fn attached_controls(&self) -> Vec<AttachedControl> {
         self.groups.iter().flat_map(|group| group.run.attached_controls()).collect()
     }
 
-    /// Returns the closed loops that have been in, or near, a singular configuration since the run was started or
-    /// resumed, each with the first time.
+    /// Returns the closed loops and mimic joints that have been in, or near, a singular configuration since
+    /// the run was started or resumed, each with the first time.
     pub fn singular_loops(&self) -> Vec<SingularLoop> {
         self.groups.iter().flat_map(|group| group.run.singular_loops().iter().cloned()).collect()
     }

@@ -1,4 +1,4 @@
-//! Run of a group of systems, independent of its scalar type.
+//! Interface of the run of a group of systems, independent of the scalar type of the run.
 
 use super::attached::AttachedControl;
 use super::checkpoint::GroupCheckpoint;
@@ -13,12 +13,12 @@ use crate::control::ExternalCommand;
 use crate::spatial::Scalar;
 use std::ops::ControlFlow;
 
-/// Callback that receives the time reached, s, repeatedly during an advance. If it returns `Break`, the
+/// Callback that is called repeatedly during an advance with the time reached, s. If it returns `Break`, the
 /// advance stops at that time.
 pub type Monitor<'a> = &'a mut dyn FnMut(f64) -> ControlFlow<()>;
 
-/// Interface of the run of a group, independent of the scalar type. Systems are specified by their number in
-/// the group.
+/// Run of a group of systems, independent of its scalar type. Systems are specified by their index in the
+/// group.
 pub(super) trait Steps: Send {
     fn time(&self) -> f64;
     fn duration(&self) -> Option<f64>;
@@ -42,17 +42,17 @@ pub(super) trait Steps: Send {
         wrench: &WrenchCommand,
     ) -> Result<(), SimulationError>;
     fn wrench(&mut self, system: usize, frame: usize, wrench: WrenchCommand) -> Result<(), SimulationError>;
-    /// Returns the controls that follow external commands.
+    /// Returns the controls of a system that follow external commands.
     fn external(&self, system: usize) -> Vec<ExternalControl>;
-    /// Returns the names of the events.
+    /// Returns the names of the events of the group.
     fn events(&self) -> Vec<String>;
-    /// Returns the events that have happened.
+    /// Returns the records of the events that have happened.
     fn records(&self) -> &[EventRecord];
     /// Returns the controls whose frames are rigidly connected to the frames that they follow.
     fn attached_controls(&self) -> Vec<AttachedControl>;
     /// Returns the closed loops that have been in a singular configuration.
     fn singular_loops(&self) -> &[SingularLoop];
-    /// Returns the number of the event with this name if it can be triggered; `None` if there is no such
+    /// Returns the index of the event with this name if it can be triggered; `None` if the group has no such
     /// event.
     fn check_trigger(&self, name: &str) -> Result<Option<usize>, SimulationError>;
     fn trigger(&mut self, event: usize) -> Result<(), SimulationError>;

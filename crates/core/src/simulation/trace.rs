@@ -20,23 +20,23 @@ macro_rules! define_trace {
                 #[doc = concat!($meaning, " Shape ", stringify!(($($axis),+)), ", unit ", $unit, ".")]
                 pub $name: Vec<f64>,
             )+
-            /// Tracking errors of the controls, one column per control; see [`TRACKING`].
+            /// Tracking errors of the controls, m and rad, one column per control; see [`TRACKING`].
             pub tracking: Vec<NamedColumn>,
             /// Wrenches of the effects on every body, one column per effect; see [`WRENCHES`].
             pub wrenches: Vec<NamedColumn>,
             /// Distances and forces of the contacts of which the system is the first side, one column per
             /// contact; see [`CONTACTS`].
             pub contacts: Vec<NamedColumn>,
-            /// Forces of the closed loops whose first frame belongs to the system, one column per loop; see
-            /// [`LOOPS`].
+            /// Forces of the closed loops of the system and of the captures by it that may close a loop, one
+            /// column per loop; see [`LOOPS`].
             pub loops: Vec<NamedColumn>,
             /// Outcomes of the goals of the controls.
             pub results: Vec<GoalResult>,
             /// Times at which the run changed to a new reference orbit, s; see
             /// [`REREFERENCED`](super::columns::REREFERENCED).
             pub rereferenced: Vec<f64>,
-            /// Sum of the magnitudes of the work done in each step, J. It is computed during the run, because
-            /// sparse rows would miss work that changes sign.
+            /// Sum of the magnitudes of the work done in each step, J. The sum is computed during the run,
+            /// because sparse rows would miss work that changes sign.
             pub work_done: f64,
             /// Estimated attitude error at the end of the run, rad: the accumulated difference between steps
             /// and half steps or, for an embedded pair, between its two solutions. The amplification of
@@ -98,7 +98,7 @@ pub struct NamedColumn {
     pub name: String,
     /// Number of values per row.
     pub width: usize,
-    /// Values of all rows, `(T, width)`.
+    /// Values of all rows, `(T, width)`, in row-major order.
     pub values: Vec<f64>,
 }
 
@@ -109,19 +109,19 @@ impl NamedColumn {
     }
 }
 
-/// Errors of one coordinate over a run: summed differences between steps and half steps, the largest rate,
-/// and the sum of the jumps of the acceleration.
+/// Error estimates of one coordinate over a run: sums of the differences between a step and two half steps,
+/// the largest rate, and the sum of the jumps of the acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct CoordinateDrift {
-    /// Difference of the position, m or rad.
+    /// Sum of the differences of the position, m or rad.
     pub position: f64,
-    /// Difference of the rate, m/s or rad/s; for the base's origin, the difference of the velocity of the
-    /// centre of mass.
+    /// Sum of the differences of the rate, m/s or rad/s; for the base's origin, of the velocity of the centre
+    /// of mass.
     pub rate: f64,
     /// Largest magnitude of the rate, m/s or rad/s.
     pub fastest: f64,
-    /// Sum `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration from the end of a step of
-    /// length `h` to the start of the next step; zero for the base's origin.
+    /// Sum `Σ (h |Δq̈|/6)^(5/4)`, with the jump `Δq̈` of a joint's acceleration, rad/s² or m/s², from the end
+    /// of a step of length `h`, s, to the start of the next step; zero for the base's origin.
     pub jumps: f64,
 }
 
@@ -137,7 +137,7 @@ impl CoordinateDrift {
     }
 }
 
-/// Outcome of a goal.
+/// Outcome of the goal of a control.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalResult {
     /// Name of the control.
@@ -155,7 +155,7 @@ impl Trace {
         self.time.len()
     }
 
-    /// Returns the names of the joints whose positions exceed their limits, beyond rounding errors, in any
+    /// Returns the names of the joints whose positions exceed their limits by more than 1e-9 rad or m in any
     /// row.
     pub fn limits_exceeded<'m>(&self, model: &'m Model) -> Vec<&'m str> {
         const ROUNDING: f64 = 1e-9;

@@ -1,5 +1,5 @@
-//! Equations of motion of one tree, which give the time derivatives of its state from the state, the loads
-//! and the joint torques.
+//! Equations of motion of one tree, with which the time derivatives of its state are computed from the state,
+//! the loads and the joint torques.
 
 use super::body_states::LoadedSystem;
 use super::modes::JointModes;
@@ -18,9 +18,9 @@ use std::borrow::Cow;
 pub(crate) struct Tree<'a, S> {
     pub(crate) model: Cow<'a, Model>,
     pub(crate) data: Data<S>,
-    /// Commanded joint torques, `(n,)`, N m (N), without the compensation of Coulomb friction.
+    /// Commanded joint torques, `(n,)`, N m or N, without the compensation of Coulomb friction.
     pub(crate) command: Vec<S>,
-    /// Generalized forces of a stage, `(nv,)`, N m (N): command, damping and friction; zero at the base.
+    /// Generalized forces of a stage, `(nv,)`, N m or N: command, damping and friction; zero at the base.
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
@@ -35,13 +35,13 @@ pub(crate) struct Tree<'a, S> {
     pub(super) singularities: SingularityWatch,
     /// True if any joint has damping or friction.
     is_lossy: bool,
-    /// Joints of each member; empty if the tree has a single member.
+    /// Indices of the joints of each member; empty if the tree has a single member.
     pub(super) shares: Vec<Vec<usize>>,
 }
 
 impl<'a, S: Real> Tree<'a, S> {
     /// Creates the equations of motion of `model`. `restitution` is the coefficient of restitution of the
-    /// stops at the position limits of joints; `None` means no stops.
+    /// stops at the position limits of joints, from 0 to 1; `None` means no stops.
     pub(crate) fn new(model: Cow<'a, Model>, restitution: Option<f64>) -> Self {
         let modes = JointModes::new(&model, restitution);
         Self::with_modes(model, modes)
@@ -83,12 +83,13 @@ impl<'a, S: Real> Tree<'a, S> {
     /// Computes the kinematics of `state` and projects its base twist `v_b` onto its momentum: `v_b = Mbb⁻¹
     /// (h − Mbm q̇)`, with the blocks `Mbb` of the base and `Mbm` between base and joints of the mass matrix.
     ///
-    /// The momentum `h` is integrated from the external wrenches alone, so without such wrenches it is
-    /// conserved to rounding, whereas the integrated base twist has a truncation error. In a run with several
-    /// trees, the base is also shifted so that the centre of mass is the integral of its velocity `P/m`,
-    /// linear momentum over mass. Stages within a step are not projected.
+    /// The momentum `h` is integrated from the external wrenches alone. Without such wrenches it is therefore
+    /// conserved up to rounding errors, whereas the integrated base twist has a truncation error. In a run
+    /// with several trees, the base is also shifted so that the centre of mass is the integral of its
+    /// velocity `P/m`, linear momentum over mass. Stages within a step are not projected.
     ///
-    /// Closed loops are projected first in position and, after the base twist, in velocity.
+    /// If the tree has closed loops, the configuration is first projected onto them; after the base twist has
+    /// been projected, so is the velocity.
     pub(crate) fn project_momentum(&mut self, state: &mut TreeState<S>) {
         if self.loops.is_empty() {
             self.project_twist(state);
@@ -127,8 +128,9 @@ impl<'a, S: Real> Tree<'a, S> {
         );
     }
 
-    /// Projects the velocity of `state` onto the closed loops, which changes neither the momentum nor the rates of the
-    /// joints `kept`. Computes the kinematics. Requires the articulated-body inertias of [`project_configuration`].
+    /// Projects the velocity of `state` onto the closed loops, which changes neither the momentum nor the
+    /// rates of the joints for which `kept` is true. Computes the kinematics. Requires the articulated-body
+    /// inertias of [`project_configuration`].
     fn close_velocity(&mut self, state: &mut TreeState<S>, kept: Option<&[bool]>) {
         // relative to the base's origin, as in `project_twist`
         let frame_velocity = Vec3::from_slice(&state.v);
@@ -156,8 +158,9 @@ impl<'a, S: Real> Tree<'a, S> {
         }
     }
 
-    /// Changes the velocity of `state` by `change`, and its impulse and work by the resulting changes of
-    /// momentum and kinetic energy. Computes the new kinematics. Requires the kinematics before the change.
+    /// Adds `change`, `(nv,)`, to the velocity of `state`, and the resulting changes of momentum and kinetic
+    /// energy to its impulse and work. Computes the new kinematics. Requires the kinematics before the
+    /// change.
     pub(super) fn jump(&mut self, state: &mut TreeState<S>, change: &[f64]) {
         let energy = |tree: &Self, state: &TreeState<S>| kinetic_energy(&tree.model, &tree.data, &state.v);
         let before = energy(self, state);
@@ -189,11 +192,11 @@ impl<'a, S: Real> Tree<'a, S> {
     }
 
     /// Changes to the moving frame of the step, whose velocity is the current velocity of the base's origin.
-    /// Makes `v` and the velocities in `data` relative to this frame.
+    /// Afterwards, `v` and the velocities in `data` are relative to this frame.
     ///
     /// The equations of motion are the same in this frame, and the integrated velocities stay small. In base
-    /// axes, even a velocity that is constant in W rotates, which would reduce precision and order of
-    /// convergence.
+    /// axes, even a velocity that is constant in W rotates with the base, which would reduce the precision
+    /// and the order of convergence.
     pub(crate) fn enter_step_frame(&mut self, q: &[S], v: &mut [S]) {
         let frame_velocity_b = Vec3::from_slice(v);
         let Self { data, frame_velocity, .. } = self;
@@ -214,7 +217,7 @@ impl<'a, S: Real> Tree<'a, S> {
         self.frame_velocity
     }
 
-    /// Sets the velocity of the frame to which the velocities are relative, W axes, m/s.
+    /// Sets the velocity of the frame to which the velocities in `data` are relative, W axes, m/s.
     pub(super) fn follow_frame(&mut self, velocity: Vec3<S>) {
         self.frame_velocity = velocity;
     }
@@ -258,15 +261,15 @@ impl<'a, S: Real> Tree<'a, S> {
         }
     }
 
-    /// Returns the torques of the motors, which are commands plus compensation of Coulomb friction, N m (N).
+    /// Returns the torques of the motors, N m or N: the commands plus the compensation of Coulomb friction.
     pub(crate) fn torques(&self) -> impl Iterator<Item = S> {
         let joints = self.command.iter().zip(self.modes.compensations());
         joints.map(|(command, torque)| torque.map_or(*command, |torque| *command + S::of(torque)))
     }
 
-    /// Computes the generalized forces at the joints, `τ − b q̇ − f s`, with the commanded torque `τ`, the
-    /// damping `b`, the Coulomb friction `f` and the direction of slip `s`, and writes them to `forces`. The
-    /// friction `f s` is omitted for joints whose motors compensate it.
+    /// Computes the generalized forces at the joints, N m or N, `τ − b q̇ − f s`, with the commanded torque
+    /// `τ`, the damping `b`, the Coulomb friction `f` and the direction of slip `s`, and writes them to
+    /// `forces`. The friction `f s` is omitted for joints whose motors compensate it.
     pub(super) fn update_joint_forces(&mut self, v: &[S]) {
         let Self { model, modes, command, forces, is_lossy, .. } = self;
         forces[BASE_NV..].copy_from_slice(command);

@@ -5,7 +5,7 @@ use crate::model::{BASE_NQ, BASE_NV, Model};
 use crate::spatial::{Quat, Real, Scalar, Vec3, exp_so3};
 use serde::{Deserialize, Serialize};
 
-/// Integrated quantities of one tree: configuration, velocity, momentum and energies.
+/// Integrated quantities of one tree, such as configuration, velocity, impulse and work.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct TreeState<S> {
     /// Configuration, `(nq,)`, m and rad.
@@ -13,7 +13,7 @@ pub(crate) struct TreeState<S> {
     /// Velocity, `(nv,)`, m/s and rad/s.
     pub(crate) v: Vec<S>,
     /// Momentum at the start of the run or, in a tree with several members, at the assembly of the tree, W
-    /// axes, N s and N m s. The value changes only with a change of the reference orbit.
+    /// axes, N s and N m s. During a run, only a change of the reference orbit changes this value.
     pub(crate) initial_momentum: Momentum<S>,
     /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N
     /// m s. In a group with contacts, the moments of a step are about the common centre of mass until the
@@ -22,11 +22,11 @@ pub(crate) struct TreeState<S> {
     /// Work done by motors and external wrenches less the energy dissipated in the joints, J, since the start
     /// of the run or, in a tree with several members, since its assembly.
     pub(crate) work: S,
-    /// Energy dissipated by damping, friction and stops of the joints, J, over the same time.
+    /// Energy dissipated by damping, friction and stops of the joints, J, over the same time as `work`.
     pub(crate) dissipated: S,
     /// Position of the centre of mass in W, m, integrated from its velocity; `None` in a run with a single
-    /// tree. Once per step the base is shifted accordingly, so that the angular momentum of several trees
-    /// about a common point is exact.
+    /// tree. Once per step the base is shifted so that its centre of mass agrees with this position; the
+    /// angular momentum of several trees about a common point is then exact.
     pub(crate) center: Option<Vec3<S>>,
     /// Parts of `dissipated` that belong to the joints of each member, J; empty for a tree with a single
     /// member.
@@ -83,7 +83,7 @@ impl<S: Real> TreeRate<S> {
         }
     }
 
-    /// Computes `self += s · other`, for weighted sums of stages.
+    /// Adds `s · other` to these rates, for weighted sums of stages.
     #[inline(always)]
     pub(crate) fn accumulate(&mut self, other: &Self, s: S) {
         self.base_velocity = other.base_velocity.scale_add(s, self.base_velocity);
@@ -121,7 +121,7 @@ impl<S: Real> TreeRate<S> {
         self.clock = from.clock;
     }
 
-    /// Sets to zero the rates that `accumulate` sums.
+    /// Sets the rates that [`TreeRate::accumulate`] sums to zero.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {
         (self.base_velocity, self.rotation_rate, self.wrench) =
@@ -160,7 +160,8 @@ impl<S: Real> TreeState<S> {
         self.q.iter().chain(&self.v).all(|x| (0..S::LANES).all(|lane| x.lane(lane).is_finite()))
     }
 
-    /// Returns the momentum: the initial momentum plus the integral of the external wrenches.
+    /// Returns the momentum, W axes, N s and N m s: the initial momentum plus the integral of the external
+    /// wrenches.
     pub(crate) fn momentum(&self) -> Momentum<S> {
         let (a, b) = (&self.initial_momentum, &self.impulse);
         Momentum { linear: a.linear + b.linear, angular: a.angular + b.angular }

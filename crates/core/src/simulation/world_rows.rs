@@ -1,4 +1,4 @@
-//! Momentum and energy of all systems of a world, from their traces.
+//! Computation of the momentum and energy of all systems of a world from their traces.
 
 use super::group_sum::{GroupSum, SystemRow};
 use super::trace::Trace;

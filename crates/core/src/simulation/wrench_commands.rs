@@ -5,11 +5,11 @@ use crate::model::Frame;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Name of the commanded wrenches in the trace.
+/// Name of the column of the commanded wrenches in the trace.
 pub(super) const WRENCH_COMMAND: &str = "wrench_command";
 
-/// Wrench, commanded from outside the run, at the origin of a frame. It is held until the next command for
-/// the same frame.
+/// Wrench at the origin of a frame that the caller of a stepper commands. The wrench is held until the next
+/// command for the same frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WrenchCommand {
     /// Force at the origin of the frame, N.
@@ -20,7 +20,7 @@ pub struct WrenchCommand {
     pub axes: WrenchAxes,
 }
 
-/// Axes in which a commanded wrench is constant.
+/// Axes in which the components of a commanded wrench are constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrenchAxes {
     /// Axes of W.
@@ -39,10 +39,10 @@ pub(super) struct WrenchCommands {
 }
 
 /// Commanded wrench that is held: a force, N, at `point`, m, in the axes of `body`, and a torque, N m. Force
-/// and torque are in W axes or in body axes.
+/// and torque are in W axes or in the axes of `body`, according to `axes`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Held {
-    /// Number of the system in the world, and index of the frame.
+    /// Index of the system in the world, and index of the frame.
     place: (usize, usize),
     body: usize,
     point: [f64; 3],
@@ -61,8 +61,8 @@ impl WrenchCommands {
         self.changed_at
     }
 
-    /// Sets the wrench on a frame, effective from `t`, s; `place` is the number of the system in the world
-    /// and the index of the frame.
+    /// Sets the wrench on a frame, effective from `t`, s; `place` consists of the index of the system in the
+    /// world and the index of the frame.
     pub(super) fn set(&mut self, t: f64, place: (usize, usize), frame: &Frame, command: WrenchCommand) {
         let WrenchCommand { force, torque, axes } = command;
         let turned = |vector: Vector3<f64>| match axes {
@@ -79,7 +79,8 @@ impl WrenchCommands {
         self.changed_at = Some(t);
     }
 
-    /// Adds the commanded wrenches on `bodies` to `wrenches`.
+    /// Adds the commanded wrenches to `wrenches`; `bodies` contains the present states of all bodies of the
+    /// run.
     pub(super) fn add_to(&self, bodies: &Bodies, wrenches: &mut Wrenches) -> Result<(), EnvironmentError> {
         for Held { place, body, point, force, torque, axes } in &self.held {
             let index = BodyIndex { system: place.0, body: *body };
@@ -97,7 +98,7 @@ impl WrenchCommands {
         Ok(())
     }
 
-    /// Returns true if all numbers are finite.
+    /// Returns true if all forces, torques and points are finite.
     pub(super) fn is_finite(&self) -> bool {
         let finite =
             |held: &Held| held.force.iter().chain(&held.torque).chain(&held.point).all(|x| x.is_finite());
