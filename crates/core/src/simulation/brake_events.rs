@@ -39,7 +39,8 @@ impl<S: Scalar> RunState<'_, S> {
         self.record_of_brake((number, EventKind::Disengage, t), at, &self.snapshots(), (0.0, 0.0))
     }
 
-    /// Restores the engagement of all brakes from a checkpoint. The modes of the joints must be restored afterwards.
+    /// Restores the engagement of all brakes from a checkpoint. The modes of the joints must be restored
+    /// afterwards.
     pub(super) fn restore_brakes(&mut self, saved: &[SystemProgress]) {
         for (system, saved) in saved.iter().enumerate() {
             for (brake, &is_engaged) in saved.engaged.iter().enumerate() {
@@ -93,8 +94,8 @@ impl<S: Scalar> RunState<'_, S> {
         record
     }
 
-    /// Returns the axis of the joint of a brake and the origin of the link that it moves, both in W, and whether
-    /// the joint is revolute.
+    /// Returns the axis of the joint of a brake and the origin of the link that it moves, both in W, and
+    /// whether the joint is revolute.
     fn joint_axis(&self, at: BrakeIndex, state: &Snapshot) -> (Vec3<f64>, Vec3<f64>, bool) {
         let (model, joint) = (self.model(at.system), self.brake(at).joint);
         let mut data = Data::<f64>::new(model);

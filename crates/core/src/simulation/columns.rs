@@ -269,12 +269,12 @@ macro_rules! trace_columns {
             momentum (T, 6), "N s; N m s", "W", Always, LINEAR_ANGULAR,
                 "Linear momentum, and angular momentum about the centre of mass of the system.";
             impulse (T, 6), "N s; N m s", "W", Always, LINEAR_ANGULAR,
-                "Time integral of the external forces and of their moments about the centre of mass.";
-            kinetic_energy (T), "J", "W", Always, WHOLE, "Kinetic energy.";
+                "Time integral, since the start, of the external forces and of their moments about the centre of mass.";
+            kinetic_energy (T), "J", "W", Always, WHOLE, "Kinetic energy of the system in W.";
             work (T), "J", "W", Always, WHOLE,
-                "Work done on the robot by motors and external wrenches, minus the energy dissipated in the joints.";
+                "Work done on the robot by motors and external wrenches, less the energy dissipated in the joints.";
             dissipated (T), "J", "", Always, WHOLE,
-                "Energy lost in the damping, friction and stops of the joints.";
+                "Energy dissipated by the damping, friction and stops of the joints.";
             center_of_mass (T, 3), "m", "W", Always, WHOLE, "Position of the centre of mass of the system.";
             tool_pose (T, 4, 4), "m", "W", Tool, WHOLE, "Pose of the tool as a homogeneous matrix.";
             reference_pose (T, 4, 4), "m", "W", Reference, WHOLE,
@@ -284,12 +284,14 @@ macro_rules! trace_columns {
                 "Rotation vector from the actual to the desired attitude of the tool.";
             position_eci (T, 3), "m", "I", Orbit, WHOLE,
                 "Position of the origin of the base from the planet's centre.";
-            velocity_eci (T, 3), "m/s", "I", Orbit, WHOLE, "Velocity of the origin of the base.";
+            velocity_eci (T, 3), "m/s", "I", Orbit, WHOLE,
+                "Velocity of the origin of the base relative to the planet's centre.";
             reference_position_eci (T, 3), "m", "I", Orbit, WHOLE,
-                "Position of the reference orbit, which is the origin of W, from the planet's centre.";
-            reference_velocity_eci (T, 3), "m/s", "I", Orbit, WHOLE, "Velocity of the reference orbit.";
+                "Position of the origin of W, on the reference orbit, from the planet's centre.";
+            reference_velocity_eci (T, 3), "m/s", "I", Orbit, WHOLE,
+                "Velocity of the reference orbit at the origin of W relative to the planet's centre.";
             reference_residual (T, 3), "m/s²", "I", Carried, WHOLE,
-                "Acceleration of gravity that the reference orbit does not follow, which is omitted from the motion.";
+                "Acceleration of gravity less that of the reference orbit, a difference that the motion omits.";
         }
     };
 }

@@ -19,13 +19,13 @@ pub trait Engine: Send {
     fn step(&mut self, input: &StepInput<'_>, output: &mut StepOutput) -> Result<(), SimulationError>;
 
     /// Returns the names of the contacts whose forces the engine computes, in the order of
-    /// [`StepOutput::contacts`]. By default there are none.
+    /// [`StepOutput::contacts`]. The default is an empty list.
     fn contacts(&self) -> Vec<String> {
         Vec::new()
     }
 
     /// Returns the names of the closed loops and of the mimic joints whose constraints the engine satisfies,
-    /// as `SYSTEM/NAME`, or `NAME` for a single system. By default there are none.
+    /// as `SYSTEM/NAME`, or `NAME` for a single system. The default is an empty list.
     fn loops(&self) -> Vec<String> {
         Vec::new()
     }

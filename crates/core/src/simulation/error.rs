@@ -27,8 +27,8 @@ pub enum SimulationError {
     )]
     OpenLoop { name: String, by: String, is_moving: bool },
     #[error(
-        "the initial {state} of the mimic joint '{joint}' differs by {by} from the one that its leader prescribes; correct \
-         it, or leave it out so that the joint follows its leader",
+        "the initial {state} of the mimic joint '{joint}' differs by {by} from the {state} that its leader prescribes; \
+         correct the initial {state}, or omit it so that the joint follows its leader",
         state = if *is_moving { "rate" } else { "position" }
     )]
     OpenMimic { joint: String, by: String, is_moving: bool },
@@ -61,7 +61,7 @@ pub enum SimulationError {
     #[error("tolerance is {value}; it must be between 1e-13 and 0.1", value = short(*value))]
     Tolerance { value: f64 },
     #[error(
-        "rereference_beyond is {value} m; it must be at least 1 m (infinity disables it)",
+        "rereference_beyond is {value} m; it must be at least 1 m, or infinity to keep the reference orbit",
         value = short(*value)
     )]
     RereferenceBeyond { value: f64 },
@@ -107,11 +107,11 @@ pub enum SimulationError {
     )]
     OtherTool { controller: String, tool: String },
     #[error(
-        "a reference of a frame is given, but the system has no tool; set tool to the name of the frame that follows it"
+        "a reference of a frame is given, but the system has no tool; set tool to the frame that follows the reference"
     )]
     NeedsTool,
     #[error(
-        "frame {frame} does not exist; the robot has {known}",
+        "frame {frame} does not exist; the robot has {known}; give one of these indices",
         known = indices(*count, "frame")
     )]
     UnknownFrame { frame: usize, count: usize },
@@ -130,7 +130,7 @@ pub enum SimulationError {
         offset = unlike(*offset, &[*tolerance]), tolerance = short(*tolerance)
     )]
     JointsStartAway { control: String, joint: String, unit: &'static str, offset: f64, tolerance: f64 },
-    #[error("{rows} recorded rows do not fit in memory; record fewer rows with record_every")]
+    #[error("{rows} recorded rows do not fit in memory; increase record_every to record fewer rows")]
     TooManyRows { rows: usize },
     #[error(
         "the run diverged at t = {time} s: the state of {systems} is not finite; reduce time_step, initial rates, gains or \
@@ -149,7 +149,7 @@ pub enum SimulationError {
         t = unlike(*t, &[*end]), end = short(*end)
     )]
     AfterEnd { t: f64, end: f64 },
-    #[error("the run has ended; start a new run")]
+    #[error("the run has ended and cannot be continued; start a new run")]
     Ended,
     #[error(
         "joint '{joint}' is driven by control '{control}', which is active; command other joints, or end \

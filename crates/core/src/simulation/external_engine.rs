@@ -82,8 +82,8 @@ impl<'a> ExternalEngine<'a> {
     }
 
     /// Subtracts from the totals of a group the impulses that connections and contacts exchanged between its
-    /// systems in the last step. Their work remains in the totals; the energy that they absorb is added to the
-    /// dissipated energy.
+    /// systems in the last step. Their work remains in the totals; the energy that they absorb is added to
+    /// the dissipated energy.
     pub(super) fn remove_exchanged(&self, ledger: &mut Ledger) {
         for done in &self.output.systems {
             let impulse = Force::from_slice(&done.weld_impulse);

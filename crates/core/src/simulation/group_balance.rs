@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 ///
 /// The checks are `max |P − P₀ − ∫F dt|` of the linear momentum `P` under the external forces `F`, and `max
 /// |L − L₀ − ∫T dt|` of the angular momentum `L` about the centre of mass of the group under the external
-/// moments `T`, both relative to the largest sums of the magnitudes of the momenta of the bodies, and `max |E
-/// − E₀ − W|` of the kinetic energy `E` and the work `W`, relative to the sum of `Σ |ΔW|` and the largest
-/// `E`.
+/// moments `T`, both relative to the largest sums of the magnitudes of the momenta of the bodies, and
+/// `max |E − E₀ − W|` of the kinetic energy `E` and the work `W`, relative to the sum of `Σ |ΔW|` and the
+/// largest `E`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupBalance {
     /// Indices of the systems in the world.

@@ -67,8 +67,8 @@ impl<S: Scalar> RunState<'_, S> {
         }
     }
 
-    /// Returns the name of the column of a loop in the trace of a system from the name of the loop in a tree; `None`
-    /// if the loop belongs to another system.
+    /// Returns the name of the column of a loop in the trace of a system from the name of the loop in a tree;
+    /// `None` if the loop belongs to another system.
     pub(super) fn own_loop_name(&self, system: usize, name: &str) -> Option<String> {
         if let Place::Tree(_) = self.equations.members.places[system] {
             return Some(name.to_owned());
@@ -82,8 +82,8 @@ impl<S: Scalar> RunState<'_, S> {
     }
 }
 
-/// Returns the names of the closed loops that the trace of a system records: those of its model, and the captures by
-/// it that connect systems which other captures may also connect.
+/// Returns the names of the closed loops that the trace of a system records: those of its model, and the
+/// captures by it that connect systems which other captures may also connect.
 pub(super) fn recorded_loops(number: usize, model: &Model, events: &[Event]) -> Vec<String> {
     let is_loop = |closure: &&Closure| matches!(closure.constraint, Constraint::Frames { .. });
     let own = model.closures().iter().filter(is_loop).map(|closure| closure.name.clone());

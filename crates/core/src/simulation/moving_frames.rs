@@ -27,8 +27,8 @@ impl Simulation {
     /// Sets the motion of the frames in which references are given, at the initial state.
     ///
     /// # Errors
-    /// [`WorldError::ReferenceFrame`] for a frame that does not exist, and [`WorldError::OwnReferenceFrame`] for a
-    /// frame of the system of the reference itself.
+    /// [`WorldError::ReferenceFrame`] for a frame that does not exist, and [`WorldError::OwnReferenceFrame`]
+    /// for a frame of the system of the reference itself.
     pub(super) fn place_moving_frames(&self) -> Result<(), SimulationError> {
         for (number, system) in self.systems.iter().enumerate() {
             for moving in system.moving_frames() {

@@ -92,8 +92,8 @@ pub struct EventRecord {
     /// the touch-down; for a touch-down, zero. For a brake, the impulse with which it stops the link that its
     /// joint moves, along or about the axis of the joint.
     pub impulse: [f64; 6],
-    /// Point at which the impulse acts, in W, m; for a contact, the point of contact; for a brake, the origin of
-    /// the link that its joint moves.
+    /// Point at which the impulse acts, in W, m; for a contact, the point of contact; for a brake, the origin
+    /// of the link that its joint moves.
     pub point: [f64; 3],
     /// Kinetic energy lost, J; negative if a spring added energy. For a lift-off, the energy dissipated since
     /// the touch-down; for a touch-down, zero.

@@ -13,9 +13,9 @@ impl<S: Scalar> Tree<'_, S> {
     /// reference orbit of `loads`, and transforms `state` to the frame of this orbit. This system must be the
     /// only one on which `loads` act.
     ///
-    /// The centre of mass `c` is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`, `P' =
-    /// 0` with the position `p` of the base, the momentum `P` and the mass `m`. The kinetic energy in the new
-    /// frame is lower by `P²/2m` (König's theorem). Without an orbit, nothing changes.
+    /// The centre of mass `c` is at rest at the origin of the new frame: `p' = p − c`, `ṗ' = ṗ − P/m`,
+    /// `P' = 0` with the position `p` of the base, the momentum `P` and the mass `m`. The kinetic energy in
+    /// the new frame is lower by `P²/2m` (König's theorem). Without an orbit, nothing changes.
     pub(super) fn rereference(
         &mut self,
         loads: &mut EnvironmentLoads,

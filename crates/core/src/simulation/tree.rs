@@ -80,8 +80,9 @@ impl<'a, S: Real> Tree<'a, S> {
         self
     }
 
-    /// Computes the kinematics of `state` and projects its base twist `v_b` onto its momentum: `v_b = Mbb⁻¹
-    /// (h − Mbm q̇)`, with the blocks `Mbb` of the base and `Mbm` between base and joints of the mass matrix.
+    /// Computes the kinematics of `state` and projects its base twist `v_b` onto its momentum:
+    /// `v_b = Mbb⁻¹ (h − Mbm q̇)`, with the blocks `Mbb` of the base and `Mbm` between base and joints of the
+    /// mass matrix.
     ///
     /// The momentum `h` is integrated from the external wrenches alone. Without such wrenches it is therefore
     /// conserved up to rounding errors, whereas the integrated base twist has a truncation error. In a run

@@ -15,8 +15,8 @@ pub(crate) struct TreeState<S> {
     /// Momentum at the start of the run or, in a tree with several members, at the assembly of the tree, W
     /// axes, N s and N m s. During a run, only a change of the reference orbit changes this value.
     pub(crate) initial_momentum: Momentum<S>,
-    /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and N
-    /// m s. In a group with contacts, the moments of a step are about the common centre of mass until the
+    /// Time integral of the external forces and of their moments about the centre of mass, W axes, N s and
+    /// N m s. In a group with contacts, the moments of a step are about the common centre of mass until the
     /// step ends.
     pub(crate) impulse: Momentum<S>,
     /// Work done by motors and external wrenches less the energy dissipated in the joints, J, since the start

@@ -9,8 +9,8 @@ use crate::model::Model;
 pub struct WorldRows {
     /// Times of the rows, s, `(T,)`.
     pub time: Vec<f64>,
-    /// Linear momentum, N s, and angular momentum about the common centre of mass, N m s, axes of W, `(T,
-    /// 6)`.
+    /// Linear momentum, N s, and angular momentum about the common centre of mass, N m s, axes of W,
+    /// `(T, 6)`.
     pub momentum: Vec<f64>,
     /// Kinetic energy of all systems in W, J, `(T,)`.
     pub kinetic_energy: Vec<f64>,

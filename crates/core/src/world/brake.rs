@@ -2,9 +2,9 @@
 
 /// Brake of a joint.
 ///
-/// While it is engaged, a brake with a finite slip torque adds Coulomb friction of that torque to the joint, at
-/// rest and in motion. A brake with an infinite slip torque holds the joint rigidly and stops a moving joint by an
-/// impulse.
+/// While it is engaged, a brake with a finite slip torque adds Coulomb friction of that torque to the joint,
+/// at rest and in motion. A brake with an infinite slip torque holds the joint rigidly and stops a moving
+/// joint by an impulse.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Brake {
     /// Name, which is unique among the brakes of the system.

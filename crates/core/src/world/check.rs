@@ -206,8 +206,8 @@ fn check_circles(events: &[Event]) -> Result<(), WorldError> {
 /// Checks the brakes of a system.
 ///
 /// # Errors
-/// [`WorldError`] for a name given twice, a joint that does not exist or has two brakes, a slip torque that is not
-/// positive, and a joint that moves at the start although a brake holds it rigidly.
+/// [`WorldError`] for a name given twice, a joint that does not exist or has two brakes, a slip torque that
+/// is not positive, and a joint that moves at the start although a brake holds it rigidly.
 pub fn check_brakes(system: &System) -> Result<(), WorldError> {
     let (brakes, joints) = (&system.brakes, system.model.joints());
     for (i, Brake { name, joint, slip_torque, is_engaged }) in brakes.iter().enumerate() {

@@ -21,8 +21,8 @@ impl Union {
         i
     }
 
-    /// Joins the set that contains `a` with the set that contains `b`. Returns false if both numbers are already in
-    /// the same set.
+    /// Joins the set that contains `a` with the set that contains `b`. Returns false if both numbers are
+    /// already in the same set.
     pub(super) fn join(&mut self, a: usize, b: usize) -> bool {
         let (a, b) = (self.first(a), self.first(b));
         self.parent[a.max(b)] = a.min(b);

@@ -21,8 +21,9 @@ pub(in crate::simulation) struct CenterOfMass {
 }
 
 impl CenterOfMass {
-    /// Adds an interval of length `h`, s, in which the centre of mass moves by `Δc = h (P₀ + P₁)/2m + h²/12m
-    /// (F₀⁺ − F₁⁻)`, which is of fourth order, with the momenta `P₀` and `P₁` at both ends and the mass `m`.
+    /// Adds an interval of length `h`, s, in which the centre of mass moves by
+    /// `Δc = h (P₀ + P₁)/2m + h²/12m (F₀⁺ − F₁⁻)`, which is of fourth order, with the momenta `P₀` and `P₁`
+    /// at both ends and the mass `m`.
     ///
     /// `F₀⁺` is the force just after the first row and `F₁⁻` that just before the second row. If a wrench
     /// jumps there, `F₁⁻` is computed from the impulse `J` of the interval: `F₁⁻ = 2J/h − F₀⁺`. The value

@@ -78,8 +78,8 @@ pub struct Certificate {
     /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass
     /// plus the robot's size. `None` without step doubling.
     pub position_step_doubling_rel: Option<f64>,
-    /// Largest distance, m, or angle, rad, by which a closed loop is open or a mimic joint is away from its leader;
-    /// `None` without loops and mimic joints.
+    /// Largest distance, m, or angle, rad, by which a closed loop is open or a mimic joint is away from its
+    /// leader; `None` without loops and mimic joints.
     pub loop_opening: Option<f64>,
 }
 

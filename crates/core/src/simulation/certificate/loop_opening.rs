@@ -4,8 +4,8 @@ use crate::model::{BASE_NQ, Constraint, Model};
 use crate::simulation::columns::LOOPS;
 use crate::simulation::trace::Trace;
 
-/// Returns the largest opening of a loop, m or rad, or deviation of a mimic joint from its leader, rad or m, in any
-/// row; `None` without loops and mimic joints.
+/// Returns the largest opening of a loop, m or rad, or deviation of a mimic joint from its leader, rad or m,
+/// in any row; `None` without loops and mimic joints.
 pub(super) fn loop_opening(model: &Model, trace: &Trace) -> Option<f64> {
     let start = LOOPS.parts.iter().find(|part| part.name == "opening").map_or(0, |part| part.start);
     let openings = trace.loops.iter().flat_map(|column| {

@@ -77,10 +77,10 @@ impl BroadPhase {
     ///
     /// A pair is far apart if `|p_b − p_a| > r_a + r_b + FAR min(r_a, r_b) + TRAVEL h s`, with the origins
     /// `p` of the frames of its sides, the reaches `r`, and the speed `s` of at most
-    /// `|v_b − v_a| + |ω_a| r_a + |ω_b| r_b` for the velocities `v` and angular velocities `ω` of the frames. With
-    /// radii `(1 + FAR) r + TRAVEL h (|v − u| + |ω| r)` and any common velocity `u`, this holds for all pairs of
-    /// pieces of two frames whose spheres do not meet. The excess `FAR max(r_a, r_b)` of these radii is larger than all
-    /// rounding errors.
+    /// `|v_b − v_a| + |ω_a| r_a + |ω_b| r_b` for the velocities `v` and angular velocities `ω` of the frames.
+    /// With radii `(1 + FAR) r + TRAVEL h (|v − u| + |ω| r)` and any common velocity `u`, this holds for all
+    /// pairs of pieces of two frames whose spheres do not meet. The excess `FAR max(r_a, r_b)` of these radii
+    /// is larger than all rounding errors.
     pub(super) fn find<S: Real>(
         &mut self,
         frames: &mut Frames,

@@ -1,5 +1,5 @@
-//! Motions of the frames to which the sides of contacts are fixed. Sides share frames, so each motion is computed
-//! once per instant.
+//! Motions of the frames to which the sides of contacts are fixed. Sides share frames, so each motion is
+//! computed once per instant.
 
 use crate::dynamics::{frame_pose, frame_velocity};
 use crate::geometry::Pose;

@@ -47,8 +47,8 @@ impl<S: Real> DormandPrince<S> {
     }
 
     /// Computes a step: `y' = y ⊕ h Σ b_i k_i` with the length `h`, the rates `k_i` at the stages and the
-    /// weights `b_i`. The attitude is represented by the rotation vector `θ` since the start of the step, `θ̇
-    /// = dexp⁻¹(θ) ω`, with the angular velocity `ω` of the base. Requires the first stage in `stages`.
+    /// weights `b_i`. The attitude is represented by the rotation vector `θ` since the start of the step,
+    /// `θ̇ = dexp⁻¹(θ) ω`, with the angular velocity `ω` of the base. Requires the first stage in `stages`.
     pub(super) fn step(
         &mut self,
         stages: &mut Stages<S>,

@@ -54,8 +54,8 @@ mod tests {
         w.iter().zip([0.0].iter().chain(&C)).map(|(w, c)| w * f(*c)).sum()
     }
 
-    /// Checks the quadrature conditions `Σ w_i c_i^k` and the order conditions of the trees `Σ w_i a_ij
-    /// c_j^k`.
+    /// Checks the quadrature conditions `Σ w_i c_i^k` and the order conditions of the trees
+    /// `Σ w_i a_ij c_j^k`.
     #[test]
     fn the_dense_output_is_of_fourth_order_everywhere() {
         for x in [0.1, 0.3, 0.5, 0.77, 1.0_f64] {

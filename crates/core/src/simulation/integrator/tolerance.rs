@@ -161,8 +161,8 @@ struct SystemStep<'a, 's, S> {
     size: f64,
     /// Angular velocity of the base, rad/s: the larger of the values at both ends of the step.
     spin: f64,
-    /// Scale of the speed of the base, m/s: its speed at the start of the step or, if larger, the magnitude of
-    /// its velocity at the end of the step relative to the moving frame of the step.
+    /// Scale of the speed of the base, m/s: its speed at the start of the step or, if larger, the magnitude
+    /// of its velocity at the end of the step relative to the moving frame of the step.
     speed: f64,
     /// Largest rate, rad/s, and largest speed, m/s, so far, including this step.
     fastest: [f64; 2],

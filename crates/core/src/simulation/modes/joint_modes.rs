@@ -363,8 +363,8 @@ impl JointModes {
         }
     }
 
-    /// Returns the power that damping and friction dissipate, `Σ (b q̇ + f s) q̇`, W, with the damping `b`, the
-    /// kinetic friction `f` and the direction of slip `s` of each joint.
+    /// Returns the power that damping and friction dissipate, `Σ (b q̇ + f s) q̇`, W, with the damping `b`,
+    /// the kinetic friction `f` and the direction of slip `s` of each joint.
     #[inline(always)]
     pub(in crate::simulation) fn loss<S: Real>(&self, model: &Model, v: &[S]) -> S {
         self.loss_of(model, v, 0..model.joint_count())
