@@ -89,7 +89,7 @@ pub(super) struct SystemProgress {
     /// Sum of the magnitudes of the work of each step, J.
     pub(super) work_done: f64,
     pub(super) settled: Option<Estimates>,
-    /// Whether each brake is engaged.
+    /// For each brake of the system, true if it is engaged.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) engaged: Vec<bool>,
 }
@@ -205,8 +205,8 @@ impl Checkpoint {
 }
 
 impl GroupCheckpoint {
-    /// Checks that a run with this layout, this schedule and this number of events can resume from the
-    /// checkpoint; `rows` holds the number of recorded rows of each system.
+    /// Checks that a run with this layout, this schedule and `events` events can resume from the checkpoint;
+    /// `rows` contains the number of recorded rows of each system.
     pub(super) fn check(
         &self,
         layout: &Layout,

@@ -28,9 +28,9 @@ pub(super) fn orbital_moment<S: Real>(trees: &[Tree<'_, S>], state: &State<S>, r
 }
 
 /// Refers the moments of the external forces in `rate` to the common centre of mass `c`: adds
-/// `(c_i − c) × (F_i − m_i ΣF/m)` with the mass `m_i` of each tree and the total mass `m`. The second term is
-/// the inertial force in the frame of the common centre of mass; its moments sum to zero. Requires the
-/// kinematics of `state` in the trees.
+/// `(c_i − c) × (F_i − m_i ΣF/m)` to the moment on each tree, with the force `F_i` on the tree, its centre of
+/// mass `c_i` and its mass `m_i`, and the total mass `m`. The second term is the inertial force in the frame
+/// of the common centre of mass; its moments sum to zero. Requires the kinematics of `state` in the trees.
 pub(super) fn refer_to_common_center<S: Real>(trees: &[Tree<'_, S>], state: &State<S>, rate: &mut Rate<S>) {
     S::enter(
         #[inline(always)]

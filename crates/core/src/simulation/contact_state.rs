@@ -44,7 +44,7 @@ impl ContactState {
         }
     };
 
-    /// Computes `self + h rate`.
+    /// Returns `self + h rate` with the time step `h`, s.
     pub(super) fn plus(&self, rate: &ContactRate, h: f64) -> Self {
         Self {
             slip: rate.slip.scale_add(h, self.slip),

@@ -1,4 +1,4 @@
-//! Detection of systems that start far from the reference orbit, where coordinates in W lose digits.
+//! Detection of systems that start far from the reference orbit, where positions in W have a low resolution.
 
 use super::settings::Simulation;
 use crate::world::groups;
@@ -18,7 +18,7 @@ pub struct FarSystem {
     /// Spacing of adjacent `f64` positions at this distance, m.
     pub resolution: f64,
     /// True if the system starts beyond the distance at which a single system changes to a local reference
-    /// orbit, but cannot do so because events may connect it to other systems.
+    /// orbit, but cannot do so because it may interact with other systems.
     pub keeps_reference: bool,
 }
 

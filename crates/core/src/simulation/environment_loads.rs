@@ -123,8 +123,8 @@ impl EnvironmentLoads {
         Ok(self.cache.at(t, self.interval.1)?.state)
     }
 
-    /// Returns the gravity that the reference orbit does not follow, `g(r_ref) - r̈_ref`, at `t`, s, in m/s²,
-    /// W axes; `None` without an orbit or a planet.
+    /// Returns the difference between the gravity at the reference orbit and the acceleration of that orbit,
+    /// `g(r_ref) − r̈_ref`, at `t`, s, in m/s², W axes; `None` without an orbit or a planet.
     pub(super) fn reference_residual(&mut self, t: f64) -> Result<Option<Vector3<f64>>, SimulationError> {
         let Some(state) = self.reference_state(t)? else { return Ok(None) };
         let in_free_fall = self.in_free_fall;

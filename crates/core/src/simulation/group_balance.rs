@@ -8,11 +8,14 @@ use serde::{Deserialize, Serialize};
 /// Errors of the momentum and of the energy of a group of several systems, accumulated over the rows of a
 /// run.
 ///
-/// The checks are `max |P − P₀ − ∫F dt|` of the linear momentum `P` under the external forces `F`, and `max
-/// |L − L₀ − ∫T dt|` of the angular momentum `L` about the centre of mass of the group under the external
-/// moments `T`, both relative to the largest sums of the magnitudes of the momenta of the bodies, and
-/// `max |E − E₀ − W|` of the kinetic energy `E` and the work `W`, relative to the sum of `Σ |ΔW|` and the
-/// largest `E`.
+/// With the value of a quantity in the first row marked by the index 0, the checks are:
+///
+/// - `max |P − P₀ − ∫F dt|`, with the linear momentum `P` and the external force `F`, relative to the largest
+///   sum of the magnitudes of the linear momenta of the bodies,
+/// - `max |L − L₀ − ∫T dt|`, with the angular momentum `L` about the centre of mass of the group and the
+///   external moment `T`, relative to the largest sum of the magnitudes of the angular momenta of the bodies,
+/// - `max |E − E₀ − W|`, with the kinetic energy `E` and the work `W`, relative to the sum of `Σ |ΔW|` and the
+///   largest `E`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GroupBalance {
     /// Indices of the systems in the world.

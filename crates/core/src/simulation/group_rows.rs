@@ -1,4 +1,4 @@
-//! Rows of the balance of a group of several systems.
+//! Computation of the rows of the balance of a group of several systems.
 
 use super::equations::EquationsOfMotion;
 use super::group_balance::GroupRow;

@@ -101,7 +101,8 @@ impl<S: Scalar> RunState<'_, S> {
         (0..self.systems.len()).map(|number| of(system(number))).collect()
     }
 
-    /// Sets the torques and requested accelerations of the joints of every system.
+    /// Sets the torques, N m or N, and the requested accelerations, rad/s² or m/s², of the joints of every
+    /// system.
     fn set_commands(&mut self, commands: Vec<(Vec<S>, Vec<Option<f64>>)>) {
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
         for (place, (command, requested)) in members.places.iter().zip(commands) {

@@ -39,8 +39,7 @@ pub(crate) struct Part<'a, S> {
     pub(super) state: TreeState<S>,
     /// Kinematics, commanded torques and modes in the coordinates of the system.
     pub(super) own: Tree<'a, S>,
-    /// Factor, 1 or −1, of the base quaternion with which the quaternion is continuous when the system joins
-    /// the tree.
+    /// Factor, 1 or −1, that makes the base quaternion continuous when the system joins the tree.
     pub(super) sign: f64,
     /// Work less kinetic energy at the instant at which the system joined the tree, J.
     work_ahead: S,
@@ -238,7 +237,8 @@ impl<'a, S: Scalar> Part<'a, S> {
 }
 
 /// Returns the attitude in W of a body at a place in a tree: the product of the rotations along the path from
-/// the base. Unlike a quaternion computed from a rotation matrix, it is continuous in the joint positions.
+/// the base. Unlike a quaternion computed from a rotation matrix, this product is continuous in the joint
+/// positions.
 fn attitude_of<S: Real>(tree: &Model, q: &[S], place: &BodyPlace) -> Quat<S> {
     let constant = |q: Quat<f64>| Quat { v: Vec3::of(&q.v), w: S::of(q.w) };
     let mut attitude = constant(place.quaternion());

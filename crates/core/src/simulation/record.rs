@@ -14,8 +14,8 @@ use crate::spatial::Scalar;
 
 impl<S: Scalar> RunState<'_, S> {
     /// Returns true if a row is due at the start of `interval`. If every step is recorded, this includes
-    /// steps that start at an event, so that discontinuities coincide with rows. Captures and releases are
-    /// always recorded.
+    /// steps that start at an event, so that discontinuities coincide with rows. The state after an event
+    /// that has an effect is always recorded.
     pub(super) fn is_row_due(&self, interval: &Interval) -> bool {
         let is_due = |step: usize| step.is_multiple_of(self.record_every);
         interval.start < self.records_before

@@ -36,8 +36,8 @@ pub(super) struct RecordOptions {
     pub(super) has_orbit: bool,
     /// True if a controller compensates Coulomb friction.
     pub(super) compensates_friction: bool,
-    /// True if the run records the part of gravity that the reference orbit does not follow, which `Carried`
-    /// mode omits from the motion.
+    /// True if the run records the difference between gravity and the acceleration of the reference orbit,
+    /// which `Carried` mode omits from the motion.
     pub(super) records_residual: bool,
 }
 

@@ -37,9 +37,9 @@ impl Recording {
 /// Kind of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
-    /// Two systems were connected.
+    /// Frames of two systems were connected.
     Capture,
-    /// The connection of two systems was removed.
+    /// The connection that a capture had established was removed.
     Release,
     /// The first links of a contact began to touch.
     TouchDown,
@@ -102,12 +102,13 @@ pub struct EventRecord {
     /// of the momenta of its bodies; zero for a contact, whose forces on both sides act at one point.
     pub momentum_error: [f64; 2],
     /// Relative velocity and relative angular velocity of the connected frames after a capture, as fractions
-    /// of those before it, or of 1 m/s and 1 rad/s if these are larger; zero for a release and with an
-    /// external engine.
+    /// of those before the capture, or of 1 m/s and 1 rad/s if these are larger; zero for other events and
+    /// with an external engine.
     pub twist_left: [f64; 2],
     /// Error of the energy balance, relative to the larger of the kinetic energies before and after the
     /// event. For a capture, the change of the kinetic energy is compared with `½ Δvᵀ M Δv`, for a release
-    /// with the work of the spring. Zero while a seating motion prescribes the motion of joints.
+    /// with the work of the spring, and for a brake with the energy that its impulse dissipates. Zero while a
+    /// seating motion prescribes the motion of joints.
     pub energy_error: f64,
     /// Largest normal force since the touch-down, N; `None` unless the event is a lift-off. It is the largest
     /// value at the end of a step, or the maximum of the parabola through three such values.
@@ -115,7 +116,7 @@ pub struct EventRecord {
     pub peak_force: Option<f64>,
 }
 
-/// Largest relative error in the audit of an event that passes.
+/// Largest relative error that passes a check of [`EventRecord::checks`].
 pub const AUDIT: f64 = 1e-11;
 
 impl EventRecord {

@@ -40,7 +40,7 @@ pub(super) struct RunState<'a, S> {
     /// State at the current cut, the instant at which the current step begins.
     pub(super) state: State<S>,
     pub(super) equations: EquationsOfMotion<'a, S, EnvironmentLoads>,
-    /// Controllers and recorder of each system.
+    /// Controllers, recorder and brakes of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
     /// Frames of a system in which references of other systems are given, with systems specified by their
@@ -82,8 +82,8 @@ pub(super) struct RunState<'a, S> {
 }
 
 impl<S: Scalar> RunState<'_, S> {
-    /// Returns everything that a step changes, except the state of the controllers and the list of events,
-    /// which only grows.
+    /// Returns everything that a step changes, except the state of the controllers and the records of events,
+    /// to which a step only adds.
     pub(super) fn progress(&self) -> Progress {
         let (step_control, idle_steps, has_jumped) = self.mover.save();
         let (contacts, touches) = self.equations.contacts.save();

@@ -156,8 +156,8 @@ impl Schedule {
         self.duration.map(|duration| (duration / self.time_step - SAME_INSTANT).ceil().max(1.0) as usize)
     }
 
-    /// Returns an upper bound of the number of intervals of the run, without those that events create which
-    /// become known during the run; `None` without a planned end.
+    /// Returns an upper bound of the number of intervals of the run, apart from intervals that result from
+    /// events which become known during the run; `None` without a planned end.
     pub(super) fn intervals(&self) -> Option<usize> {
         let duration = self.duration?;
         let ticks = |period: f64| if period == self.time_step { 0.0 } else { (duration / period).ceil() };

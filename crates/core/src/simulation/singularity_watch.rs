@@ -21,8 +21,8 @@ pub struct SingularLoop {
     pub time: f64,
 }
 
-/// Watch on the pivots of the constraint rows of closed loops during a run. A pivot vanishes where a row is
-/// linearly dependent on other rows.
+/// Detector of singular configurations, which follows the pivots of the constraint rows of closed loops
+/// during a run. A pivot vanishes where a row is linearly dependent on other rows.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SingularityWatch {
     rows: Vec<WatchedRow>,
@@ -43,7 +43,8 @@ struct WatchedRow {
 impl SingularityWatch {
     /// Returns the indices of the rows that have become singular, each with the time, s, from the `pivots` of
     /// all rows at `t`, s. The pivots depend on which joints are `kept` at rest, so a change of these joints
-    /// restarts the watch. A start in a singular configuration is recognized only after the run has left it.
+    /// restarts the detection. A start in a singular configuration is recognized only after the run has left
+    /// it.
     pub(super) fn update(
         &mut self,
         t: f64,

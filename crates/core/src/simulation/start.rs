@@ -39,7 +39,8 @@ impl Simulation {
     ///
     /// # Errors
     /// The errors of [`Simulation::check`], [`SimulationError::NotPositive`] for a duration that is not
-    /// positive, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover the run.
+    /// positive and finite, and [`SimulationError::Earth`] if the orientation data of the Earth do not cover
+    /// the run.
     pub fn start(&mut self, duration: Option<f64>) -> Result<Stepper<'_>, SimulationError> {
         self.start_from(duration, None)
     }

@@ -15,15 +15,15 @@ use crate::model::{BASE_NQ, BASE_NV, QUATERNION};
 use crate::spatial::{Quat, Scalar, Vec3, log_so3};
 use serde::{Deserialize, Serialize};
 
-/// Largest number of steps between two probes. A probe computes three steps, so probes increase the cost of a
-/// run by about one percent.
+/// Largest number of steps from one probe to the next. A probe computes three steps, so probes increase the
+/// cost of a run by about one percent.
 const EVERY: usize = 256;
 /// Smallest number of probes of a run, unless the run has fewer steps.
 const LEAST: usize = 5;
 /// Indices of additional steps that are probed early in a long run, where transients occur.
 const EARLY: [usize; 3] = [4, 16, 64];
-/// Difference of two values, in units of the machine epsilon times their magnitude, below which it is treated
-/// as a rounding error.
+/// Largest difference of two values that is treated as a rounding error, in units of the machine epsilon
+/// times their magnitude.
 const ROUNDING: f64 = 16.0;
 
 /// Step doubling of a run: some steps are repeated as two half steps, and the differences between the
@@ -37,7 +37,7 @@ pub(super) struct StepDoubling<S> {
     halved: State<S>,
     /// Kinematics and loads of each tree at the start of the step.
     start: Vec<Data<S>>,
-    /// Number of steps between two probes.
+    /// Number of steps from one probe to the next.
     every: usize,
     /// Sum of the magnitudes of all accelerations of each tree at the start of the step, rad/s² or m/s².
     changes: Vec<f64>,
@@ -180,7 +180,8 @@ impl<S: Scalar> StepDoubling<S> {
         Ok(())
     }
 
-    /// Stores the differences between the two results of a step of length `h`, s, from `state`.
+    /// Stores the differences between the two results of a step of length `h`, s, from `state` for every
+    /// tree.
     fn compare<W>(&mut self, state: &State<S>, h: f64, equations: &EquationsOfMotion<'_, S, W>) {
         for (number, (errors, tree)) in self.errors.iter_mut().zip(&equations.trees).enumerate() {
             let [start, whole, halved] = [state, &self.whole, &self.halved].map(|state| &state.trees[number]);

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// Name of the column of the commanded wrenches in the trace.
 pub(super) const WRENCH_COMMAND: &str = "wrench_command";
 
-/// Wrench at the origin of a frame that the caller of a stepper commands. The wrench is held until the next
+/// Wrench that the caller of a stepper commands at the origin of a frame. The wrench is held until the next
 /// command for the same frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WrenchCommand {

@@ -5,8 +5,7 @@ use super::trace_row::TraceRow;
 use crate::dynamics::Momentum;
 use crate::spatial::Vec3;
 
-/// Largest errors of the balances since the first row, and the scales relative to which the errors are
-/// stated.
+/// Largest errors of the balances since the first row, and the scales by which the errors are divided.
 #[derive(Default)]
 pub(super) struct Balance {
     first: Option<First>,
@@ -33,7 +32,7 @@ struct First {
     time: f64,
     momentum: Momentum<f64>,
     impulse: Momentum<f64>,
-    /// Energy minus work, J.
+    /// Kinetic energy less the work, J.
     energy: f64,
 }
 
@@ -79,8 +78,9 @@ impl Balance {
         relative(self.linear, relative_momentum.max(self.momentum))
     }
 
-    /// Returns the drift of angular momentum relative to a scale. The scale is `Σ |Lₖ|` or, if larger, the
-    /// rounding error of the moments of the linear momenta.
+    /// Returns the drift of angular momentum relative to a scale. The scale is the sum `Σ |Lₖ|` of the
+    /// magnitudes of the angular momenta of the bodies or, if larger, a fraction of the moments of the linear
+    /// momenta that covers their rounding errors.
     pub(super) fn angular(&self) -> f64 {
         const ROUNDING: f64 = 1e-4;
         let moments = ROUNDING * self.size * self.momentum.max(self.relative_momentum);

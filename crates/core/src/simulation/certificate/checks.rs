@@ -2,34 +2,33 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Largest relative drift of momentum that passes. It allows for the rounding errors of millions of steps.
+/// Largest relative drift of momentum that passes the check. It allows for the rounding errors of millions of
+/// steps.
 pub(crate) const MOMENTUM: f64 = 1e-11;
-/// Largest relative error of the energy balance that passes. It corresponds to a fourth-order integrator that
-/// resolves the motion.
+/// Largest relative error of the energy balance that passes the check. A fourth-order integrator that
+/// resolves the motion stays below it.
 pub(crate) const ENERGY: f64 = 1e-6;
-/// Largest relative distance that passes between the centre of mass and the position obtained by integrating
-/// the momentum.
+/// Largest value of [`Certificate::center_of_mass_error_rel`] that passes the check.
 pub(super) const CENTER: f64 = 1e-7;
-/// Largest attitude error estimated by step doubling that passes, rad.
+/// Largest value of [`Certificate::attitude_step_doubling_rad`] that passes the check, rad.
 pub(super) const STEP_DOUBLING: f64 = 1e-6;
-/// Largest joint error estimated by step doubling that passes. Errors of angles are in rad, errors of
-/// displacements are relative to the robot's size, and errors of rates are relative to the largest rate of
-/// the joint.
+/// Largest value of [`Certificate::joint_step_doubling_rel`] that passes the check. Errors of angles are in
+/// rad, errors of displacements are relative to the robot's size, and errors of rates are relative to the
+/// largest rate of the joint.
 ///
 /// The aim is an error of at most 1e-3 of a joint's travel. Even a motion that is not chaotic may amplify the
 /// errors of steps by a factor of ten by the end of the run, and the probes may miss half of the errors.
 pub(super) const JOINT_STEP_DOUBLING: f64 = 5e-5;
-/// Largest position error of the base's origin estimated by step doubling that passes, relative to the length
-/// of the path of the centre of mass plus the robot's size.
+/// Largest value of [`Certificate::position_step_doubling_rel`] that passes the check.
 pub(super) const ORIGIN_STEP_DOUBLING: f64 = 1e-4;
-/// Largest distance, m, or angle, rad, by which a closed loop may be open.
+/// Largest value of [`Certificate::loop_opening`] that passes the check, m or rad.
 pub(super) const OPENING: f64 = 1e-11;
-/// Largest error of the attitude that passes, as a fraction of the commutator of successive angular
-/// velocities. The fraction is 1 for an integrator that does not integrate on the rotation group.
+/// Largest value of [`Certificate::attitude_consistency`] that passes the check. The value is 1 for an
+/// integrator that does not integrate on the rotation group.
 pub(super) const ATTITUDE: f64 = 0.1;
 
-/// Errors of a trace, measured by the laws of mechanics. Each is relative to a nonzero scale, unless a unit
-/// is stated.
+/// Errors of a trace, measured by the laws of mechanics. Each error is relative to a nonzero scale, unless a
+/// unit is stated.
 ///
 /// An integrator that integrates momentum conserves both momenta by construction; the other values are
 /// independent checks. Checks that compare successive steps are evaluated during the run if only some steps
@@ -59,13 +58,14 @@ pub struct Certificate {
     /// differences of the recorded velocities, and the mean external wrench of a step, relative to the
     /// inertial forces of the bodies.
     pub base_rows_residual_rel: Option<f64>,
-    /// Largest value of `base_rows_residual_rel` that passes: 1e-6 plus the truncation error of a central
-    /// difference, `O(dt²)`, and at most 0.1; `dt` is the length of a step. Zero if the check does not apply.
+    /// Largest value of `base_rows_residual_rel` that passes the check: 1e-6 plus the truncation error of a
+    /// central difference, `O(dt²)`, and at most 0.1; `dt` is the length of a step. Zero if the check does
+    /// not apply.
     pub base_rows_gate: f64,
     /// Difference between the recorded rotations and those computed from the recorded angular velocities,
     /// relative to the sum of the accumulated commutator of successive angular velocities and the
     /// interpolation error of the rates. The value is 1 for attitudes composed without the commutator, and
-    /// far smaller for integration on the rotation group.
+    /// far smaller for attitudes integrated on the rotation group.
     pub attitude_consistency: Option<f64>,
     /// Difference between the attitudes after a step and after two half steps, summed over the run, rad; for
     /// an adaptive integrator, the sum of the error estimates of its steps. `None` if the errors of steps are
@@ -78,8 +78,8 @@ pub struct Certificate {
     /// Step-doubling error of the position of the base's origin, relative to the path of the centre of mass
     /// plus the robot's size. `None` without step doubling.
     pub position_step_doubling_rel: Option<f64>,
-    /// Largest distance, m, or angle, rad, by which a closed loop is open or a mimic joint is away from its
-    /// leader; `None` without loops and mimic joints.
+    /// Largest distance, m, or angle, rad, by which a closed loop is open or a mimic joint deviates from the
+    /// position that its leader prescribes; `None` without loops and mimic joints.
     pub loop_opening: Option<f64>,
 }
 
@@ -115,9 +115,9 @@ impl PairChecks {
 pub struct Check {
     /// Name of the field of [`Certificate`].
     pub name: &'static str,
-    /// Value of that field.
+    /// Value of the field.
     pub value: f64,
-    /// Largest value that passes.
+    /// Largest value that passes the check.
     pub gate: f64,
 }
 

@@ -170,8 +170,8 @@ impl<'a> RowReader<'a> {
     }
 
     /// Returns the jump of the angular acceleration of the base, rad/s², `ω̇⁻ − ω̇⁺`, for efforts `τ` that
-    /// jump at row `k`: the base part of `M⁻¹ (τ⁻ − τ⁺)`. Joints that friction or a stop holds at rest before
-    /// and after the row are locked.
+    /// jump at row `k`: the base part of `M⁻¹ (τ⁻ − τ⁺)`. Joints that are at rest before and after the row
+    /// are locked.
     fn angular_jump(&mut self, k: usize, q: &[f64]) -> Vec3<f64> {
         let n = self.model.joint_count();
         if k == 0 || n == 0 {
@@ -200,7 +200,7 @@ impl<'a> RowReader<'a> {
         tau - self.model.joints()[j].friction * self.direction(row, j)
     }
 
-    /// Returns the direction of a joint's motion just after a row: 1, −1, or 0 at rest.
+    /// Returns the direction of the motion of joint `j` just after a row: 1, −1, or 0 at rest.
     fn direction(&self, row: usize, j: usize) -> f64 {
         let of = |column: &[f64]| Trace::row(column, row, self.model.nv())[BASE_NV + j];
         match (of(&self.trace.v), of(&self.trace.acceleration)) {
@@ -210,12 +210,12 @@ impl<'a> RowReader<'a> {
         }
     }
 
-    /// Returns true if a joint is at rest either just before or just after a row, but not both.
+    /// Returns true if joint `j` is at rest either just before or just after a row, but not both.
     fn starts_or_stops(&self, row: usize, j: usize) -> bool {
         row > 0 && (self.direction(row - 1, j) == 0.0) != (self.direction(row, j) == 0.0)
     }
 
-    /// Returns true if the joint is at rest in the intervals before and after a row. The acceleration of such
+    /// Returns true if joint `j` is at rest in the intervals before and after a row. The acceleration of such
     /// a joint does not jump at the row.
     fn is_held(&self, row: usize, j: usize) -> bool {
         let rate = Trace::row(&self.trace.v, row, self.model.nv())[BASE_NV + j];

@@ -9,7 +9,7 @@ use crate::spatial::{Force, Motion, Real, Vec3};
 use crate::world::impulse_response;
 
 /// Returns the change of relative velocity per unit impulse, 1/kg, along the normal and in the tangential
-/// direction in which it is largest, and the change of the relative rate of turn about the normal per unit
+/// direction with the largest change, and the change of the relative rate of turn about the normal per unit
 /// angular impulse, 1/(kg m²): `nᵀ W n` for each direction `n`, with `W = J_A M_A⁻¹ J_Aᵀ + J_B M_B⁻¹ J_Bᵀ`,
 /// the Jacobians `J` of both sides at the point of contact and their mass matrices `M`.
 pub(super) fn mobility<S: Real>(

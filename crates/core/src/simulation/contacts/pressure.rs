@@ -19,9 +19,9 @@ pub(super) struct Pressure {
     pub(super) moment: Vec3<f64>,
     /// Power that the force takes from the motion, W.
     pub(super) power: f64,
-    /// Power dissipated, W.
+    /// Power that the force dissipates, W.
     pub(super) loss: f64,
-    /// Elastic energy, J.
+    /// Elastic energy that the force stores, J.
     pub(super) elastic: f64,
 }
 
@@ -36,8 +36,8 @@ impl Pressure {
     /// at `Σ w_i F_i p_i/N`, where `p_i` is the midpoint between the points of both sides.
     ///
     /// The force at a single point may pull within a step, because the law is evaluated beyond lift-off; the
-    /// step then ends at the lift-off. Pieces that separate without force (`is_pressing` is false), and
-    /// points of several that would pull, dissipate their elastic energy.
+    /// step then ends at the lift-off. Pieces that separate without force (`is_pressing` is false) dissipate
+    /// their elastic energy, and so does each of several points that would pull.
     pub(super) fn of(
         law: &NormalLaw,
         points: &[ContactPoint],

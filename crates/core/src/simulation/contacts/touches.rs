@@ -53,7 +53,7 @@ pub(super) struct Integrals {
     pub(super) loss: f64,
 }
 
-/// Contact at the start of a step, summed over its pieces.
+/// State of a contact at the start of a step, summed over its pieces.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     /// Number of pairs of pieces that touch.
@@ -65,14 +65,14 @@ pub(super) struct Sample {
     force: f64,
     /// Sum of the elastic energies, J.
     pub(super) elastic: f64,
-    /// Smallest gap, m, with its point and the systems of its pieces.
+    /// Smallest gap, m; `point` and `systems` are those of the pieces with this gap.
     gap: f64,
     point: Vec3<f64>,
     systems: [usize; 2],
 }
 
 impl Touch {
-    /// Contact that has not touched.
+    /// State of a contact that has not touched.
     pub(super) const NONE: Self = {
         let zero = Vec3 { x: 0.0, y: 0.0, z: 0.0 };
         Self {
@@ -198,7 +198,7 @@ impl Integrals {
 }
 
 impl Sample {
-    /// Contact whose pieces are far apart.
+    /// Sample of a contact whose pieces are far apart.
     pub(super) const FAR: Self = Self {
         pieces: 0,
         depth: 0.0,

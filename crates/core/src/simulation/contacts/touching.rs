@@ -36,11 +36,12 @@ pub(in crate::simulation) struct Loading {
     pub(super) depth: f64,
     /// Rate of the depth `ẋ`, m/s.
     pub(super) rate: f64,
-    /// Normal from the first side to the second.
+    /// Unit normal from the first side to the second.
     pub(super) normal: Vec3<f64>,
     /// Point at which the forces act, m.
     pub(super) point: Vec3<f64>,
-    /// Resultant of the normal forces, if the pieces overlap.
+    /// Resultant of the normal forces; `None` unless the pieces press on each other or separate while they
+    /// overlap.
     pub(super) pressure: Option<Pressure>,
     /// Force on the second side, N.
     pub(super) force: Vec3<f64>,
@@ -50,12 +51,13 @@ pub(in crate::simulation) struct Loading {
     pub(super) sliding: Vec3<f64>,
     /// Normal in axes of the first side.
     pub(super) normal_a: Vec3<f64>,
-    /// Friction in axes of the first side, if the contact has friction and the pieces press on each other.
+    /// Friction in axes of the first side; `None` without friction or while the pieces do not press on each
+    /// other.
     pub(super) friction: Option<FrictionForce>,
     /// Rate at which the second side turns about the normal relative to the first, rad/s.
     pub(super) spin: f64,
-    /// Moment about the normal on the second side, if the contact has torsional friction and the pieces press
-    /// on each other; in the first component, N m.
+    /// Moment about the normal on the second side, N m, in the first component; `None` without torsional
+    /// friction or while the pieces do not press on each other.
     pub(super) torsion: Option<FrictionForce>,
 }
 

@@ -56,7 +56,7 @@ pub(crate) struct JointModes {
     /// Joints whose positions are prescribed functions of time. They are locked: their accelerations do not
     /// depend on torques.
     given: Vec<GivenJoint>,
-    /// Accelerations of the locked joints, `(n,)`, rad/s² (m/s²); empty if all are zero.
+    /// Accelerations of the locked joints, `(n,)`, rad/s² or m/s²; empty if all are zero.
     accelerations: Vec<f64>,
 }
 
@@ -181,7 +181,7 @@ impl JointModes {
         &self.given
     }
 
-    /// Returns the accelerations of the locked joints, `(n,)`, rad/s² (m/s²); empty if all are zero.
+    /// Returns the accelerations of the locked joints, `(n,)`, rad/s² or m/s²; empty if all are zero.
     pub(in crate::simulation) fn accelerations(&self) -> &[f64] {
         &self.accelerations
     }

@@ -12,7 +12,7 @@ pub(super) struct ModesOfStep<'a, 's, S> {
     pub(super) tree: &'a Tree<'s, S>,
     pub(super) start: &'a TreeState<S>,
     pub(super) end: &'a TreeState<S>,
-    /// True if a change of the direction of slip does not end the step.
+    /// True if changes between slip and rest do not end the step.
     pub(super) ignores_slip: bool,
 }
 
