@@ -6,7 +6,7 @@ use super::normal::NormalLaw;
 use crate::geometry::{Pose, Shape};
 use crate::world::FrameIndex;
 
-/// Law of a contact.
+/// Laws of the normal force and of friction of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
     /// Law of the normal force.

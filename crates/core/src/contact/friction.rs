@@ -17,8 +17,8 @@ const LEAST_RATIO: f64 = 0.01;
 /// under oscillating loads, and returns to its initial position when the load is removed.
 ///
 /// Source: Dupont, Hayward, Armstrong and Altpeter, Single State Elastoplastic Friction Models, IEEE
-/// Transactions on Automatic Control 47(5), 2002, without a transition between elastic and plastic motion, as
-/// in Simo and Hughes, Computational Inelasticity, 1998, chapter 1.
+/// Transactions on Automatic Control 47(5), 2002. The transition between elastic and plastic motion is
+/// omitted, as in Simo and Hughes, Computational Inelasticity, 1998, chapter 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     /// Coefficient of static friction, at least the kinetic coefficient.
@@ -29,8 +29,8 @@ pub struct Friction {
     pub stiffness: f64,
     /// Tangential damping `c` of the bristles, N s/m; `None` selects a damping ratio of 0.1.
     pub damping: Option<f64>,
-    /// Coefficient of kinetic torsional friction, m: the largest moment about the normal per unit of normal
-    /// force; 0 for contact at a point.
+    /// Coefficient of kinetic torsional friction, m: the moment about the normal per unit of normal force
+    /// while the contact slips; 0 for contact at a point.
     pub torsional: f64,
 }
 

@@ -6,10 +6,10 @@ use super::error::{ContactError, positive};
 /// other at `speed`, m/s, separate at `restitution` times that speed in a central, collinear impact.
 ///
 /// With the restitution `e` and the speed `v₀`, `p = d v₀` is the root of `p (1 + e) = ln[(1 + p)/(1 − e p)]`
-/// in `0 < p < 1/e`, for every exponent, stiffness and mass.
+/// in `0 < p < 1/e`, for every exponent, stiffness and mass; for `e = 1`, the dissipation is 0.
 ///
 /// # Errors
-/// [`ContactError::Parameter`] unless `0 < restitution ≤ 1` and `speed > 0`.
+/// [`ContactError::Parameter`] unless `0 < restitution ≤ 1` and `speed` is positive and finite.
 pub fn dissipation_for(restitution: f64, speed: f64) -> Result<f64, ContactError> {
     if !(restitution > 0.0 && restitution <= 1.0) {
         let range = "more than 0 and at most 1".to_owned();

@@ -74,8 +74,8 @@ impl Balance {
         self.scales = [0, 1].map(|i| self.scales[i] + other.scales[i]);
     }
 
-    /// Returns the magnitudes of the changes of linear and angular momentum since `before`, each relative to
-    /// the larger of the two scales.
+    /// Returns the magnitudes of the changes of linear and angular momentum since `before`, each divided by
+    /// the larger of its scales before and after the change.
     pub fn error_since(&self, before: &Self) -> [f64; 2] {
         let change = self.momentum - before.momentum;
         let sizes = [change.linear.norm(), change.angular.norm()];
@@ -84,8 +84,8 @@ impl Balance {
     }
 }
 
-/// Adds the magnitudes of the momentum `h` of a body about its origin, and of its angular momentum about a
-/// point, from which the origin is at `lever`.
+/// Adds the scales of a body of mass `mass`, kg: those of its momentum `h` about its origin and of its
+/// angular momentum about a point, N m s, from which the origin is at `lever`, m.
 #[inline(always)]
 fn add_scales(scales: &mut [f64; 2], h: Force<f64>, about_point: Vec3<f64>, lever: Vec3<f64>, mass: f64) {
     let linear = h.linear.norm().max(REST * mass);

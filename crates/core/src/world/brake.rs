@@ -9,7 +9,7 @@
 pub struct Brake {
     /// Name, which is unique among the brakes of the system.
     pub name: String,
-    /// Index of the joint.
+    /// Index of the joint among those of the system.
     pub joint: usize,
     /// Largest torque that the brake can hold, N m (N for a prismatic joint); may be infinite.
     pub slip_torque: f64,

@@ -48,8 +48,8 @@ pub fn check_names(systems: &[System]) -> Result<(), WorldError> {
 /// Checks the events of a world.
 ///
 /// # Errors
-/// [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames or events, a
-/// capture within one system, a capture that would produce an invalid tree, a latch without a capture, a
+/// [`WorldError`] for the first invalid event: a name given twice, unknown systems, frames, brakes or events,
+/// a capture within one system, a capture that would produce an invalid tree, a latch without a capture, a
 /// value outside its range, or events that wait for themselves or each other.
 pub fn check_events(systems: &[System], events: &[Event]) -> Result<(), WorldError> {
     for (i, event) in events.iter().enumerate() {

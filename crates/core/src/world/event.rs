@@ -46,7 +46,7 @@ pub enum When {
     },
     /// When the caller of the stepper triggers the event.
     OnCommand,
-    /// When the two frames of a capture have been within an envelope for long enough.
+    /// When the two frames of a capture have been within an envelope for the time [`Envelope::held_for`].
     Latch(Envelope),
 }
 
@@ -76,13 +76,14 @@ pub struct Envelope {
 /// Action of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
-    /// Connects two frames rigidly, with the relative pose that they have at that instant.
+    /// Connects two frames rigidly, with the relative pose that they have when the event happens.
     Capture {
         /// Capturing frame. The base of the tree to which it belongs becomes the base of the connected tree.
         by: FrameIndex,
         /// Captured frame.
         of: FrameIndex,
-        /// Motion of the captured frame to a nominal pose after the capture, if any.
+        /// Motion of the captured frame to a nominal pose after the capture; `None` to keep the relative pose
+        /// at the capture.
         seat: Option<Seat>,
     },
     /// Removes the connection that a capture established.

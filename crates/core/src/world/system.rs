@@ -35,7 +35,8 @@ pub struct System {
     /// Indices in the world of the systems whose models the controllers know. While such a system is
     /// connected to this one, control laws use the model of the connected tree.
     pub knows: Vec<usize>,
-    /// Coefficient of restitution of rigid stops at the position limits of joints; `None` for no stops.
+    /// Coefficient of restitution, from 0 to 1, of rigid stops at the position limits of joints; `None` for
+    /// no stops.
     pub stops: Option<f64>,
     /// Brakes of joints.
     pub brakes: Vec<Brake>,
@@ -48,7 +49,7 @@ impl System {
         tracked.chain(&self.reference).filter_map(TaskReference::moving_frame)
     }
 
-    /// Creates a system without controls.
+    /// Creates a system without controls, tool, reference, stops and brakes.
     pub fn new(name: &str, model: Arc<Model>, q: Vec<f64>, v: Vec<f64>) -> Self {
         Self {
             name: name.to_owned(),
