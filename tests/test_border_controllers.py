@@ -35,7 +35,7 @@ def test_the_tool_of_the_run_must_be_the_frame_of_the_control_law() -> None:
     hold = oo.Hold(dual.frame_pose(q, "left_tool"))
     law = oo.ComputedTorque(dual, "right_tool")
     with pytest.raises(
-        ControlError, match="tracks frame 'right_tool', but the tool of the run is 'left_tool'"
+        ControlError, match="tracks frame 'right_tool', but the tool of the system is 'left_tool'"
     ):
         oo.Simulation(dual, q, v, controller=law, reference=hold, tool="left_tool")
 

@@ -282,19 +282,19 @@ fn the_state_of_step_doubling_is_checked_on_resuming() {
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["ended"] = vec![0.0; 9].into()
             },
-            "'joints with jumps of acceleration' has 9 entries in the checkpoint",
+            "it has 9 entries for 'joints with jumps of acceleration'",
         ),
         (
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["jumps"] = vec![0.0; 0].into()
             },
-            "'joints with jumps of acceleration' has 0 entries in the checkpoint",
+            "it has 0 entries for 'joints with jumps of acceleration'",
         ),
         (
             |value| {
                 value["groups"][0]["progress"]["trees"][0]["errors"]["jumps"]["fastest"] = vec![0.0; 1].into()
             },
-            "'joints with jumps of acceleration' has 1 entry in the checkpoint",
+            "it has 1 entry for 'joints with jumps of acceleration'",
         ),
         (|value| value["groups"][0]["progress"]["steps"] = 1.into(), "the number of steps (1)"),
         (

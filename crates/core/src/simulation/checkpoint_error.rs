@@ -26,8 +26,8 @@ pub enum CheckpointError {
     )]
     MissingRows { got: usize, expected: usize },
     #[error(
-        "the checkpoint belongs to another scenario: '{name}' has {got} in the checkpoint, but {expected} in this \
-         simulation; resume with the original scenario",
+        "the checkpoint belongs to another scenario: it has {got} for '{name}', but this simulation has {expected}; \
+         resume with the original scenario",
         got = count(*got, "entry")
     )]
     OtherSize { name: &'static str, got: usize, expected: usize },

@@ -102,7 +102,7 @@ pub enum SimulationError {
     )]
     EffectOnNoSystem { effect: String, count: usize },
     #[error(
-        "the controller tracks frame '{controller}', but the tool of the run is '{tool}'; use the same \
+        "the controller tracks frame '{controller}', but the tool of the system is '{tool}'; use the same \
          frame for both"
     )]
     OtherTool { controller: String, tool: String },
