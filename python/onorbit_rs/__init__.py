@@ -249,7 +249,7 @@ if not TYPE_CHECKING:  # otherwise every misspelt name would have a type
 
 
 def _reduced(trace: Trace) -> tuple[Any, ...]:
-    """Return the pickled form of a trace; its module is imported when the first trace is pickled."""
+    """Return the pickled form of a trace; the pickling module is imported here, on first use."""
     from onorbit_rs.output.pickling import reduced
 
     return reduced(trace)

@@ -36,7 +36,7 @@ class                       built-in               fields: cause
 ``ScenarioError``           ``ValueError``         ``file, path, line``: an invalid scenario
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
 ``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or displays nothing
-``Ros2Error``               ``RuntimeError``       ``reason``: no ROS 2 domain, messages or packages; bags
+``Ros2Error``               ``RuntimeError``       ``reason``: a domain, messages, packages or a bag
 ==========================  =====================  ==========================================================
 
 :class:`RunInterrupted` is a ``KeyboardInterrupt`` (Ctrl-C), so that neither ``except Exception`` nor
@@ -230,7 +230,10 @@ class ControlError(OnOrbitError, ValueError):
 
 
 class SimulationError(OnOrbitError, ArithmeticError):
-    """A run diverged, cannot continue or has ended; ``trace`` has the rows before a divergence."""
+    """A run diverged, cannot continue or has ended.
+
+    After a divergence, ``time`` (s), ``q`` and ``v`` are the last state, and ``trace`` has the rows before.
+    """
 
     time: Any = None
     q: Any = None
@@ -261,7 +264,10 @@ class CheckpointError(OnOrbitError, ValueError):
 
 
 class ConvergenceError(OnOrbitError, ArithmeticError):
-    """An iteration did not converge, or a matrix could not be factored."""
+    """An iteration did not converge within ``iterations``, or a matrix could not be factored.
+
+    ``residual`` is the remaining error, or None.
+    """
 
     iterations: Any = None
     residual: Any = None

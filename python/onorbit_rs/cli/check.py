@@ -61,7 +61,7 @@ def _sources(scenario: Scenario) -> list[str]:
 
 
 def as_data(built: Built | BuiltWorld) -> dict[str, Any]:
-    """Return the contents of a scenario as plain data."""
+    """Return the summary of a scenario that ``--json`` prints, in SI units."""
     from onorbit_rs.scenario.build import Built
 
     scenario = built.scenario

@@ -26,7 +26,7 @@ def print_info(model: Model, console: Console) -> None:
     counts = f"{count(len(model.bodies), 'body', 'bodies')}, {count(len(model.joints), 'joint', 'joints')}"
     console.print(f"[bold]{text(model.name)}[/bold]: {counts}, {count(len(model.frames), 'frame', 'frames')}")
     console.print(f"mass {model.mass:.6g} kg, nq = {model.nq}, nv = {model.nv}")
-    console.print("joints at zero:")
+    console.print("with all joints at zero:")
     console.print(f"  centre of mass {_row(about['com_m'])} m from the base's origin,")
     console.print(f"  principal moments about it {_row(about['principal_moments_kg_m2'])} kg m²")
     console.print()

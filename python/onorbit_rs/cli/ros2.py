@@ -43,11 +43,11 @@ KeepRowsOption = Annotated[
     int | None, typer.Option(metavar="N", help="Keep the first and the last N rows only, for long runs.")
 ]
 PriorityOption = Annotated[
-    bool, typer.Option("--priority", help="Real-time priority for pace real_time (Linux, needs permission).")
+    bool, typer.Option("--priority", help="Use real-time priority at pace real_time (Linux; needs permission).")
 ]
 LogOption = Annotated[
     Path | None,
-    typer.Option(metavar="FILE", help="Write the commands received; onorbit run --commands repeats them."),
+    typer.Option(metavar="FILE", help="Write received commands, to replay with onorbit run."),
 ]
 
 

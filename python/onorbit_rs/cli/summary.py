@@ -33,7 +33,7 @@ _FILES = (
     ("report.html", "self-contained report, for a browser"),
     ("run.rrd", "the recording, for the rerun viewer"),
     ("scenario.yaml", "the scenario with all defaults, ready to run"),
-    ("commands.jsonl", "the commands that the run was given"),
+    ("commands.jsonl", "the commands given to the run"),
 )
 _AUDIT = (("impulse_ns", "N s"), ("energy_lost_j", "J"))
 _TOTALS = (("normal_force_max_n", "N"), ("impulse_ns", "N s"), ("dissipated_j", "J"), ("gap_min_m", "m"))

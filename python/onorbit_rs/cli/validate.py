@@ -23,7 +23,7 @@ ListOption = Annotated[
     bool, typer.Option("--list", help="List cases with sources and gates, without running them.")
 ]
 AllOption = Annotated[
-    bool, typer.Option("--all", help="Print all errors of each case, not only the one nearest to its gate.")
+    bool, typer.Option("--all", help="Print all errors, not only failures or the one nearest to its gate.")
 ]
 
 

@@ -53,7 +53,7 @@ def describe_world(scenario: WorldScenario, models: Mapping[str, Model]) -> dict
 
 
 def _trees(stage: Stage, models: Mapping[str, Model]) -> list[dict[str, Any]]:
-    """Return the trees of a stage; ``joints`` contains the joints of seatings."""
+    """Return the trees of a stage as data; ``joints`` counts joints, including those of seatings."""
     seatings = stage.seating_joints or (0,) * len(stage.trees)
     return [
         {
@@ -102,7 +102,7 @@ def print_world(scenario: WorldScenario, models: Mapping[str, Model], console: C
     print_table(console, table)
     if any(sum(stage.seating_joints) for stage in found):
         console.print(
-            "+ 2: a prismatic and a revolute joint, which a seating moves until it ends", soft_wrap=True
+            "+ 2: a prismatic and a revolute joint, which move until the seating ends", soft_wrap=True
         )
     if any(stage.time is None for stage in found):
         console.print(
@@ -123,7 +123,7 @@ def _print_contacts(contacts: list[Contact], console: Console) -> None:
 
 
 def _law(contact: Contact) -> str:
-    """Return the kind of the normal force; for a contact without force, that its distance is recorded."""
+    """Return the kind of the normal force, or ``distance only`` for a contact without forces."""
     return "distance only" if contact.normal is None else contact.normal.kind
 
 
@@ -157,7 +157,7 @@ def _when(event: Event) -> str:
             words += f", slower than {_pair(latch.slower_than, 'm/s', 'deg/s')}"
         return words + (f", held for {latch.held_for:g} s" if latch.held_for else "")
     if when.after is not None:
-        return f"{when.delay:g} s after {when.after}" if when.delay else f"at once after {when.after}"
+        return f"{when.delay:g} s after {when.after}" if when.delay else f"immediately after {when.after}"
     return "on command" if when.on_command else f"at {when.at:g} s"
 
 

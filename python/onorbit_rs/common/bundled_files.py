@@ -9,7 +9,7 @@ from onorbit_rs.exceptions import NotFoundError
 
 
 def names(folder: Path, ending: str) -> list[str]:
-    """Return the names, without their ending, of the files with this ending in a folder of the package."""
+    """Return the sorted names, without ``ending``, of the files in ``folder`` that end in ``ending``."""
     return sorted(file.stem for file in folder.glob(f"*{ending}"))
 
 
@@ -21,7 +21,7 @@ def path(name: str, kind: str, folder: Path, ending: str) -> Path:
     name : str
         Name without its ending.
     kind : str
-        Kind of the files, for messages.
+        Kind of the file, such as ``robot``, for messages.
     folder : path
         Folder of the package that contains the files.
     ending : str

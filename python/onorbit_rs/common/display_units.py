@@ -15,13 +15,14 @@ ROUNDING = 1e-12
 ROUNDING_DEG = 1e-9
 """Angle, degrees, below which a value is rounding error; these errors accumulate over a run."""
 OR = " or "
-"""Separator between the two units of a label such as ``rad or m``, which takes no SI prefix."""
+"""Separator between the two units of a label such as ``rad or m``; such labels take no SI prefix."""
 
 
 def with_prefix(peak: float, unit: str) -> tuple[float, str]:
-    """Return the factor and the unit, such as ``(1e6, "µm")``, with which ``peak`` is between 1 and 1000.
+    """Return the factor and the unit, such as ``(1e6, "µm")``, that scale ``peak`` to between 1 and 1000.
 
-    Prefixes are from p to M; a peak that is not positive and finite has none.
+    Prefixes range from p to M, so peaks below 1e-12 or above 1e9 remain outside these limits. A peak that is
+    not positive and finite gets no prefix.
     """
     scale, prefix = 1.0, ""
     if math.isfinite(peak) and peak > 0.0:
@@ -36,20 +37,21 @@ def degrees_with_prefix(peak: float, unit: str = "deg") -> tuple[float, str]:
 
 
 def digits(value: float) -> str:
-    """Return a number as text with four significant digits; magnitudes from 1e4 to 1e7 are rounded to
-    integers.
-    """
+    """Return a number as text with four significant digits; magnitudes from 1e4 to 1e7 become integers."""
     return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
 
 
 def amount(value: float, unit: str) -> str:
-    """Return a number with its unit: ``2 µN`` for ``2e-6`` and ``N``."""
+    """Return a number with an SI prefix and its unit: ``2 µN`` for ``2e-6`` and ``N``."""
     factor, scaled = with_prefix(value, unit)
     return f"{factor * value:.3g} {scaled}"
 
 
 def round_up(value: float) -> float:
-    """Return ``value`` rounded up to 1, 2 or 5 times a power of ten; 0 if it is not positive."""
+    """Return ``value`` rounded up to 1, 2 or 5 times a power of ten.
+
+    Values that are not positive become 0; infinity and NaN are returned unchanged.
+    """
     if not 0.0 < value < math.inf:
         return 0.0 if value <= 0.0 else value
     power = 10.0 ** math.floor(math.log10(value))

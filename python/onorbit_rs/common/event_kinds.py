@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 OF_CONTACT = frozenset({"touch_down", "lift_off"})
-"""Kinds of the events of contacts. Their forces change velocities gradually, unlike captures and releases."""
+"""Kinds of contact events. Contact forces change velocities gradually, unlike captures and releases."""
 
 OF_BRAKE = frozenset({"engage", "disengage"})
-"""Kinds of the events of brakes, which concern one system."""
+"""Kinds of brake events, each of which concerns one system."""

@@ -9,6 +9,9 @@ def file_part(name: str) -> str:
 
 
 def numbered_part(number: int, name: str) -> str:
-    """Return the part for one of several names, with its number (from 0) if the name had to change."""
+    """Return the file part of a name; a part that differs from the name is prefixed with ``number + 1``.
+
+    ``number`` is the index of the name, from 0, so that different names give different parts.
+    """
     part = file_part(name)
     return part if part == name else f"{number + 1}_{part}"

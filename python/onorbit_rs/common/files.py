@@ -73,7 +73,7 @@ def exists(path: Path) -> bool:
 
 
 def is_link(path: Path) -> bool:
-    """Return whether the path is a symbolic link or a junction of Windows."""
+    """Return whether the path is a symbolic link or a Windows junction."""
     return path.is_symlink() or bool(getattr(os.path, "isjunction", lambda _: False)(path))
 
 

@@ -6,5 +6,5 @@ import re
 
 
 def link_pattern(text: str) -> re.Pattern[str]:
-    """Return the expression that matches the paths of links that a pattern such as ``chaser/arm*`` means."""
+    """Return the regular expression of a pattern such as ``chaser/arm*``, where ``*`` matches any text."""
     return re.compile(".*".join(map(re.escape, text.split("*"))), re.DOTALL)

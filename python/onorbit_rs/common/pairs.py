@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 MOST_PAIRS = 6
-"""Largest number of pairs whose distances are shown; of more pairs, only those with the first system are."""
+"""Largest number of pairs that are all shown; if there are more, only pairs with the first system are."""
 
 
 def pairs_of(names: Sequence[str]) -> list[tuple[str, str]]:

@@ -55,7 +55,7 @@ def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None
 
 @contextmanager
 def _drawn(bar: Bar) -> Iterator[Bar]:
-    """Draw the bar during the block; errors are ignored if the terminal is closed during that time."""
+    """Draw the bar during the block; an OSError on stopping it (a closed terminal) is ignored."""
     bar.start()
     try:
         yield bar

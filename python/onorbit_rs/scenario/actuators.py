@@ -32,7 +32,7 @@ SlipTorque = Annotated[JointValue, PlainValidator(_slip_torque), PlainSerializer
 
 
 class Brake(Part):
-    """Brake of a joint."""
+    """Brake that locks a joint, rigidly or up to a slip torque."""
 
     brake: str
     """Name, unique among the actuators of the system."""

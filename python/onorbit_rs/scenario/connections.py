@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Connection(NamedTuple):
-    """A capture: its name, the capturing (system, frame), the captured one, its latch and its releases."""
+    """A capture: its name, capturing and captured (system, frame), latch, and the names of its releases."""
 
     name: str
     by: tuple[str, str]
@@ -45,9 +45,7 @@ def connections(scenario: WorldScenario) -> tuple[Connection, ...]:
 
 
 def touching(scenario: WorldScenario, models: Mapping[str, Model]) -> tuple[tuple[str, ...], ...]:
-    """Return the names of the systems that each contact of a scenario may touch, in the order of the
-    contacts.
-    """
+    """Return, for each contact of a scenario, the names of the systems whose links it may involve."""
     return tuple(tuple(touching_systems(contact, models)) for contact in scenario.contacts)
 
 

@@ -100,7 +100,7 @@ NormalLaw = Annotated[
 
 
 class Friction(Part):
-    """Coulomb friction with elastic bristles: nothing creeps inside the friction cone."""
+    """Coulomb friction with elastic bristles; a contact inside the friction cone does not creep."""
 
     static: Annotated[Number, NotNegative] | None = None
     """Coefficient of static friction, at least the kinetic coefficient."""
@@ -110,7 +110,7 @@ class Friction(Part):
     kinetic: Annotated[Number, NotNegative] | None = None
     """Coefficient of kinetic friction. Default: the static coefficient."""
     torsional: Annotated[Length, NotNegative] = 0.0
-    """Largest moment about the normal per unit of normal force. Default: the contact transmits no moment."""
+    """Largest moment about the normal, divided by the normal force. Default: no moment about the normal."""
     stiffness: Annotated[Stiffness, Positive] | None = None
     """Tangential stiffness. Default: 0.82 times the stiffness of the normal force, at a depth of 0.1 mm."""
     damping: Annotated[Damping, NotNegative] | None = None

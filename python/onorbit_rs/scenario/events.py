@@ -20,11 +20,11 @@ from onorbit_rs.scenario.pose import Pose
 from onorbit_rs.scenario.units import Dimension, parse_quantity
 
 RESERVED = ("world", "lvlh", "base", "path")
-"""Names of frames, which are reserved and cannot be names of systems."""
+"""Reserved names of frames, which cannot be names of systems, events, contacts or zones."""
 
 
 def checked_name(value: Any) -> Any:
-    """Return the name of a system or an event; raise an error if it is not valid."""
+    """Return the name of a system, event, contact or zone; raise an error if the name is not valid."""
     if not isinstance(value, str) or re.fullmatch(r"[A-Za-z][A-Za-z0-9_-]*", value) is None:
         raise invalid(
             f"{shortened(value)} is not a valid name; a name is a letter, followed by letters, digits, '_' "

@@ -42,7 +42,7 @@ def _not_negative(value: Any, read: ValidatorFunctionWrapHandler) -> float:
 
 
 def resolved_path(path: Path | str, info: SerializationInfo) -> str:
-    """Return the path as text; absolute if the serialization context is the folder at which paths start."""
+    """Return the path as text; absolute if the serialization context is the folder of relative paths."""
     return str(path if info.context is None else (info.context / path).resolve())
 
 

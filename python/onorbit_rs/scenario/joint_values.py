@@ -26,7 +26,7 @@ _OTHER = {
     units.LENGTH: units.ANGLE, units.ANGLE: units.LENGTH,
     units.SPEED: units.ANGULAR_RATE, units.ANGULAR_RATE: units.SPEED,
 }  # fmt: skip
-"""Dimension for the other kind of joint."""
+"""Dimension of the same quantity for the other kind of joint, revolute or prismatic."""
 
 
 class JointValue(float):

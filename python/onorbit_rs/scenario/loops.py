@@ -27,11 +27,11 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 ACCEPTED = 1e-6
-"""Largest deviation of a loop or a mimic joint accepted at the start, m or rad, for rates per second."""
+"""Largest deviation of a loop or a mimic joint that is accepted at the start: m or rad; rates: m/s, rad/s."""
 
 
 class Loop(Part):
-    """Joint between two frames of one robot that closes a kinematic loop; its axis is z."""
+    """Joint that closes a kinematic loop between two frames of one robot; the axis of the joint is z."""
 
     synonyms: ClassVar = {"frames": "between", "type": "kind", "distance": "length"}
 
@@ -42,11 +42,11 @@ class Loop(Part):
     between: Annotated[list[str], Field(min_length=2, max_length=2)]
     """The two frames, on different bodies; in a scenario with ``systems``, ``SYSTEM/FRAME`` of one system."""
     pose_a: Pose | None = None
-    """Pose of the joint in the first frame. Default: that of the frame."""
+    """Pose of the joint in the first frame. Default: the axes coincide."""
     pose_b: Pose | None = None
-    """Pose of the joint in the second frame. Default: that of the frame."""
+    """Pose of the joint in the second frame. Default: the axes coincide."""
     length: Annotated[Length, Positive] | None = None
-    """Distance of the origins for ``kind: distance``. Default: the distance with all joint positions zero."""
+    """Distance of the origins for ``kind: distance``. Default: the distance at zero joint positions."""
     project: bool = False
     """Whether the run starts in the nearest configuration that closes the loop. If false, a start that does
     not close the loop is an error."""

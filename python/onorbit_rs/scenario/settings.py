@@ -108,7 +108,7 @@ class WorldSettings(IntegrationSettings):
     """Simulation settings of a scenario with ``systems``."""
 
     weld_time_constant: Annotated[Time, Positive] | None = None
-    """Time constant of the connections of ``engine: mujoco``. Default, and least: two time steps."""
+    """Time constant of the connections of ``engine: mujoco``. Default and minimum: two time steps."""
 
     def arguments(self) -> dict[str, Any]:
         """Return the settings except ``duration`` and those of the engine, as keyword arguments of

@@ -16,25 +16,25 @@ Distance = Annotated[Length, Positive]
 
 
 class Sphere(Part):
-    """Sphere about the origin."""
+    """Sphere centred at the origin."""
 
     kind: Literal["sphere"]
     radius: Distance
 
     def build(self, folder: Path) -> _core.Shape:
-        """Return the shape."""
+        """Return the shape as an object of the engine."""
         return _core.Shape.sphere(self.radius)
 
 
 class Box(Part):
-    """Box about the origin."""
+    """Box centred at the origin, with edges along the axes."""
 
     kind: Literal["box"]
     size: Annotated[list[Distance], Field(min_length=3, max_length=3)]
     """Lengths of the edges along x, y and z."""
 
     def build(self, folder: Path) -> _core.Shape:
-        """Return the shape."""
+        """Return the shape as an object of the engine."""
         return _core.Shape.box(*self.size)
 
 
@@ -46,12 +46,12 @@ class Cylinder(Part):
     length: Distance
 
     def build(self, folder: Path) -> _core.Shape:
-        """Return the shape."""
+        """Return the shape as an object of the engine."""
         return _core.Shape.cylinder(self.radius, self.length)
 
 
 class Capsule(Part):
-    """Cylinder along z with a hemisphere at each end."""
+    """Cylinder along z, centred at the origin, with a hemisphere at each end."""
 
     kind: Literal["capsule"]
     radius: Distance
@@ -59,12 +59,12 @@ class Capsule(Part):
     """Distance between the centres of the caps."""
 
     def build(self, folder: Path) -> _core.Shape:
-        """Return the shape."""
+        """Return the shape as an object of the engine."""
         return _core.Shape.capsule(self.radius, self.length)
 
 
 class Cone(Part):
-    """Cone along z, with its base at ``-height/2`` and its apex at ``height/2``."""
+    """Cone along z, with its base at ``z = -height/2`` and its apex at ``z = height/2``."""
 
     kind: Literal["cone"]
     radius: Distance
@@ -72,12 +72,12 @@ class Cone(Part):
     height: Distance
 
     def build(self, folder: Path) -> _core.Shape:
-        """Return the shape."""
+        """Return the shape as an object of the engine."""
         return _core.Shape.cone(self.radius, self.height)
 
 
 class Torus(Part):
-    """Torus about z."""
+    """Torus about the z axis, centred at the origin."""
 
     kind: Literal["torus"]
     major_radius: Distance
@@ -93,7 +93,7 @@ class Torus(Part):
         return self
 
     def build(self, folder: Path) -> _core.Shape:
-        """Return the shape."""
+        """Return the shape as an object of the engine."""
         return _core.Shape.torus(self.major_radius, self.minor_radius)
 
 
@@ -103,7 +103,7 @@ class HalfSpace(Part):
     kind: Literal["half_space"]
 
     def build(self, folder: Path) -> _core.Shape:
-        """Return the shape."""
+        """Return the shape as an object of the engine."""
         return _core.Shape.half_space()
 
 

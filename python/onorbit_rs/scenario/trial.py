@@ -56,8 +56,8 @@ def about_controllers(scenario: Scenario) -> Iterator[None]:
 
 @contextmanager
 def about_start(scenario: Scenario) -> Iterator[None]:
-    """Locate errors about ``q`` and ``v`` at ``initial``, those about a brake at the brake, and others at
-    ``simulation``.
+    """Locate errors about ``q`` and ``v`` at ``initial``, those about a brake or a loop at its entry, and
+    others at ``simulation``.
     """
     try:
         yield

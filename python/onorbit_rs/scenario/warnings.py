@@ -27,7 +27,10 @@ _SMALL_DRIFT = 1.0
 _INSTANTS = 33
 """Number of times at which the reference is compared with free fall."""
 _HALF_STEP = 0.05
-"""Half step `h` of the central difference of positions, s; its error is `h² n³ r / 6`, 4 µm/s."""
+"""Half step `h`, s, of the central difference of positions.
+
+Its error is `h² n³ r / 6`, with mean motion `n` and radius `r`: 4 µm/s in a low orbit.
+"""
 
 
 def warnings_of(scenario: Scenario, flight: Flight, effects: Sequence[_core.Effect]) -> Iterator[str]:
@@ -71,8 +74,9 @@ def _drift_from_reference(
 
 
 def _initial_state(orbit: _core.Orbit, *, is_sgp4: bool) -> tuple[Floats, Floats]:
-    """Return the initial position, m, and its derivative, m/s, from which SGP4's velocity differs by up to 1
-    m/s.
+    """Return the initial position, m, and its time derivative, m/s.
+
+    The velocity that SGP4 reports differs from the derivative by up to 1 m/s and is therefore not used.
     """
     start, velocity = map(np.asarray, orbit.state(0.0))
     if is_sgp4:

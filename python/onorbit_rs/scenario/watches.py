@@ -43,7 +43,7 @@ class KeepOutZone(Part):
     links: Links
     """Links that must stay outside: ``SYSTEM/LINK``, or ``LINK`` for one robot; ``*`` stands for any text."""
     fixed_to: str = "world"
-    """``world``, ``lvlh`` (local frame of the reference orbit), or a frame that carries the zone."""
+    """``world``, ``lvlh`` (local frame of the reference orbit), or a frame with which the zone moves."""
     pose: Pose | None = None
     """Pose of the shape in ``fixed_to``. Default: the axes coincide."""
 

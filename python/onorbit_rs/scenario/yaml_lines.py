@@ -160,7 +160,7 @@ def _syntax_error(error: yaml.YAMLError, file: Path | None) -> ScenarioError:
     line = None if mark is None else mark.line + 1
     reason = " ".join(str(problem).split())
     fix = next((words for part, words in _FIXES.items() if part in reason), None)
-    return _at(file, line, f"invalid YAML, {reason}{f': {fix}' if fix else ''}")
+    return _at(file, line, f"invalid YAML: {reason}{f'; {fix}' if fix else ''}")
 
 
 _FIXES = {
@@ -171,7 +171,7 @@ _FIXES = {
     "expected ',' or": "is a bracket or brace not closed?",
     "unexpected end of stream": "is a quote not closed?",
     "cannot start any token": "put text that starts with such a character in quotes",
-    "another document": "a file contains one scenario",
+    "another document": "a file must contain one scenario",
     "constructor for the tag": "tags ('!') are not supported",
     "undefined alias": "define the alias with '&' above this line",
 }
