@@ -40,7 +40,7 @@ def compare(
         float,
         typer.Option(
             metavar="X",
-            help="Tolerance relative to the largest value of a quantity, or to 1 if that is larger.",
+            help="Tolerance relative to the largest value of a quantity or to 1, whichever is larger.",
         ),
     ] = 1e-6,
     as_json: JsonOption = False,

@@ -17,7 +17,7 @@ __all__ = ["Mujoco", "versions"]
 
 
 def versions(engine: str) -> dict[str, str]:
-    """Return the name of an engine and, if it is not native, its version, such as ``mujoco_version``.
+    """Return the name of an engine as ``engine`` and, unless it is native, its version as ``NAME_version``.
 
     Raises
     ------

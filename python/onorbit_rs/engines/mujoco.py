@@ -39,11 +39,12 @@ class Mujoco:
     """Engine that integrates the motion with MuJoCo: ``onorbit_rs.Simulation(..., engine=Mujoco(model))``.
 
     ``rk4`` is the fourth-order Runge-Kutta method of MuJoCo 4, with the environment's wrenches evaluated at
-    every stage. Momentum is not projected, so that its drift is of fourth order in the step.
+    every stage. Momentum is not projected, so its drift is of fourth order in the step.
     ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are
     MuJoCo's soft constraints with their stiffest settings; the restitution of stops is close to zero. Closed
     loops and mimic joints are equalities with the same settings; a prismatic loop is rejected. An engaged
-    brake is friction of its slip torque, or an equality of the joint if that is infinite. The
+    brake is joint friction equal to its slip torque or, if the slip torque is infinite, an equality that
+    locks the joint. The
     connections of a world are welds, also soft: a capture removes the relative velocity within a few steps
     instead of at once. One simulation at a time may use an instance; a concurrent step is refused. MuJoCo's
     log settings, which are global to the process, are disabled during a step and restored after it.
@@ -64,8 +65,8 @@ class Mujoco:
         longer one is resolved by more steps, which reduces the error of the energy balance but permits a
         larger gap between the connected frames. Default: two time steps.
     contacts : list of Contact
-        Contacts of a world, all that have a normal force. MuJoCo finds the points at which their links touch
-        and applies the declared normal force there; friction is MuJoCo's, which creeps under every load.
+        Contacts of a world; those without a normal force are ignored. MuJoCo finds the points at which links
+        touch and applies the declared normal force there; friction is MuJoCo's, which creeps under any load.
 
     Raises
     ------
@@ -322,8 +323,9 @@ class Mujoco:
         return moved, qvel + h * rate[nv : 2 * nv]
 
     def _rate(self, t: float, qpos: Floats, qvel: Floats, wrenches: Wrenches) -> Floats:
-        """Return ``[qvel, qacc, ΣF, ΣT about the centre of mass, power, power dissipated in the joints]``.
+        """Return ``[qvel, qacc, F, T, power, power dissipated in the joints]``, powers in W.
 
+        `F` and `T` are the total force of the environment, N, and its moment about the centre of mass, N m.
         In a world, the values of all systems follow ``qacc``; see :func:`exchanged`.
         """
         data = self._data

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Engaged = tuple[int, int, float]
-    """System, joint and slip torque, N m (N for a prismatic joint), of an engaged brake."""
+    """Index of the system, index of its joint, and slip torque, N m or N, of an engaged brake."""
 
 
 def add_locks(mujoco: ModuleType, spec: Any, joints: Iterable[str], time_step: float) -> None:
@@ -48,7 +48,7 @@ class Brakes:
         self._offsets = np.concatenate([[0], np.cumsum(counts)])
 
     def engage(self, data: Any, brakes: Sequence[Engaged], qpos: Floats) -> None:
-        """Engage these brakes, and no others, in a step that starts at a configuration of MuJoCo."""
+        """Engage these brakes, and no others, in a step that starts at MuJoCo's configuration ``qpos``."""
         self._model.dof_frictionloss[:] = self._friction
         data.eq_active[self._first : self._first + self._offsets[-1]] = 0
         for system, joint, slip_torque in brakes:

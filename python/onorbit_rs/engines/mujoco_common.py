@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 HARDEST = (0.9999, 0.9999, 0.001, 0.5, 2.0)
-"""``solimp`` of all constraints except contacts; a soft constraint leaves a fraction ``1 - d`` of the
-acceleration."""
+"""``solimp`` of all constraints except contacts; with the impedance ``d = 0.9999``, a constraint leaves a
+fraction ``1 - d`` of the unconstrained acceleration."""
 
 
 def path(system: str, name: str) -> str:

@@ -135,7 +135,7 @@ def _pieces(
         raise EngineError(
             f"contact '{contact}': no link with a collision shape matches {', '.join(links)} in the systems "
             f"of this engine ({', '.join(filter(None, bodies)) or 'one robot'}); correct the links, add a "
-            "collision shape to the link, or give Mujoco the system by its name if it is missing here",
+            "collision shape to the link, or add the missing system to the models of Mujoco",
             name="contacts", got=contact,
         )  # fmt: skip
     return found

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 HALF_PIN = 0.1
-"""Distance, m, of the two points that hold the axis of a ``revolute`` loop from its origin. It scales the
-forces of MuJoCo's rows but not the motion that they permit."""
+"""Distance, m, from the origin of a ``revolute`` loop to each of the two points that hold its axis. This
+distance scales MuJoCo's constraint forces but does not change the permitted motion."""
 
 
 def loop_names(models: Mapping[str, Model]) -> list[str]:
@@ -39,8 +39,8 @@ def add_loops(
     """Add the closed loops and mimic joints of a robot; return the length of each tendon by its name, m.
 
     ``weld`` and ``spherical`` loops are MuJoCo's ``weld`` and ``connect`` of two sites. A ``revolute`` loop
-    is two ``connect``, at two points of its axis. A ``distance`` loop is a tendon between two sites whose
-    length is constant; :func:`set_lengths` sets it after the compilation. A mimic joint is a ``joint``
+    is two ``connect``, at two points of its axis. A ``distance`` loop is a tendon of constant length between
+    two sites; :func:`set_lengths` sets the length after the compilation. A mimic joint is a ``joint``
     equality. All are critically damped springs with the shortest time constant.
 
     Raises

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
     Indices = NDArray[np.intp]
 
 WIDTH = 7
-"""Values per contact: force on the second side (3), moment about the origin of W (3), power."""
+"""Number of values per contact: force on the second side, N, moment about the origin of W, N m, power, W."""
 
 _PASSES = 6
-"""Largest number of solutions in which the normal forces converge, each by a factor of about 10⁴."""
+"""Largest number of solver passes; each reduces the error of the normal forces by a factor of about 10⁴."""
 
 
 _ON_CONE = 1e-9
@@ -34,10 +34,10 @@ _ON_CONE = 1e-9
 
 @dataclass(frozen=True)
 class _Rows:
-    """Points at which bodies touch, by their number among MuJoCo's contacts."""
+    """Points at which bodies touch; ``point`` is the index of each point among MuJoCo's contacts."""
 
     number: Indices
-    """Number of the declared contact."""
+    """Index of the declared contact."""
     sign: Floats
     """1 if MuJoCo's second geom belongs to the second side, otherwise −1."""
     point: Indices
@@ -111,7 +111,7 @@ class Contacts:
         return gain
 
     def _solve(self, data: Any, rows: _Rows, gain: Floats) -> None:
-        """Solve for the accelerations, with the normal forces of the law to rounding."""
+        """Solve for the accelerations at which the normal forces equal those of the law, to rounding."""
         allowed = 1e-13 * rows.force.max()
         for _ in range(_PASSES):
             self._mujoco.mj_fwdConstraint(self._model, data)

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
     Indices = NDArray[np.intp]
     Weld = tuple[tuple[int, int], tuple[int, int], Floats, Floats]
-    """Both (system, body); captured origin in both bodies (2, 3), m; rotation from second to first axes."""
+    """Indices (system, body) of both sides, the captured origin in the axes of each body, (2, 3), m, and the
+    rotation (3, 3) from the axes of the second body to those of the first."""
 
 
 _YZX, _ZXY = [1, 2, 0], [2, 0, 1]

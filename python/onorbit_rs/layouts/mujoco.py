@@ -64,9 +64,9 @@ def from_mujoco(model: Model, qpos: ArrayLike, qvel: ArrayLike, joints: Any = No
     Returns
     -------
     q : (nq,) or (B, nq) array
-        Configuration of onorbit_rs.
+        Configuration of onorbit_rs, rad and m.
     v : (nv,) or (B, nv) array
-        Velocity of onorbit_rs.
+        Velocity of onorbit_rs, rad/s and m/s.
 
     Raises
     ------

@@ -109,9 +109,9 @@ def from_spart(
     Returns
     -------
     q : (nq,) or (B, nq) array
-        Configuration of onorbit_rs.
+        Configuration of onorbit_rs, rad and m.
     v : (nv,) or (B, nv) array
-        Velocity of onorbit_rs.
+        Velocity of onorbit_rs, rad/s and m/s.
 
     Raises
     ------

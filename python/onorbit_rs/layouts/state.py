@@ -86,7 +86,8 @@ def check_unit(name: str, vectors: Floats, what: str = "the quaternion") -> None
 
 
 def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
-    """Return the indices in the model of the joints ``names``, which are in the order of the other engine;
+    """Return the index in the model of each joint in ``names``, which is in the order of the other engine.
+
     None means the order of the model.
 
     Raises
@@ -133,7 +134,7 @@ def order_of(model: Model, names: Sequence[str] | None) -> NDArray[np.intp]:
 
 
 def names_in(joints: Any, attribute: str) -> bool:
-    """Return True if ``joints`` is a model of the other engine, which has this attribute, and not names."""
+    """Return True if ``joints`` is a model of the other engine (with this attribute), not a list of names."""
     return joints is not None and hasattr(joints, attribute)
 
 

@@ -35,8 +35,9 @@ class SavedTrace:
 
     @property
     def tracking(self) -> dict[str, Any]:
-        """Tracking errors by the name of the control, as in :class:`onorbit_rs.Trace`: (T, 6), m and rad, or
-        (T, k).
+        """Tracking errors by the name of the control, as in :class:`onorbit_rs.Trace`.
+
+        (T, 6), m and rad, for a tool; (T, k), rad or m, for k joints.
         """
         return self._by_owner("tracking")
 

@@ -180,7 +180,9 @@ def run_numbers(trace: Trace | WorldTrace, scenario: Scenario | WorldScenario) -
 
 
 def _orbit(trace: Trace, scenario: Scenario, orbit: Orbit | None) -> Summary:
-    """Return the inertial axes, the source of the inertial velocity, and the residual gravity."""
+    """Return the inertial axes, the source of the inertial velocity, the gravity mode, and the largest
+    residual acceleration of the reference; empty without an orbit.
+    """
     if orbit is None:
         return {}
     summary: Summary = {"inertial_axes": orbit.axes, "velocity_eci_source": orbit.velocity_source}

@@ -138,7 +138,7 @@ def _draw(
 
 
 def with_absolute_paths(scenario: Scenario | WorldScenario) -> dict[str, Any]:
-    """Return the resolved scenario with absolute paths and the control period."""
+    """Return the resolved scenario with absolute paths and explicit control periods."""
     data = scenario.resolved(scenario.file.parent if scenario.file else Path())
     step = data["simulation"]["time_step"]
     for settings in data["systems"].values() if "systems" in data else [data["simulation"]]:

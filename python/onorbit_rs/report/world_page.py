@@ -21,7 +21,7 @@ from onorbit_rs.report.page import (
 )
 
 _PARTS = ("events", "contacts", "systems", "certificate")
-"""Entries of the summary of a world that are shown elsewhere than in the tables of numbers."""
+"""Entries of the summary of a world that are shown outside the tables of numbers."""
 
 _COLUMNS = ("time_s", "impulse_ns", "angular_impulse_nms", "energy_lost_j", "linear_momentum_error_rel",
             "angular_momentum_error_rel")  # fmt: skip
@@ -85,8 +85,9 @@ def _events(events: Sequence[dict[str, Any]]) -> str:
 def _contacts(contacts: Sequence[dict[str, Any]]) -> str:
     """Return an HTML table of the totals of the contacts."""
     about = (
-        "The impulse is that on the second side, over all touches. The smallest gap is that of the rows of "
-        "the trace; where it is negative, it is the depth. The events of each touch are in summary.json."
+        "The impulse acts on the second side; it is the total of all touches. The smallest gap is the "
+        "smallest in the rows of the trace; a negative gap is a depth. The events of each touch are in "
+        "summary.json."
     )
     return _table("Contacts", about, _TOTALS_HEADS, map(_total_cells, contacts))
 

@@ -40,7 +40,7 @@ def expand(
     path : path
         Xacro file. Its expressions are evaluated by :mod:`onorbit_rs.robots.expressions`; no code in
         it is executed. It may include and load files of its package, of ``package_paths`` and of packages
-        that ``$(find name)`` returns.
+        that ``$(find name)`` finds.
     package_paths : sequence of paths
         ROS packages or folders of ROS packages, for ``$(find name)``; the parent folders of the file are
         searched after them.
@@ -158,7 +158,7 @@ def _reason(error: Exception) -> str:
         return f"xacro argument {name!r} is not given; give it with {wording().argument(name)}"
     if type(error).__module__.startswith("xml."):
         hint = '; declare xmlns:xacro="http://www.ros.org/wiki/xacro"' if "unbound prefix" in text else ""
-        return f"not XML: {text}{hint}"
+        return f"the file is not valid XML: {text}{hint}"
     text, *expressions = re.sub(r"^<class '[^']*'>: ", "", text).split(" when evaluating expression ")
     half = text[: len(text) // 2]
     reason = half if text == f"{half} {half}" else text  # xacro repeats the reason

@@ -29,7 +29,7 @@ def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     model : Model
         Robot to be written.
     names : mapping of str to str, optional
-        Name in the text of each link and frame; default: their own.
+        Names of links and frames in the text, by their names in the model; default: unchanged.
 
     Raises
     ------

@@ -19,7 +19,7 @@ from onorbit_rs.robots.wording import wording
 from onorbit_rs.robots.xacro_files import Environment, Files
 
 _EXTRAS = re.compile(r"gazebo|ignition|(^|[_./])gz|ros2?_?control|transmission|plugin|sensor|isaac", re.I)
-"""Names of files and macros for simulators, which are not required for the robot."""
+"""Pattern of the names of files and macros that only simulators need."""
 
 _UNITS = {
     "!radians": 1.0,

@@ -171,7 +171,7 @@ _FIXES = {
     "expected ',' or": "is a bracket or brace not closed?",
     "unexpected end of stream": "is a quote not closed?",
     "cannot start any token": "put text that starts with such a character in quotes",
-    "another document": "a file must contain one scenario",
+    "another document": "a file contains one scenario",
     "constructor for the tag": "tags ('!') are not supported",
     "undefined alias": "define the alias with '&' above this line",
 }

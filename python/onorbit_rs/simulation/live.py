@@ -39,7 +39,10 @@ def watched(
     view: bool = True,
     commands: Sequence[Command] = (),
 ) -> Trace | WorldTrace:
-    """Return the trace of a run to which commands are given, and which is shown in a viewer if available."""
+    """Run a simulation and return its trace; apply ``commands`` and, with ``view``, show the run in a viewer.
+
+    If no viewer is available, a warning is issued. The other arguments are those of ``Simulation.run``.
+    """
     settings = built.scenario.simulation
     duration = settings.duration
     live = _opened(built, duration) if view else None

@@ -1,4 +1,4 @@
-"""Applies the commands of a log to a run, which then has the same bits as the original run."""
+"""Applies the commands of a log to a run, which then reproduces the original run bit for bit."""
 
 from __future__ import annotations
 

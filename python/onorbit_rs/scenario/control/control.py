@@ -16,7 +16,7 @@ from onorbit_rs.scenario.reference import Reference
 
 
 class TaskGoal(Part):
-    """Goal of a tool: largest distance and angle between the tool and its reference."""
+    """Goal of a tool: tolerances are the distance, m, and the angle, rad, between tool and reference."""
 
     tolerance: TaskTolerance
     """Tolerance at the end of the reference."""
@@ -27,7 +27,7 @@ class TaskGoal(Part):
 
 
 class JointGoal(Part):
-    """Goal of joints: largest position error, one number for all joints or one number per joint."""
+    """Goal of joints: tolerances are position errors, rad or m; one for all joints, or one per joint."""
 
     tolerance: JointTolerance
     """Tolerance at the end of the reference."""
@@ -61,10 +61,11 @@ class Control(Part):
     decided, or when the event happens. A control that an event starts replaces the controls that drive its
     joints."""
     starts_at_present: bool = False
-    """Whether the reference is moved to start at the present pose of the tool or position of the joints."""
+    """Whether the reference is moved so that it starts where the tool or the joints are when the control
+    starts."""
     internal_forces: list[InternalForce] = Field(default_factory=list)
-    """Forces that closed loops are to transmit while the control is active, such as the force with which two
-    hands squeeze a load."""
+    """Internal forces of closed loops that the control commands while it is active, such as the force with
+    which two hands squeeze a load."""
 
     def build_control(self, law: Any, reference: Any, joints: list[str] | None) -> _core.Control:
         """Return the control as an object of the engine, made of a law, a reference and a joint group."""
@@ -84,8 +85,8 @@ class TaskControl(Control):
     tool: str | None = None
     """Controlled frame. Default: the ``tool`` of the scenario."""
     load: str | None = None
-    """Frame of a captured system, ``SYSTEM/FRAME``, that the reference applies to instead of the tool, which
-    holds it. The system of the tool must know the other (``knows``)."""
+    """Frame of a captured system, ``SYSTEM/FRAME``, that tracks the reference instead of the tool that holds
+    it. The system of the tool must list the captured system in ``knows``."""
     goal: TaskGoal | None = None
     """Goal; the summary of the run contains its result."""
 

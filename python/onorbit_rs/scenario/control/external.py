@@ -1,4 +1,4 @@
-"""Joints that follow commands from outside of the run."""
+"""Joints that follow commands from outside the run."""
 
 from __future__ import annotations
 
@@ -24,13 +24,14 @@ class ExternalController(JointLaw):
 
     kind: Literal["external"] = "external"
     kp: JointStiffnessGain = 0.0
-    """Gain of the position errors, 1/s²; positions and trajectories require it, such as 100."""
+    """Gain of the position errors, 1/s²; required for commands of positions or trajectories, such as 100."""
     kd: JointRateGain = 0.0
-    """Gain of the rate errors, 1/s; velocities require it, such as 20."""
+    """Gain of the rate errors, 1/s; required for commands of velocities, such as 20."""
     timeout: Annotated[Time, Positive] | None = None
     """Time without a command after which ``on_timeout`` applies. Default: never."""
     on_timeout: Literal["hold", "damp", "zero"] = "hold"
-    """``hold`` keeps the positions, ``damp`` brings the joints to rest by ``kd``, ``zero``: no torque."""
+    """``hold`` keeps the positions, ``damp`` brings the joints to rest with ``kd``, ``zero`` sets zero
+    torques."""
     compensate_environment: bool = True
     """Whether the wrenches of the environment are compensated while positions or velocities are commanded."""
     compensate_friction: bool = True

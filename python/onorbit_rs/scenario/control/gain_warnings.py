@@ -40,6 +40,6 @@ def gain_warnings(scenario: Scenario, model: Model, q: NDArray[np.float64]) -> I
             if rate * period > 2.0 * (1.0 + _ROUNDING):
                 yield (
                     f"{where}.{name} corrects errors at a rate of {rate:.3g} 1/s; with a control period of "
-                    f"{period:g} s, the product of both is {rate * period:.3g}, and errors grow if it "
-                    f"exceeds 2; use a control_period below {2.0 / rate:.2g} s, or a smaller gain"
+                    f"{period:g} s, the product of both is {rate * period:.3g}, and errors grow if this "
+                    f"product exceeds 2; use a control_period below {2.0 / rate:.2g} s, or a smaller gain"
                 )

@@ -1,4 +1,4 @@
-"""Forces that controls command closed loops to transmit."""
+"""Internal forces of closed loops, which controls command."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ Moments = Annotated[list[Torque], Field(min_length=3, max_length=3)]
 
 
 class InternalForce(Part):
-    """Force that a closed loop is to transmit.
+    """Commanded internal force and moment of a closed loop.
 
-    It acts on the second frame of the loop, in the axes of the loop's joint on the first frame and about its
-    origin. For a capture, it is the wrench of the capturing frame on the captured system, in the axes of the
-    captured frame at its origin.
+    They act on the second frame of the loop, and are given in the axes and about the origin of the loop's
+    joint on the first frame. For a capture, they are the wrench that the capturing frame exerts on the
+    captured system, in the axes and about the origin of the captured frame.
     """
 
     loop: str
-    """Name of a loop, or of the capture that closes it. Without effect while the loop is not closed."""
+    """Name of a loop, or of the capture that closes it. The entry has no effect while the loop is open."""
     force: Forces | None = None
-    """Force, N. Default: that of the joint torques with the least norm."""
+    """Force, N. Default: the force that results from the joint torques of least norm."""
     moment: Moments | None = None
-    """Moment, N m. Default: that of the joint torques with the least norm."""
+    """Moment, N m. Default: the moment that results from the joint torques of least norm."""
 
     def build(self) -> _core.InternalForce:
         """Return the force as an object of the engine."""

@@ -28,7 +28,7 @@ class JointPidController(JointLaw):
     interface: Literal["position", "velocity", "effort"] = "position"
     """Quantity that the reference prescribes; with ``effort``, its values are efforts, N m or N."""
     p: JointNumber = 0.0
-    """Proportional gain, N m per rad (per rad/s with ``velocity``)."""
+    """Proportional gain, N m/rad, or N m s/rad with ``velocity``; N/m or N s/m for prismatic joints."""
     i: JointNumber = 0.0
     """Integral gain, in the unit of ``p`` per second."""
     d: JointNumber = 0.0

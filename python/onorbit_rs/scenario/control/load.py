@@ -1,4 +1,4 @@
-"""Loads that controls move: frames of captured systems, and forces of captures."""
+"""Checks the loads that controls move, and finds the controls that require a capture."""
 
 from __future__ import annotations
 
@@ -35,6 +35,9 @@ def check_load(load: str | None, neighbours: Mapping[str, Neighbour]) -> None:
 
 
 def needs_load(part: Any, events: Sequence[str]) -> bool:
-    """Return True if a control moves a load of another system or commands the force of an event."""
+    """Return True if a control moves a frame of another system or commands the internal force of a capture.
+
+    ``events`` are the names of the events, among them the captures.
+    """
     forces = {force.loop for force in part.internal_forces}
     return getattr(part, "load", None) is not None or bool(forces.intersection(events))

@@ -72,5 +72,5 @@ class CustomPathOrbit(Part):
                     f"'file' defines the path; omit 'file', or omit {' and '.join(map(repr, inline + extra))}"
                 )
         elif len(inline) != 2:
-            raise invalid("give 'times' and 'positions', or a 'file' with them")
+            raise invalid("the path is incomplete; give 'times' and 'positions', or a 'file' with them")
         return self

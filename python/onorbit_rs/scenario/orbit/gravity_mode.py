@@ -10,5 +10,5 @@ GravityMode = Annotated[
     Literal["true", "carried"],
     BeforeValidator(lambda value: "true" if value is True else value),  # YAML reads true as a boolean
 ]
-"""``true``: the robot leaves a reference that is not in free fall; ``carried``: it moves with the
-reference."""
+"""``true``: the robot falls freely, so it drifts from a reference that does not; ``carried``: the robot moves
+with the reference."""

@@ -1,4 +1,4 @@
-"""Joint reference from a bag of ROS."""
+"""Joint reference from a ROS bag."""
 
 from __future__ import annotations
 
@@ -33,9 +33,10 @@ class BagReference(Part):
     topic: str | None = None
     """Topic of JointState messages, or of one JointTrajectory; default: the only one in the bag."""
     joints: dict[str, str] | None = None
-    """Joint of the robot for each joint of the bag to follow; default: all, by their own names."""
+    """Mapping from joints in the bag to the joints of the robot that follow them. Default: every joint
+    follows the joint of the same name."""
     start: Time = 0.0
-    """Time at which the recording starts; the first message is at this time."""
+    """Time, from the start of the reference, at which the first message applies."""
 
     def build(self, at: Start) -> _core.JointSampled:
         """Return the engine's reference object, for the joints of the group."""

@@ -25,7 +25,7 @@ class TargetMotion(Pose):
 
     velocity: Speed3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
     spin: AngularRate3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Angular velocity."""
+    """Angular velocity, in W axes."""
     size: Length3 | None = None
     """Edge lengths of the box that the viewer draws at the target."""
 

@@ -20,9 +20,10 @@ class LineParabolaReference(TaskReference):
 
     kind: Literal["line_parabola"] = "line_parabola"
     displacement: Length3
-    """Displacement from the initial to the final position of the tool."""
+    """Displacement from the first to the last position, in the axes of ``frame``."""
     height: Length3 = Field(default_factory=lambda: [0.0, 0.0, 0.0])
-    """Coefficient of s(1 - s); the vertex of the parabola is a quarter of ``height`` from the line."""
+    """Coefficient of s(1 - s), in the axes of ``frame``; at s = 1/2, a quarter of ``height`` is added to the
+    line."""
     duration: Annotated[Time, Positive]
 
     def build(self, at: Start) -> _core.LineParabola:

@@ -40,7 +40,7 @@ class Start:
     """Frame ``SYSTEM/FRAME`` of a load that tracks the reference instead of the tool, which holds it."""
 
     def tool_pose(self) -> Floats:
-        """Return the pose (4, 4) of the frame that tracks the reference in W: the load or the tool."""
+        """Return the pose (4, 4) in W of the frame that tracks the reference: the load or the tool."""
         if self.load is not None:
             name, _, frame = self.load.partition("/")
             system = self.neighbours[name]

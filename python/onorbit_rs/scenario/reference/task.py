@@ -40,9 +40,9 @@ class Goal(Part):
     """Pose to be reached, given relative to the start or in the frame of the reference."""
 
     displacement: Length3 | None = None
-    """Displacement from the position of the start."""
+    """Displacement from the start position, in the axes of the frame."""
     turn: Attitude | None = None
-    """Rotation from the attitude of the start, about the axes of the frame."""
+    """Rotation from the start attitude, about the axes of the frame."""
     position: Length3 | None = None
     """Position of the goal in the frame."""
     attitude: Attitude | None = None

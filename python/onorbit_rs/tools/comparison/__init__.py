@@ -12,7 +12,7 @@ from onorbit_rs.tools.comparison.world import EventDifference, WorldComparison, 
 __all__ = ["TOLERANCE", "Comparison", "Difference", "EventDifference", "WorldComparison", "compare"]
 
 TOLERANCE = 1e-6
-"""Allowed difference, relative to the largest value of a quantity or to 1 if that is larger."""
+"""Allowed difference, relative to the largest value of a quantity or to 1, whichever is larger."""
 
 
 def compare(
@@ -30,9 +30,9 @@ def compare(
         :func:`onorbit_rs.run`, which is simulated. Default of ``b``: the scenario of ``a`` on the other
         engine (MuJoCo or the built-in equations of motion).
     tolerance : float
-        Runs diverge where a difference exceeds this fraction of the quantity's largest value, or of 1 in
-        its unit (m, rad, N m) if that is larger. For inertial positions it is a fraction of the largest
-        distance from the reference.
+        Runs diverge where a difference exceeds this fraction of the quantity's largest value or of 1 in its
+        unit (m, rad, N m), whichever is larger. For inertial positions, the largest distance from the
+        reference takes the place of the largest value.
 
     Returns
     -------

@@ -120,8 +120,8 @@ def _hermite(
 ) -> Floats:
     """Return cubic Hermite interpolation at fractions ``s`` of the steps ``step``, s.
 
-    On an orbit of radius `r` and speed `v`, linear interpolation over a step `h` errs by `v² h² / 8 r`, 16 km
-    for 120 s.
+    Linear interpolation would not suffice: on an orbit of radius `r` and speed `v`, its error over a step `h`
+    is `v² h² / (8 r)`, 16 km for 120 s in a low orbit.
     """
     weight = s * s * (3.0 - 2.0 * s)
     rates = s * (1.0 - s) * ((1.0 - s) * rate_a - s * rate_b)

@@ -40,7 +40,7 @@ class Difference:
     """Allowed difference: the tolerance times the scale (at least 1).
 
     The scale is the largest finite value of both runs; 0 for attitudes; for inertial positions, the largest
-    distance from the reference, to which the error of rounding and interpolation is added.
+    distance from the reference. For inertial positions, the error of rounding and interpolation is added.
     """
     parts_at: float | None
     """First time at which the difference exceeds ``allowed``, s; None if this never happens."""
