@@ -9,7 +9,7 @@ import numpy as np
 _SHORTEST_S = 1e-7
 """Delays below this, s, are counted together."""
 _PER_E = 100.0
-"""Classes of delays in a factor of e: quantiles are accurate to a hundredth."""
+"""Number of classes per factor e of the delay; quantiles are therefore accurate to 1 %."""
 _CLASSES = 2500
 
 

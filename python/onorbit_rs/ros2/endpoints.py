@@ -11,20 +11,20 @@ from cyclonedds.core import DDSException, InstanceState, SampleState, ViewState
 from onorbit_rs.exceptions import Ros2Error
 
 MOST = 1000
-"""Largest number of messages of a topic that are obeyed at once, and depth of publishers."""
+"""Largest number of messages of a topic that are obeyed at once, and history depth of publishers."""
 MOST_COUNTED = 100_000
-"""Largest number of messages of a topic that are kept between two looks, to count those refused."""
+"""Largest number of messages of a topic kept between two readings, so that refused ones can be counted."""
 
 _ANY = SampleState.Any | ViewState.Any | InstanceState.Any
 _AGAIN_S = 0.2
-"""Time after which a new subscription has found the publisher that found it, s."""
+"""Time, s, within which a new subscription finds a publisher that has already found the subscription."""
 
 
 class Writer:
     """Publisher of one topic."""
 
     def __init__(self, entity: Any, topic: str) -> None:
-        """Take a ``DataWriter`` of CycloneDDS and the name of its ROS topic."""
+        """Store a ``DataWriter`` of CycloneDDS and the name of its ROS topic."""
         self._entity, self.topic = entity, topic
         self._found = self._served = 0
         self._greetings: list[float] = []
@@ -62,7 +62,7 @@ class Reader:
     """Subscription to one topic."""
 
     def __init__(self, entity: Any, topic: str, kind: str) -> None:
-        """Take a ``DataReader`` of CycloneDDS, and the name and type of its ROS topic."""
+        """Store a ``DataReader`` of CycloneDDS, and the name and type of its ROS topic."""
         self._entity = entity
         self.topic, self.kind = topic, kind
 

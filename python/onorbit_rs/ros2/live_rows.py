@@ -38,7 +38,7 @@ class LiveRows:
         return rows
 
     def keep_last(self, count: int) -> None:
-        """Drop rows that :meth:`take` has returned from the memory of the run, above twice ``count`` of them.
+        """Drop rows that :meth:`take` has returned, if more than twice ``count`` are in memory.
 
         The first row and at least the last ``count`` remain.
         """

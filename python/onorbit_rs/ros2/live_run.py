@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from onorbit_rs._core import Checkpoint, EventRecord, Model, Simulation, Stepper, Trace, WorldTrace
 
 _LONGEST_TICK = 1e-3
-"""Longest simulated time between two looks at the topics, unless the time step is longer, s."""
+"""Longest simulated time between two readings of the topics, s, unless the time step is longer."""
 
 
 class LiveRun:

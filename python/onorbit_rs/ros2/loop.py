@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from onorbit_rs.ros2.session import Session
 
 _IDLE_S = 1e-3
-"""Wall-clock time between two looks at the topics while the simulation waits, s."""
+"""Wall-clock time between two readings of the topics while the simulation waits, s."""
 
 
 @dataclass

@@ -17,7 +17,7 @@ PARTICIPANTS = 60
 
 ENDING = """<CycloneDDS><Domain id="any"><Internal><WriterLingerDuration>0 s</WriterLingerDuration></Internal>
 </Domain></CycloneDDS>"""
-"""A publisher does not wait at its end for subscribers that have stopped: the node does so once for all."""
+"""Publishers do not wait at their end for subscribers that have stopped: the node waits once for all."""
 
 LOOPBACK = f"""<CycloneDDS><Domain id="any">
 <General><Interfaces><NetworkInterface address="127.0.0.1" multicast="false"/></Interfaces>

@@ -1,6 +1,6 @@
 """Writes MCAP files of ROS 2 messages, many messages at a time.
 
-The writer of the package ``mcap`` takes messages one by one. Here numpy composes the records of all messages
+The writer of the package ``mcap`` accepts messages one by one. Here numpy composes the records of all messages
 of a topic in a chunk; the other records are those of the package.
 """
 
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 _HEADER = [("opcode", "u1"), ("length", "<u8")]
 _PREFIX = 9
-"""Length of opcode and length, which the length of a record does not include."""
+"""Size of opcode and length, bytes, which the length of a record does not include."""
 _CHECKSUM = 4
-"""Length of the checksum at the end of a footer."""
+"""Size of the checksum at the end of a footer, bytes."""
 _INDEX_ENTRY = np.dtype([("time", "<u8"), ("offset", "<u8")])
 _FOREVER = {"sec": 9223372036, "nsec": 854775807}
 

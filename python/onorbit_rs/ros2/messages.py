@@ -19,7 +19,7 @@ _NS = 1_000_000_000
 _ALIGNMENT = 4
 """DDS pads a payload to a multiple of this number of bytes."""
 _HEADER = 4
-"""Length of the header of a payload, which names its encoding."""
+"""Size of the header of a payload, bytes; the header names the encoding."""
 
 
 def message(kind: str, **fields: Any) -> Any:

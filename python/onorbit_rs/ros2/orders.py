@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 _LATEST_S = 2**31 - 1
 """Largest time, s, in ``builtin_interfaces/Time``."""
 _FAR_S = 3600.0
-"""A trajectory that starts so long after the current time, s, was probably stamped by another clock."""
+"""Time from now to the start of a trajectory, s, above which another clock probably stamped the message."""
 
 
 class Orders:
@@ -27,7 +27,7 @@ class Orders:
     def __init__(
         self, session: Session, inbox: Inbox, on_reset: Callable[[], None], fixed: str | None
     ) -> None:
-        """Take a session and its inbox.
+        """Store a session and its inbox.
 
         ``on_reset`` is called after each reset. ``fixed`` is the reason to refuse resets; None allows them.
         """

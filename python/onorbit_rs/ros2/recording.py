@@ -27,7 +27,7 @@ _ROWS = 64
 
 
 class _DiscardedError(Exception):
-    """Ends a file that is not to be completed."""
+    """Raised to abandon a file that must not be completed."""
 
 
 class Recording:

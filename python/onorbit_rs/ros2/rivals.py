@@ -13,19 +13,19 @@ if TYPE_CHECKING:
     from onorbit_rs.ros2.session import Session
 
 _PERIOD_S = 1.0
-"""Wall-clock time between two looks for other simulators, s."""
+"""Wall-clock time between two checks for other simulators, s."""
 
 
 class Rivals:
     """Other nodes in the domain that publish ``/clock``, as simulators do."""
 
     def __init__(self, participant: Participant, domain: int) -> None:
-        """Take the participant of the node and the number of its domain."""
+        """Store the participant of the node and the number of its domain."""
         self._participant, self._domain = participant, domain
         self._looked = -math.inf
 
     def point_out(self, session: Session) -> None:
-        """Publish a warning if another node has begun to publish ``/clock``; looks once per second."""
+        """Publish a warning if another node has begun to publish ``/clock``; check at most once per second."""
         now = time.monotonic()
         if now < self._looked + _PERIOD_S:
             return

@@ -25,7 +25,7 @@ class Ros1Bag:
     """A bag of ROS 1, to which messages of ROS 2 are written; a context manager that completes the file."""
 
     def __init__(self, file: Path) -> None:
-        """Take the name of the file, and remove an existing file."""
+        """Remove an existing file; the new one is created when the context is entered."""
         file.unlink(missing_ok=True)  # rosbags writes new files only
         self._store = get_typestore(Stores.ROS1_NOETIC)
         self._store.register({_TF: get_types_from_msg(STORE.generate_msgdef(_TF)[0], _TF)[_TF]})

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 _YOUNG = 700
-"""Number of new objects after which Python, too, looks for garbage among them."""
+"""Number of new objects after which garbage is collected, as in Python's own collector."""
 _SLACK_S = 5e-4
 """Time until the next tick, s, in which a collection among new objects ends."""
 _TOO_MANY = 50 * _YOUNG

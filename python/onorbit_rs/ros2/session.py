@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from onorbit_rs.ros2.publisher import Publisher
 
 _BLOCK_S = 0.02
-"""Simulated time between two looks at the topics, s, if the run does not follow the clock."""
+"""Simulated time between two readings of the topics, s, if the run does not follow the clock."""
 
 
 @dataclass

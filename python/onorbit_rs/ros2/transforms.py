@@ -64,7 +64,7 @@ class SystemFrames:
     """Frames of a system: its base, whose parent is ``world``, and its moving links."""
 
     def __init__(self, prefix: str, model: Model, names: Mapping[str, str]) -> None:
-        """Take the prefix of the frames, such as ``chaser/``, and their names in ``/tf`` without it."""
+        """Store the prefix of the frames, such as ``chaser/``, and their names in ``/tf`` without it."""
         joints = model.joints
         moving = (Link(prefix + names[joint.parent], prefix + names[joint.child]) for joint in joints)
         self.links = (Link(WORLD, prefix + BASE), *moving)

@@ -64,7 +64,7 @@ Frame = Annotated[
     Discriminator(lambda value: "name" if isinstance(value, str) else "a target"),
     BeforeValidator(_frame),
 ]
-"""World W, the local orbital frame L, the base at time zero, a frame of another system, or a target."""
+"""World W, the local orbital frame L, the base of the robot, a frame of another system, or a target."""
 
 
 def moving_frame(frame: Any) -> tuple[str, str] | None:

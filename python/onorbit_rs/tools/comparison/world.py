@@ -35,7 +35,7 @@ class EventDifference:
     difference: float
     """Difference (for vectors, its magnitude); infinite if the event happened in only one run."""
     allowed: float
-    """Allowed difference: the tolerance times the larger value, or times 1 in the unit if that is larger."""
+    """Allowed difference: the tolerance times the largest of both magnitudes and 1 in the unit."""
     time: float
     """Time of the event, s, in the run in which the event happened earlier."""
 
@@ -52,8 +52,8 @@ class WorldComparison(Verdict):
     systems: Mapping[str, Comparison]
     """Comparison of each system, by name."""
     events: tuple[EventDifference, ...]
-    """Differences of the events: five quantities each, six for a lift-off, or the time if only one run has
-    it.
+    """Differences of the events: five quantities each, six for a lift-off, and only the time of an event that
+    happened in one run only.
     """
     notes: tuple[str, ...]
     """Notes on differing settings and on events that were not compared."""

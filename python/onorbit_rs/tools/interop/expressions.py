@@ -18,7 +18,7 @@ _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "asin": math.asin, "acos": math.acos, "atan": math.atan,
     "deg": math.radians, "rad": float, "radians": math.radians,
 }  # fmt: skip
-"""``deg(60)`` and ``rad(2*pi)``, as in ROS, return radians."""
+"""Functions of one number; as in ROS, ``deg(60)`` and ``rad(2*pi)`` return radians."""
 
 _LONGEST = 200
 

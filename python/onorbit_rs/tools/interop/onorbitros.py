@@ -127,7 +127,7 @@ def _sources(files: Sequence[Path], keep_going: bool, notes: list[Note]) -> list
 
 
 def _unwrapped(source: Source) -> list[Source]:
-    """Return the mappings inside a ROS namespace; one with controllers or known keys is not opened."""
+    """Return the mappings inside ROS namespaces; one with controllers or known keys is returned unchanged."""
     inner = source.data.values()
     is_namespace = all(isinstance(part, dict) for part in inner) and not _is_known(source.data)
     if not is_namespace or any(CONTROLLER_MARKS & set(part) or "type" in part for part in inner):

@@ -42,7 +42,7 @@ def read_controllers(source: Source, wanted: str | None, external: bool) -> None
         if name in chosen:
             source.note(name, "understood", "a controller" if len(chosen) > 1 else "the controller")
         else:
-            source.note(name, "no meaning", why if name in known else "does not compute efforts from errors")
+            source.note(name, "no meaning", why if name in known else "it computes no efforts from errors")
     if len(chosen) == 1 and is_of_task(parts[chosen[0]]):
         read_task_law(source.inside(chosen[0]), ("controller",))
         return

@@ -64,9 +64,9 @@ def draft_capture(
     chaser, target : Source
         The spacecraft that captures, and the spacecraft that is captured.
     tool : str, optional
-        Frame of the chaser. Default: the most likely tool frame, or that of a handle.
+        Frame of the chaser. Default: the most likely tool frame; if there is none, as for ``handle``.
     handle : str, optional
-        Frame of the target. Default: that of a handle, see :func:`find_handle`.
+        Frame of the target. Default: the frame that :func:`find_handle` returns.
     beside : Path, optional
         Folder of the new scenario, to which paths are relative. Default: absolute paths.
     command : str

@@ -14,7 +14,7 @@ from onorbit_rs.tools.validation.gauss import Craft, mass_matrix, project, relat
 from onorbit_rs.tools.validation.trees import Array
 
 BASE, WHEEL = 2.0, 0.5
-"""Moments of inertia of base and wheel about the axis of the wheel, kg m2."""
+"""Moments of inertia of base and wheel about the axis of the wheel, kg m²."""
 SPIN = 2.0
 """Initial rate of the wheel relative to the base, rad/s."""
 SLIP = 0.9
@@ -64,7 +64,7 @@ def spinning_wheel(slip_torque: float = np.inf, **settings: Any) -> oo.WorldTrac
 
 
 def slowing() -> tuple[float, ...]:
-    """Return the errors of rate, angle, energy and momentum of a wheel that a brake slows down."""
+    """Return the errors of rate, rad/s, angle, rad, energy, J, and momentum, N s, of a braked wheel."""
     trace = spinning_wheel(slip_torque=SLIP)
     chaser, reduced = trace["chaser"], BASE * WHEEL / (BASE + WHEEL)
     stop = SPIN * reduced / TORQUE
@@ -80,7 +80,7 @@ def slowing() -> tuple[float, ...]:
 
 
 def _held(craft: Craft, seed: int) -> tuple[Craft, list[int]]:
-    """Return the robot with up to two random joints at rest, and these joints."""
+    """Return the robot with up to two random joints at rest, and the indices of these joints."""
     rng = np.random.default_rng(seed)
     count = min(2, craft.model.nv - BASE_NV)
     joints = sorted(int(joint) for joint in rng.permutation(craft.model.nv - BASE_NV)[:count])
@@ -102,9 +102,10 @@ def rows(joints: list[int], nv: int) -> Array:
 
 
 def capture_against_gauss(seed: int) -> tuple[float, float]:
-    """Return the error of a capture with rigid brakes, and that of the reference without the brakes.
+    """Return the errors of a capture with rigid brakes against Gauss's principle with and without brakes.
 
-    Both are errors of the velocities, relative to the largest rate.
+    Both are errors of the velocities, relative to the largest rate. The second is large: it shows that the
+    brakes change the result.
     """
     first, second = random_pair(seed)
     (first, held_a), (second, held_b) = _held(first, seed), _held(second, seed + 1)

@@ -53,7 +53,9 @@ def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecor
 
 
 def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
-    """Return the momentum (6,) about a point in W, and the sums (2,) of the magnitudes over the links."""
+    """Return the momentum (6,) about a point in W, N s and N m s, and the sums (2,) of the magnitudes of the
+    linear and angular momenta of the links.
+    """
     total, scales = np.zeros(6), np.zeros(2)
     for body in craft.model.bodies:
         pose = craft.model.frame_pose(craft.q, body.name)
@@ -68,14 +70,18 @@ def momentum(craft: Craft, v: Array, point: Array) -> tuple[Array, Array]:
 
 
 # two rigid craft at the point (1.5, 0, 0) m; all axes parallel
-FIRST = (1000.0, [300.0, 400.0, 500.0])  # kg, kg m2
+FIRST = (1000.0, [300.0, 400.0, 500.0])  # kg, kg m²
 SECOND = (500.0, [120.0, 90.0, 150.0])
 POSITION, VELOCITY = [2.5, 0.0, 0.0], [-0.05, 0.02, 0.01, 0.02, 0.05, -0.03]
 LOST, RATE = 0.667209466941, [0.00571429, -0.00148964, 0.00445122]  # J, rad/s
 
 
 def two_craft() -> tuple[float, ...]:
-    """Return the errors of energy lost, common rate, momentum and gap after two rigid craft connect."""
+    """Return the errors after two rigid craft connect, as listed by the gates of the case.
+
+    The errors are those of energy lost, J, common rate, rad/s, momentum at the capture (relative), momentum
+    over the run, N s, and relative position, m.
+    """
     first, second = rigid("a", *FIRST, [0, 0, 0], np.zeros(6)), rigid("b", *SECOND, POSITION, VELOCITY)
     event = oo.Capture("grasp", "a/base", "b/base", at=0.0)
     trace = run([first, second], [event], 100.0, time_step=0.01)
@@ -97,7 +103,7 @@ POINT_MASSES, CLOSING = (1000.0, 500.0), 0.05  # kg, m/s
 
 
 def points() -> tuple[float, float]:
-    """Return the errors of the change of velocity and of the energy lost of two point masses that stick."""
+    """Return the errors of velocity change, m/s, and energy lost, J, of two point masses that stick."""
     first = rigid("a", POINT_MASSES[0], [1.0, 1.0, 1.0], [0, 0, 0], np.zeros(6))
     second = rigid("b", POINT_MASSES[1], [1.0, 1.0, 1.0], [1.0, 0, 0], [-CLOSING, 0, 0, 0, 0, 0])
     event = oo.Capture("grasp", "a/base", "b/base", at=0.5)

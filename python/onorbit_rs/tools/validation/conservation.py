@@ -24,7 +24,11 @@ def humanoid() -> tuple[oo.Model, Any]:
 
 
 def free_motion() -> tuple[float, float, float, float]:
-    """Return the drifts of momentum, energy and centre of mass of a tumbling torso with a swinging arm."""
+    """Return the drifts of a tumbling torso with a swinging arm.
+
+    The drifts are those of linear and angular momentum and kinetic energy, all relative, and the deviation of
+    the centre of mass from a straight line, m.
+    """
     model, q = humanoid()
     trace = oo.Simulation(model, q, 0.5 * TUMBLING, time_step=STEP, record_every=10).run(100.0)
     certificate = {name: value for name, value, *_ in trace.certificate()}
@@ -54,7 +58,7 @@ def jacobi(model: oo.Model, orbit: oo.Kepler, trace: oo.Trace, rows: slice) -> A
     `s² = 1 + (2R u + ρ²)/R²`, `u = R̂·ρ`. Tidal and centrifugal potential are combined, which avoids
     cancellation. The sum is over links of mass `m`, inertia `I`, rate `ω` and position `ρ` from the
     reference; the reference orbit has radius `R`, direction `R̂` and rate `n`, with `ρ_z` along `n`. The link
-    is at the distance `r` from the Earth in the direction `r̂`.
+    is at the distance `r` from the Earth, with gravitational parameter `μ`, in the direction `r̂`.
     """
     q, v, t = trace.q[rows], trace.v[rows], trace.time[rows]
     r, velocity = orbit.state(t)

@@ -70,8 +70,8 @@ def floor() -> oo.System:
 def oscillating(system: str, force: float, axis: ArrayLike) -> list[oo.BodyWrench]:
     """Return two forces of half the magnitude ``force``, N, on the rotors of a system.
 
-    The rotors turn in opposite directions, so the sum of the forces is along ``axis`` (3,), which is
-    normal to that of the rotors, and a sine of time.
+    The rotors turn in opposite directions. The sum of both forces is therefore along ``axis`` (3,), which
+    must be normal to the axis of the rotors, and varies as a sine of time.
     """
     half = 0.5 * force * np.asarray(axis, dtype=float)
     return [oo.BodyWrench(f"{system}/{rotor}", force=half) for rotor in ("left", "right")]

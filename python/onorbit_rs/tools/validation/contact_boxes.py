@@ -15,7 +15,7 @@ STARTS = {
     "a": ([0.0, 0.0, 0.0], [0.1, 0.01, 0.0, 0.4, -0.3, 0.2]),
     "b": ([0.7, 0.08, 0.05], [-0.1, 0.0, 0.01, -0.2, 0.5, 0.3]),
 }
-"""Places, m, and velocities, m/s and rad/s."""
+"""Initial positions, m, and velocities, m/s and rad/s, of the boxes."""
 
 
 def box(name: str) -> oo.Model:

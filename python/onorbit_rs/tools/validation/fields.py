@@ -8,7 +8,7 @@ import onorbit_rs as oo
 from onorbit_rs.tools.validation.case import table
 
 MU, RADIUS = 3.986004415e14, 6_378_136.3
-"""Gravitational parameters, m³/s², and radii, m, of GGM02C, JGM-3 and EGM96."""
+"""Gravitational parameter, m³/s², and radius, m, which are the same for GGM02C, JGM-3 and EGM96."""
 
 
 def field(name: str, degree: int, order: int | None = None) -> oo.GravityField:

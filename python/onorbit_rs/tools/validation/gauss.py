@@ -62,7 +62,7 @@ def mass_matrix(crafts: Sequence[Craft]) -> Array:
 def relative_twist(crafts: Sequence[Craft], first: int, second: int, gap: Array | float = 0.0) -> Array:
     """Return the Jacobian (6, nv) of the twist of the frame of `second` relative to the frame of `first`.
 
-    The twists are taken at the origin of the first frame; `gap`, (3,), m, shifts this point for the first
+    The twists are those at the origin of the first frame; `gap`, (3,), m, shifts this point for the first
     robot.
     """
     point = crafts[first].pose[:3, 3]
@@ -99,8 +99,8 @@ def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: boo
     With the mass matrix `M` of both robots, the Jacobian `J` of the relative twist and the velocities `v⁻`
     before the capture: `v⁺ = v⁻ − M⁻¹ Jᵀ Λ J v⁻`, `Λ = (J M⁻¹ Jᵀ)⁻¹`, energy lost `½ (J v⁻)ᵀ Λ (J v⁻)`,
     impulse on the second robot `−Λ J v⁻`. Two options give wrong results for negative controls: with a `gap`,
-    the impulse on the first robot acts at another point; without `joints`, it changes the velocities of the
-    bases only.
+    the impulse on the first robot acts at another point; without `joints`, the impulse changes the velocities
+    of the bases only.
     """
     crafts = (first, second)
     before, rows = np.concatenate([first.v, second.v]), relative_twist(crafts, 0, 1)
@@ -116,8 +116,8 @@ def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: boo
 def impact_at_stop(first: Craft, second: Craft, joint: int, restitution: float) -> tuple[Array, Array]:
     """Return the velocities after a capture that pushes a joint of the first robot into its stop.
 
-    The stop reverses the joint rate after the capture, times the restitution, while the robots stay
-    connected.
+    The stop replaces the joint rate `q̇` after the capture by `−e q̇`, with the restitution `e`, while the
+    robots stay connected.
     """
     crafts = (first, second)
     after = np.concatenate(impact(first, second).v)

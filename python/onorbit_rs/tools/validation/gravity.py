@@ -24,7 +24,7 @@ NYX = "via nyx-space/nyx, tests"
 
 
 def earth_2000() -> oo.Earth:
-    """Return the Earth with the epoch of the cases of one day."""
+    """Return the Earth with the epoch, UT1 and pole of the cases that last one day."""
     pole = (0.0433 * ARCSECOND, 0.3778 * ARCSECOND)
     return oo.Earth("2000-01-01T12:00:00 TAI", ut1_minus_utc=0.3554, polar_motion=pole)
 

@@ -13,14 +13,14 @@ from onorbit_rs.common.coordinates import BASE_NV, JOINTS_Q, JOINTS_V
 from onorbit_rs.tools.validation.planar import Body, Reduced, arm, four_bar, reduce, rod, slider_crank
 from onorbit_rs.tools.validation.trees import Array
 
-BASE_MASS, BASE_INERTIA = 4.0, (0.3, 0.4, 0.5)  # kg, kg m2
+BASE_MASS, BASE_INERTIA = 4.0, (0.3, 0.4, 0.5)  # kg, kg m²
 PIVOT = 0.1 + 0.2j
 """Pivot of the crank in the base, m."""
 LENGTHS = (0.2, 0.5, 0.4, 0.5)
 """Lengths of crank, coupler and rocker, and the distance of the pivots, m; the crank can turn fully."""
 MASSES = (0.5, 0.8, 0.6)  # kg, of crank, coupler and rocker, or of crank, rod and slider
 CRANK, ROD = 0.2, 0.5  # m, of the slider-crank
-SLIDER_INERTIA = 0.01  # kg m2
+SLIDER_INERTIA = 0.01  # kg m²
 
 FreeKind = Literal["weld", "revolute", "spherical", "prismatic", "distance"]
 
@@ -55,8 +55,8 @@ def add_rod(builder: oo.ModelBuilder, name: str, parent: str, x: complex, mass: 
 class Linkage:
     """A looped robot, and its motion as functions of the angle ``θ`` of its first joint.
 
-    ``joints(θ)`` returns positions, and their first and second derivatives by ``θ``, of all joints: (3, n).
-    ``bodies(θ)`` are the bodies in the plane, first the base.
+    ``joints(θ)`` returns (3, n): the positions of all joints, and their first and second derivatives with
+    respect to ``θ``. ``bodies(θ)`` returns the bodies in the plane, the base first.
     """
 
     model: oo.Model
@@ -64,11 +64,11 @@ class Linkage:
     bodies: Callable[[float], list[Body]]
 
     def reduced(self, crank: float) -> Reduced:
-        """Return the equation of motion without momentum."""
+        """Return the equation of motion at zero total momentum."""
         return reduce(self.bodies(crank))
 
     def state(self, crank: float, rate: float) -> tuple[Array, Array]:
-        """Return configuration and velocity without momentum."""
+        """Return the configuration and the velocity at zero total momentum, for an angle and its rate."""
         q, v = self.model.neutral(), np.zeros(self.model.nv)
         q[JOINTS_Q], slope, _ = self.joints(crank)
         reduced = self.reduced(crank)
@@ -180,7 +180,10 @@ OFFSET = 0.3  # rad
 
 
 def two_fingers(masses: tuple[float, float, float], *, axis: Sequence[float] = (0.0, 1.0, 0.0)) -> oo.Model:
-    """Return two sliding fingers of which the first holds a load, of masses (3,), that the second touches."""
+    """Return two sliding fingers; the first carries a load that the second grasps.
+
+    ``masses``, kg, are those of the fingers and the load; ``axis`` is the direction in which the fingers slide.
+    """
     builder = base("two_fingers")
     for index in range(2):
         builder.add_link(

@@ -49,7 +49,7 @@ class _Efforts:
 
 
 def along_the_run(linkage: Linkage, duration: float = 5.0) -> tuple[float, float, float]:
-    """Return the errors of joint positions and rates at the simulated crank, and of the rate of the crank.
+    """Return the errors of joint positions and rates at the simulated angle of the crank, and of its rate.
 
     Without momentum, the energy is `½ J(θ) θ̇²`, so `θ̇ = θ̇0 √(J(θ0)/J(θ))`. The last error is relative.
     """
@@ -91,7 +91,7 @@ SPIN, MASS, RADIUS = 1.5, 2.0, 0.6
 
 
 def spinning_sliders() -> tuple[float, float, float]:
-    """Return the errors of a rod's tension `m ω² r`, of its direction, and the opening of the loop."""
+    """Return the relative errors of a rod's tension `m ω² r` and its direction, and the loop's opening, m."""
     builder = base("sliders")
     for name, mass, x in (("near", 1.5 * MASS, -RADIUS / 1.5), ("far", MASS, RADIUS)):
         builder.add_link(
@@ -117,9 +117,10 @@ SQUEEZE, PUSH = (12.0, -12.0), (12.0, -9.0)
 
 
 def squeezed(efforts: tuple[float, float]) -> tuple[float, float]:
-    """Return the errors of the force between load and second finger, and of the acceleration of the load.
+    """Return the errors of the force between load and second finger, N, and of the travel of the joints, m.
 
-    The efforts `f` move fingers and load by `a = Σf/Σm` in W; the force on the second finger is `m a - f`.
+    The efforts `f` accelerate fingers and load by `a = Σf/Σm` in W; the force on the second finger, of mass
+    `m`, is `m a - f`.
     """
     model = two_fingers(FINGERS)
     trace = oo.Simulation(
@@ -140,14 +141,14 @@ def squeezed_load() -> tuple[float, float]:
 
 
 RATIO, WHEELS = -2.5, (0.2, 0.05)
-"""Ratio of two geared wheels, and their moments of inertia, kg m2."""
+"""Ratio of two geared wheels, and their moments of inertia, kg m²."""
 
 
 def geared() -> tuple[float, float, float]:
     """Return the errors of the angles of a driven wheel and of the wheel that mimics it, and of momentum.
 
-    `J = I1 + n² I2 - (I1 + n I2)²/(I + I1 + I2)` about the axis, with the inertia `I` of all that turns with
-    the base.
+    `J = I1 + n² I2 - (I1 + n I2)²/(I + I1 + I2)` is the reduced inertia about the axis, with the inertias `I1`
+    and `I2` of the wheels, their ratio `n`, and the inertia `I` of the base and the masses of the wheels.
     """
     model = geared_wheels(RATIO, WHEELS)
     q = model.neutral()

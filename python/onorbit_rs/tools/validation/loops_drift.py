@@ -99,7 +99,7 @@ INTEGRATOR, ORDER = "rk4", 4.0
 
 
 def state_after(linkage: Linkage, step: float) -> tuple[Any, float]:
-    """Return the configuration after a tumbling four-bar linkage's run, and the change of its energy."""
+    """Return the final configuration of a tumbling four-bar linkage, and the relative change of its energy."""
     q, v = linkage.state(1.0, 2.0)
     v[BASE_V] += [0.01, -0.02, 0.03, 0.2, -0.1, 0.3]
     settings: Any = {"integrator": INTEGRATOR, "time_step": step}

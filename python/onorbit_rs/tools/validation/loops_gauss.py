@@ -128,9 +128,10 @@ LENGTH = 0.4
 
 
 def random_loops(seed: int) -> tuple[oo.Model, Array, Array]:
-    """Return a random robot with a weld, a ball joint and a pin that close loops, in a random state at rest.
+    """Return a random robot with closed loops, its configuration, and random generalized forces (nv,).
 
-    A second ball joint at one weld is redundant. The last array holds random efforts, N and N m.
+    One loop is a ball joint, which occurs twice, so the second one is redundant; up to two further loops are
+    of random kinds.
     """
     rng = np.random.default_rng(seed)
     tree = build(random_tree(seed, links=14))
@@ -151,7 +152,10 @@ def random_loops(seed: int) -> tuple[oo.Model, Array, Array]:
 
 
 def at_rest(seed: int) -> float:
-    """Return the error of the acceleration of a random robot at rest, relative to its largest component."""
+    """Return the error of the acceleration of a random robot at rest.
+
+    The error is relative to the largest component of the acceleration without loops.
+    """
     model, q, tau = random_loops(seed)
     found = model.constrained_forward_dynamics(q, np.zeros(model.nv), tau)[0]
     mass = np.array(model.mass_matrix(q))

@@ -1,7 +1,7 @@
 """Closed forms of planar linkages on a free base, as functions of the angle of their crank.
 
-Positions in the plane are complex numbers in the axes of the base. A prime is a derivative by the angle ``θ``
-of the crank.
+Positions in the plane are complex numbers in the axes of the base. A prime denotes a derivative with respect
+to the angle ``θ`` of the crank.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 Derivatives = tuple[float, float, float]
-"""A quantity and its first two derivatives by the angle of the crank."""
+"""A quantity and its first two derivatives with respect to the angle of the crank."""
 
 
 @dataclass(frozen=True)
 class Body:
-    """Body with its mass, kg, moment of inertia about its mass centre, kg m2, and motion in the base.
+    """Body with its mass, kg, moment of inertia about its mass centre, kg m², and motion in the base.
 
     ``place`` is the position of the mass centre, m, with its first two derivatives; ``turn`` holds the first
     two derivatives of the angle.
@@ -37,7 +37,7 @@ def arm(angle: Derivatives, length: float) -> tuple[complex, complex, complex]:
 
 
 def rod(angle: Derivatives, length: float, mass: float, start: Sequence[complex] = (0.0, 0.0, 0.0)) -> Body:
-    """Return a uniform rod whose one end moves as ``start``."""
+    """Return a uniform rod, one end of which moves as ``start``; length in m, mass in kg."""
     a, b, c = (x + y for x, y in zip(start, arm(angle, length / 2.0), strict=True))
     return Body(mass, mass * length**2 / 12.0, (a, b, c), angle[1:])
 
@@ -96,7 +96,7 @@ def dot(a: complex, b: complex) -> float:
 class Reduced:
     """A linkage on a free base without momentum, which has the kinetic energy `½ J(θ) θ̇²`.
 
-    ``inertia`` is `J`, kg m2, and ``slope`` its derivative. The base turns with the rate ``spin`` times `θ̇`
+    ``inertia`` is `J`, kg m², and ``slope`` its derivative. The base turns with the rate ``spin`` times `θ̇`
     while its origin, in its own axes, has the velocity ``velocity`` times `θ̇`, m.
     """
 

@@ -14,7 +14,7 @@ DURATION = 3.0  # s
 SEAT = DURATION  # used by the simulation; the closed forms use the constants above
 MASSES = (90.0, 10.0)  # kg
 PULL = 1.0  # m
-INERTIAS, TURN = (6.0, 2.0), 1.2  # kg m2 about the axis of the turn, rad
+INERTIAS, TURN = (6.0, 2.0), 1.2  # kg m² about the axis of the turn, rad
 TURNED = INERTIAS[1]  # used by the simulation
 
 

@@ -114,7 +114,7 @@ def joined(crafts: Sequence[Craft]) -> Array:
 
 
 def change(before: Sequence[Craft], after: Sequence[Craft]) -> float:
-    """Return the larger change of linear or angular momentum, relative to the sum over the links."""
+    """Return the larger change of linear or angular momentum, relative to the sum of the links' magnitudes."""
     point = before[0].pose[:3, 3]
     old, new = ([momentum(craft, craft.v, point) for craft in crafts] for crafts in (before, after))
     difference = sum(m for m, _ in new) - sum(m for m, _ in old)
