@@ -44,7 +44,7 @@ def main(urdf: str = str(oo.robots.path("humanoid_torso"))) -> None:
     a = model.forward_dynamics(q, v, tau)
     a_pin = pin.aba(pin_model, data, q_pin, v_pin, tau_pin)
     _, a = oo.layouts.to_pinocchio(model, q, a, pin_model)  # in Pinocchio's order and layout
-    print(f"accelerations differ by {abs(a - a_pin).max() / abs(a_pin).max():.1e} of the largest")
+    print(f"largest difference of accelerations, relative: {abs(a - a_pin).max() / abs(a_pin).max():.1e}")
 
     here = microseconds(lambda: model.forward_dynamics(q, v, tau))
     there = microseconds(lambda: pin.aba(pin_model, data, q_pin, v_pin, tau_pin))

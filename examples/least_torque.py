@@ -1,7 +1,8 @@
 """Trajectory optimisation with exact derivatives: the smallest torques that move an arm to a posture in 2 s.
 
-The derivative of the final state by every torque is accumulated backwards over the steps, from ∂a/∂q, ∂a/∂v
-and ∂a/∂τ. Each iteration computes the smallest torques that reach the goal in the linearised motion.
+The derivative of the final state with respect to every torque is accumulated backwards over the steps, from
+∂a/∂q, ∂a/∂v and ∂a/∂τ. Each iteration computes the smallest torques that reach the goal in the linearised
+motion.
 
 Run: python examples/least_torque.py
 """
@@ -27,7 +28,7 @@ def roll(model: oo.Model, q: Floats, tau: Floats) -> tuple[Floats, Floats]:
 
 
 def sensitivity(model: oo.Model, qs: Floats, vs: Floats, tau: Floats) -> Floats:
-    """Returns the derivative of the final joint positions and rates by all torques, (2n, STEPS, n)."""
+    """Returns the derivative of the final joint state with respect to all torques, (2n, STEPS, n)."""
     n, torques = model.nv - 6, np.pad(tau, [(0, 0), (6, 0)])
     dq, dv, dtau = model.forward_dynamics_derivatives(qs[:-1], vs[:-1], torques)  # (STEPS, nv, nv) each
     by_q, by_v = np.eye(2 * n, model.nv, 6), np.eye(2 * n, model.nv, 6 - n)  # ∂(end)/∂q, ∂(end)/∂v

@@ -55,7 +55,7 @@ def test_the_coefficients_are_those_of_the_pair(
             9,
             "'aluminium' on 'ruber'.*rubber-aluminium",
         ),
-        ("torsional: 1 mm", "static: 0.5", 9, "give either 'materials' or the coefficients"),
+        ("torsional: 1 mm", "static: 0.5", 9, "'materials' and coefficients are both given"),
         ("materials: [aluminium, rubber], torsional: 1 mm", "torsional: 1 mm", 9, "has no coefficients"),
         ("kinetic: 0.6", "kinetic: 0.9", 5, "exceeds the static coefficient"),
     ],

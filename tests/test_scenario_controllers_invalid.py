@@ -15,7 +15,7 @@ TASK = {"kind": "computed_torque"}
 LINE = {"kind": "line", "goal": {"displacement": [0.1, 0, 0]}, "duration": 1}
 HOLD = {"kind": "joint_hold"}
 REFUSED: dict[str, tuple[dict[str, Any], type[OnOrbitError], tuple[str, ...]]] = {
-    "both": (two(arm("right"), controller=JOINT), ScenarioError, ("controllers", "either one")),
+    "both": (two(arm("right"), controller=JOINT), ScenarioError, ("controllers", "both given")),
     "empty list": (two(), ScenarioError, ("controllers",)),
     "reference of none": (
         two(arm("right"), reference=LINE, tool="right_tool"),

@@ -96,7 +96,7 @@ def prepare(models: Models, watch: Watch) -> Prepared:
     Raises
     ------
     FrameError
-        If a pattern matches no link with a collision shape, or no frame carries a zone.
+        If a pattern matches no link with a collision shape, or a zone is fixed to an unknown frame.
     InputError
         If no pair of links is left to compare.
     """

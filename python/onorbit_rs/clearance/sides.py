@@ -70,7 +70,7 @@ def links_matching(models: Models, patterns: Sequence[str], watch: str) -> list[
 
 
 def permitted(models: Models, side_a: Sequence[Link], side_b: Sequence[Link]) -> list[list[bool]]:
-    """Return the pairs (n_a, n_b) that are compared: not those of one body or of neighbours."""
+    """Return whether each pair (n_a, n_b) is compared; False for links of one body or of adjacent bodies."""
     joined = {
         pair for system, model in models.items() for joint in model.joints
         for pair in ((system, joint.parent, joint.child), (system, joint.child, joint.parent))
@@ -92,7 +92,7 @@ def poses(models: Models, rows: Mapping[str, Floats], links: Sequence[Link]) -> 
 
 
 def check_carrier(zone: KeepOut, models: Models) -> None:
-    """Raise a FrameError if no frame carries the zone."""
+    """Raise a FrameError if the zone is fixed to an unknown frame."""
     if zone.fixed_to in ("world", "lvlh"):
         return
     known = [

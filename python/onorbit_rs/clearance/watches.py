@@ -42,8 +42,8 @@ class KeepOut:
         Links that must stay outside: ``SYSTEM/LINK`` in a world, ``LINK`` for one robot; ``*`` stands for any
         text.
     fixed_to : str
-        ``world`` (W), ``lvlh`` (L, at the origin of W), or a frame that carries the zone, ``SYSTEM/FRAME`` or
-        ``FRAME``.
+        ``world`` (W), ``lvlh`` (L, at the origin of W), or a frame with which the zone moves,
+        ``SYSTEM/FRAME`` in a world or ``FRAME`` for one robot.
     pose : (4, 4) array or None
         Pose of the shape in ``fixed_to``, m; None for the identity.
     """

@@ -29,7 +29,10 @@ def print_cases(cases: Sequence[Case]) -> None:
 
 
 def print_verdicts(verdicts: Sequence[Verdict], *, in_full: bool) -> None:
-    """Print checks by family and source: all, or per case the failed ones or the one nearest to its gate."""
+    """Print the checks by family and source: all of them if ``in_full``.
+
+    Otherwise, each case shows its failed checks or, if none failed, the check nearest to its gate.
+    """
     console = new_console(at_least=72)
     rows = [(verdict, _rows(verdict, in_full=in_full)) for verdict in verdicts]
     widths = _widths([row for _, some in rows for row in some], console.width)

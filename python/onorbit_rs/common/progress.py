@@ -112,7 +112,7 @@ class _Mover:
 
 
 def real_time_factor(began: float, began_at_s: float, now: float, reached_s: float) -> float | None:
-    """Return simulated time per wall-clock time since ``began``; None within the first millisecond."""
+    """Return the ratio of simulated to wall-clock time since ``began``, s; None in the first millisecond."""
     elapsed = now - began
     return (reached_s - began_at_s) / elapsed if elapsed > 1e-3 else None
 

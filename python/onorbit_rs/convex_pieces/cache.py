@@ -1,7 +1,7 @@
 """Cache of convex pieces on disk, one file per mesh and options.
 
 A file holds its checksum and the rows of an array, so that a damaged file is recognised and computed again.
-Files are replaced as a whole, so that two processes can write the same one. Without write access, nothing is
+Files are replaced atomically, so two processes can write the same file. Without write access, nothing is
 cached.
 """
 
@@ -53,9 +53,7 @@ def read(key: str) -> list[Floats] | None:
 
 
 def write(key: str, pieces: list[Floats]) -> None:
-    """Write pieces, each as its corners (k, 3), to the cache under this key; without write access, do
-    nothing.
-    """
+    """Write pieces, each given by its corners (k, 3), to the cache; do nothing without write access."""
     home = folder()
     if home is None:
         return
@@ -76,6 +74,6 @@ def write(key: str, pieces: list[Floats]) -> None:
 
 
 def split(rows: Floats) -> list[Floats]:
-    """Return the corners (k, 3) of each piece from rows (n, 4): number of the piece, coordinates."""
+    """Return the corners (k, 3) of each piece from rows (n, 4): index of the piece, then coordinates."""
     numbers = rows[:, 0]
     return [np.ascontiguousarray(rows[numbers == number, 1:]) for number in np.unique(numbers)]

@@ -19,8 +19,10 @@ NEAR = 2e-3
 
 
 def fitted(pieces: list[Floats], vertices: Floats, triangles: NDArray[np.int32]) -> list[Floats]:
-    """Return the pieces with each corner moved to the nearest vertex, else edge, else face of the mesh, if
-    its distance is at most :data:`NEAR`; other corners stay.
+    """Return the pieces with those corners moved onto the mesh that are closer to it than :data:`NEAR`.
+
+    A corner is moved to the nearest vertex, without a near vertex to the nearest edge, and otherwise to the
+    nearest face.
     """
     near = NEAR * float(np.linalg.norm(np.ptp(vertices, axis=0)))
     corners = vertices[triangles]  # (t, 3, 3)

@@ -1,7 +1,7 @@
 """Program that divides a mesh with CoACD.
 
 Reads the arrays ``vertices`` and ``triangles`` from standard input, and the options from the first argument.
-Writes one row per corner to standard output: the number of its piece and its coordinates.
+Writes one row per corner to standard output: the index of its piece and its coordinates.
 """
 
 import io

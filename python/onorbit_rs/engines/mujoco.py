@@ -236,7 +236,7 @@ class Mujoco:
             about the common centre of mass, axes of W, N m s.
         contacts : (contacts, 14) array
             Only with contacts: at the start the force on the second side, N, its moment about the origin of
-            W, N m, and the power taken from the motion, W; then the integrals of these seven over the step.
+            W, N m, and the power removed from the motion, W; then the integrals of these seven over the step.
 
         Raises
         ------
@@ -373,7 +373,11 @@ class Mujoco:
         return q, v
 
     def _acceleration(self, qpos: Floats, rate: Floats) -> Floats:
-        """Return the derivative of `v`; with `v = Rᵀ ṗ`, `v̇ = Rᵀ p̈ − w × v`."""
+        """Return the derivative of `v` from MuJoCo's rates, for every base.
+
+        With the position `p` of the base in W, its attitude `R` and its angular velocity `w` in base axes,
+        `v = Rᵀ ṗ` and `v̇ = Rᵀ p̈ − w × v`.
+        """
         nv = self._model.nv
         a: Floats = rate[nv : 2 * nv][self._v_columns]
         for part in self._shares:

@@ -159,7 +159,7 @@ class Contacts:
         return bool(self._held) and {int(self._model.geom_bodyid[geom]) for geom in pair} in self._held
 
     def output(self, data: Any) -> Floats:
-        """Return force, moment about the origin of W, and power taken from the motion, of each contact.
+        """Return force, moment about the origin of W, and power removed from the motion, of each contact.
 
         Returns
         -------

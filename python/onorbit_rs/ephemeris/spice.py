@@ -61,7 +61,7 @@ def segments(path: str | Path) -> tuple[list[Segment], list[Segment]]:
 
 
 def _check_records(path: str | Path) -> None:
-    """Raise ValueError if a file has no positions, or its records form a cycle, which jplephem never ends."""
+    """Raise ValueError if a file has no positions, or a cycle of records, in which jplephem would not end."""
     from jplephem.daf import DAF
 
     with Path(path).open("rb") as stream:

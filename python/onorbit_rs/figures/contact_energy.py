@@ -80,11 +80,11 @@ def ledger_of(
 ) -> tuple[Floats, dict[str, Floats]]:
     """Return the times common to the systems, (T,) s, and by name the energies of the group, (T,) J.
 
-    The recorded work of a system is that of motors, environment and contacts, less the losses in joints. What
-    the contacts took is stored as elastic energy or dissipated, so the work of the others is
+    The recorded work of a system is that of motors, environment and contacts, less the losses in joints. The
+    energy that contacts absorb is stored as elastic energy or dissipated, so the work without contacts is
     `W - W_0 + Σ (U + D) - Σ (U_0 + D_0)`, with the recorded work `W`, the elastic energy `U` and the
-    dissipated energy `D` of each contact; `0` denotes the first row. The last entry is the sum, with this
-    work subtracted.
+    dissipated energy `D` of each contact; `0` denotes the first row. The last entry is the sum of the
+    energies, minus the work without contacts.
     """
     times = [np.asarray(trace[name].time) for name in systems]
     rows = shared_rows(times)

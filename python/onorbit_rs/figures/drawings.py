@@ -117,7 +117,7 @@ def _of_the_base(subject: Subject) -> Iterator[Drawing]:
         about = "Force and torque of every effect on every body; torques are about the body's centre of mass."
         if subject.is_carried:
             about += (
-                " The robot is carried by its reference, whose motion includes these effects: the common "
+                " The robot moves with its reference, whose motion includes these effects: the common "
                 "acceleration due to drag and light is removed, and only the tidal part of gravity remains."
             )
         yield Drawing("environment_forces", about, partial(environment_forces, trace, model.body_names))

@@ -87,7 +87,7 @@ def _size(rows: Floats, part: str) -> Floats:
 
 
 def _largest(wrenches: dict[str, Floats]) -> list[int]:
-    """Return the bodies with the largest wrenches; each effect is divided by its own largest value."""
+    """Return the indices of the bodies with the largest wrenches, relative to the peak of each effect."""
     fractions = [
         peak / max(peak.max(), 1e-300)
         for rows in wrenches.values()

@@ -98,6 +98,6 @@ def _span(seconds: float) -> str:
 
 
 def _broken_at_the_date_line(lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
-    """Return the track with a gap where it crosses the date line."""
+    """Return longitude and latitude, deg, with a gap (NaN) where the track crosses the date line."""
     at = np.flatnonzero(np.abs(np.diff(lon)) > 180.0) + 1
     return np.insert(lon, at, np.nan), np.insert(lat, at, np.nan)

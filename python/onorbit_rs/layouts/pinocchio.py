@@ -72,14 +72,14 @@ def to_pinocchio(
 def from_pinocchio(
     model: Model, q: ArrayLike, v: ArrayLike, joints: Any = None, *, unbounded: Sequence[str] = ()
 ) -> tuple[Floats, Floats]:
-    """Return `q` and `v` of onorbit_rs from those of Pinocchio; unbounded joints are between -π and π.
+    """Return `q` and `v` of onorbit_rs from those of Pinocchio; unbounded joints get angles from -π to π.
 
     Parameters
     ----------
     model : Model
         Robot.
     q, v : array
-        Configuration and velocity of Pinocchio, one state or a batch.
+        Configuration and velocity of Pinocchio, one state or a batch; rad, m, rad/s and m/s.
     joints : sequence of str or pin.Model, optional
         As in :func:`to_pinocchio`.
     unbounded : sequence of str

@@ -150,13 +150,13 @@ def no_floating_base(engine: str) -> InputError:
 
 
 def to_world(quat_xyzw: Floats, vector_b: Floats) -> Floats:
-    """Return `R v`: the components in world axes of vectors that are given in base axes."""
+    """Return `R v`: the components (..., 3) in world axes of vectors that are given in base axes."""
     result: Floats = np.einsum("...ij,...j->...i", matrix_from_quaternion(quat_xyzw), vector_b)
     return result
 
 
 def to_body(quat_xyzw: Floats, vector_w: Floats) -> Floats:
-    """Return `Rᵀ v`: the components in base axes of vectors that are given in world axes."""
+    """Return `Rᵀ v`: the components (..., 3) in base axes of vectors that are given in world axes."""
     result: Floats = np.einsum("...ji,...j->...i", matrix_from_quaternion(quat_xyzw), vector_w)
     return result
 

@@ -220,7 +220,7 @@ def _unreadable(file: Path, kind: str, error: Exception) -> ReadError:
 
 
 def _damaged(file: Path, kind: str, error: Exception) -> ReadError:
-    """Return the error for a file whose content is not what a run writes."""
+    """Return the error for a file whose content is invalid."""
     reason = f"it has no {error}" if isinstance(error, KeyError) else error
     scenario, folder = shell_word(file.parent / SCENARIO), shell_word(file.parent)
     return ReadError(

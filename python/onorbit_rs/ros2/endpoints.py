@@ -81,7 +81,7 @@ class Reader:
     def take(self) -> list[tuple[int, int, bytes]]:
         """Return the messages since the last call: time of sending, ns, handle of the publisher, and CDR.
 
-        Of more than 100 000, only the last ones are kept.
+        At most the last 100 000 messages are kept.
 
         Raises
         ------

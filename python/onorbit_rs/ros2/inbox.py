@@ -57,7 +57,8 @@ class Inbox:
     def take(self) -> list[Arrived]:
         """Return the messages that have arrived since the last call, in the order in which they were sent.
 
-        Of more than 1000 on a topic, the newest are returned, after a refusal with the number of the others.
+        If more than 1000 have arrived on a topic, the newest 1000 are returned, after a refusal that states
+        how many others there were.
         """
         taken, found = [], []
         for route in self._routes:

@@ -1,7 +1,7 @@
 """Writes MCAP files of ROS 2 messages, many messages at a time.
 
-The writer of the package ``mcap`` accepts messages one by one. Here numpy composes the records of all messages
-of a topic in a chunk; the other records are those of the package.
+The writer of the package ``mcap`` accepts messages one by one. Here numpy composes the records of all
+messages of a topic in a chunk; the other records are those of the package.
 """
 
 from __future__ import annotations

@@ -127,7 +127,7 @@ def _by_name(trace: Trace | WorldTrace, models: Models | None) -> Mapping[str, M
         return {name: models[name] for name in systems}
     expected = "a Model" if len(systems) == 1 else f"a mapping with the systems {', '.join(systems)}"
     raise InputError(
-        f"a trace does not contain its robots; models must be {expected}",
+        f"models is of type {type(models).__name__}; a trace does not contain its robots, so give {expected}",
         name="models",
         got=models,
         expected=expected,

@@ -25,7 +25,7 @@ class Rivals:
         self._looked = -math.inf
 
     def point_out(self, session: Session) -> None:
-        """Publish a warning if another node has begun to publish ``/clock``; check at most once per second."""
+        """Publish a warning if another node has begun to publish ``/clock``; at most one check per second."""
         now = time.monotonic()
         if now < self._looked + _PERIOD_S:
             return

@@ -56,7 +56,10 @@ def _values(effect: str, link: tuple[int, Body], model: Model) -> Callable[[Rows
     com = np.array(body.com)
 
     def values(rows: Rows) -> dict[str, Floats]:
-        """Return `f = Rᵀ f_W` and `t = Rᵀ t_W + c × f` from the wrench at the mass centre c; R: link to W."""
+        """Return `f = Rᵀ f_W`, N, and `t = Rᵀ t_W + c × f`, N m, (T, 3) each.
+
+        `f_W` and `t_W` act at the mass centre, which is at `c` in the link; `R` rotates link axes to W.
+        """
         rot_wl = np.asarray(model.frame_pose(np.ascontiguousarray(rows["q"]), body.name))[:, :3, :3]
         wrench = rows.wrenches[effect].reshape(len(rows), -1, 6)[:, index]
         force = np.einsum("tji,tj->ti", rot_wl, wrench[:, LINEAR])

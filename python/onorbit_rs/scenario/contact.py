@@ -119,7 +119,7 @@ class Friction(Part):
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
         if self.materials is not None and (self.static is not None or self.kinetic is not None):
-            message = "give either 'materials' or the coefficients 'static' and 'kinetic', not both"
+            message = "'materials' and coefficients are both given; omit 'materials' or the coefficients"
             raise inconsistent("materials", message)
         if self.static is None and self.materials is None:
             raise invalid("has no coefficients; give 'static', or 'materials', such as [copper, mild steel]")

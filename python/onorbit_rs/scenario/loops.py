@@ -114,7 +114,7 @@ def add_loops(scenario: Scenario, model: _core.Model) -> _core.Model:
 
 
 def closed_start(scenario: Scenario, model: _core.Model, q: Floats, v: Floats) -> tuple[Floats, Floats]:
-    """Return the initial state with mimic joints that follow their leaders and with projected loops closed.
+    """Return the initial `q` and `v`, with mimic joints that follow their leaders and projected loops closed.
 
     ``q`` and ``v`` may be overwritten. If a loop without ``project`` is open, no loop is closed, and the
     simulation raises an error.

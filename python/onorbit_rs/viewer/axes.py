@@ -32,7 +32,10 @@ def log_axes(
     brightness: float = 1.0,
     thickness: float = 1.0,
 ) -> None:
-    """Log static axes of a frame, with ``names`` at their tips."""
+    """Log static axes of a frame with a length, m, and with ``names`` at their tips.
+
+    ``origin``, (3,), m, is the position of the axes in the frame; default: the origin of the frame.
+    """
     colors = (_COLORS * brightness).astype(np.uint8)
     start = np.zeros(3) if origin is None else origin
     put_in(recording, path, frame)
@@ -56,7 +59,7 @@ def log_axes(
 
 
 def log_name(recording: rr.RecordingStream, path: str, frame: str, name: str, place: Floats) -> None:
-    """Log a static name beside a frame."""
+    """Log a static name at ``place``, (3,), m, in a frame."""
     put_in(recording, path, frame)
     label = rr.Points3D([place], colors=[_NAME], radii=[0.0], labels=[shown(name)], show_labels=True)
     recording.log(path, label, static=True, strict=True)

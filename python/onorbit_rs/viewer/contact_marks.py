@@ -38,7 +38,7 @@ _LEGEND = (-0.45, -0.52)
 
 @dataclass(frozen=True)
 class Marks:
-    """Times (k,), s, at which a contact's mark changes, and what is shown from each of them on.
+    """Times (k,), s, at which a contact's mark changes, and the mark that is shown from each time on.
 
     ``is_shown`` (k,) is False where the mark disappears. ``points`` (k, 3), m, and ``forces`` (k, 3), N, are
     in W. ``is_held`` (k,) is True after the end of a touch that was too short to be seen.

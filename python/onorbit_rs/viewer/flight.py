@@ -83,7 +83,7 @@ def log_flight(recording: rr.RecordingStream, bodies: list[Body], axes: str = "w
 
 
 def log_whole_flight(recording: rr.RecordingStream, bodies: list[Body], most: int = 5000) -> None:
-    """Log the paths of the whole run in a dim colour."""
+    """Log the paths of the whole run in a dim colour, with at most ``most`` points each."""
     for body in bodies:
         points = body.points[evenly_spaced(len(body.points), most)]
         dim = (np.array(body.color) * _WHOLE).astype(np.uint8)
@@ -93,7 +93,7 @@ def log_whole_flight(recording: rr.RecordingStream, bodies: list[Body], most: in
 
 
 def send_flight(recording: rr.RecordingStream, bodies: list[Body], most: int) -> None:
-    """Send the paths up to the current time."""
+    """Send the paths up to the current time, as at most ``most`` line segments each."""
     for body in bodies:
         send_trail(recording, f"{body.path}/trail", LOCAL, body.rows, body.points, most, body.color)
 

@@ -56,7 +56,7 @@ class View(ABC):
 
     @abstractmethod
     def _show_columns(self, columns: Mapping[str, Floats], events: Sequence[EventRecord]) -> None:
-        """Show the columns of a stepper from row number :attr:`shown` on, and the events so far."""
+        """Show the columns of a stepper from row :attr:`shown` on, and the events so far."""
 
     @abstractmethod
     def _show_rest(self, trace: Any) -> None:
@@ -67,7 +67,7 @@ class View(ABC):
         """Delete all references to the recording."""
 
     def take(self, columns: Mapping[str, Floats], events: Sequence[EventRecord] = ()) -> None:
-        """Show the columns of a stepper from row number :attr:`shown` on, and the events so far."""
+        """Show the columns of a stepper from row :attr:`shown` on, and the events so far."""
         with self._loses_view():
             self._show_columns(columns, events)
 

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     Floats = NDArray[np.float64]
 
 MOST_STEPS = 500_000
-"""Largest number of rows (0.5 GB); longer traces are decimated evenly, including the last row."""
+"""Largest number of rows (0.5 GB); longer traces are decimated evenly, and the last row is kept."""
 
 
 def write_recording(path: Path, trace: Trace, setting: Setting, *, notes: str = "") -> Path:
@@ -136,7 +136,7 @@ def send_static(
     notes: str = "",
     is_live: bool = False,
 ) -> Viewpoint:
-    """Send the layout, log the static entities, which depend on the first rows only; return the viewpoint."""
+    """Send the layout, log the static entities and return the viewpoint, all from the first rows only."""
     viewpoint = Viewpoint.of(rows, setting)
     views = layout(rows, setting, viewpoint, plots, duration_s, has_notes=bool(notes), is_live=is_live)
     send_blueprint(recording, views)

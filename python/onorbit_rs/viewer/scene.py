@@ -167,5 +167,5 @@ def _pose_of_path_frame(rows: TraceRows, setting: Setting) -> Floats:
 
 
 def _decimated(points: Floats, most: int = 5000) -> Floats:
-    """Return at most ``most`` of the points, including the first and the last."""
+    """Return at most ``most`` of the points (k, 3), including the first and the last."""
     return points[evenly_spaced(len(points), most)]

@@ -32,7 +32,7 @@ MOMENTUM, ENERGY, PLACES = "Momentum", "Energy", "Positions"
 SHARED = "plots/world/"
 """Prefix of the paths of plots of several systems; the name is reserved and cannot be that of a system."""
 PLOTS_OF_CONTACTS = f"{SHARED}contacts/"
-"""Prefix of the paths of plots of a contact, which then contain its name as a part of a file name."""
+"""Prefix of the paths of a contact's plots; the result of ``file_part`` for the contact's name follows."""
 
 
 def world_series(world: WorldRows, *, is_live: bool = False) -> Iterator[tuple[TraceRows, Series]]:

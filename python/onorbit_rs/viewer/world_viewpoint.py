@@ -27,7 +27,7 @@ _SAMPLES = 12
 _ABOVE = 0.4
 """Ratio of the camera's height above the line between two systems to its distance from that line."""
 _WIDE, _HIGH = 0.65, 1.05
-"""Width and height of the largest scene that fits into the view."""
+"""Factors by which the half width and the half height of a scene are multiplied to get half its size."""
 
 
 def common_viewpoint(world: WorldRows) -> Viewpoint:
@@ -50,7 +50,7 @@ def common_viewpoint(world: WorldRows) -> Viewpoint:
 
 
 def _from_beside(world: WorldRows, rot_fb: Floats) -> Floats:
-    """Return the direction to a camera from which neither of two systems hides the other."""
+    """Return the direction (3,), in base axes, to a camera that sees two systems side by side."""
     setting = world.setting
     a, b = setting.connections[0].systems if setting.connections else setting.names[:2]
     line = world[b]["q"][0, POSITION] - world[a]["q"][0, POSITION]

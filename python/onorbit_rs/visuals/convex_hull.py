@@ -79,7 +79,7 @@ def _farthest(points: Floats, faces: Indices, corners: Floats | None = None) -> 
 
 
 def _horizon(seen: Indices) -> list[tuple[int, int]]:
-    """Return the directed edges of faces that are seen, beyond which faces are not seen."""
+    """Return the directed edges, as pairs of vertices, between the visible faces and the others."""
     edges = {
         (int(a), int(b)) for k in range(3) for a, b in zip(seen[:, k], seen[:, (k + 1) % 3], strict=True)
     }

@@ -26,7 +26,7 @@ def check_control(scenario: Scenario, events: list[str], systems: list[str]) -> 
     if scenario.controllers is not None:
         if scenario.controller is not None:
             raise inconsistent(
-                "controllers", "give either one 'controller' or a list of 'controllers', not both"
+                "controllers", "'controller' and 'controllers' are both given; omit one of them"
             )
         if scenario.reference is not None:
             raise inconsistent(
@@ -66,7 +66,8 @@ def _check_names(controls: list[Any], events: list[str]) -> None:
             raise inconsistent((*at, "after"), f"no {what} is named {control.after!r}{hint}")
         if control.start != 0.0:
             raise inconsistent(
-                (*at, "start"), "give either 'start' (a time) or 'after' (a controller or event), not both"
+                (*at, "start"),
+                "'start' (a time) and 'after' (a controller or event) are both given; omit one of them",
             )
 
 

@@ -34,7 +34,10 @@ class ComplianceController(TaskLaw):
         )  # fmt: skip
 
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
-        """Yield the gains whose largest stable value depends on the period; none in frame ``base``."""
+        """Yield the gains whose largest stable value depends on the control period.
+
+        There are none if the reference is in the frame ``base``.
+        """
         if mobility.is_in_w(self):
             of_tool = mobility.of_tool(self)
             yield "damping", 1, of_tool @ square(self.damping, 6)

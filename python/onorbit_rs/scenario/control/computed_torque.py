@@ -23,7 +23,8 @@ class ComputedTorqueController(TaskLaw):
     kd: RateGain = 20.0
     """Gain of the velocity error, 1/s, in the form of ``kp``."""
     damping: Annotated[Number, NotNegative] = 0.05
-    """Largest damping of the pseudo-inverse; the damping is nonzero only near singularities."""
+    """Largest damping of the pseudo-inverse, in the units of the singular values of the generalized Jacobian;
+    the damping is zero unless a singular value is smaller than this number."""
     null_space_damping: Annotated[Rate, NotNegative] = 0.0
     """Damping of joint motion that does not move the tool, 1/s; brings a redundant arm to rest."""
     compensate_environment: bool = True

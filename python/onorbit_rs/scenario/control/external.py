@@ -54,7 +54,7 @@ class ExternalController(JointLaw):
         yield "kp", 2, square(self.kp, joints)
 
     def without_commands(self) -> str:
-        """Return a clause for messages: what the joints do before the first command."""
+        """Return a clause for messages that describes how the joints behave before the first command."""
         has_kp, has_kd = (bool(gain) and (gain if isinstance(gain, float) else min(gain)) > 0.0
                           for gain in (self.kp, self.kd))  # fmt: skip
         if has_kp:
@@ -63,4 +63,4 @@ class ExternalController(JointLaw):
 
 
 class ExternalControl(ExternalController, JointControl):
-    """Joints of a group that follow commands from outside."""
+    """Joints of a group that follow commands from outside the run."""

@@ -61,7 +61,7 @@ def source_of(part: PythonController, folder: Path) -> str:
 def inspect_source(part: PythonController, folder: Path) -> Placeholder:
     """Return a placeholder for a controller after inspecting its source.
 
-    Checks only what can be known without executing the source.
+    Only properties that are known without executing the source are checked.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ class EarthPart(Part):
             if getattr(self, key) is not None:
                 raise invalid(f"{key} applies only to rotation: {other}; omit {key}, or set that rotation")
         if self.eop is not None and (self.ut1_minus_utc is not None or self.polar_motion is not None):
-            raise invalid("give eop, or ut1_minus_utc and polar_motion, not both")
+            raise invalid("eop already contains ut1_minus_utc and polar_motion; omit eop, or omit these keys")
         return self
 
 

@@ -52,10 +52,10 @@ class Goal(Part):
     def _is_given_once(self) -> Goal:
         if self.displacement is not None and self.position is not None:
             raise invalid(
-                "give either 'displacement' (from the start) or 'position' (in the frame), not both"
+                "'displacement' (from the start) and 'position' (in the frame) are both given; omit one"
             )
         if self.turn is not None and self.attitude is not None:
-            raise invalid("give either 'turn' (from the start) or 'attitude' (in the frame), not both")
+            raise invalid("'turn' (from the start) and 'attitude' (in the frame) are both given; omit one")
         return self
 
     def pose(self, start: Floats) -> Floats:

@@ -38,6 +38,9 @@ def rotation_per_metre(model: Model, arm: Arm, q: Floats) -> Floats:
 
 
 def smallest_rotation(rotations: Floats) -> Floats:
-    """Return the tool direction (3,) that rotates the base least: the last right singular vector."""
+    """Return the unit vector (3,) in W of the tool motion that rotates the base least.
+
+    This is the last right singular vector of ``rotations``, see :func:`rotation_per_metre`.
+    """
     direction: Floats = np.linalg.svd(rotations)[2][-1]
     return direction

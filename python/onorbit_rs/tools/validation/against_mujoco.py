@@ -114,7 +114,7 @@ class MujocoRobot:
         self.at_v = [int(joint.dofadr[0]) for joint in joints]
 
     def acceleration(self, q: Array, v: Array, tau: Array) -> Array:
-        """Return ``v̇`` in the coordinates of this package, with the base in body axes."""
+        """Return ``v̇`` (nv,) in the coordinates of this package, m/s² and rad/s², the base in body axes."""
         data = self.data
         data.qpos[:3] = q[:3]
         data.qpos[QUATERNION] = np.roll(q[QUATERNION], 1)  # wxyz

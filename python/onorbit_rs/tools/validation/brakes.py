@@ -159,12 +159,12 @@ def engage_against_gauss(seed: int) -> tuple[float, ...]:
 
 
 def engaged() -> tuple[float, ...]:
-    """Return the largest errors of rigid engagements of random robots."""
+    """Return the largest errors of rigid engagements of random robots, in the order of :data:`ENGAGE`."""
     return tuple(worst(engage_against_gauss(seed) for seed in SEEDS))
 
 
 def captured() -> tuple[float]:
-    """Return the largest error of the velocities after captures with engaged brakes."""
+    """Return the largest relative error of the velocities after captures with engaged brakes."""
     return (float(worst(capture_against_gauss(seed)[0] for seed in SEEDS)),)
 
 

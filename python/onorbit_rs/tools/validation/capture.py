@@ -39,7 +39,7 @@ def run(
 
 
 def capture(first: Craft, second: Craft, **settings: Any) -> tuple[oo.EventRecord, Array, Array]:
-    """Simulate a capture of the second craft at t = 0; return its record and both velocities after it."""
+    """Simulate a capture of the second craft at t = 0; return the record and both velocities afterwards."""
     systems = [
         oo.System(name, craft.model, craft.q, craft.v)
         for name, craft in zip("ab", (first, second), strict=True)
@@ -190,7 +190,7 @@ def massless() -> Any:
 
 
 def at_stops() -> tuple[float, float]:
-    """Return the errors of velocity and momentum after a capture that pushes a joint into its stop."""
+    """Return the relative errors of velocity and momentum if a capture pushes a joint into its stop."""
     errors = []
     for restitution in (0.0, RESTITUTION):
         first, second = arm_and_target(straight(4, lower=-1.0, upper=0.5), [0.5, 0.2, -0.3, 0.1])

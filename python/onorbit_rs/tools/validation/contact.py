@@ -132,7 +132,7 @@ def hertz() -> tuple[float, float, float]:
 
 
 def _peak(time: Array, values: Array) -> float:
-    """Return the largest value of a function of time: that of the parabola through the three highest rows."""
+    """Return the maximum of sampled values: the vertex of a parabola through three rows at the peak."""
     top = int(np.argmax(values))
     near = slice(top - 1, top + 2)
     a, b, c = np.polyfit(time[near] - time[top], values[near], 2)

@@ -106,13 +106,13 @@ def oblique(across: float) -> tuple[float, float]:
 
 
 def slipping() -> tuple[float, float]:
-    """Return the errors of both speeds after an impact throughout which the sphere slips."""
+    """Return the errors of both speeds, see :func:`oblique`, if the sphere slips throughout the impact."""
     speed, spin = oblique(SLIPS)
     return abs(speed - (SLIPS - IMPULSE)), abs(spin - 2.5 * IMPULSE)
 
 
 def sticking() -> tuple[float, float]:
-    """Return the errors of both speeds after an impact at the end of which the sphere rolls."""
+    """Return the errors of both speeds, see :func:`oblique`, if the sphere rolls at the end of the impact."""
     speed, spin = oblique(STICKS)
     return abs(speed - 5.0 / 7.0 * STICKS), abs(spin - 5.0 / 7.0 * STICKS)
 
@@ -135,7 +135,7 @@ def stopping() -> tuple[float, float]:
 
 
 def break_away() -> tuple[float, float]:
-    """Return the errors of the largest friction before a body slides, and of friction while it slides."""
+    """Return the relative errors of the largest friction before a body slides, and of sliding friction."""
     model = body(SPHERE, 1.0, IMMOVABLE, rotors="0 0 1")
     growing = oscillating("sphere", 1.2 * STATIC * G, (1.0, 0.0, 0.0))
     start = turning("sphere", model, [0.0, 0.0, RADIUS - G / STIFF], 2.0)

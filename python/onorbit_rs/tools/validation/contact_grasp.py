@@ -66,7 +66,7 @@ def steady() -> list[float]:
 
 
 def shaken() -> list[float]:
-    """Return the drift under oscillating loads, small ones and ones of half the largest friction, m/s."""
+    """Return the drift, m/s, under small oscillating loads, and under loads of half the largest friction."""
     return [held(12.0, LOAD, SWING, 2.0), held(12.0, LOAD, LARGE_SWING, 2.0)]
 
 

@@ -50,7 +50,7 @@ class Impact:
 
 
 def mass_matrix(crafts: Sequence[Craft]) -> Array:
-    """Return the block-diagonal mass matrix of several robots."""
+    """Return the block-diagonal mass matrix (Σnv, Σnv) of several robots."""
     count = sum(craft.model.nv for craft in crafts)
     whole, at = np.zeros((count, count)), 0
     for craft in crafts:
@@ -114,7 +114,7 @@ def impact(first: Craft, second: Craft, *, gap: Array | float = 0.0, joints: boo
 
 
 def impact_at_stop(first: Craft, second: Craft, joint: int, restitution: float) -> tuple[Array, Array]:
-    """Return the velocities after a capture that pushes a joint of the first robot into its stop.
+    """Return both robots' velocities (nv,) after a capture that pushes a joint of the first into its stop.
 
     The stop replaces the joint rate `q̇` after the capture by `−e q̇`, with the restitution `e`, while the
     robots stay connected.

@@ -182,7 +182,7 @@ OFFSET = 0.3  # rad
 def two_fingers(masses: tuple[float, float, float], *, axis: Sequence[float] = (0.0, 1.0, 0.0)) -> oo.Model:
     """Return two sliding fingers; the first carries a load that the second grasps.
 
-    ``masses``, kg, are those of the fingers and the load; ``axis`` is the direction in which the fingers slide.
+    ``masses``, kg, are those of the fingers and the load; the fingers slide along ``axis``.
     """
     builder = base("two_fingers")
     for index in range(2):

@@ -117,10 +117,10 @@ SQUEEZE, PUSH = (12.0, -12.0), (12.0, -9.0)
 
 
 def squeezed(efforts: tuple[float, float]) -> tuple[float, float]:
-    """Return the errors of the force between load and second finger, N, and of the travel of the joints, m.
+    """Return the errors of the force between load and second finger, N, and of the joint travel, m.
 
-    The efforts `f` accelerate fingers and load by `a = Σf/Σm` in W; the force on the second finger, of mass
-    `m`, is `m a - f`.
+    The efforts `f` accelerate fingers and load by `a = Σf/Σm` in W; the force on the second finger, with the
+    mass `m`, is `m a - f`. Relative to the base of mass `M`, they travel `½ (a + Σf/M) t²`.
     """
     model = two_fingers(FINGERS)
     trace = oo.Simulation(
@@ -136,7 +136,7 @@ def squeezed(efforts: tuple[float, float]) -> tuple[float, float]:
 
 
 def squeezed_load() -> tuple[float, float]:
-    """Return the largest errors of force and travel of a load at rest and of one that accelerates."""
+    """Return the largest errors of :func:`squeezed` for a load at rest and for one that accelerates."""
     return tuple(worst(squeezed(efforts) for efforts in (SQUEEZE, PUSH)))
 
 
@@ -147,8 +147,8 @@ RATIO, WHEELS = -2.5, (0.2, 0.05)
 def geared() -> tuple[float, float, float]:
     """Return the errors of the angles of a driven wheel and of the wheel that mimics it, and of momentum.
 
-    `J = I1 + n² I2 - (I1 + n I2)²/(I + I1 + I2)` is the reduced inertia about the axis, with the inertias `I1`
-    and `I2` of the wheels, their ratio `n`, and the inertia `I` of the base and the masses of the wheels.
+    `J = I1 + n² I2 - (I1 + n I2)²/(I + I1 + I2)` is the reduced inertia about the axis, with the inertias
+    `I1` and `I2` of the wheels, their ratio `n`, and the inertia `I` of the base and the wheels' masses.
     """
     model = geared_wheels(RATIO, WHEELS)
     q = model.neutral()

@@ -23,7 +23,7 @@ def simulate(model: oo.Model, q: Array, v: Array, duration: float) -> oo.Trace:
 
 
 def two_arms() -> tuple[oo.Model, Array, Array]:
-    """Return a craft with two arms of six joints, which hold a load, and its initial state.
+    """Return a craft with two arms of six joints, which hold a load, and its initial `q` and `v`.
 
     The load is a link of the first arm; a weld connects it with the second.
     """
@@ -99,7 +99,7 @@ INTEGRATOR, ORDER = "rk4", 4.0
 
 
 def state_after(linkage: Linkage, step: float) -> tuple[Any, float]:
-    """Return the final configuration of a tumbling four-bar linkage, and the relative change of its energy."""
+    """Return the final configuration of a tumbling four-bar linkage and the relative change of energy."""
     q, v = linkage.state(1.0, 2.0)
     v[BASE_V] += [0.01, -0.02, 0.03, 0.2, -0.1, 0.3]
     settings: Any = {"integrator": INTEGRATOR, "time_step": step}

@@ -88,7 +88,7 @@ def gripper(seed: int, redundant: bool = True) -> Craft:
 
 
 def expected_capture(first: Craft, second: Craft) -> Array:
-    """Return the velocities of both robots after a capture: the nearest ones that all constraints permit."""
+    """Return the joined velocities of both robots after a capture: the nearest that all loops permit."""
     crafts = (first, second)
     own = np.zeros((len(rows(first.model, first.q)), first.model.nv + second.model.nv))
     own[:, : first.model.nv] = rows(first.model, first.q)
@@ -97,7 +97,7 @@ def expected_capture(first: Craft, second: Craft) -> Array:
 
 
 def capture_with_gripper(seed: int) -> tuple[float, float, float]:
-    """Return the errors of velocity, of energy lost and of momentum at a capture by a gripper with loops."""
+    """Return the relative errors of velocity, energy lost and momentum at a capture by a looped gripper."""
     first, second = gripper(seed), random_craft(seed)
     systems = [oo.System(name, c.model, c.q, c.v) for name, c in zip("ab", (first, second), strict=True)]
     event = oo.Capture("grasp", f"a/{first.frame}", f"b/{second.frame}", at=0.0)
@@ -119,7 +119,7 @@ def capture_with_gripper(seed: int) -> tuple[float, float, float]:
 
 
 def captures() -> tuple[float, ...]:
-    """Return the largest errors of captures by grippers with loops."""
+    """Return the largest errors of :func:`capture_with_gripper` over all seeds."""
     return tuple(worst(capture_with_gripper(seed) for seed in SEEDS))
 
 
@@ -213,7 +213,7 @@ def closed_from_open(seed: int) -> tuple[float, float, float]:
 
 
 def closing() -> tuple[float, ...]:
-    """Return the largest errors of closing open loops."""
+    """Return the largest errors of :func:`closed_from_open` over all seeds."""
     return tuple(worst(closed_from_open(seed) for seed in SEEDS))
 
 

@@ -83,12 +83,12 @@ def slider_crank(crank: float, a: float, b: float) -> tuple[Derivatives, Derivat
 
 
 def cross(a: complex, b: complex) -> float:
-    """Return the component of the cross product across the plane."""
+    """Return the component, normal to the plane, of the cross product `a × b`."""
     return float((np.conj(a) * b).imag)
 
 
 def dot(a: complex, b: complex) -> float:
-    """Return the dot product."""
+    """Return the dot product `a · b`."""
     return float((np.conj(a) * b).real)
 
 

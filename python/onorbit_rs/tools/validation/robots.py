@@ -47,7 +47,10 @@ def reach(duration: float, expected: dict[str, Any]) -> list[float]:
 
 
 def certificate(scenario: str) -> tuple[float]:
-    """Return the largest ratio of a certificate's value to its gate; infinite if a value is missing."""
+    """Return the largest ratio of a certificate's value to its gate.
+
+    The ratio is infinite if a value is missing, or a check failed although its value is within the gate.
+    """
     trace, ratios = oo.run(scenario, quiet=True).trace, []
     rows = trace.certificate()
     if isinstance(trace, oo.WorldTrace):

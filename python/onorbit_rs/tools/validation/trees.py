@@ -92,7 +92,7 @@ def random_tree(seed: int, links: int = 12, rotors: bool = True) -> Tree:
 
 
 def _inertial(rng: np.random.Generator) -> tuple[float, list[float], list[list[float]]]:
-    """Return mass, centre of mass and inertia of a cloud of point masses, which are physically consistent."""
+    """Return mass, kg, centre of mass, m, and inertia, kg m², of a random cloud of point masses."""
     mass = float(rng.uniform(0.5, 5.0))
     points = rng.normal(scale=0.2, size=(6, 3))
     points -= points.mean(axis=0)

@@ -109,12 +109,15 @@ KEPT = 3  # number of captures whose constraints are taken into account
 
 
 def joined(crafts: Sequence[Craft]) -> Array:
-    """Return the velocities of all crafts, (nv,) each, in one array."""
+    """Return the velocities of several craft, (nv,) each, joined in one array (Σnv,)."""
     return np.concatenate([craft.v for craft in crafts])
 
 
 def change(before: Sequence[Craft], after: Sequence[Craft]) -> float:
-    """Return the larger change of linear or angular momentum, relative to the sum of the links' magnitudes."""
+    """Return the larger relative change of linear or angular momentum.
+
+    Changes are relative to the sum of the magnitudes of the links' momenta.
+    """
     point = before[0].pose[:3, 3]
     old, new = ([momentum(craft, craft.v, point) for craft in crafts] for crafts in (before, after))
     difference = sum(m for m, _ in new) - sum(m for m, _ in old)
@@ -147,7 +150,7 @@ SPINS = (0.02, -0.015)  # rad/s about the common axis
 
 
 def latch_by_angle() -> tuple[float]:
-    """Return the error of the time at which a latch closes by angle; both craft rotate about one axis."""
+    """Return the error of the time, s, at which a latch closes by angle; both craft rotate about one axis."""
     systems = [
         rigid("a", 40.0, [3, 4, 5], [0, 0, 0], [0, 0, 0, 0, 0, SPINS[0]]),
         rigid("b", 20.0, [1, 2, 2], [0, 0, 1.0], [0, 0, 0, 0, 0, -0.015]),
