@@ -97,13 +97,13 @@ WRONG: dict[str, tuple[str, dict[str, Any], type[OnOrbitError], str]] = {
         CLASS,
         {"file": None, "module": "json.none"},
         NotFoundError,
-        "'json.none' cannot be imported",
+        "'json.none' cannot be found",
     ),
     "nowhere": (
         CLASS,
         {"file": None, "module": "no_such_x"},
         NotFoundError,
-        "'no_such_x' cannot be imported",
+        "'no_such_x' cannot be found",
     ),
 }
 

@@ -184,8 +184,8 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
      {0.05: 0.854467893007, 0.1: 0.729247614288, 0.3: 0.372326104927}),  # released at zero depth
     ("contact", "balls of unequal masses", contact, "LOSS", 0.70001),
     ("contact", "three balls in a row", contact, "LAST", 2.0 * (1.0 + 1e-6)),
-    ("contact", "two arms that tumble hit each other", contact, "momentum", about_own_base),
-    ("contact", "two boxes that tumble hit each other", contact_boxes, "angular", spin_only),
+    ("contact", "two tumbling arms collide", contact, "momentum", about_own_base),
+    ("contact", "two tumbling boxes collide", contact_boxes, "angular", spin_only),
     ("contact", "recorded forces of two boxes", contact_boxes, "acts_at", beside_each_other),
     ("contact", "a sphere slides, then rolls", contact_friction, "WEIGHT", 9.8125),
     ("contact", "oblique impact of a sphere that slips", contact_friction, "RESTITUTION", 0.801),

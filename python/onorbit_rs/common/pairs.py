@@ -10,6 +10,9 @@ MOST_PAIRS = 6
 
 
 def pairs_of(names: Sequence[str]) -> list[tuple[str, str]]:
-    """Return the pairs of systems whose distances are shown: all pairs, or those with the first system."""
+    """Return the pairs of systems whose distances are shown.
+
+    These are all pairs or, if there are more than :data:`MOST_PAIRS`, the pairs with the first system.
+    """
     pairs = list(combinations(names, 2))
     return pairs if len(pairs) <= MOST_PAIRS else [(names[0], name) for name in names[1:]]

@@ -130,7 +130,7 @@ def _joint_commands(system: str, controls: Mapping[str, list[str]]) -> Callable[
             entries.append(entry)
         if not entries:
             raise RefusedError(
-                "the field name of the message is empty; it must contain the joints to command"
+                "the field 'name' of the message is empty; list the joints to be commanded in this field"
             )
         return entries
 

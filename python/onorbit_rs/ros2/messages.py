@@ -69,19 +69,19 @@ class Marks:
 
 
 def vector(numbers: Floats) -> Any:
-    """Return a vector of three numbers."""
+    """Return a ``Vector3`` message with three numbers, xyz."""
     x, y, z = numbers.tolist()
     return message("geometry_msgs/msg/Vector3", x=x, y=y, z=z)
 
 
 def point(numbers: Floats) -> Any:
-    """Return a point of three numbers."""
+    """Return a ``Point`` message with three numbers, xyz."""
     x, y, z = numbers.tolist()
     return message("geometry_msgs/msg/Point", x=x, y=y, z=z)
 
 
 def quaternion(numbers: Floats) -> Any:
-    """Return a quaternion of four numbers, xyzw."""
+    """Return a ``Quaternion`` message with four numbers, xyzw."""
     x, y, z, w = numbers.tolist()
     return message("geometry_msgs/msg/Quaternion", x=x, y=y, z=z, w=w)
 

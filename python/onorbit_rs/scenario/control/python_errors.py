@@ -32,7 +32,7 @@ def no_update(name: str, source: str) -> ControlError:
 def no_module(name: str) -> NotFoundError:
     """Return the error for a module that cannot be found."""
     return NotFoundError(
-        f"module {name!r} cannot be imported; install it, or give a 'file' beside the scenario",
+        f"module {name!r} cannot be found; install it, or give the path of a Python file as 'file' instead",
         path=name,
         kind="controller",
     )

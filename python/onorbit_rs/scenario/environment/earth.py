@@ -53,7 +53,10 @@ class EarthPart(Part):
             if getattr(self, key) is not None:
                 raise invalid(f"{key} applies only to rotation: {other}; omit {key}, or set that rotation")
         if self.eop is not None and (self.ut1_minus_utc is not None or self.polar_motion is not None):
-            raise invalid("eop already contains ut1_minus_utc and polar_motion; omit eop, or omit these keys")
+            raise invalid(
+                "eop is given beside ut1_minus_utc or polar_motion, which its file already contains; "
+                "omit eop, or omit the other keys"
+            )
         return self
 
 

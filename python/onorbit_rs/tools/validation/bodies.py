@@ -19,7 +19,8 @@ GRAVITY = 9.81  # m/s², downwards along y
 
 X, Y, Z = np.eye(3).tolist()
 Link = tuple[str, Any, Any, Any]
-"""Parent, axis and position of the joint, and centre of mass (None for a massless link)."""
+"""Parent, axis and position of the joint in the parent's axes, m, and centre of mass in the link's axes, m
+(None for a massless link)."""
 
 # q̈ from rest under gravity; unit masses, unit moments about each centre of mass
 CHAINS: dict[str, tuple[list[Link], list[float], list[float]]] = {

@@ -214,7 +214,7 @@ CASES = (
         (Gate("restitution", 1e-6),), lambda: [dashpot()],
     ),
     Case(
-        "contact", "two arms that tumble hit each other", "Newton and Euler: no external wrench",
+        "contact", "two tumbling arms collide", "Newton and Euler: no external wrench",
         (Gate("linear momentum", 1e-12), Gate("angular momentum", 1e-12), Gate("energy", 1e-8)), arms,
     ),
 )  # fmt: skip

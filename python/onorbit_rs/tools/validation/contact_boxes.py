@@ -93,7 +93,7 @@ def acts_at(trace: oo.WorldTrace, name: str) -> Array:
 
 CASES = (
     Case(
-        "contact", "two boxes that tumble hit each other", "Newton and Euler: no external wrench",
+        "contact", "two tumbling boxes collide", "Newton and Euler: no external wrench",
         (Gate("linear momentum", 1e-12), Gate("angular momentum", 1e-12), Gate("energy", 1e-8)), balances,
     ),
     Case(

@@ -30,7 +30,7 @@ def earth_2000() -> oo.Earth:
 
 
 def after_a_day(field: oo.GravityField, earth: oo.Earth, mu: float = MU) -> Any:
-    """Return the position after one day, m."""
+    """Return the inertial position (3,) after one day, m."""
     return oo.Numerical(*LEO, environment=[field], earth=earth, mu=mu).state(DAY)[0]
 
 

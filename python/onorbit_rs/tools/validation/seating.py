@@ -70,7 +70,7 @@ CASES = (
     Case(
         "capture", "a captured body is pulled by 1 m", "common centre of mass, ½ m1 m2/(m1 + m2) v²",
         (
-            Gate("places", 1e-10, "m"), Gate("energy in the middle", 1e-10), Gate("momentum", 1e-12, "N s"),
+            Gate("places", 1e-10, "m"), Gate("energy halfway", 1e-10), Gate("momentum", 1e-12, "N s"),
             Gate("work at the end", 1e-12, "J"),
         ), pulled,
     ),

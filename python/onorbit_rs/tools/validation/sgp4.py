@@ -81,9 +81,9 @@ def wrong_codes() -> tuple[float]:
 
 REGIMES = {
     "near Earth": "5 sets near the Earth",
-    "low perigee and decay": "4 sets with a low perigee, decaying",
-    "half a day": "6 sets of half a day",
-    "a day": "7 sets of a day",
+    "low perigee and decay": "4 sets of decaying orbits with a low perigee",
+    "half a day": "6 sets with a period of half a day",
+    "a day": "7 sets with a period of a day",
     "deep space": "8 other sets in deep space",
 }
 

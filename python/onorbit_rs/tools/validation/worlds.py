@@ -222,10 +222,10 @@ def clohessy_wiltshire(orbit: oo.Kepler, r: Array, v: Array, t: Array) -> Array:
 CASES = (
     Case(
         "world", "two robots that no event connects, 0.2 s", "a run of each alone",
-        (Gate("columns with other bits", 0.0),), separate,
+        (Gate("columns whose bits differ", 0.0),), separate,
     ),
     Case(
-        "world", "two robots after a capture and a release", "a run of each alone from its state then",
+        "world", "two robots after a capture and a release", "a run of each alone from its state at the release",
         (Gate("configuration", 1e-12), Gate("velocity", 1e-12)), free_again,
     ),
     Case(
@@ -244,7 +244,7 @@ CASES = (
         "world", "a capture on a circular orbit, 300 s", "Clohessy and Wiltshire: the common centre of mass",
         (
             Gate("centre of mass", 1e-7, "m"), Gate("momentum at the capture", 1e-14),
-            Gate("momentum after gravity's share", 1e-11),
+            Gate("momentum without the effect of gravity", 1e-11),
         ), on_orbit,
     ),
 )  # fmt: skip
