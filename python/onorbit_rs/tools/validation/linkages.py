@@ -26,7 +26,7 @@ FreeKind = Literal["weld", "revolute", "spherical", "prismatic", "distance"]
 
 
 def at(x: float = 0.0, turned: Sequence[Sequence[float]] | None = None) -> Array:
-    """Return the pose (4, 4) of a frame shifted by ``x``, m, and rotated by the matrix ``turned``, if given."""
+    """Return the pose (4, 4) of a frame shifted by ``x``, m, and rotated by ``turned`` (3, 3), if given."""
     pose = np.eye(4)
     pose[0, 3] = x
     pose[:3, :3] = np.eye(3) if turned is None else turned

@@ -225,7 +225,8 @@ CASES = (
         (Gate("columns whose bits differ", 0.0),), separate,
     ),
     Case(
-        "world", "two robots after a capture and a release", "a run of each alone from its state at the release",
+        "world", "two robots after a capture and a release",
+        "a run of each alone from its state at the release",
         (Gate("configuration", 1e-12), Gate("velocity", 1e-12)), free_again,
     ),
     Case(
