@@ -1,8 +1,7 @@
 """Trajectory optimisation with exact derivatives: the smallest torques that move an arm to a posture in 2 s.
 
-The derivative of the final state with respect to every torque is accumulated backwards over the steps, from
-∂a/∂q, ∂a/∂v and ∂a/∂τ. Each iteration computes the smallest torques that reach the goal in the linearised
-motion.
+The derivative of the final state with respect to the torques is accumulated backwards over the steps from
+∂a/∂q, ∂a/∂v and ∂a/∂τ. Each iteration computes the smallest torques for the linearised motion.
 
 Run: python examples/least_torque.py
 """

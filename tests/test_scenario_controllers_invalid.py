@@ -55,7 +55,7 @@ REFUSED: dict[str, tuple[dict[str, Any], type[OnOrbitError], tuple[str, ...]]] =
     "time and predecessor": (
         two(arm("right", end=0.1), arm("left", after="right", start=0.2)),
         ScenarioError,
-        ("controllers[1].start", "either"),
+        ("controllers[1].start", "are both given"),
     ),
     "misspelt joint": (
         two(arm("right", joints=["right_jiont_1"], reference=HOLD)),

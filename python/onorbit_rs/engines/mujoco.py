@@ -43,11 +43,10 @@ class Mujoco:
     ``semi_implicit_euler`` is MuJoCo's ``Euler``, implicit in joint damping. Joint friction and stops are
     MuJoCo's soft constraints with their stiffest settings; the restitution of stops is close to zero. Closed
     loops and mimic joints are equalities with the same settings; a prismatic loop is rejected. An engaged
-    brake is joint friction equal to its slip torque or, if the slip torque is infinite, an equality that
-    locks the joint. The
-    connections of a world are welds, also soft: a capture removes the relative velocity within a few steps
-    instead of at once. One simulation at a time may use an instance; a concurrent step is refused. MuJoCo's
-    log settings, which are global to the process, are disabled during a step and restored after it.
+    brake is joint friction equal to its slip torque or, if that is infinite, an equality that locks the
+    joint. The connections of a world are welds, also soft: a capture removes the relative velocity within a
+    few steps instead of at once. One simulation at a time may use an instance; a concurrent step is refused.
+    MuJoCo's log settings, global to the process, are disabled during a step and restored after it.
 
     Parameters
     ----------
@@ -373,11 +372,7 @@ class Mujoco:
         return q, v
 
     def _acceleration(self, qpos: Floats, rate: Floats) -> Floats:
-        """Return the derivative of `v` from MuJoCo's rates, for every base.
-
-        With the position `p` of the base in W, its attitude `R` and its angular velocity `w` in base axes,
-        `v = Rᵀ ṗ` and `v̇ = Rᵀ p̈ − w × v`.
-        """
+        """Return the derivative of `v`; with `v = Rᵀ ṗ` of a base, `v̇ = Rᵀ p̈ − w × v`, in base axes."""
         nv = self._model.nv
         a: Floats = rate[nv : 2 * nv][self._v_columns]
         for part in self._shares:

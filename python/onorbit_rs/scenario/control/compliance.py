@@ -36,7 +36,7 @@ class ComplianceController(TaskLaw):
     def sampled_gains(self, mobility: InitialMobility) -> Iterator[SampledGain]:
         """Yield the gains whose largest stable value depends on the control period.
 
-        There are none if the reference is in the frame ``base``.
+        If the reference is in the frame ``base``, nothing is yielded.
         """
         if mobility.is_in_w(self):
             of_tool = mobility.of_tool(self)
