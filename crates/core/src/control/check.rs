@@ -8,12 +8,19 @@ use crate::model::Model;
 /// Checks that each control applies to the robot and that no two controls conflict.
 ///
 /// # Errors
-/// [`ControlError`] for names that occur twice; groups that are empty, contain a joint twice or one that does
-/// not exist, or overlap while both controls are active, as far as their times are known before the run;
-/// gains, goals or references that are invalid or do not fit a group; goals or shifts to the present state
-/// without a reference; loads and internal forces of laws that do not use them; time windows that are empty;
-/// controls that start after a control that does not exist or never ends, or after themselves; and controls of
-/// which only some compensate the environment.
+/// [`ControlError`] for
+/// - two controls with the same name;
+/// - a group of joints that is empty although the robot has joints, that contains a joint twice or that
+///   contains a joint that does not exist;
+/// - two groups that share a joint while both controls are active, if the times of both controls are known
+///   before the run;
+/// - gains, goals or references that are invalid or do not fit the group;
+/// - a goal, or a shift of the reference to the present state, of a control without a reference or with an
+///   external law;
+/// - a load, or internal forces, of a law that does not use them;
+/// - an empty time window;
+/// - a start after a control that does not exist, that never ends or that waits for this control itself;
+/// - computed-torque laws of which only some compensate the environment.
 pub fn check_controls(controls: &[Control], model: &Model) -> Result<(), ControlError> {
     for (i, control) in controls.iter().enumerate() {
         if controls[..i].iter().any(|other| other.name == control.name) {

@@ -8,17 +8,19 @@ use crate::model::Model;
 use crate::spatial::Motion;
 
 /// Cartesian impedance control without inertia shaping: `τ = Jgᵀ (K e + D ė) − k N q̇`, with the generalized
-/// Jacobian `Jg` of the frame and its null-space projector `N`, the pose error `e` and the velocity error `ė`
-/// of the frame, desired less actual, and the joint rates `q̇`.
+/// Jacobian `Jg` of the frame and its null-space projector `N`, the joint rates `q̇`, and the pose error `e`
+/// and the velocity error `ė` of the frame, desired less actual, linear part first. The errors are in W axes,
+/// or in base axes if the reference is relative to the base.
 ///
-/// In free fall there is no gravity load to compensate. Friction is not compensated: the tool comes to rest
-/// where the spring torque is below the static friction of the joints, which may be off its goal. The law is
-/// passive: the power of the joint torques is `τᵀ q̇`, so that with the kinetic energy `T`, the spring energy
-/// `U = ½ eᵀ K e`, the twist `ẋ` of the frame, zero momentum (`ẋ = Jg q̇`), no friction and a reference at
-/// rest `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0`. For a reference relative to the base, `ẋ = J q̇` with the
-/// Jacobian `J` relative to the base for any momentum, and the law is passive as well. If the robot drifts
-/// past a reference fixed in W, the spring pulls the robot, which may gain energy. The rotational spring has
-/// a potential energy if its stiffness is the same about all axes, or if the error is small.
+/// In free fall there is no gravity load to compensate. Friction is not compensated: the tool may come to
+/// rest away from its goal, where the spring torques are below the static friction of the joints. The law is
+/// passive: for zero momentum (`ẋ = Jg q̇` with the twist `ẋ` of the frame), no friction and a reference at
+/// rest, the power `τᵀ q̇` of the joint torques gives `d/dt (T + U) = −ẋᵀ D ẋ − k |N q̇|² ≤ 0` with the
+/// kinetic energy `T` and the spring energy `U = ½ eᵀ K e`. For a reference relative to the base, `ẋ = J q̇`
+/// with the Jacobian `J` relative to the base for any momentum, and the law is passive as well. If the robot
+/// drifts past a reference fixed in W, the spring pulls the robot, and the robot may gain energy. The
+/// rotational spring has a potential energy if its stiffness is the same about all axes, or if the error is
+/// small.
 ///
 /// Source: Hogan, J. Dyn. Sys. Meas. Control 107(1), 1985.
 #[derive(Clone, Debug)]
@@ -29,7 +31,7 @@ pub struct Compliance {
     pub stiffness: [f64; 36],
     /// Damping `D`, row major `(6, 6)`, N s/m and N m s/rad.
     pub damping: [f64; 36],
-    /// Damping `k` of joint motion that does not move the frame, N m s/rad.
+    /// Damping `k` of joint motion that does not move the frame, N m s/rad (N s/m for prismatic joints).
     pub null_space_damping: f64,
 }
 
@@ -37,8 +39,8 @@ impl Compliance {
     /// Checks the gains.
     ///
     /// # Errors
-    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, and for
-    /// negative damping.
+    /// [`ControlError`] if an entry of `K` or `D` is not finite or exceeds 1e20 in magnitude, if a diagonal
+    /// entry is negative, or if the null-space damping is negative, not finite or above 1e20.
     pub fn check(&self) -> Result<(), ControlError> {
         check_matrix("stiffness", &self.stiffness)?;
         check_matrix("damping", &self.damping)?;

@@ -18,14 +18,17 @@ use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 /// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + f`,
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
 ///
-/// with the reduced model `M*`, `c*`, `Jg` and the exact drift `d` of [`FreeFloating`], the actual pose `p`
-/// of the frame and the desired pose `pd`, the attitude error by the logarithm on SO(3), the joint rates `q̇`,
-/// the null-space projector `N = 1 − J₀⁺ Jg`, the joint torques `Q*` of the external wrenches, and the
-/// damping torque `f = b q̇` of joints with the damping coefficient `b`, which is 0 unless friction is
-/// compensated. Near a singularity the damped inverse `Jg⁺` reproduces some directions only partly. The
-/// suppressed part of the joint rates is `D q̇` with `D = (J₀⁺ − Jg⁺) Jg` and the undamped inverse `J₀⁺`; it
-/// is damped by `κ`, the mean of the diagonal of `Kd`. The joint drives compensate Coulomb friction on the
-/// basis of the desired acceleration `q̈` ([`ComputedTorqueWork::desired_accelerations`]).
+/// with the reduced model `M*`, `c*`, `Jg`, the exact drift `d` and the joint torques `Q*` of the external
+/// wrenches ([`FreeFloating`]), the joint rates `q̇`, the actual pose `p` of the frame and the desired pose
+/// `pd`. Poses and their derivatives are in W axes, or in base axes if the reference is relative to the base;
+/// the attitude error is the logarithm on SO(3). If friction is compensated, `f = b q̇` with the damping
+/// coefficients `b` of the joints; otherwise `f = 0`.
+///
+/// `Jg⁺` is the damped and `J₀⁺` the undamped pseudo-inverse of `Jg`; `N = 1 − J₀⁺ Jg` projects onto the null
+/// space. Near a singularity `Jg⁺` reproduces some directions only partly. The suppressed part of the joint
+/// rates is `D q̇` with `D = (J₀⁺ − Jg⁺) Jg`; it is damped by `κ`, the mean of the diagonal of `Kd`. The
+/// joint drives compensate Coulomb friction on the basis of the desired acceleration `q̈`
+/// ([`ComputedTorqueWork::desired_accelerations`]).
 #[derive(Clone, Debug)]
 pub struct ComputedTorque {
     /// Index of the tracked frame.
@@ -34,8 +37,8 @@ pub struct ComputedTorque {
     pub kp: [f64; 36],
     /// Gain `Kd` of the velocity error, row major `(6, 6)`, 1/s.
     pub kd: [f64; 36],
-    /// Threshold `λ₀`: the pseudo-inverse of `Jg` is damped while `tr[(Jg Jgᵀ)⁻¹]^(-1/2)`, a lower bound of
-    /// the smallest singular value, is below `λ₀`.
+    /// Threshold `λ₀`, SI units: the pseudo-inverse of `Jg` is damped while `tr[(Jg Jgᵀ)⁻¹]^(-1/2)`, a lower
+    /// bound of the smallest singular value, is below `λ₀`.
     pub damping: f64,
     /// Damping `k` of joint motion that does not move the frame, 1/s.
     pub null_space_damping: f64,
@@ -47,8 +50,9 @@ pub struct ComputedTorque {
 }
 
 impl ComputedTorque {
-    /// Creates a law with the scalar gains `kp` (1/s²) and `kd` (1/s), `λ₀ = 0.05` and no null-space damping,
-    /// which compensates the environment and friction.
+    /// Creates a law for the frame with index `frame`. `kp` (1/s²) and `kd` (1/s) apply to all six
+    /// components, `λ₀` is 0.05, and the null-space damping is zero. The law compensates the environment and
+    /// friction.
     pub fn new(frame: usize, kp: f64, kd: f64) -> Self {
         Self {
             frame,
@@ -61,7 +65,8 @@ impl ComputedTorque {
         }
     }
 
-    /// Returns the `(6, 6)` gain with these diagonal entries.
+    /// Returns the row-major `(6, 6)` gain with these diagonal entries, linear part first, and zeros
+    /// elsewhere.
     pub fn diagonal(entries: [f64; 6]) -> [f64; 36] {
         let mut out = [0.0; 36];
         entries.iter().enumerate().for_each(|(i, x)| out[7 * i] = *x);
@@ -94,8 +99,9 @@ impl ComputedTorque {
     /// Checks that the law applies to a robot.
     ///
     /// # Errors
-    /// [`ControlError`] for gains that are not finite, are too large or have a negative diagonal, for
-    /// negative damping, and for a frame that does not exist or that is moved by fewer than six joints.
+    /// [`ControlError`] if a gain or damping is not finite or exceeds 1e20 in magnitude, if a diagonal entry
+    /// of `kp` or `kd` or a damping is negative, if the frame does not exist, or if fewer than six joints
+    /// move it.
     pub fn check(&self, model: &Model) -> Result<(), ControlError> {
         check_matrix("kp", &self.kp)?;
         check_matrix("kd", &self.kd)?;
@@ -155,12 +161,12 @@ impl ControlLaw for ComputedTorque {
     }
 }
 
-/// Position error, rad (m), below which a joint at rest is not moved. A joint drive that reacted to smaller
+/// Position error, rad (m), below which a joint at rest is not moved. A joint drive that responded to smaller
 /// errors would chatter at the goal.
 const AT_GOAL: f64 = 2e-8;
 
-/// Returns `acceleration`, rad/s² (m/s²), commanded by a law with the gain `kp` (1/s²), or zero if its
-/// magnitude is no larger than the acceleration for an error of [`AT_GOAL`].
+/// Returns the `acceleration`, rad/s² (m/s²), that a law with the gain `kp`, 1/s², commands. Returns zero if
+/// its magnitude is at most `kp` times [`AT_GOAL`].
 pub(super) fn zero_within_goal_error(acceleration: f64, kp: f64) -> f64 {
     if acceleration.abs() <= kp * AT_GOAL { 0.0 } else { acceleration }
 }
@@ -202,9 +208,9 @@ impl<S: Real> ComputedTorqueWork<S> {
         }
     }
 
-    /// Writes the joint accelerations of the last call in the first lane, rad/s² (m/s²), which the
-    /// compensation of Coulomb friction uses. They are `None` if `law` does not compensate friction, and zero
-    /// for joints that may stay at rest.
+    /// Writes the joint accelerations of the last call to `asked`, `(n,)`, rad/s² (m/s²), from the first SIMD
+    /// lane. The compensation of Coulomb friction uses them. An entry is zero if its joint may stay at rest;
+    /// all are `None` if `law` does not compensate friction.
     pub fn desired_accelerations(&self, law: &ComputedTorque, asked: &mut [Option<f64>]) {
         let stiffness = law.least_stiffness();
         for (to, from) in asked.iter_mut().zip(&self.acceleration) {
@@ -220,12 +226,13 @@ pub fn task_error<S: Real>(rot_wf: &Mat3<S>, pos_w: Vec3<S>, desired: &TaskSampl
     Motion::new(desired.pos_w - pos_w, log_rotation(&(desired.rot_wd * rot_wf.transpose())))
 }
 
-/// Computes the joint torques, `(n,)`, N m (N), that track the `desired` pose and motion. The compensation of
-/// Coulomb friction is not included.
+/// Computes the joint torques `tau`, `(n,)`, N m (N), with which the frame tracks the `desired` pose and
+/// motion at the configuration `q`, `(nq,)`, and velocity `v`, `(nv,)`. They do not include the compensation
+/// of Coulomb friction.
 ///
 /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and, in `data`, the external
-/// wrenches that are to be compensated. With `is_relative`, `desired` and the tracked motion are relative to
-/// the base, in base axes, otherwise in W.
+/// wrenches that are to be compensated. `desired` is relative to the base, in base axes, if `is_relative` is
+/// true; otherwise it is in W.
 pub fn computed_torque<S: Real>(
     law: &ComputedTorque,
     model: &Model,

@@ -16,10 +16,10 @@ pub struct Control {
     pub joints: Vec<usize>,
     /// Control law with its reference.
     pub law: Law,
-    /// Frame of a captured system to which the reference applies; `None` for a reference of the tracked frame. The
-    /// tracked frame must hold the body of this frame rigidly.
+    /// Frame of a captured system that follows the reference instead of the tracked frame; `None` if the
+    /// tracked frame itself follows it. The tracked frame must hold the body of the load frame rigidly.
     pub load: Option<LoadFrame>,
-    /// Forces of closed loops that the control commands.
+    /// Internal forces of closed loops that the control commands.
     pub internal_forces: Vec<InternalForce>,
     /// Condition under which the control starts.
     pub begin: Begin,
@@ -38,7 +38,7 @@ pub struct Control {
 /// Frame of a system that a control moves together with its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoadFrame {
-    /// Number of the system in the world.
+    /// Index of the system in the world.
     pub system: usize,
     /// Index of the frame in the model of the system.
     pub frame: usize,
@@ -51,7 +51,8 @@ pub enum Begin {
     At(f64),
     /// Start when the control with this index ends or its goal is decided; that control is then stopped.
     After(usize),
-    /// Start when the event with this number happens; active controls of the same joints are then stopped.
+    /// Start when the event with this index in the world happens; active controls of the same joints are then
+    /// stopped.
     AfterEvent(usize),
 }
 
@@ -72,16 +73,17 @@ impl Control {
         }
     }
 
-    /// Creates a control of all joints for the whole run. If its law tracks a frame, that frame is the tool
-    /// of the run.
+    /// Creates a control of all joints for the whole run, named `control`. If its law tracks a frame, that
+    /// frame is the tool of the run.
     pub fn on_all_joints(model: &Model, law: Law) -> Self {
         let joints = (0..model.joint_count()).collect();
         Self { has_column: false, ..Self::new("control", joints, law) }
     }
 
-    /// Returns the length of the tracking error: 6 for a frame (m, rad), one per joint, or 0 without a
-    /// reference or if the reference commands efforts. For a law that follows external commands, the error is
-    /// zero while no positions are commanded.
+    /// Returns the number of components of the tracking error: 6 for a frame (m, then rad), one per joint for
+    /// a reference of positions or rates, and 0 without a reference or if the reference commands efforts. A
+    /// law that follows external commands has one component per joint, which is zero while no positions are
+    /// commanded.
     pub fn width(&self) -> usize {
         match (self.law.task(), self.law.joint_reference()) {
             (Some(_), _) => 6,
@@ -98,7 +100,7 @@ impl Control {
         task.or_else(|| self.law.joint_reference().map(|path| path.duration())).unwrap_or(0.0)
     }
 
-    /// Returns those start and end times, s, that are known before the run and are after time zero.
+    /// Returns the start and end times, s, that are known before the run and are later than zero.
     pub fn switch_times(&self) -> impl Iterator<Item = f64> {
         let start = if let Begin::At(start) = self.begin { start } else { 0.0 };
         [start, self.end].into_iter().filter(|t| t.is_finite() && *t > 0.0)

@@ -8,10 +8,11 @@ use crate::reference::JointSample;
 use crate::spatial::Motion;
 use serde::{Deserialize, Serialize};
 
-/// Interface of a control law for a group of joints. Each law implements the interface in a separate file.
-/// The default methods are those of a law that commands efforts and compensates nothing.
+/// Interface of a control law for a group of joints. Each law implements it in the file of its type. The
+/// default methods are those of a law that commands efforts and compensates nothing.
 pub(super) trait ControlLaw {
-    /// Checks that the law applies to a group of joints; `control` is the name of the control in messages.
+    /// Checks that the law applies to a group of joints (indices). `control` is the name of the control for
+    /// messages.
     fn check_group(&self, control: &str, joints: &[usize], model: &Model) -> Result<(), ControlError>;
 
     /// Returns the kind of command that the law gives to its joints.
@@ -24,13 +25,13 @@ pub(super) trait ControlLaw {
         Interface::Position
     }
 
-    /// Returns true if the law uses the tracking error of its control. Laws do so if they command
-    /// accelerations or move a frame by efforts.
+    /// Returns true if the law uses the tracking error of its control: by default, if it commands
+    /// accelerations, or if it moves a frame by efforts.
     fn uses_error(&self) -> bool {
         self.joint_command() != JointCommand::Effort || self.needs_jacobian()
     }
 
-    /// Returns true if the law requires the Jacobian of its frame to compute efforts.
+    /// Returns true if the law needs the Jacobian of its frame to compute efforts.
     fn needs_jacobian(&self) -> bool {
         false
     }
@@ -45,7 +46,7 @@ pub(super) trait ControlLaw {
         false
     }
 
-    /// Computes the efforts of the `k` joints of the group, `(k,)`, N m (N). A law that commands
+    /// Writes the efforts of the `k` joints of the group to `tau`, `(k,)`, N m (N). A law that commands
     /// accelerations does not change `tau`.
     fn efforts(
         &mut self,
@@ -56,21 +57,21 @@ pub(super) trait ControlLaw {
         Ok(())
     }
 
-    /// Returns the acceleration, rad/s² (m/s²), of the joint at `place` in the group, for
-    /// [`JointCommand::Acceleration`], from its tracking error, its rate, rad/s (m/s), and the desired motion
-    /// of the group.
+    /// Returns the acceleration, rad/s² (m/s²), that the law commands for the joint at index `place` of the
+    /// group, from its tracking error, its rate, rad/s (m/s), and the desired motion of the group. Used for
+    /// [`JointCommand::Acceleration`].
     fn joint_acceleration(&self, _place: usize, _error: f64, _rate: f64, _desired: &JointSample) -> f64 {
         0.0
     }
 
-    /// Returns the effort, N m (N), that is added to the torque of the joint at `place` in the group, for
-    /// [`JointCommand::Acceleration`]; `None` if nothing is added.
+    /// Returns the effort, N m (N), that is added to the torque of the joint at index `place` of the group;
+    /// `None` if nothing is added. Used for [`JointCommand::Acceleration`].
     fn feedforward(&self, _place: usize) -> Option<f64> {
         None
     }
 
-    /// Returns the commanded acceleration of the tracked frame, m/s² and rad/s², for [`JointCommand::Task`],
-    /// from its pose error, its velocity error and the desired acceleration.
+    /// Returns the acceleration, m/s² and rad/s², that the law commands for the tracked frame, from its pose
+    /// error, its velocity error and the desired acceleration. Used for [`JointCommand::Task`].
     fn task_acceleration(
         &self,
         _error: Motion<f64>,
@@ -80,14 +81,14 @@ pub(super) trait ControlLaw {
         desired
     }
 
-    /// Returns the damping used when the tasks are solved for joint accelerations, for
+    /// Returns the damping that is used when the joint accelerations are computed from the tasks. Used for
     /// [`JointCommand::Task`].
     fn task_damping(&self) -> TaskDamping {
         TaskDamping::default()
     }
 
     /// Returns the desired acceleration, rad/s² (m/s²), on which the friction compensation of the joint at
-    /// `place` in the group is based. Zero means that the joint may stay at rest.
+    /// index `place` of the group is based. Zero means that the joint may stay at rest.
     fn desired_acceleration(&self, _place: usize, acceleration: f64) -> f64 {
         acceleration
     }
@@ -121,7 +122,8 @@ pub(super) enum JointCommand {
     Task,
 }
 
-/// Quantity that a joint reference commands, named as the interfaces of ROS Control.
+/// Quantity that a joint reference commands; the names are those of the interfaces of ROS Control. `e` and
+/// `ė` are the error and its rate in a PID law.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Interface {
     /// Joint positions: `e = qd − q`, `ė = q̇d − q̇`.
@@ -133,7 +135,7 @@ pub enum Interface {
     Effort,
 }
 
-/// Damping of the joint accelerations that produce a task acceleration.
+/// Damping that is used when joint accelerations are computed from task accelerations.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TaskDamping {
     /// Threshold `λ₀` of `tr[(J Jᵀ)⁻¹]^(-1/2)` below which the pseudo-inverse of the Jacobian `J` is damped.
@@ -150,16 +152,16 @@ pub(super) struct EffortInput<'a> {
     pub(super) control: &'a str,
     /// Time, state of the robot, joints of the group and desired pose of the tracked frame.
     pub(super) observation: Observation<'a>,
-    /// Time since the last control tick, s.
+    /// Time since the last control tick, s; zero at the first tick.
     pub(super) elapsed: f64,
     /// Desired motion of the joints of the group.
     pub(super) desired: &'a JointSample,
-    /// Tracking error of the control, `(width,)`, and velocity error of its tracked frame, m/s and rad/s,
-    /// which is zero unless the law needs the Jacobian.
+    /// Tracking error of the control, of length [`Control::width`](super::Control::width), and velocity error
+    /// of its tracked frame, m/s and rad/s; the latter is zero unless the law needs the Jacobian.
     pub(super) error: (&'a [f64], Motion<f64>),
-    /// Generalized Jacobian of the tracked frame or, for a reference relative to the base, its Jacobian
-    /// relative to the base, with the columns of the group, `(6, k)`; outdated unless the law needs the
-    /// Jacobian.
+    /// Columns of the joints of the group, `(6, k)`, of the generalized Jacobian of the tracked frame or, for
+    /// a reference relative to the base, of its Jacobian relative to the base. Outdated unless the law needs
+    /// the Jacobian.
     pub(super) jacobian: &'a [f64],
     /// Rates of the `k` joints of the group, `(k,)`, rad/s (m/s).
     pub(super) rates: &'a [f64],
@@ -173,7 +175,7 @@ pub(super) struct EffortWork<'a> {
     pub(super) scratch: &'a mut [f64],
 }
 
-/// State of PID controllers between control ticks, for each joint.
+/// State of PID controllers between control ticks, with one entry per joint of the group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct PidMemory {
     /// Effort of the integral term, N m (N).

@@ -35,23 +35,23 @@ pub struct ControlMemory {
     /// matrix, then the position, m) or the joint positions of the group, rad (m).
     anchor: Vec<f64>,
     pub(super) pid: PidMemory,
-    /// Time of the last control tick, s.
+    /// Time of the last control tick, s; `None` before the first tick.
     pub(super) last_tick: Option<f64>,
-    /// State that a user-defined controller has saved.
+    /// State that a user-defined controller has saved; empty for other laws.
     pub(super) user: Vec<u8>,
-    /// State of a law that follows external commands.
+    /// State of a law that follows external commands; `None` for other laws.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) external: Option<ExternalMemory>,
 }
 
-/// State of a control, including its desired motion and its error at the instant that was evaluated last.
+/// State of a control, with its desired motion and its error at the time of the last evaluation.
 #[derive(Debug)]
 pub(super) struct ControlState {
     pub(super) memory: ControlMemory,
     /// True if the error is needed at every control tick.
     pub(super) needs_error: bool,
-    /// Reference that is constant at the origin of the frame in which the task reference is given; `None`
-    /// without a task.
+    /// Constant reference at the origin of the frame in which the task reference is given, with the axes of
+    /// that frame; `None` without a task.
     frame: Option<TaskReference>,
     pub(super) desired: JointSample,
     pub(super) desired_pose: Option<TaskSample<f64>>,
@@ -59,7 +59,7 @@ pub(super) struct ControlState {
     pub(super) pose: (Mat3<f64>, Vec3<f64>),
     /// Pose of the tracked frame in the frame of the load to which the reference applies; `None` without a load.
     pub(super) tool_in_load: Option<(Mat3<f64>, Vec3<f64>)>,
-    /// Tracking error, desired less actual, `(width,)`.
+    /// Tracking error, desired less actual, of length [`Control::width`].
     pub(super) error: Vec<f64>,
 }
 
@@ -108,8 +108,8 @@ impl ControlState {
         self.memory.phase == Phase::Waiting
     }
 
-    /// Starts the control at `t`, s. `q` contains all joint positions; the pose of the tracked frame must be
-    /// up to date.
+    /// Starts the control at `t`, s. `q` contains the positions of all joints; the pose of the tracked frame
+    /// must be up to date.
     pub(super) fn start(&mut self, control: &Control, t: f64, q: &[f64]) -> Result<(), ReferenceError> {
         let memory = &mut self.memory;
         (memory.phase, memory.start, memory.is_shifted) = (Phase::Running, t, control.starts_at_present);
@@ -133,7 +133,8 @@ impl ControlState {
         Ok(())
     }
 
-    /// Replaces the reference by the present pose or joint positions after the goal was missed.
+    /// Replaces the reference by the present pose or joint positions after a failure of the goal. `q`
+    /// contains the positions of all joints.
     pub(super) fn hold(&mut self, control: &Control, q: &[f64]) {
         self.memory.is_held = true;
         match control.law.task() {
@@ -167,9 +168,9 @@ impl ControlState {
         (Mat3::from_columns(at(0), at(1), at(2)), at(3))
     }
 
-    /// Evaluates the desired motion at `t`, s, and the tracking error of the joints of the control or, if it
-    /// is needed, of the frame, whose pose must be up to date. `q` and `rates` contain the positions and
-    /// rates of all joints.
+    /// Evaluates the desired motion and the tracking error at `t`, s. The error of a tracked frame is
+    /// computed only if it is needed, and its pose must then be up to date. `q` and `rates` contain the
+    /// positions and rates of all joints.
     pub(super) fn evaluate(
         &mut self,
         control: &Control,
@@ -246,8 +247,7 @@ impl ControlState {
         }
     }
 
-    /// Returns the outcome of the goal at `t`, s, where `clock` is the time since the start of the control,
-    /// s.
+    /// Returns the outcome of the goal at `t`, s, which is `clock` seconds after the start of the control.
     pub(super) fn judge(&self, goal: &Goal, control: &Control, t: f64, clock: f64) -> Outcome {
         if self.frame.is_none() {
             return goal.judge(t, clock, control.duration(), &self.error);
@@ -260,7 +260,7 @@ impl ControlState {
     /// Restores the state from a checkpoint.
     ///
     /// # Errors
-    /// [`ControlError::OtherMemory`] if the state belongs to a different control.
+    /// [`ControlError::OtherMemory`] if the state does not fit this control.
     pub(super) fn restore(&mut self, control: &Control, memory: &ControlMemory) -> Result<(), ControlError> {
         let sizes = |m: &ControlMemory| [m.anchor.len(), m.pid.integral.len(), m.pid.previous.len()];
         let components = if self.frame.is_some() { 2 } else { self.error.len() };

@@ -1,15 +1,16 @@
-//! Torques of driven joints that share motions because of closed loops.
+//! Torques of driven joints whose motions depend on each other because of closed loops.
 
 use crate::dynamics::{IndependentJoints, solve_semidefinite};
 use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 
-/// Torques of the driven joints `A`.
+/// Distribution of efforts to the driven joints `A`, with the symbols of `LoopedDynamics`.
 pub(super) struct DrivenTorques {
     pub(super) driven: Vec<usize>,
-    /// Columns of `G` of the coordinates that these joints drive.
+    /// Indices of the columns of `G` that belong to the coordinates that these joints drive.
     pub(super) columns: Vec<usize>,
-    /// `G_A`, `(a, c)`, and the factor of `G_Aᵀ G_A`, `(c, c)`.
+    /// `G_A`, `(a, c)`, for `a` driven joints and `c` columns.
     map: Vec<f64>,
+    /// Factor of `G_Aᵀ G_A`, `(c, c)`.
     factor: Vec<f64>,
 }
 
@@ -29,14 +30,16 @@ impl DrivenTorques {
         Self { driven, columns, map, factor }
     }
 
-    /// Computes `τ_A = G_A (G_Aᵀ G_A)⁻¹ u`; `u` is overwritten.
+    /// Computes `τ_A = G_A (G_Aᵀ G_A)⁻¹ u`, N m (N), and passes each torque to `write`, after the index of
+    /// its joint in `driven`; `u`, `(c,)`, is overwritten.
     pub(super) fn apply(&self, u: &mut [f64], mut write: impl FnMut(usize, f64)) {
         let k = self.columns.len();
         cholesky_solve(&self.factor, k, u);
         (0..self.driven.len()).for_each(|place| write(place, dot(&self.map[place * k..(place + 1) * k], u)));
     }
 
-    /// Computes the projection `P x = x − G_A (G_Aᵀ G_A)⁻¹ G_Aᵀ x` onto the torques that cause no motion.
+    /// Computes the projection `P x = x − G_A (G_Aᵀ G_A)⁻¹ G_Aᵀ x` of `x`, `(a,)`, onto the torques that
+    /// cause no motion, in place.
     fn project(&self, x: &mut [f64]) {
         let k = self.columns.len();
         let mut u = vec![0.0; k];
@@ -46,10 +49,12 @@ impl DrivenTorques {
         self.apply(&mut u, |place, part| x[place] -= part);
     }
 
-    /// Returns the smallest torques `t` of the driven joints with `G_Aᵀ t = 0` that change the constraint forces
-    /// `force` to the `commanded` ones, as far as torques can.
+    /// Returns the smallest torques `t`, `(a,)`, with `G_Aᵀ t = 0` that change the constraint forces from
+    /// `force`, N and N m, to the `commanded` ones, as far as torques can. `commanded` has the index and the
+    /// force of each row.
     ///
-    /// With `δλ = −Wᵀ t`, they are `t = −P W μ` with `(Wᵀ P W) μ = δλ`.
+    /// A torque `t` changes the commanded forces by `δλ = −Wᵀ t`, where `W` has a row per driven joint and a
+    /// column per commanded row. With `(Wᵀ P W) μ = δλ`, the result is `t = −P W μ`.
     pub(super) fn internal(
         &self,
         joints: &IndependentJoints,

@@ -5,7 +5,7 @@ use crate::number_text::{count, indices, short, unlike};
 use crate::reference::ReferenceError;
 use thiserror::Error;
 
-/// Errors of invalid controls, and errors that occur in controls during a run.
+/// Errors of invalid controls and commands, and errors that occur in controls during a run.
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ControlError {
@@ -47,8 +47,8 @@ pub enum ControlError {
     )]
     NoSuchLoop { control: String, name: String, known: Vec<String> },
     #[error(
-        "control '{control}' commands a {direction} {axis} of the loop '{name}', which permits this motion and transmits \
-         none; set it to 0"
+        "control '{control}' commands a {direction} {axis} in the loop '{name}', but the loop permits motion in this \
+         direction and transmits none; set this component to 0"
     )]
     FreeDirection { control: String, name: String, direction: &'static str, axis: &'static str },
     #[error(
@@ -62,7 +62,7 @@ pub enum ControlError {
     )]
     UnknownLoad { control: String },
     #[error(
-        "control '{control}' has a load or internal forces, which its law does not use; use computed torque of a tool (or, \
+        "control '{control}' has a load or internal forces, but its law does not use them; use computed torque of a tool (or, \
          for internal forces, of joints)"
     )]
     UnusedLoad { control: String },
@@ -143,7 +143,7 @@ pub enum ControlError {
     )]
     OtherControls { got: usize, expected: usize },
     #[error(
-        "the checkpoint has no state for control '{control}', so it belongs to another scenario; resume \
+        "the checkpoint has no state that fits control '{control}', so it belongs to another scenario; resume \
          with the original scenario"
     )]
     OtherMemory { control: String },
@@ -168,10 +168,12 @@ pub enum ControlError {
     )]
     ControlEnded { control: String },
     #[error(
-        "{name} of the command to control '{control}': {got}, but expected {expected}",
+        "'{name}' of the command to control '{control}' must have {expected}, but it has {got}",
         got = count(*got, "number"),
-        expected = if *points == 1 { format!("{joints}, one per joint of its group") }
-            else { format!("{}: {points} rows, one per time, of {}", points * joints, count(*joints, "number")) }
+        expected = if *points == 1 { format!("{}, one per joint of its group", count(*joints, "number")) }
+            else { format!(
+                "{}: {points} rows, one per time, of {}", count(points * joints, "number"), count(*joints, "number")
+            ) }
     )]
     CommandLength { control: String, name: &'static str, points: usize, joints: usize, got: usize },
     #[error(

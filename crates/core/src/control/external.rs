@@ -14,11 +14,12 @@ use serde::{Deserialize, Serialize};
 /// A command is held until the next command. If a command has positions or rates, the torque is that of
 /// [`JointComputedTorque`], `τ = M* (a + kd (vd − q̇) + kp (qd − q)) + c* − Q* + f`, with the commanded
 /// positions `qd`, rates `vd` and accelerations `a`, plus the commanded effort. Without positions there is no
-/// position term, without accelerations `a = 0`; a position without a rate is to be held at rest. If a
-/// command has only efforts, they are the torques.
+/// position term; without accelerations `a = 0`. For positions without rates `vd = 0`. If a command has only
+/// efforts, they are the torques.
 ///
-/// Before the first command, a group holds its initial positions if `kp` is not zero, otherwise damps its
-/// rates if `kd` is not zero, and otherwise has no torque.
+/// Before the first command, the law holds the initial positions of its group if `kp` is positive for all
+/// joints. Otherwise it damps the rates if `kd` is positive for all joints; if neither is the case, it exerts
+/// no torque.
 #[derive(Clone, Debug)]
 pub struct External {
     /// Computed-torque law that is used for commands with positions or rates.
@@ -38,20 +39,21 @@ pub enum OnTimeout {
     /// Hold the commanded positions or, after a command without positions, the positions at the timeout.
     #[default]
     Hold,
-    /// Bring the joints to rest by means of `kd`.
+    /// Damp the joint rates with the gain `kd` until the joints are at rest.
     Damp,
     /// Exert no torque.
     Zero,
 }
 
-/// State of an [`External`] law, for checkpoints.
+/// State of an [`External`] law, which a checkpoint stores.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct ExternalMemory {
-    /// Command that has not yet taken effect, and the time at which it was sent, s.
+    /// Time at which a command was sent, s, and the command, while it has not yet taken effect; otherwise
+    /// `None`.
     pending: Option<(f64, ExternalCommand)>,
     current: ExternalCommand,
-    /// Time at which the current command times out, s. The deadline of a pending command is set when the
-    /// command begins; `None` without a timeout.
+    /// Time at which the current command times out, s; `None` without a timeout. The deadline of a pending
+    /// command is set when the command takes effect.
     deadline: Option<f64>,
 }
 
@@ -67,8 +69,8 @@ impl External {
         Self { law, timeout: None, on_timeout: OnTimeout::Hold, memory: ExternalMemory::default() }
     }
 
-    /// Returns the quantity that the law can track with its gains: positions if `kp` is positive, rates if
-    /// only `kd` is positive, and otherwise efforts.
+    /// Returns the quantity that the law can track with its gains: positions if `kp` is positive for all
+    /// joints, otherwise rates if `kd` is, and otherwise efforts.
     pub fn interface(&self) -> Interface {
         match (self.law.kp.is_positive(), self.law.kd.is_positive()) {
             (true, _) => Interface::Position,
@@ -81,7 +83,7 @@ impl External {
     ///
     /// # Errors
     /// [`ControlError`] if a gain is invalid, if the timeout is not positive, or if the behaviour after the
-    /// timeout requires a gain that is zero.
+    /// timeout requires a gain that is not positive for all joints (`kp` and `kd` to hold, `kd` to damp).
     pub fn check(&self, count: usize) -> Result<(), ControlError> {
         self.law.check(count)?;
         let Some(timeout) = self.timeout else { return Ok(()) };
@@ -121,7 +123,8 @@ impl External {
         Ok(())
     }
 
-    /// Accepts a checked command at `now`, s. It replaces a command that has not yet taken effect.
+    /// Stores a checked command that is sent at `now`, s. The new command replaces one that has not yet taken
+    /// effect.
     pub(super) fn send(&mut self, command: ExternalCommand, now: f64) {
         self.memory.pending = Some((now, command));
     }
@@ -131,7 +134,7 @@ impl External {
         self.memory.pending.as_ref().is_some_and(|(sent, command)| command.begin(*sent) <= now)
     }
 
-    /// Sets the behaviour before the first command, with the initial positions `q` of the group.
+    /// Sets the behaviour before the first command; `q` contains the initial positions of the group, rad (m).
     pub(super) fn start(&mut self, q: impl Iterator<Item = f64>) {
         let zeros = |q: Vec<f64>| vec![0.0; q.len()];
         let setpoint = match External::interface(self) {

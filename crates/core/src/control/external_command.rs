@@ -13,11 +13,12 @@ const LARGEST: f64 = 1e60;
 pub enum ExternalCommand {
     /// Values that are held until the next command.
     Setpoint(Setpoint),
-    /// Motion through points.
+    /// Motion through points at given times.
     Trajectory(JointTrajectory),
 }
 
-/// Constant command. Each entry is `(k,)`, with one number per joint of the group.
+/// Constant command. Each entry is `(k,)`, with one number per joint of the group, or `None` if the quantity
+/// is not commanded.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setpoint {
     /// Positions, rad or m.
@@ -30,7 +31,7 @@ pub struct Setpoint {
     pub effort: Option<Vec<f64>>,
 }
 
-/// Motion through points, like the `JointTrajectory` message of ROS.
+/// Motion of the `k` joints of a group through `K` points, like the `JointTrajectory` message of ROS.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JointTrajectory {
     /// Simulation time of the start, s.
@@ -39,9 +40,9 @@ pub struct JointTrajectory {
     pub times: Vec<f64>,
     /// Positions, `(K, k)`, rad or m.
     pub positions: Vec<f64>,
-    /// Rates, `(K, k)`, rad/s or m/s.
+    /// Rates, `(K, k)`, rad/s or m/s; `None` for linear interpolation between the positions.
     pub velocities: Option<Vec<f64>>,
-    /// Accelerations, `(K, k)`, rad/s² or m/s².
+    /// Accelerations, `(K, k)`, rad/s² or m/s²; `None` if they are not given. They require rates.
     pub accelerations: Option<Vec<f64>>,
 }
 
@@ -54,7 +55,7 @@ impl ExternalCommand {
         }
     }
 
-    /// Returns true if the arrays of the command have the sizes for `count` joints.
+    /// Returns true if the command is valid for `count` joints, regardless of the time at which it is sent.
     pub(super) fn check_sizes(&self, control: &str, count: usize) -> bool {
         self.check(control, count, f64::NEG_INFINITY).is_ok()
     }
@@ -67,8 +68,8 @@ impl ExternalCommand {
         }
     }
 
-    /// Returns the time, s, from which the timeout of a command sent at `sent`, s, counts: `sent`, or the
-    /// time of the last point of a trajectory if that is later.
+    /// Returns the time, s, at which the timeout of a command sent at `sent`, s, starts to run: `sent` or, if
+    /// it is later, the time of the last point of a trajectory.
     pub(super) fn end(&self, sent: f64) -> f64 {
         match self {
             Self::Setpoint(_) => sent,
@@ -93,8 +94,8 @@ impl ExternalCommand {
         }
     }
 
-    /// Computes the desired motion at `t`, s. On entry `out` holds the current positions and rates; those
-    /// that are not commanded do not change.
+    /// Computes the desired motion at simulation time `t`, s. On entry `out` holds the current positions and
+    /// rates; those that are not commanded do not change.
     pub(super) fn sample(&self, t: f64, out: &mut JointSample) {
         match self {
             Self::Setpoint(setpoint) => setpoint.sample(out),
@@ -190,7 +191,8 @@ impl JointTrajectory {
         Ok(())
     }
 
-    /// Inserts the state at `t`, s, as the first point if all points are later than `t`.
+    /// Inserts the state of the group at simulation time `t`, s, as the first point if all points are later
+    /// than `t`.
     pub(super) fn start_from(&mut self, t: f64, state: &JointSample) {
         let first = t - self.start;
         if self.times[0] <= first {
@@ -240,7 +242,8 @@ impl JointTrajectory {
     }
 }
 
-/// Checks that a part of a command has `points` rows of `count` finite numbers.
+/// Checks that the part `name` of a command has `points` rows of `count` finite numbers, none above
+/// [`LARGEST`] in magnitude.
 fn check_rows(
     control: &str,
     name: &'static str,

@@ -28,15 +28,15 @@ impl PerJoint {
         self.0.iter().all(|x| *x > 0.0)
     }
 
-    /// Checks that there is one number, or one per joint of `count` joints, and that all numbers are finite,
+    /// Checks that there is one number, or one for each of `count` joints, and that all numbers are finite,
     /// not negative and at most [`LARGEST`].
     pub(super) fn check(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         check_numbers(name, &self.0)
     }
 
-    /// Checks the count of limits like [`PerJoint::check`], and that no limit is negative or NaN; infinity
-    /// means no limit.
+    /// Checks that there is one limit, or one for each of `count` components, and that no limit is negative
+    /// or NaN. Infinity means no limit.
     pub(super) fn check_limit(&self, name: &'static str, count: usize) -> Result<(), ControlError> {
         self.check_count(name, count)?;
         match self.0.iter().find(|x| x.is_nan() || **x < 0.0) {
@@ -71,7 +71,7 @@ impl From<f64> for PerJoint {
     }
 }
 
-/// Checks that the numbers are finite, not negative and not too large.
+/// Checks that the numbers are finite, not negative and at most [`LARGEST`].
 pub(super) fn check_numbers(name: &'static str, numbers: &[f64]) -> Result<(), ControlError> {
     check_size(name, numbers)?;
     match numbers.iter().find(|x| **x < 0.0) {

@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 
 /// Tolerances of a tracked path, as in the joint trajectory controller of ROS.
 ///
-/// The components of the error are those of the joints of the group, rad or m (rad/s or m/s if rates are
-/// commanded), or, for a task, the distance, m, and the angle, rad. The goal fails if an error exceeds `path`
-/// before the end of the path. After the end, the goal is reached as soon as all errors are within
-/// `tolerance`, and fails after `time`. After a failure the control holds the present joint positions, or the
-/// present pose: relative to the base if the reference is, otherwise in W.
+/// The error has one component per joint of the group, rad or m (rad/s or m/s if rates are commanded); the
+/// error of a task has two: the distance, m, and the angle, rad. The goal fails if an error exceeds `path`
+/// before the end of the path. After the end of the path, the goal is reached as soon as all errors are
+/// within `tolerance`. It fails if this has not happened `time` seconds after the end. After a failure the
+/// control holds the present joint positions, or the present pose: relative to the base if the reference is,
+/// otherwise in W.
 #[derive(Clone, Debug)]
 pub struct Goal {
     /// Largest permitted errors during the path, in units of the error; `None` for no limit.
@@ -24,7 +25,8 @@ pub struct Goal {
 /// Outcome of a goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Outcome {
-    /// No decision: the control was never active or was stopped, or the run ended first.
+    /// No decision yet, or none at all because the control was never active, was stopped first, or the run
+    /// ended first.
     #[default]
     Unfinished,
     /// All errors were within the goal's tolerance at `time`, s.
@@ -45,12 +47,13 @@ pub struct Miss {
     pub component: usize,
     /// Simulation time at which the error was evaluated, s.
     pub time: f64,
-    /// Error, rad or m (rad/s or m/s where rates are commanded).
+    /// Error of the component, desired less actual, rad or m (rad/s or m/s if rates are commanded); for a
+    /// task, the distance, m, or the angle, rad.
     pub error: f64,
 }
 
 impl Outcome {
-    /// Returns the name of the outcome that results and summaries use.
+    /// Returns the name of the outcome in results and summaries.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Unfinished => "unfinished",
@@ -84,8 +87,8 @@ impl Outcome {
 }
 
 impl Goal {
-    /// Creates a goal with one tolerance for all components at the end, without a tolerance during the path
-    /// and without a time limit.
+    /// Creates a goal with one tolerance for all components at the end, in units of the error, without a
+    /// tolerance during the path and without a time limit.
     pub fn within(tolerance: f64) -> Self {
         Self { path: None, tolerance: tolerance.into(), time: None }
     }
@@ -98,7 +101,8 @@ impl Goal {
         check_numbers("goal_time", self.time.as_slice())
     }
 
-    /// Returns the outcome for `errors` at `time`, s, `clock` s after the start of a path of `duration` s.
+    /// Returns the outcome for `errors` at the simulation time `time`, s, which is `clock` seconds after the
+    /// start of a path of the length `duration`, s.
     pub(super) fn judge(&self, time: f64, clock: f64, duration: f64, errors: &[f64]) -> Outcome {
         let miss = |tolerance: &PerJoint| {
             let component = errors.iter().enumerate().position(|(i, e)| e.abs() > tolerance.at(i))?;

@@ -1,4 +1,5 @@
-//! Hybrid dynamics: some joints have given accelerations or tasks, the others have given efforts.
+//! Hybrid dynamics: the accelerations of some joints are given or follow from tasks; the efforts of the
+//! others are given.
 
 use super::control_law::JointCommand;
 use super::pseudo_inverse::{PseudoInverse, ROWS};
@@ -8,15 +9,16 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// the joints `E` are given.
 ///
 /// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`, where `f` is the sum of the damping and
-/// friction torques and of the feedforward of joint laws; other symbols are those of
+/// friction torques and of the feedforward of joint laws; the other symbols are those of
 /// [`ComputedTorque`](super::ComputedTorque). A subscript selects the rows or columns of a set of joints. The
-/// joints `E` react like a second base, `q̈_E = y − G q̈_A` with `G = M*_EE⁻¹ M*_EA` and `y = M*_EE⁻¹ (τ_E −
-/// l_E)`, so that a task `ẍ = J q̈ + d` with the Jacobian `J` depends only on `A`: `ẍ = J' q̈_A + d + J_E y`
-/// with `J' = J_A − J_E G`. The set `A` consists of the joints `C`, whose accelerations are commanded by
-/// joint laws, and the joints `T`, which the tasks drive. A single damped pseudo-inverse of all task rows
-/// gives `q̈_T = J'_T⁺ (p̈r − d − J_E y − J'_C q̈_C) − N k q̇_T − κ D q̇_T`, so that each task accounts for the
-/// reactions to all others. Joints held by friction belong to neither set; their acceleration is zero. For a
-/// single task on all joints the solution equals that of [`computed_torque`](super::computed_torque).
+/// joints `E` react like a second base, `q̈_E = y − G q̈_A` with `G = M*_EE⁻¹ M*_EA` and
+/// `y = M*_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d` with the Jacobian `J` depends only on `A`:
+/// `ẍ = J' q̈_A + d + J_E y` with `J' = J_A − J_E G`. The set `A` consists of the joints `C`, whose
+/// accelerations are commanded by joint laws, and the joints `T`, which the tasks drive. A single damped
+/// pseudo-inverse of all task rows gives `q̈_T = J'_T⁺ (p̈r − d − J_E y − J'_C q̈_C) − N k q̇_T − κ D q̇_T`,
+/// so that each task accounts for the reactions to all others. Joints held by friction belong to neither set;
+/// their acceleration is zero. For a single task on all joints the solution equals that of
+/// [`computed_torque`](super::computed_torque).
 ///
 /// Source of the method: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 9.2 (hybrid dynamics).
 #[derive(Debug)]
@@ -71,7 +73,7 @@ impl HybridDynamics {
         }
     }
 
-    /// Sets the number of joints, at most that of [`HybridDynamics::new`].
+    /// Sets the number of joints, which must not exceed that of [`HybridDynamics::new`].
     pub(super) fn set_count(&mut self, n: usize) {
         self.n = n;
     }
@@ -106,7 +108,8 @@ impl HybridDynamics {
         }
     }
 
-    /// Adds a task with the Jacobian `(6, n)`, the acceleration `p̈r − d` and the damping threshold `λ₀`.
+    /// Adds a task with the row-major Jacobian `(6, n)`, the acceleration `p̈r − d`, m/s² and rad/s², and the
+    /// damping threshold `λ₀`.
     pub(super) fn add_task(&mut self, jacobian: &[f64], acceleration: [f64; ROWS], damping: f64) {
         let (n, given) = (self.n, &self.given);
         let [of_given, ..] = &mut self.work;
@@ -123,13 +126,14 @@ impl HybridDynamics {
         self.damping.push(damping);
     }
 
-    /// Returns the friction torque, N m (N), that holds a joint at rest whose drive exerts `tau`. Requires
-    /// the accelerations of all joints.
+    /// Returns the friction torque, N m (N), that holds joint `j` at rest while its drive exerts `tau`.
+    /// Requires the accelerations of all joints.
     pub(super) fn holding_torque(&self, j: usize, tau: f64) -> f64 {
         dot(&self.inertia[j * self.n..(j + 1) * self.n], &self.acceleration) + self.load[j] - tau
     }
 
-    /// Computes the accelerations of all joints, and writes the torques of the joints `A` to `tau`.
+    /// Computes the accelerations of all joints at the joint rates `rates`, `(n,)`, rad/s (m/s), and writes
+    /// the torques of the joints `A` to `tau`, `(n,)`, N m (N).
     pub(super) fn solve(&mut self, rates: &[f64], tau: &mut [f64]) {
         let Self { n, tasks, fixed, given, acceleration, null_damping, .. } = self;
         let [a, x, free, suppressed] = &mut self.work;

@@ -4,24 +4,25 @@ use super::error::ControlError;
 use super::gains::check_size;
 use crate::model::{Closure, Model};
 
-/// Commanded force that a closed loop transmits: the wrench on its second body, in the axes of the loop's joint on its
-/// first frame, at the origin of this joint.
+/// Commanded wrench that a closed loop transmits to its second body. Its axes and its reference point are
+/// those of the loop's joint as seen from the first body.
 ///
-/// For two hands that hold a load, the loop is the capture that closes it, and the force is the wrench of this hand on
-/// the load, in the axes of the captured frame at its origin. The other hand carries the rest of the load. The torques
-/// that change it do not move the robot.
+/// If two hands hold a load, the capture that closes the loop defines it, and the wrench is that of the
+/// capturing hand on the load, about the origin of the captured frame and in its axes. The other hand carries
+/// the rest of the load. Torques that change the wrench cause no motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InternalForce {
     /// Name of the loop, or of the capture that closes it.
     pub closure: String,
-    /// Force, N; `None` leaves it to the torques of least norm.
+    /// Force, N; if it is `None`, the force is that of the joint torques of least norm.
     pub force: Option<[f64; 3]>,
-    /// Moment, N m; `None` leaves it to the torques of least norm.
+    /// Moment, N m; if it is `None`, the moment is that of the joint torques of least norm.
     pub moment: Option<[f64; 3]>,
 }
 
 impl InternalForce {
-    /// Returns the commanded rows of a closure, with their values, N and N m.
+    /// Returns the constraint rows of `closure` with a commanded force or moment: the index of each within
+    /// the closure and its value, N or N m.
     pub(super) fn rows(&self, closure: &Closure) -> Vec<(usize, f64)> {
         let directions = closure.directions().iter().enumerate();
         let value = |(row, &(axis, is_moment)): (usize, &(usize, bool))| {
@@ -31,7 +32,8 @@ impl InternalForce {
         directions.filter_map(value).collect()
     }
 
-    /// Checks the force for the control of this name. `captures` are the names of the captures that may close a loop.
+    /// Checks the force for the control with the name `control`. `captures` are the names of the captures
+    /// that may close a loop.
     pub(super) fn check(
         &self,
         control: &str,

@@ -7,11 +7,11 @@ use super::gains::PerJoint;
 use crate::model::Model;
 use crate::reference::JointSample;
 
-/// Joint-space computed torque on the reduced model, which produces `q̈ = q̈d + kd (q̇d − q̇) + kp (qd − q)`
-/// exactly, whatever the motion of the base, if it compensates all external wrenches and friction.
+/// Joint-space computed torque on the reduced model. If it compensates all external wrenches and friction, it
+/// produces `q̈ = q̈d + kd (q̇d − q̇) + kp (qd − q)` exactly for any motion of the base.
 ///
-/// `τ = M* q̈ + c* − Q* + f` with the desired positions `qd` and the symbols of
-/// [`ComputedTorque`](super::ComputedTorque), so that the error `e = qd − q` obeys `ë + kd ė + kp e = 0`. The
+/// The torques are `τ = M* q̈ + c* − Q* + f` with the desired positions `qd` and the symbols of
+/// [`ComputedTorque`](super::ComputedTorque); the error `e = qd − q` then obeys `ë + kd ė + kp e = 0`. The
 /// joint drives compensate Coulomb friction, from rest and through reversals. Joint angles are not wrapped:
 /// after a full turn the error is 2π.
 #[derive(Clone, Debug)]

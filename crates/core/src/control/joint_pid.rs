@@ -8,7 +8,7 @@ use crate::model::{BASE_NQ, Model};
 use crate::reference::JointSample;
 
 /// PID controller for each joint of a group: `τ = p e + i ∫e dt + d ė` with the error `e` of the commanded
-/// quantity.
+/// quantity, desired less actual. With the effort interface, the effort is that of the reference.
 ///
 /// The integral increases by `e Δt` at each control tick, with the time `Δt` since the last tick. The effort
 /// of the integral term is limited to `±i_limit`, and while the total effort is at `effort_limit` the
@@ -18,8 +18,8 @@ use crate::reference::JointSample;
 pub struct JointPid {
     /// Quantity that the reference commands.
     pub interface: Interface,
-    /// Proportional gain `p`, N m/rad, or N m s/rad for errors of the rate (N/m, N s/m for a prismatic
-    /// joint).
+    /// Proportional gain `p`: N m/rad (N/m for a prismatic joint) or, for errors of the rate, N m s/rad (N
+    /// s/m).
     pub p: PerJoint,
     /// Integral gain `i`: the unit of `p` per second.
     pub i: PerJoint,
@@ -55,9 +55,9 @@ impl JointPid {
         self.effort_limit.check_limit("effort_limit", count)
     }
 
-    /// Computes the effort, N m (N), of the joint at `place` in the group with the position `q` and the rate
-    /// `rate`, `dt` s after the last tick, and updates `memory`. For the effort interface it is the effort of
-    /// the reference within the limit.
+    /// Computes the effort, N m (N), of the joint at index `place` of the group with the position `q` and the
+    /// rate `rate`, `dt` seconds after the last tick, and updates `memory`. For the effort interface, returns
+    /// the effort of the reference, limited to `effort_limit`.
     pub(super) fn effort(
         &self,
         place: usize,

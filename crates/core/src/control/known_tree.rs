@@ -43,8 +43,9 @@ pub struct KnownTree {
 
 impl KnownTree {
     /// Creates the tree from its model; `own` and `frames` are the indices, in the tree, of the joints and
-    /// the frames of the robot. `loops` has the name by which controls refer to each closure of the tree
-    /// ([`InternalForce::closure`](super::InternalForce)), and `controls` is the number of controls.
+    /// the frames of the robot. `loops` contains, for each closure of the tree, the name by which controls
+    /// refer to it ([`InternalForce::closure`](super::InternalForce)), or `None` without such a name;
+    /// `controls` is the number of controls.
     pub fn new(
         model: Model,
         own: Vec<usize>,
@@ -78,9 +79,10 @@ impl KnownTree {
         self.data.clear_external();
     }
 
-    /// Computes inertia, bias and external forces of the reduced model of the robot's own joints `O`, with
-    /// the accelerations of the other joints `P`, which have no motor torques: `q̈_P = M_PP⁻¹ (Q_P − c_P −
-    /// M_PO q̈_O)`. `M`, `c` and `Q` denote `M*`, `c*` and `Q*` of the tree ([`FreeFloating`]).
+    /// Writes the inertia, bias and external forces of the reduced model of the robot's own joints `O` to
+    /// `out`. The other joints `P` have no motor torques, so that their accelerations are
+    /// `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`. `M`, `c` and `Q` denote `M*`, `c*` and `Q*` of the tree
+    /// ([`FreeFloating`]).
     ///
     /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
     pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {
@@ -113,7 +115,7 @@ impl KnownTree {
         }
     }
 
-    /// Computes pose, twist, Jacobian and drift of a frame (index) of the robot. Requires the results of
+    /// Computes pose, twist, Jacobian and drift of a frame (index in the robot) in W. Requires the results of
     /// [`KnownTree::reduce`] in `out`.
     ///
     /// `J' = J_O − J_P M_PP⁻¹ M_PO`, `d' = d + J_P M_PP⁻¹ (Q_P − c_P)`, with the generalized Jacobian `J` and

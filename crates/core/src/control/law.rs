@@ -14,15 +14,15 @@ use super::joint_pid::JointPid;
 use crate::model::Model;
 use crate::reference::{JointReference, TaskReference};
 
-/// Control law and the reference that it tracks. The time of a reference starts when its control starts.
+/// Control law and the reference that it tracks. The time of a reference is zero when its control starts.
 pub enum Law {
     /// Task-space computed torque.
     TaskComputedTorque(Box<ComputedTorque>, TaskReference),
     /// Joint-space computed torque; the reference has one entry per joint of the group.
     JointComputedTorque(JointComputedTorque, JointReference),
-    /// A PID controller for each joint.
+    /// PID controller for each joint; the reference has one entry per joint of the group.
     Pid(JointPid, JointReference),
-    /// Compliance of a frame.
+    /// Compliance control of a frame.
     Compliance(Box<Compliance>, TaskReference),
     /// Law that follows external commands.
     External(Box<External>),

@@ -17,9 +17,10 @@ pub(super) struct Looped<S> {
 }
 
 impl<S: Scalar> Looped<S> {
-    /// Allocates the solver for a tree with closed loops. `own` has the index in the tree of each joint of the robot,
-    /// and `names` has the name of each closure of the tree in an [`InternalForce`]. Returns `None` if the tree has
-    /// no loops.
+    /// Allocates the solver for a tree with closed loops and up to `tasks` tasks. `own` has the index in the
+    /// tree of each joint of the robot. `names` has the name by which an [`InternalForce`] refers to each
+    /// closure of the tree, or `None` for a closure without such a name. Returns `None` if the tree has no
+    /// loops.
     pub(super) fn new(
         model: &Model,
         own: Vec<usize>,
@@ -47,46 +48,56 @@ impl<S: Scalar> Looped<S> {
 
 /// Solver for the torques of controls on a robot with closed loops.
 ///
-/// The joint accelerations are `q̈ = G z + g` with the accelerations `z` of independent coordinates
-/// ([`IndependentJoints`]). The independent joints are chosen among the driven joints as far as possible. With `M* q̈ +
-/// l = τ + Kᵀ λ` and `K G = 0`, the reduced equations are `Gᵀ M* G z + Gᵀ (l + M* g) = Gᵀ τ`, to which
-/// [`HybridDynamics`] applies. The columns of `G` of joints driven by tasks are orthonormal in the rows of these joints,
-/// so that the accelerations of least norm do not depend on the choice of independent joints.
+/// The constraints on the joints are `K q̈ = k`. They are satisfied by the joint accelerations `q̈ = G z + g`
+/// with the accelerations `z` of independent coordinates ([`IndependentJoints`]). The independent joints are
+/// chosen among the driven joints as far as possible. With `M* q̈ + l = τ + Kᵀ λ` and `K G = 0`, the reduced
+/// equations are `Gᵀ M* G z + Gᵀ (l + M* g) = Gᵀ τ`, to which [`HybridDynamics`] applies. In the rows of the
+/// joints that tasks drive, the columns of `G` of these joints are orthonormal, so that the accelerations of
+/// least norm do not depend on the choice of independent joints.
 ///
-/// Several driven joints may share one coordinate. The torques `τ_A` of the driven joints `A` have the given efforts
-/// `G_Aᵀ τ_A` and the least norm, `τ_A = G_A (G_Aᵀ G_A)⁻¹ u`; joints without a motor have none. Torques with `G_Aᵀ t = 0`
-/// change only the constraint forces `λ`, and no motion. If internal forces are commanded, the smallest such `t` that
-/// produces them is added.
+/// Several driven joints may share one coordinate. The torques of the driven joints `A` are those of least
+/// norm with the required efforts `u = G_Aᵀ τ_A` of the coordinates: `τ_A = G_A (G_Aᵀ G_A)⁻¹ u`. Joints
+/// without a motor have no torque. Torques with `G_Aᵀ t = 0` change only the constraint forces `λ`, and no
+/// motion. If internal forces are commanded, the smallest such `t` that produces them is added.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, section 8.12 (inverse dynamics with closed loops).
 #[derive(Debug)]
 pub(super) struct LoopedDynamics {
-    /// Number of joints of the tree and number of its constraints.
+    /// Number of joints of the tree.
     n: usize,
+    /// Number of constraints of the loops.
     m: usize,
     /// Index in the tree of each joint of the robot.
     own: Vec<usize>,
-    /// Closures of the tree with the index of their first row and their name in an [`InternalForce`].
+    /// Closures of the tree, each with the index of its first row and the name by which an [`InternalForce`]
+    /// refers to it.
     closures: Vec<(Closure, usize, Option<String>)>,
-    /// Class of each joint by its position in the choice of independent joints: 1 for leaders, 0 for mimic joints.
+    /// Preference of each joint of the tree as an independent joint, `(n,)`: 0 for mimic joints, 1 for all
+    /// others.
     leader: Vec<u8>,
-    /// Rows and joints whose unit is m.
+    /// For each row and for each joint, true if its unit is m.
     is_length: [Vec<bool>; 2],
-    /// `M*`, `(n, n)`, and `c* − Q*`, `(n,)`, of the tree.
+    /// `M*` of the tree, row major `(n, n)`.
     inertia: Vec<f64>,
+    /// `c* − Q*` of the tree, `(n,)`, N m (N).
     model_load: Vec<f64>,
-    /// `K` and `k`; the first `m` rows are those of the loops, the other rows those of joints held by friction.
+    /// `K`, with `n` columns; the first `m` rows are those of the loops, the other rows those of joints held by
+    /// friction.
     jacobian: Vec<f64>,
+    /// `k`, with one entry per row of `K`.
     right: Vec<f64>,
     joints: IndependentJoints,
     hybrid: HybridDynamics,
     commands: Vec<JointCommand>,
-    /// Loads `l`, torques `τ`, rates, accelerations `q̈` and null-space damping of the joints of the tree, `(n,)`.
+    /// Loads `l` of the joints of the tree, `(n,)`, N m (N).
     load: Vec<f64>,
+    /// Torques `τ` of the joints of the tree, `(n,)`, N m (N).
     tau: Vec<f64>,
+    /// Accelerations `q̈` of the joints of the tree, `(n,)`, rad/s² (m/s²).
     acceleration: Vec<f64>,
+    /// Damping in the null space and damping of suppressed rates of the joints of the tree, `(n,)`, 1/s.
     null_damping: Vec<[f64; 2]>,
-    /// Rows with commanded constraint forces, N and N m.
+    /// Indices of the rows with commanded constraint forces, and these forces, N or N m.
     commanded: Vec<(usize, f64)>,
     /// Constraint forces `λ`, N and N m.
     force: Vec<f64>,
@@ -143,9 +154,10 @@ impl LoopedDynamics {
         }
     }
 
-    /// Chooses the independent joints, eliminates those with given efforts `tau`, and clears the tasks. `joints` has
-    /// the loads in addition to those of the model, the commanded accelerations and the damping of the robot's joints;
-    /// `commands` and `tau` belong to these joints too. Requires [`Looped::update`].
+    /// Chooses the independent joints, eliminates those with given efforts `tau`, and clears the tasks.
+    /// `joints`, `commands` and `tau` refer to the joints of the robot; `joints` has their commanded
+    /// accelerations, their damping and those of their loads that the model does not include. Requires
+    /// [`Looped::update`].
     pub(super) fn eliminate(&mut self, joints: &HybridDynamics, commands: &[JointCommand], tau: &[f64]) {
         self.commands.fill(JointCommand::Effort); // the joints of other robots have no motor torque
         self.tau.fill(0.0);
@@ -266,8 +278,9 @@ impl LoopedDynamics {
         columns.iter().zip(y).for_each(|(&c, y)| hybrid.acceleration[c] = y);
     }
 
-    /// Adds a task of a frame with the acceleration `p̈r − d`, the damping threshold `λ₀` and the Jacobian `(6, n)` of
-    /// the joints of the tree or, if it is relative to the base, of the robot.
+    /// Adds a task of a frame with the acceleration `p̈r − d`, m/s² and rad/s², and the damping threshold
+    /// `λ₀`. The row-major Jacobian has six rows, and one column per joint of the tree or, if it is relative
+    /// to the base, per joint of the robot.
     pub(super) fn add_task(&mut self, jacobian: &[f64], mut acceleration: [f64; ROWS], damping: f64) {
         let (n, own) = (self.n, &self.own);
         let mut all = vec![0.0; ROWS * n];
@@ -287,8 +300,8 @@ impl LoopedDynamics {
         self.hybrid.add_task(&reduced, acceleration, damping);
     }
 
-    /// Computes the accelerations of the robot's joints, and the torques of its driven joints. `rates` are those of
-    /// the joints of the tree.
+    /// Computes the accelerations of the robot's joints, rad/s² (m/s²), and the torques of its driven joints,
+    /// N m (N). `rates` contains the rates of the joints of the tree, rad/s (m/s).
     pub(super) fn solve(&mut self, rates: &[f64], acceleration: &mut [f64], tau: &mut [f64]) {
         let (f, is_task) = (self.joints.count(), |j: usize| self.commands[j] == JointCommand::Task);
         let along = |c: usize| {
@@ -304,8 +317,8 @@ impl LoopedDynamics {
         }
     }
 
-    /// Returns the friction torque, N m (N), that holds a joint of the robot at rest; of redundant holding torques,
-    /// some are zero.
+    /// Returns the friction torque, N m (N), that holds a joint (index in the robot) at rest, or zero if the
+    /// joint is not held. If the holding torques of several joints are redundant, some of them are zero.
     pub(super) fn holding_torque(&self, joint: usize) -> f64 {
         let is_held = |&j: &usize| self.commands[j] == JointCommand::Held;
         let row = (0..self.n).filter(is_held).position(|j| j == self.own[joint]);

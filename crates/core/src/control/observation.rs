@@ -3,10 +3,11 @@
 use crate::model::Model;
 use crate::reference::TaskSample;
 
-/// State of the robot at a control tick, with the joints to drive and the desired motion of the tool.
+/// State of the robot at a control tick, with the joints to drive and the desired motion of the tracked
+/// frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation<'a> {
-    /// Time, s.
+    /// Simulation time, s.
     pub time: f64,
     /// Configuration, `(nq,)`, m and rad.
     pub q: &'a [f64],
@@ -16,7 +17,7 @@ pub struct Observation<'a> {
     pub model: &'a Model,
     /// Indices of the joints to drive, in the order of the torques.
     pub joints: &'a [usize],
-    /// Desired pose and motion of the tool, if the controller has a reference: relative to the base if the
-    /// reference is, otherwise in W.
+    /// Desired pose and motion of the tracked frame, relative to the base if the reference is, otherwise in
+    /// W; `None` if the controller has no reference.
     pub desired: Option<TaskSample<f64>>,
 }

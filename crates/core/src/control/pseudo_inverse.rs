@@ -8,12 +8,12 @@ pub(super) const ROWS: usize = 6;
 /// Damped pseudo-inverse `J⁺ = Jᵀ (J Jᵀ + Λ²)⁻¹` for `k` tasks of six rows. Well-conditioned tasks are not
 /// damped.
 ///
-/// For each task, `1/σ²` is the sum of the six diagonal entries of `(J Jᵀ)⁻¹` in its rows. `σ²` is at most
-/// the square of the smallest singular value of the task's own six rows of `J`; for a single task it is at
-/// least a sixth of that square. If `σ²` is below the task's `λ₀²`, the rows of that task are damped by the
-/// difference, `λ² = λ₀² − σ²`; the diagonal matrix `Λ²` has `λ²` in these rows and zeros in the others. The
-/// null-space projector always uses the undamped inverse, because a
-/// projector from the damped inverse would disturb the task.
+/// For each task, `1/σ²` is the sum of the six diagonal entries of `(J Jᵀ)⁻¹` in the rows of the task. `σ²`
+/// is at most the square of the smallest singular value of the task's own six rows of `J`; for a single task
+/// it is at least a sixth of that square. If `σ²` is below the task's `λ₀²`, the rows of that task are damped
+/// by the difference, `λ² = λ₀² − σ²`; the diagonal matrix `Λ²` has `λ²` in these rows and zeros in the
+/// others. The null-space projector always uses the undamped inverse, because a projector from the damped
+/// inverse would disturb the task.
 ///
 /// Source: Nakamura and Hanafusa, J. Dyn. Sys. Meas. Control 108(3), 1986, with another measure of
 /// the distance from singularity.
@@ -131,7 +131,7 @@ impl<S: Real> PseudoInverse<S> {
     }
 }
 
-/// Computes `x = J y`.
+/// Computes the product `x = J y`, where `J` has `rows` rows.
 #[inline(always)]
 fn multiply<S: Real>(rows: usize, jacobian: &[S], y: &[S], x: &mut [S]) {
     for i in 0..rows {

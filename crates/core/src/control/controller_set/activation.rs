@@ -9,8 +9,8 @@ use crate::model::{BASE_NQ, Model};
 use crate::spatial::Scalar;
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Evaluates the goals, and stops and starts the controls for which this is due at `t`, s. Returns true
-    /// if the set of active controls changed or a control missed its goal.
+    /// Evaluates the goals at `t`, s, stops the controls that end there and starts those that are due.
+    /// Returns true if the set of active controls changed or a control missed its goal.
     pub(super) fn activate(&mut self, t: f64, model: &Model) -> Result<bool, ControlError> {
         let mut has_changed = self.stop_due(t);
         for i in 0..self.controls.len() {
@@ -50,7 +50,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         has_changed
     }
 
-    /// Returns true if the condition under which control `i` starts is met at `t`.
+    /// Returns true if the condition under which control `i` starts is met at `t`, s.
     fn is_due(&self, i: usize, t: f64) -> bool {
         match self.controls[i].begin {
             Begin::At(start) => start <= t + self.same_instant,
@@ -62,7 +62,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
     }
 
-    /// Starts control `i` at `t`, and stops the controls that it replaces.
+    /// Starts control `i` at `t`, s, and stops the controls that it replaces.
     fn start(&mut self, i: usize, t: f64) -> Result<(), ControlError> {
         let Self { controls, states, .. } = self;
         match controls[i].begin {
@@ -85,7 +85,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         started.map_err(|source| ControlError::Reference { time: t, source })
     }
 
-    /// Checks that no two running controls drive the same joint.
+    /// Checks that no two running controls drive the same joint at `t`, s.
     fn check_running(&self, model: &Model, t: f64) -> Result<(), ControlError> {
         let running = |i: &usize| self.states[*i].is_running();
         for i in (0..self.controls.len()).filter(running) {

@@ -17,7 +17,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// Sends a command to the control `name` at `now`, s. The command takes effect at the next update.
     ///
     /// # Errors
-    /// The errors of [`ControllerSet::check_send`]. Nothing is changed then.
+    /// The errors of [`ControllerSet::check_send`]; after an error, nothing has changed.
     pub fn send(&mut self, name: &str, command: ExternalCommand, now: f64) -> Result<(), ControlError> {
         let number = self.check_send(name, &command, now)?;
         if let Some(law) = self.controls[number].law.external_mut() {
@@ -58,8 +58,9 @@ impl<S: Scalar> ControllerSet<'_, S> {
         self.controls.iter().any(is_due)
     }
 
-    /// Sets whether the next update repeats the previous one at the same time and state. Laws with a state,
-    /// such as user-defined ones, are then not evaluated again and keep their torques.
+    /// Sets whether the next update repeats the previous one at the same time and state. Laws that command
+    /// efforts, except those that follow external commands, are then not evaluated again and keep their
+    /// torques, because a second evaluation would change the state of laws that have one.
     pub fn set_repeated(&mut self, is_repeated: bool) {
         self.is_repeated = is_repeated;
     }

@@ -8,8 +8,9 @@ use crate::model::{BASE_NQ, BASE_NV, Model};
 use crate::spatial::{Scalar, Vec3};
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Evaluates the desired motion and the tracking error of every active control at the given state.
-    /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) in `data`.
+    /// Evaluates the desired motion and the tracking error of every active control at `t`, s, and the state
+    /// `q`, `(nq,)`, and `v`, `(nv,)`. Requires up-to-date kinematics
+    /// ([`kinematics`](crate::dynamics::kinematics)) in `data`.
     ///
     /// # Errors
     /// [`ControlError::Reference`] if a reference is not defined at this time.

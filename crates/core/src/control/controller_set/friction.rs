@@ -5,7 +5,8 @@ use crate::control::control_law::JointCommand;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Scalar;
 
-/// Rate, rad/s (m/s), at which friction reaches its full value in an engine without static friction.
+/// Rate, rad/s (m/s), at which friction reaches its full value in an engine without static friction; below
+/// this rate, friction is proportional to the rate.
 const CREEP: f64 = 1e-2;
 
 impl<S: Scalar> ControllerSet<'_, S> {

@@ -8,7 +8,9 @@ use crate::model::Model;
 use crate::spatial::{Mat3, Scalar, Vec3};
 
 impl<S: Scalar> ControllerSet<'_, S> {
-    /// Sets the pose of the tracked frame of each control in the frame of its load; `None` if it does not hold the load.
+    /// Sets the pose of the tracked frame in the frame of the load for each control with a load. `pose`
+    /// returns this pose from the index of the tracked frame and the frame of the load, or `None` if the
+    /// tracked frame does not hold the load.
     pub fn set_loads(&mut self, pose: impl Fn(usize, LoadFrame) -> Option<(Mat3<f64>, Vec3<f64>)>) {
         for (control, state) in self.controls.iter().zip(&mut self.states) {
             let tracked = control.law.task().zip(control.load);
@@ -32,8 +34,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// a loop.
     ///
     /// # Errors
-    /// [`ControlError`] for a force of a loop that does not exist or of a direction in which it transmits none, and for
-    /// numbers that are not finite.
+    /// [`ControlError`] for a loop that does not exist, a component along which the loop transmits no force
+    /// or moment, and numbers that are not finite or exceed 1e20 in magnitude.
     pub fn check_internal_forces(&self, model: &Model, captures: &[String]) -> Result<(), ControlError> {
         for control in self.controls.iter() {
             for force in &control.internal_forces {

@@ -1,4 +1,4 @@
-//! The controls of a run as a set.
+//! Evaluation of the list of controls of a run.
 
 mod activation;
 mod commands;
@@ -24,12 +24,12 @@ use crate::model::Model;
 use crate::reference::{TaskReference, TaskSample};
 use crate::spatial::Scalar;
 
-/// Controls of a run, with their states and with workspaces that are allocated once.
+/// List of the controls of a run, with their states and with workspaces that are allocated once.
 pub struct ControllerSet<'a, S> {
     controls: &'a mut [Control],
     states: Vec<ControlState>,
-    /// Time, s, of the last evaluation of desired motions and errors, at the state `q`, `v`; NaN if their
-    /// values are outdated.
+    /// Time, s, at which desired motions and errors were last evaluated, at the state `q`, `v`; NaN if they
+    /// are outdated.
     evaluated_at: f64,
     /// Difference, s, up to which two instants are treated as equal.
     same_instant: f64,
@@ -54,25 +54,26 @@ pub struct ControllerSet<'a, S> {
     q: Vec<f64>,
     v: Vec<f64>,
     tau: Vec<f64>,
-    /// External torque commands, `(n,)`, N m (N), for joints without an active control.
+    /// External torque commands, `(n,)`, N m (N), for joints without an active control; `None` without a
+    /// command.
     commanded: Vec<Option<f64>>,
     jacobian: Vec<f64>,
-    /// Numbers of the events that have happened.
+    /// Indices of the events that have happened.
     events: Vec<usize>,
     /// Efforts of a group, N m (N), its rates, rad/s (m/s), and the workspace of its law.
     group: [Vec<f64>; 3],
-    /// Tree of connected robots whose model the laws use.
+    /// Tree of connected robots whose model the laws use; `None` if they use the model of the robot.
     known: Option<Box<KnownTree>>,
-    /// Solver for the torques if the robot has closed loops.
+    /// Solver for the torques of a robot with closed loops; `None` if the robot has none.
     looped: Option<Box<Looped<S>>>,
-    /// True if the next update repeats the previous one, in which case laws with a state, such as
-    /// user-defined ones, keep their torques.
+    /// True if the next update repeats the previous one; see [`ControllerSet::set_repeated`].
     is_repeated: bool,
 }
 
 impl<'a, S: Scalar> ControllerSet<'a, S> {
-    /// Checks the controls, resets user-defined controllers, and allocates the workspaces. `knows_others`
-    /// must be true if [`ControllerSet::know`] will be called.
+    /// Checks the controls, resets user-defined controllers, and allocates the workspaces. Times that differ
+    /// by at most `same_instant`, s, are treated as equal. `knows_others` must be true if
+    /// [`ControllerSet::know`] will be called.
     ///
     /// # Errors
     /// The errors of [`check_controls`] and of user-defined controllers.
@@ -126,14 +127,14 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         })
     }
 
-    /// Sets the tree of connected robots whose model the laws use instead of the robot's model; `None`
-    /// selects the latter.
+    /// Sets the tree of connected robots whose model the laws use; with `None`, they use the model of the
+    /// robot.
     pub fn know(&mut self, known: Option<KnownTree>) {
         self.known = known.map(Box::new);
     }
 
-    /// Returns the tree of connected robots whose model the laws use; `None` if they use the robot's model.
-    /// The caller must set the state of the tree before an update.
+    /// Returns the tree of connected robots whose model the laws use; `None` if they use the model of the
+    /// robot. The caller must set the state of the tree before an update.
     pub fn known(&mut self) -> Option<&mut KnownTree> {
         self.known.as_deref_mut()
     }
@@ -149,9 +150,9 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.compensates_environment
     }
 
-    /// Returns the desired accelerations of the last update, rad/s² (m/s²), of the joints whose Coulomb
-    /// friction a law compensates, `(n,)`; `None` for the other joints. The drives of these joints add the
-    /// friction torque.
+    /// Returns the desired accelerations of the last update, `(n,)`, rad/s² (m/s²), for the joints whose
+    /// Coulomb friction a law compensates; the drives of these joints add the friction torque. The entries of
+    /// other joints are `None`.
     pub fn desired_accelerations(&self) -> &[Option<f64>] {
         &self.desired_accelerations
     }
@@ -179,7 +180,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.controls.iter().zip(&self.states).find(drives).map(|(control, _)| control)
     }
 
-    /// Sets the numbers of the events that have happened.
+    /// Sets the indices of the events that have happened.
     pub fn set_events(&mut self, happened: &[usize]) {
         self.events.clear();
         self.events.extend_from_slice(happened);
@@ -194,7 +195,7 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         self.controls.iter().zip(&self.states).any(starts)
     }
 
-    /// Returns the external torque commands, `(n,)`, N m (N).
+    /// Returns the external torque commands, `(n,)`, N m (N); `None` for a joint without a command.
     pub fn commanded(&self) -> &[Option<f64>] {
         &self.commanded
     }
@@ -207,22 +208,22 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         }
     }
 
-    /// Returns the desired pose and motion of a control at the instant that was evaluated last, relative to
-    /// the base if the reference is, otherwise in W; `None` without a tracked frame or while the control is
-    /// not active.
+    /// Returns the desired pose and motion of a control (index) at the time of the last evaluation, relative
+    /// to the base if the reference is, otherwise in W; `None` without a tracked frame or while the control
+    /// is not active.
     pub fn desired(&self, control: usize) -> Option<&TaskSample<f64>> {
         let state = &self.states[control];
         state.desired_pose.as_ref().filter(|_| state.is_running())
     }
 
-    /// Returns the tracking error of a control, desired less actual, `(width,)`, at the instant that was
-    /// evaluated last; zeros if the control is not active or has not yet been evaluated, and for a tracked
-    /// frame whose error neither the law nor a goal or column needs.
+    /// Returns the tracking error of a control (index), desired less actual, of length [`Control::width`], at
+    /// the time of the last evaluation. It is zero if the control is not active or has not yet been
+    /// evaluated, and for a tracked frame whose error is not needed by the law, a goal or a trace column.
     pub fn error(&self, control: usize) -> &[f64] {
         &self.states[control].error
     }
 
-    /// Returns the present outcome of a control's goal.
+    /// Returns the present outcome of the goal of a control (index); [`Outcome::Unfinished`] without a goal.
     pub fn outcome(&self, control: usize) -> Outcome {
         self.states[control].memory.outcome
     }
@@ -267,15 +268,15 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         Ok(())
     }
 
-    /// Computes the torques, `(n,)`, N m (N), at `t`, s. Joints without an active control have the torque of
-    /// an external command, or zero.
+    /// Computes the joint torques `tau`, `(n,)`, N m (N), at `t`, s, and the state `q`, `(nq,)`, and `v`,
+    /// `(nv,)`. Joints without an active control have the torque of an external command, or zero.
     ///
     /// Requires up-to-date kinematics ([`kinematics`](crate::dynamics::kinematics)) and, in `data`, the
     /// external wrenches that are to be compensated.
     ///
     /// # Errors
-    /// [`ControlError`] for active controls with a joint in common, a reference that is not defined at `t`,
-    /// or an error of a user-defined controller.
+    /// [`ControlError`] for active controls with a joint in common, a reference that is not defined at `t`, a
+    /// load that is not held, or an error of a user-defined controller.
     pub fn update(
         &mut self,
         t: f64,
@@ -301,8 +302,8 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
         Ok(())
     }
 
-    /// Computes the torques of a task law on all joints if it is the only active control (fast path).
-    /// Otherwise returns false.
+    /// Computes the torques and returns true if the only active control is a task law on all joints (fast
+    /// path). Otherwise returns false.
     fn task_of_whole_robot(
         &mut self,
         model: &Model,
@@ -357,13 +358,14 @@ impl<'a, S: Scalar> ControllerSet<'a, S> {
     }
 }
 
-/// Allocates the solver for the torques of a robot with closed loops; `None` if it has none.
+/// Allocates the solver for the torques of a robot with closed loops; returns `None` if the robot has no
+/// loops.
 fn looped<S: Scalar>(model: &Model, controls: usize) -> Option<Box<Looped<S>>> {
     let names = model.closures().iter().map(|closure| Some(closure.name.clone())).collect();
     Looped::new(model, (0..model.joint_count()).collect(), names, controls).map(Box::new)
 }
 
-/// Returns the solver for the torques of the tree that the controllers use; `None` if it has no closed loops.
+/// Returns the solver for the torques of the tree whose model the laws use; `None` if it has no closed loops.
 fn active_loops<'l, S>(
     known: &'l mut Option<Box<KnownTree>>,
     own: &'l mut Option<Box<Looped<S>>>,

@@ -208,8 +208,8 @@ impl ControlState {
     }
 }
 
-/// Returns the laws of the active controls that command accelerations of a frame, each with its state, and with the
-/// frame and its reference.
+/// Returns the laws of the active controls that command accelerations of a frame, each with the state of its
+/// control, the index of the frame and its reference.
 fn tasks<'c>(
     controls: &'c [Control],
     states: &'c [ControlState],
@@ -240,7 +240,6 @@ fn reduce_to_frame<S: Scalar>(
     }
 }
 
-/// Converts the numbers of a motion to `f64`.
 fn motion<S: Scalar>(m: Motion<S>) -> Motion<f64> {
     Motion::new(m.linear.map(|x| x.value()), m.angular.map(|x| x.value()))
 }
