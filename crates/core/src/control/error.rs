@@ -62,8 +62,8 @@ pub enum ControlError {
     )]
     UnknownLoad { control: String },
     #[error(
-        "control '{control}' has a load or internal forces, but its law does not use them; use computed torque of a tool (or, \
-         for internal forces, of joints)"
+        "control '{control}' has a load or internal forces, but its law does not use them; use computed torque of a \
+         tool (or, for internal forces, of joints)"
     )]
     UnusedLoad { control: String },
     #[error("control '{control}' drives no joint; name at least one joint")]
@@ -204,8 +204,8 @@ pub enum ControlError {
     )]
     PastTrajectory { control: String, end: f64, now: f64 },
     #[error(
-        "control '{control}' has received {of}, which require {gain} > 0 for all of its joints; construct it with gains, such as \
-         External(kp=100, kd=20), or send efforts"
+        "control '{control}' has received {of}, which require {gain} > 0 for all of its joints; construct it with \
+         gains, such as External(kp=100, kd=20), or send efforts"
     )]
     CommandGain { control: String, gain: &'static str, of: &'static str },
     #[error("control '{control}': {source}")]

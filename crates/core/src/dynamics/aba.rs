@@ -52,9 +52,9 @@ pub fn forward_dynamics_recursion<S: Real>(
     );
 }
 
-/// Computes [`forward_dynamics_recursion`] with every joint locked whose entry in `locked`, `(n,)`, is true.
-/// A locked joint has exactly the acceleration in `given`, `(n,)`, or zero if `given` is empty. Its
-/// constraint torque, N m, or force, N, is stored in `holding_torque` of its body.
+/// Computes [`forward_dynamics_recursion`] with locked joints: those whose entry in `locked`, `(n,)`, is
+/// true. A locked joint has exactly the acceleration in `given`, `(n,)`, rad/s² (m/s²), or zero if `given` is
+/// empty. The torque, N m, or force, N, that holds it is stored in `holding_torque` of its body.
 pub(crate) fn locked_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -161,7 +161,7 @@ fn kernel<S: Real>(
 }
 
 /// Returns `IA` and `pA` of a body: `I` and `I a + v ×* I v − F` of the body itself plus the sums over its
-/// children.
+/// children, which the argument contains.
 #[inline(always)]
 fn add_body<S: Real>(
     body: &BodyData<S>,

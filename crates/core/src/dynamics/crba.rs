@@ -7,12 +7,12 @@ use super::subspace::{composite_force, joint_effort};
 use crate::model::Model;
 use crate::spatial::{Real, SpatialInertia};
 
-/// Computes the mass matrix `M(q)`, row major `(nv, nv)`, in kg, kg m and kg m².
+/// Computes the mass matrix `M(q)`, row major `(nv, nv)`, in kg, kg m and kg m², at `q`, `(nq,)`.
 ///
-/// `Mbb = I_0^c`, where `I_k^c` is the composite inertia of the subtree of body `k`. With the motion subspace
-/// `S_k` of joint `k`, the force `I_k^c S_k` is
-/// shifted from body origin to body origin towards the base; its component along joint `j` is `M_jk = S_jᵀ
-/// I_k^c S_k` for each ancestor `j` of `k`, and its value at the base is column `k` of `Mbm`.
+/// The base block is `Mbb = I_0^c`, where `I_k^c` is the composite inertia of the subtree of body `k`. With
+/// the motion subspace `S_k` of joint `k`, the force `I_k^c S_k` is shifted from body origin to body origin
+/// towards the base. Its component along each ancestor joint `j` is `M_jk = S_jᵀ I_k^c S_k`, and its value at
+/// the base is column `k` of `Mbm`.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 6.2.
 pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mut [S]) {
@@ -25,7 +25,7 @@ pub fn mass_matrix<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], out: &mu
     );
 }
 
-/// Computes [`mass_matrix`]. Requires up-to-date `positions` in `data`.
+/// Computes [`mass_matrix`]. Requires up-to-date poses ([`positions`](super::positions)) in `data`.
 #[inline(always)]
 pub(super) fn kernel<S: Real>(model: &Model, data: &mut Data<S>, out: &mut [S]) {
     let (nodes, nv) = (model.nodes(), model.nv());

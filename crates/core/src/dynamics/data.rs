@@ -31,8 +31,8 @@ pub struct BodyData<S> {
     /// in the numbering. Used by [`free_floating`](super::free_floating) at forks, which are bodies with such
     /// children.
     pub subtree_external: Force<S>,
-    /// Spatial acceleration: either its velocity-product part or the complete acceleration, depending on the
-    /// algorithm that ran last.
+    /// Spatial acceleration, m/s² and rad/s²: either its velocity-product part or the complete acceleration,
+    /// depending on the algorithm that ran last.
     pub acceleration: Motion<S>,
     /// Difference between the acceleration and the bias acceleration for `q̈ = 0`. Set by ABA for the base
     /// and at forks.
@@ -77,8 +77,8 @@ impl<S: Real> BodyData<S> {
         SpatialInertia::at_com(self.inertia.mass, self.com_b(), self.inertia.about_com)
     }
 
-    /// Rotates the centre of mass and the inertia of the body to base axes; for the base itself both are
-    /// constant.
+    /// Sets the centre of mass and the inertia of the body in base axes from those in body axes. For the base
+    /// itself both are constant.
     #[inline(always)]
     pub(super) fn rotate_inertia(&mut self, node: &Node) {
         self.inertia.com = self.rot_bk * Vec3::of(&node.com);
@@ -131,8 +131,8 @@ impl<S: Real> Data<S> {
         Self { bodies, joint_sin_cos: vec![(o, o); n - 1], factors: vec![o; nv * nv], forces: vec![o; nv] }
     }
 
-    /// Copies positions, velocities, inertias and wrenches from another workspace of the same model, without
-    /// allocating.
+    /// Copies the quantities of all bodies, and the sines and cosines of the joint positions, from another
+    /// workspace of the same model, without allocating.
     pub(crate) fn copy_from(&mut self, from: &Self) {
         self.bodies.copy_from_slice(&from.bodies);
         self.joint_sin_cos.copy_from_slice(&from.joint_sin_cos);

@@ -10,10 +10,10 @@ use super::rnea::inverse_dynamics_recursion;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::Real;
 
-/// Solves `M a = τ − c + Σ Jᵀ F` for `a`, with the external wrenches `F` in `data`, whose kinematics must be
-/// up to date. A joint is locked if `is_locked` returns true for the index of its body; locked joints have
-/// the accelerations `given`, `(n,)`, or zero if `given` is empty. Stores the accelerations of all bodies and
-/// the holding torques of locked joints in `data`, as the ABA recursion does.
+/// Solves `M a = τ − c + Σ Jᵀ F` for `a` with the external wrenches `F` in `data`. Requires up-to-date
+/// kinematics in `data`. A joint is locked if `is_locked` returns true for the index of its body; locked
+/// joints have the accelerations `given`, `(n,)`, or zero if `given` is empty. Stores the accelerations of
+/// all bodies and the holding torques of locked joints in `data`, as the ABA recursion does.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 10.
 pub(super) fn solve<S: Real>(
@@ -78,8 +78,8 @@ fn remove_joint<S: Real>(m: &mut [S], nv: usize, i: usize) {
     m[i * nv + i] = S::of(1.0);
 }
 
-/// Factorizes `M = L D Lᵀ` in place, with `L` below the diagonal and `D⁻¹` on the diagonal. Pivots below the
-/// rounding error of the diagonal entry are replaced by it.
+/// Factorizes `M = L D Lᵀ` in place, with `L` below the diagonal and `D⁻¹` on the diagonal. A pivot that is
+/// smaller than the rounding error of its diagonal entry is replaced by that rounding error.
 #[inline(always)]
 fn factorize<S: Real>(m: &mut [S], nv: usize) {
     for i in 0..nv {
@@ -104,7 +104,7 @@ fn factorize<S: Real>(m: &mut [S], nv: usize) {
     }
 }
 
-/// Solves `L D Lᵀ x = b` with the factors in `m`; `x` holds `b` on entry.
+/// Solves `L D Lᵀ x = b` with the factors in `m`; on entry `x` contains `b`.
 #[inline(always)]
 fn substitute<S: Real>(m: &[S], nv: usize, x: &mut [S]) {
     for i in 0..nv {

@@ -24,7 +24,7 @@ use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, 
 /// Source: Umetani and Yoshida, IEEE Trans. Robotics and Automation 5(3), 1989.
 #[derive(Clone, Debug)]
 pub struct FreeFloating<S> {
-    /// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `(n, n)`, kg, kg m, kg m².
+    /// `M* = Mmm − Mbmᵀ Mbb⁻¹ Mbm`, `(n, n)`, in kg, kg m and kg m².
     pub inertia: Vec<S>,
     /// `c* = c_m − Mbmᵀ Mbb⁻¹ c_b`, `(n,)`, N m (N).
     pub bias: Vec<S>,
@@ -32,9 +32,9 @@ pub struct FreeFloating<S> {
     pub external: Vec<S>,
     /// `Jg = Jm − Jb Mbb⁻¹ Mbm`, `(6, n)`.
     pub jacobian: Vec<S>,
-    /// `d = J̇ v − Jb Mbb⁻¹ (c_b − Qb)`, m/s² and rad/s².
+    /// `d = J̇ v − Jb Mbb⁻¹ (c_b − Qb)`, m/s² and rad/s², in W axes.
     pub drift: Motion<S>,
-    /// Pose of the frame.
+    /// Pose of the frame in W.
     pub pose: FramePose<S>,
     /// Twist at the origin of the frame in W axes, m/s and rad/s.
     pub velocity: Motion<S>,
@@ -101,7 +101,7 @@ pub fn free_floating_recursion<S: Real>(
     );
 }
 
-/// Replaces the pose, twist, `Jg` and `d` in `out` by those of another frame. Requires the results of
+/// Replaces the pose, twist, `Jg` and `d` in `out` by those of another frame (index). Requires the results of
 /// [`free_floating_recursion`] in `out`.
 pub fn free_floating_frame<S: Real>(
     model: &Model,
@@ -120,8 +120,8 @@ pub fn free_floating_frame<S: Real>(
     );
 }
 
-/// Replaces the pose, twist, Jacobian and drift in `out` by those of a frame relative to the base B, in base
-/// axes.
+/// Replaces the pose, twist, Jacobian and drift in `out` by those of a frame (index) relative to the base B,
+/// in base axes.
 ///
 /// `ẋ = J q̇`, `ẍ = J q̈ + d`, `d = J̇ q̇`, with twists relative to the base. Because the motion of the base
 /// cancels, `J` is the Jacobian of the arm alone. Requires up-to-date [`kinematics`] in `data`.

@@ -33,7 +33,8 @@ pub fn frame_jacobian<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: us
     );
 }
 
-/// Writes column `j` of a Jacobian with `width` columns: `twist` in base axes, rotated to W.
+/// Writes `twist`, which is in base axes, to column `j` of a Jacobian with `width` columns, rotated to W
+/// axes.
 #[inline(always)]
 pub(super) fn write_column<S: Real>(
     out: &mut [S],
@@ -77,15 +78,16 @@ pub fn frame_drift<S: Real>(model: &Model, data: &Data<S>, q: &[S], v: &[S], fra
     )
 }
 
-/// Returns the acceleration of a frame origin, m/s², and the angular acceleration of the frame, rad/s², in W
-/// axes. Requires the accelerations of the bodies in `data`, which the recursions of forward and inverse
-/// dynamics store.
+/// Returns the classical acceleration of the origin of a frame (index), m/s², and the angular acceleration of
+/// the frame, rad/s², in W axes. Requires the accelerations of the bodies in `data`, which the recursions of
+/// forward and inverse dynamics store.
 pub fn frame_acceleration<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize) -> Motion<S> {
     let spatial = data.bodies[model.frames()[frame].body].acceleration;
     classical_acceleration(model, data, q, frame, spatial)
 }
 
-/// Converts the spatial acceleration of a body to the classical acceleration of a frame origin in W axes.
+/// Converts the spatial acceleration of a body, in base axes, to the classical acceleration of the origin of
+/// a frame (index) on this body, in W axes.
 ///
 /// A spatial acceleration is the rate of change of the velocity field at a fixed point. The classical
 /// acceleration follows the material point ([`point_acceleration`]).

@@ -16,7 +16,7 @@ pub struct FramePose<S> {
 }
 
 /// Computes poses, joint axes and inertias of all bodies in base axes from the joint positions in `q`,
-/// `(nq,)`, rad and m.
+/// `(nq,)`, rad (m).
 pub fn positions<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
     S::enter(
         #[inline(always)]
@@ -24,7 +24,7 @@ pub fn positions<S: Real>(model: &Model, data: &mut Data<S>, q: &[S]) {
     );
 }
 
-/// Computes [`positions`] and the twists of all bodies from `q`, `(nq,)`, and `v`, `(nv,)`.
+/// Computes [`positions`] and the twists of all bodies in base axes from `q`, `(nq,)`, and `v`, `(nv,)`.
 pub fn kinematics<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], v: &[S]) {
     S::enter(
         #[inline(always)]
@@ -70,7 +70,7 @@ pub(crate) fn kinematics_kernel<S: Real>(model: &Model, data: &mut Data<S>, q: &
     );
 }
 
-/// Returns the joint positions in `q`, and stores their sines and cosines.
+/// Returns the joint positions, `(n,)`, in `q`, `(nq,)`, and stores their sines and cosines.
 #[inline(always)]
 fn joint_positions<'q, S: Real>(model: &Model, q: &'q [S], joint_sin_cos: &mut [(S, S)]) -> &'q [S] {
     let q = &q[7..model.nq()];
@@ -125,7 +125,7 @@ pub(crate) fn frame_rotation_b<S: Real>(data: &Data<S>, frame: &Frame) -> Mat3<S
     data.bodies[frame.body].rot_bk * Mat3::of(&frame.rot_kf)
 }
 
-/// Returns the rotation `R_wb` from base axes to W.
+/// Returns the rotation `R_wb` from base axes to W in `q`, `(nq,)`.
 #[inline(always)]
 pub(crate) fn base_rotation<S: Real>(q: &[S]) -> Mat3<S> {
     Quat::from_xyzw(&q[3..]).matrix()
@@ -142,8 +142,8 @@ pub fn frame_pose<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize)
     }
 }
 
-/// Returns the velocity of a frame origin, m/s, and the angular velocity of the frame, rad/s, in W axes.
-/// Requires up-to-date kinematics ([`kinematics`]) in `data`.
+/// Returns the velocity of the origin of a frame (index), m/s, and the angular velocity of the frame, rad/s,
+/// in W axes. Requires up-to-date kinematics ([`kinematics`]) in `data`.
 #[inline(always)]
 pub fn frame_velocity<S: Real>(model: &Model, data: &Data<S>, q: &[S], frame: usize) -> Motion<S> {
     let frame = &model.frames()[frame];

@@ -15,8 +15,8 @@ pub struct Momentum<S> {
     pub angular: Vec3<S>,
 }
 
-/// Returns the composite inertia of the robot and its momentum `Σ I v`, both in B about the base origin.
-/// Requires up-to-date kinematics ([`kinematics`](super::kinematics)) in `data`.
+/// Returns the composite inertia of the robot and its momentum `Σ I v`, both about the base origin in base
+/// axes. Requires up-to-date kinematics ([`kinematics`](super::kinematics)) in `data`.
 #[inline(always)]
 pub fn composite_momentum<S: Real>(data: &Data<S>) -> (SpatialInertia<S>, Force<S>) {
     let mut inertia = SpatialInertia::zero();
@@ -40,7 +40,8 @@ pub fn momentum<S: Real>(data: &Data<S>, q: &[S]) -> Momentum<S> {
     )
 }
 
-/// Converts a momentum in B about the base origin to W axes about the centre of mass.
+/// Converts a momentum about the base origin in base axes to one about the centre of mass in W axes; `com` is
+/// in B, m.
 #[inline(always)]
 fn about_com<S: Real>(h: Force<S>, com: Vec3<S>, rot_wb: &Mat3<S>) -> Momentum<S> {
     // L_com = L − r_c × p, with the centre of mass r_c

@@ -1,8 +1,8 @@
 //! Passes over the tree: from the root to the leaves and from the leaves to the root.
 //!
 //! In most robots the parent of a body is the body with the preceding number. Values between such bodies are
-//! passed in registers; they are stored in the memory of the parent only where a tree forks. On a chain,
-//! memory traffic would cost more than the arithmetic.
+//! passed in registers; they are stored in the memory of the parent only where a tree forks. On a chain of
+//! bodies, the memory accesses would cost more than the arithmetic.
 
 use super::data::BodyData;
 use crate::model::Node;
@@ -58,7 +58,8 @@ pub(super) fn leaf_to_root<S: Real, T: Accumulated<S>>(
     if nodes[0].is_fork { next.plus(T::stored(&bodies[0])) } else { next }
 }
 
-/// Quantity summed over the children of a body, with its storage in the body data where a tree forks.
+/// Quantity that is summed over the children of a body. Where a tree forks, the sum is stored in
+/// [`BodyData`].
 pub(super) trait Accumulated<S>: Copy {
     /// Returns the value of a body without children.
     fn zero() -> Self;

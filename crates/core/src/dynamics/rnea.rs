@@ -10,8 +10,8 @@ use crate::spatial::{Force, Motion, Real};
 
 /// Computes the generalized forces `τ = M a + c − Σ Jᵀ F` for the acceleration `a` and external wrenches `F`.
 ///
-/// `q`: `(nq,)`; `v`, `a`, `tau` (out): `(nv,)`; `tau[..6]` is the wrench on the base in base axes, N and N
-/// m.
+/// `q`: `(nq,)`; `v`, `a`, `tau` (out): `(nv,)`; `tau[..6]` is the wrench on the base, about its origin in
+/// base axes, N and N m.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 5.1.
 pub fn inverse_dynamics<S: Real>(
@@ -45,8 +45,8 @@ pub fn bias_forces<S: Real>(
     inverse_dynamics_recursion(model, data, v, None, c);
 }
 
-/// Computes [`inverse_dynamics`] with the external wrenches stored in `data`; `a = None` means zero. Requires
-/// up-to-date [`kinematics`] in `data`.
+/// Computes [`inverse_dynamics`] with the external wrenches stored in `data`; if `a` is `None`, it is zero.
+/// Requires up-to-date [`kinematics`] in `data`.
 pub fn inverse_dynamics_recursion<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -88,8 +88,8 @@ fn kernel<S: Real>(model: &Model, data: &mut Data<S>, v: &[S], a: Option<&[S]>, 
     bodies[0].force.write(tau);
 }
 
-/// Computes the accelerations `a_k = a_p + v_k × S q̇ + S q̈` of all bodies; `a = None` means that the
-/// accelerations of the base and the joints are zero.
+/// Computes the accelerations `a_k = a_p + v_k × S q̇ + S q̈` of all bodies from `v` and `a`, `(nv,)`. If `a`
+/// is `None`, the accelerations of the base and the joints are zero.
 #[inline(always)]
 pub(super) fn body_accelerations<S: Real>(
     nodes: &[Node],

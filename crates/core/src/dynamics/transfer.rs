@@ -6,8 +6,8 @@ use crate::model::{BASE_NQ, BASE_NV, Model, ModelError};
 use crate::spatial::{Quat, Vec3};
 
 /// Returns the configuration `(nq,)` and the velocity `(nv,)` with which the links of the model `to` have the
-/// same poses and twists as the links of the model `from` at `q` and `v`. `to` is either the robot of `from`
-/// with another root ([`Model::rerooted`]) or a part of that robot.
+/// same poses and twists as the links of the model `from` at `q` and `v`. The model `to` is either that of
+/// the same robot with another root ([`Model::rerooted`]) or that of a part of the robot.
 ///
 /// # Errors
 /// [`ModelError::UnknownName`] for a joint or a base of `to` that `from` does not have.

@@ -10,10 +10,12 @@ use crate::dynamics::jacobian::unit_axes;
 use crate::model::Model;
 use crate::spatial::{Real, Vec3};
 
-/// Computes the derivatives of [`forward_dynamics`] with respect to `q`, `v` and `tau`.
-/// Each matrix is row major `(nv, nv)`, with the derivatives of `a_i` in row `i`: `∂a/∂τ = M⁻¹` and `∂a/∂x =
-/// −M⁻¹ ∂τ/∂x` for `x = q, v`, where `∂τ/∂x` is the derivative of inverse dynamics at the acceleration `a`.
-/// The tangent space of `q` and the quantities held constant are defined in [`derivatives`](super).
+/// Computes the derivatives `dq`, `dv` and `dtau` of [`forward_dynamics`] with respect to `q`, `v` and `tau`.
+///
+/// Each matrix is row major `(nv, nv)`, with the derivatives of `a_i` in row `i`: `∂a/∂τ = M⁻¹` and
+/// `∂a/∂x = −M⁻¹ ∂τ/∂x` for `x = q, v`, where `∂τ/∂x` is the derivative of inverse dynamics at the
+/// acceleration `a`. The tangent space of `q` and the quantities held constant are defined in
+/// [`derivatives`](super).
 pub fn forward_dynamics_derivatives<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -70,7 +72,7 @@ fn kernel<S: Real>(
     subtract_cross(twist.angular, 3, 3, nv, dv);
 }
 
-/// Subtracts `v×` from a 3 × 3 block.
+/// Subtracts `v×` from the 3 × 3 block of `out` that begins at `row` and `column`.
 #[inline(always)]
 fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out: &mut [S]) {
     for j in 0..3 {
@@ -86,7 +88,7 @@ fn subtract_cross<S: Real>(v: Vec3<S>, row: usize, column: usize, nv: usize, out
 const TILE: usize = 4;
 
 /// Computes `A b` for a symmetric matrix `A`, `(nv, nv)` with `nv ≥ 6`, and `N` columns `b`, given by their
-/// nonzero rows. Passes each row of the result to a callback, some rows twice.
+/// nonzero rows. Passes the index and the values of each row of the result to `write`, for some rows twice.
 #[inline(always)]
 fn product<S: Real, const N: usize>(
     a: &[S],

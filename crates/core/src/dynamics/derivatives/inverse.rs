@@ -9,8 +9,8 @@ use crate::dynamics::rnea::inverse_dynamics_recursion;
 use crate::model::Model;
 use crate::spatial::{Motion, Real};
 
-/// Computes the derivatives of [`inverse_dynamics`](crate::dynamics::inverse_dynamics) with respect to
-/// `q`, `v` and `a`.
+/// Computes the derivatives `dq`, `dv` and `da` of [`inverse_dynamics`](crate::dynamics::inverse_dynamics)
+/// with respect to `q`, `v` and `a`.
 ///
 /// Each matrix is row major `(nv, nv)`, with the derivatives of `τ_i` in row `i`; the derivative with respect
 /// to `a` is the mass matrix. The tangent space of `q` and the quantities held constant are defined in

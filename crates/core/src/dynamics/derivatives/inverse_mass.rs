@@ -9,7 +9,7 @@ use crate::spatial::{Force, Motion, Real};
 /// Computes `M⁻¹`, row major `(nv, nv)`: column `j` is the acceleration that a unit generalized force `τ_j`
 /// causes at rest.
 ///
-/// Because `M⁻¹` is symmetric, column `j` is computed only for bodies numbered up to the body of `j`.
+/// Because `M⁻¹` is symmetric, the entries of column `j` are computed only up to row `j`.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, Table 7.1.
 #[inline(always)]
@@ -60,7 +60,7 @@ pub(super) fn inverse_mass<S: Real>(
     }
 }
 
-/// Writes a twist to the six rows of the base in column `j`.
+/// Writes the twist of the base to the first six rows of column `j`.
 #[inline(always)]
 fn base_rows<S: Real>(twist: Motion<S>, nv: usize, j: usize, out: &mut [S]) {
     let rows = components(Force::new(twist.linear, twist.angular));

@@ -6,12 +6,13 @@
 //! constant in the axes of their frames, about the frame origins, so they move with their bodies. Forces in
 //! `tau[..6]` are held constant in base axes. The dynamics are therefore independent of the pose of the base,
 //! and the first six columns of the derivatives of generalized forces and accelerations with respect to `q`
-//! are zero. The first six columns for quantities in W axes are not zero.
+//! are zero. The first six columns of the derivatives of quantities in W axes are not zero.
 //!
 //! A change of the position of joint `j` moves its whole subtree `C`. In axes that move with the subtree, the
 //! forces change only because of the velocity `Ψ̇ = v × S` and the acceleration `Ψ̈ = a × S + v × Ψ̇` of the
 //! joint axis, with the motion subspace `S` of the joint and the twist `v` and acceleration `a` of its body.
-//! With the composite inertia `I_C`, the Coriolis operator `2B_C` and the force `f_C` through the joint:
+//! With the composite inertia `I_C`, the Coriolis operator `2B_C` and the force `f_C` through the joint, the
+//! derivatives of this force are
 //!
 //! ```text
 //! ∂f_C/∂q_j = 2B_C Ψ̇ + I_C Ψ̈ + S ×* f_C        ∂f_C/∂q̇_j = 2B_C S + 2 I_C Ψ̇

@@ -10,13 +10,14 @@ use crate::dynamics::subspace::subspace;
 use crate::model::{Frame, Model};
 use crate::spatial::{Force, InverseInertia, Mat3, Motion, Real, SpatialInertia, Vec3};
 
-/// Computes the derivatives, with respect to `q` and `v`, of the joint torques `τ = M* q̈ + c* − Q*`, of the
-/// acceleration `ẍ = Jg q̈ + d` of a frame and of the frame's twist `ẋ`, at given joint accelerations.
+/// Computes derivatives of the reduced model at given joint accelerations: those of the joint torques
+/// `τ = M* q̈ + c* − Q*` and of the acceleration `ẍ = Jg q̈ + d` of a frame with respect to `q` and `v`, and
+/// that of the frame's twist `ẋ` with respect to `q`.
 ///
-/// `acceleration`: `q̈`, `(n,)`; `frame`: an index. Out, row major: `∂τ/∂q` and `∂τ/∂v`, `(n, nv)`; `∂ẍ/∂q`,
-/// `∂ẍ/∂v` and `∂ẋ/∂q`, `(6, nv)`, with rows in W axes, linear first. The remaining derivatives are already
-/// known: `∂τ/∂q̈ = M*`, `∂ẍ/∂q̈ = Jg`, `∂ẋ/∂v = J`. For `q̈ = 0` the results are the derivatives of `c* −
-/// Q*` and `d`.
+/// `acceleration` is `q̈`, `(n,)`, rad/s² (m/s²), and `frame` is an index. `out` receives, row major and in
+/// this order, `∂τ/∂q` and `∂τ/∂v`, `(n, nv)`, and `∂ẍ/∂q`, `∂ẍ/∂v` and `∂ẋ/∂q`, `(6, nv)`, with rows in W
+/// axes, linear first. The remaining derivatives are matrices of the model itself: `∂τ/∂q̈ = M*`,
+/// `∂ẍ/∂q̈ = Jg`, `∂ẋ/∂v = J`. For `q̈ = 0` the results are the derivatives of `c* − Q*` and `d`.
 ///
 /// The tangent space of `q` and the quantities held constant are defined in [`derivatives`](super).
 pub fn free_floating_derivatives<S: Real>(
@@ -168,7 +169,7 @@ impl<S: Real> FramePoint<S> {
         Motion::new(omega.cross(self.velocity.linear) * S::of(2.0), omega.cross(self.velocity.angular))
     }
 
-    /// Writes column `j`, rotated to W axes.
+    /// Writes `m`, rotated to W axes, to column `j` of `out`, `(6, nv)`.
     #[inline(always)]
     fn write(&self, out: &mut [S], nv: usize, j: usize, m: Motion<S>) {
         let rotated = Force::new(self.rot_wb * m.linear, self.rot_wb * m.angular);

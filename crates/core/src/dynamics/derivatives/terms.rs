@@ -23,7 +23,7 @@ pub struct Derivatives<S> {
     pub(super) force: Vec<S>,
 }
 
-/// One row of a block with `N` columns.
+/// One row of a block with `N` columns, and its index in the whole matrix.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row<S, const N: usize> {
     pub(super) index: usize,
@@ -80,7 +80,7 @@ impl<S: Real> Derivatives<S> {
         }
     }
 
-    /// Computes `bodies`. Requires the velocities and accelerations of all bodies in `data`.
+    /// Computes the terms of all bodies. Requires the velocities and accelerations of all bodies in `data`.
     #[inline(always)]
     pub(super) fn compute_bodies(&mut self, nodes: &[Node], data: &Data<S>) {
         let (terms, bodies) = (&mut self.bodies[..nodes.len()], &data.bodies[..nodes.len()]);

@@ -8,12 +8,13 @@ use crate::dynamics::kinematics::kinematics;
 use crate::model::Model;
 use crate::spatial::Real;
 
-/// Joints that are locked, `(n,)`, and their given accelerations, `(n,)`, or an empty slice if these are zero.
+/// Locked joints: for each joint, `(n,)`, whether it is locked, and the accelerations of the locked joints,
+/// `(n,)`, rad/s² (m/s²), or an empty slice if these are zero. `None` if no joint is locked.
 pub(crate) type Locked<'a> = Option<(&'a [bool], &'a [f64])>;
 
-/// Computes the acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F + Jᵀ λ)` under the constraints `J a + J̇ v = 0` of `loops`.
-/// The constraint forces are then [`ClosedLoops::forces`]. Returns the rank of `J`, the number of independent
-/// constraints.
+/// Computes the acceleration `a = M⁻¹ (τ − c + Σ Jᵀ F + Jᵀ λ)` under the constraints `J a + J̇ v = 0` of
+/// `loops`. Afterwards [`ClosedLoops::forces`] returns the constraint forces `λ`. Returns the rank of `J`,
+/// which is the number of independent constraints.
 ///
 /// `q`: `(nq,)`; `v`, `tau`, `a` (out): `(nv,)`; `tau[..6]` is a wrench on the base in base axes, N and N m. The
 /// velocity must satisfy the constraints.
@@ -80,9 +81,9 @@ impl<S: Real> ClosedLoops<S> {
         }
     }
 
-    /// Solves `A λ = b`, where `force` holds `b` and then `λ`, and returns the rank of `A`. Requires the
-    /// articulated-body inertias, or the factors of `M`, of forward dynamics with the same locked joints in
-    /// `data`.
+    /// Solves `A λ = b`, where `force` contains `b` before and `λ` after the call, and returns the rank of
+    /// `A`. Requires the articulated-body inertias, or the factors of `M`, of forward dynamics with the same
+    /// locked joints in `data`.
     #[inline(always)]
     pub(super) fn solve(&mut self, model: &Model, data: &Data<S>, locked: Option<&[bool]>) -> S {
         let Self { rows, force, matrix, supported, scratch, compliance, scale, base, .. } = self;

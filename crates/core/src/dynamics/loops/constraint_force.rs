@@ -5,14 +5,15 @@ use crate::spatial::{Real, cholesky_solve};
 /// Pivot of the scaled matrix below which a row counts as dependent on the rows before it.
 const DEPENDENT: f64 = 1e-10;
 
-/// Solves `A λ = b` for a positive semidefinite matrix `A`, `(m, m)`, whose lower triangle is given and is
-/// replaced by its factors. `x` holds `b` and then `λ`. Returns the rank of `A`.
+/// Solves `A λ = b` for a positive semidefinite matrix `A`, `(m, m)`, given by its lower triangle, which its
+/// factors replace. `x` contains `b` before and `λ` after the call. Returns the rank of `A`.
 ///
-/// The rows have different units, so the matrix is first scaled to `D^(−1/2) A D^(−1/2)` with `D = diag(A) + C`,
-/// where `compliance` holds the diagonal `C` of what `A` would be if the force of each row acted on one of its two
-/// bodies only. A row whose pivot then vanishes depends on the rows before it, as happens with redundant closures
-/// and in singular configurations. Its constraint force is set to zero, since the other rows already imply its
-/// equation. For consistent equations the result is a solution.
+/// The rows have different units, so the matrix is first scaled to `D^(−1/2) A D^(−1/2)` with
+/// `D = diag(A) + C`. `compliance` contains the diagonal `C`: for each row, the acceleration that its force
+/// would give to the base if it acted on only one of its two bodies. `C` prevents the scaling from magnifying
+/// a diagonal entry that is only a rounding error. A row whose pivot then vanishes depends on the rows before
+/// it, as happens with redundant closures and in singular configurations. Its constraint force is set to
+/// zero, since the other rows already imply its equation. For consistent equations the result is a solution.
 ///
 /// Source: Higham, Accuracy and Stability of Numerical Algorithms, 2002, section 10.3.
 #[inline(always)]

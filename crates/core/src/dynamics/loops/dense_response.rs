@@ -9,7 +9,7 @@ use crate::dynamics::subspace::joint_effort;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Force, Real, dot};
 
-/// Computes the rows of `J`, `(m, nv)`, in the coordinates of `v`.
+/// Computes the constraint Jacobian `J`, row major `(m, nv)`.
 #[inline(always)]
 pub(super) fn jacobian<S: Real>(model: &Model, data: &Data<S>, rows: &[Row<S>], out: &mut [S]) {
     let (nodes, nv) = (model.nodes(), model.nv());
@@ -53,8 +53,8 @@ pub(super) fn inverse_apparent_mass<S: Real>(
     }
 }
 
-/// Computes `Fᵀ I_0⁻¹ F` for the force `F` of each row on its second body, about the base origin, with the inertia
-/// `I_0` of the whole robot.
+/// Computes the compliance `Fᵀ I_0⁻¹ F` of each row, `(m,)`, from its force `F` on the second body, about the
+/// base origin, and the inertia `I_0` of the whole robot.
 #[inline(always)]
 pub(super) fn compliance<S: Real>(data: &Data<S>, rows: &[Row<S>], out: &mut [S]) {
     for (out, row) in out.iter_mut().zip(rows) {
@@ -91,7 +91,8 @@ pub(super) fn add_response<S: Real>(
     }
 }
 
-/// Sets the entries of locked joints, which the factors of `M` do not contain, to zero.
+/// Sets the entries of locked joints in `x`, `(nv,)`, to zero, because the factors of `M` do not contain
+/// these joints.
 #[inline(always)]
 fn clear_locked<S: Real>(x: &mut [S], locked: Option<&[bool]>) {
     if let Some(locked) = locked {

@@ -8,7 +8,7 @@ use crate::spatial::{Scalar, dot};
 /// Pivot, relative to the sizes of its row and its column, below which a constraint counts as dependent on those
 /// before it.
 const DEPENDENT: f64 = 1e-7;
-/// Least lever arm, m, by which metres and radians are compared: shorter ones may be rounding errors.
+/// Smallest lever arm, m, for the comparison of metres and radians; a shorter one may be a rounding error.
 const SHORTEST: f64 = 1e-3;
 
 impl<S: Scalar> ClosedLoops<S> {
@@ -21,8 +21,9 @@ impl<S: Scalar> ClosedLoops<S> {
     /// `jacobian`, `(m, n)`, and `k` to `right`, `(m,)`. Constraints inside a robot do not depend on the motion of
     /// the base, because both forces of a row act along one line.
     ///
-    /// Requires in `data` the kinematics, and the accelerations of all bodies if no joint accelerates, which
-    /// [`free_floating_recursion`](crate::dynamics::free_floating_recursion) computes.
+    /// Requires in `data` the kinematics, and the accelerations that the bodies have while no joint
+    /// accelerates; [`free_floating_recursion`](crate::dynamics::free_floating_recursion) computes these
+    /// accelerations.
     pub fn joint_constraints(
         &mut self,
         model: &Model,
@@ -79,10 +80,11 @@ impl IndependentJoints {
         self.independent.len()
     }
 
-    /// Chooses the independent joints and computes `G` and `g`. `jacobian` is `K`, `(m, n)`, and `right` is `k`,
-    /// `(m,)`. `class` is `(n,)`: joints of a lower class become dependent before those of a higher one, so that
-    /// dependent joints of a class depend only on independent joints of the same and of higher classes.
-    /// `is_length` has an entry for each row and for each joint, `(m,)` and `(n,)`, which is true if its unit is m.
+    /// Chooses the independent joints and computes `G` and `g`. `jacobian` is `K`, `(m, n)`, and `right` is
+    /// `k`, `(m,)`. `class` is `(n,)`: joints of a lower class become dependent before those of a higher one,
+    /// so that dependent joints of a class depend only on independent joints of the same and of higher
+    /// classes. `is_length` contains, for each row, `(m,)`, and for each joint, `(n,)`, whether its unit is
+    /// m.
     pub fn solve(&mut self, (jacobian, right): (&[f64], &[f64]), class: &[u8], is_length: [&[bool]; 2]) {
         (self.n, self.m) = (class.len(), right.len());
         self.fill(jacobian, right);
@@ -101,8 +103,8 @@ impl IndependentJoints {
         self.write_map();
     }
 
-    /// Sets the sizes of the rows and of the columns. Metres and radians are compared by means of the longest lever
-    /// arm, the largest displacement per angle in `K`.
+    /// Sets the sizes of the rows and of the columns. Metres and radians are compared by means of the longest
+    /// lever arm, which is the largest displacement per angle in `K`.
     fn set_sizes(&mut self, [rows, columns]: [&[bool]; 2]) {
         let (n, width) = (self.n, self.width());
         let mut lever = 0.0_f64;
@@ -134,7 +136,7 @@ impl IndependentJoints {
         found
     }
 
-    /// Returns `Gᵀ A G`, `(f, f)`, for a matrix `A`, `(n, n)`.
+    /// Writes `Gᵀ A G`, row major `(f, f)`, for a matrix `A`, `(n, n)`, to `out`.
     pub fn reduce_matrix(&self, a: &[f64], out: &mut Vec<f64>) {
         let (n, f) = (self.n, self.count());
         let mut product = vec![0.0; n * f];
@@ -159,20 +161,22 @@ impl IndependentJoints {
         }
     }
 
-    /// Returns `Gᵀ x` at the independent joint `column`, for joint efforts `x`, `(n,)`.
+    /// Returns entry `column` of `Gᵀ x`, the effort at that independent joint; `x` returns the effort of a
+    /// joint.
     pub fn reduced_effort(&self, column: usize, x: impl Fn(usize) -> f64) -> f64 {
         (0..self.n).map(|j| self.map[j * self.count() + column] * x(j)).sum()
     }
 
-    /// Computes the joint accelerations `q̈ = G ÿ + g`, `(n,)`.
+    /// Computes the joint accelerations `q̈ = G ÿ + g`, `(n,)`, rad/s² (m/s²), from those of the independent
+    /// joints, `y`, `(f,)`.
     pub fn accelerations(&self, y: &[f64], out: &mut [f64]) {
         for (j, out) in out.iter_mut().enumerate() {
             *out = dot(&self.map[j * self.count()..], &y[..self.count()]) + self.drift[j];
         }
     }
 
-    /// Returns the constraint forces `λ`, `(m,)`, with `Kᵀ λ = f`, from the entries of `f` at the dependent joints;
-    /// the forces of redundant rows are zero. `force` returns `f` at a joint.
+    /// Computes the constraint forces `lambda`, `(m,)`, with `Kᵀ λ = f` from the entries of `f` at the
+    /// dependent joints; the forces of redundant rows are zero. `force` returns the entry of `f` for a joint.
     pub fn constraint_forces(&self, force: impl Fn(usize) -> f64, lambda: &mut [f64]) {
         lambda.fill(0.0);
         for &(joint, row) in &self.dependent {
@@ -181,8 +185,8 @@ impl IndependentJoints {
         }
     }
 
-    /// Returns the change of the constraint force of row `i` per unit of `f` at the dependent joint with the pivot
-    /// in row `row`.
+    /// Returns the change of the constraint force of row `i` per unit of `f` ([`Self::constraint_forces`]) at
+    /// the dependent joint whose pivot is in row `row`.
     pub fn share(&self, row: usize, i: usize) -> f64 {
         self.table[row * self.width() + self.n + 1 + i]
     }
@@ -202,7 +206,8 @@ impl IndependentJoints {
         }
     }
 
-    /// Scales a row so that its entry at `joint` is one, and clears this column in all other rows.
+    /// Scales a row so that its entry in column `joint` is one, and sets this column to zero in all other
+    /// rows.
     fn eliminate(&mut self, row: usize, joint: usize) {
         let width = self.width();
         let pivot = self.table[row * width + joint];

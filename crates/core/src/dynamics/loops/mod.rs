@@ -36,14 +36,15 @@ pub struct ClosedLoops<S> {
     closures: Vec<Closure>,
     /// Rows of `J`; those of one closure follow each other.
     rows: Vec<Row<S>>,
-    /// Right-hand sides, `(m,)`, and then the constraint forces `λ`.
+    /// Right-hand sides, `(m,)`, before the solution, and the constraint forces `λ` after it.
     force: Vec<S>,
     /// Constraint error `φ`, `(m,)`, m and rad.
     error: Vec<S>,
-    /// `A = J M⁻¹ Jᵀ` and then its factors, `(m, m)`.
+    /// `A = J M⁻¹ Jᵀ`, `(m, m)`, before the solution, and its factors after it.
     matrix: Vec<S>,
-    /// Compliances of the base under the forces of the rows, and scales of the rows, `(m,)` each.
+    /// Compliances of the base under the forces of the rows, `(m,)`.
     compliance: Vec<S>,
+    /// Scales of the rows, `(m,)`.
     scale: Vec<S>,
     /// Bodies between the base and the bodies of the constraints, without the base, in ascending order.
     supported: Vec<usize>,
@@ -84,16 +85,16 @@ impl<S: Real> ClosedLoops<S> {
         &self.closures
     }
 
-    /// Returns the constraint forces `λ` computed last, `(m,)`, N and N m: for each closure, the force and the
-    /// moment on its second body at the origin of the second frame along the constrained directions of the first
-    /// frame, or the torque on a mimic joint.
+    /// Returns the constraint forces `λ` computed last, `(m,)`, N and N m. Those of a loop are the force and
+    /// the moment on its second body about the origin of the second frame, along the constrained directions
+    /// of the first frame; that of a mimic joint is its torque (force).
     pub fn forces(&self) -> &[S] {
         &self.force
     }
 
-    /// Returns the point of a loop in its second frame, relative to the base origin, and the wrench on the second body
-    /// about this point, both in base axes, for the constraint forces computed last; zeros for a mimic joint.
-    /// Requires up-to-date poses in `data`.
+    /// Returns the origin of the second frame of a loop (index) relative to the base origin, m, and the
+    /// wrench of the constraint forces computed last on the second body about this origin, N and N m, both in
+    /// base axes; zeros for a mimic joint. Requires up-to-date poses in `data`.
     pub(crate) fn wrench(&self, closure: usize, data: &Data<S>) -> (Vec3<S>, Force<S>) {
         let Constraint::Frames { frames: [_, frame], .. } = &self.closures[closure].constraint else {
             return (Vec3::zero(), Force::zero());
@@ -106,8 +107,9 @@ impl<S: Real> ClosedLoops<S> {
         (data.bodies[frame.body].pos_b + offset, wrench.from_point(-offset))
     }
 
-    /// Returns the magnitudes, m and rad (or N and N m for forces), of that part of `x`, `(m,)`, that belongs to a
-    /// closure.
+    /// Returns the magnitudes of the linear and of the angular entries of `x`, `(m,)`, that belong to a
+    /// closure (index): m and rad for errors, N and N m for forces. The entry of a mimic joint counts as
+    /// angular.
     pub fn magnitudes(&self, closure: usize, x: &[f64]) -> [f64; 2] {
         let own = &x[self.range_of(closure)];
         let mut squares = [0.0; 2];
@@ -117,14 +119,16 @@ impl<S: Real> ClosedLoops<S> {
         squares.map(f64::sqrt)
     }
 
-    /// Returns the rates `J v`, `(m,)`, at a velocity `v`, `(nv,)`, whose kinematics are in `data`.
+    /// Returns the rates of the constraint errors, `J v`, `(m,)`, m/s and rad/s, at a velocity `v`, `(nv,)`,
+    /// whose kinematics are in `data`.
     pub fn rates(&mut self, data: &Data<S>, v: &[S]) -> Vec<S> {
         self.update_rows(data);
         self.rows.iter().map(|row| row.rate(data, v)).collect()
     }
 
-    /// Returns the pivots of the scaled matrix `A` in the last solution, `(m,)`: the part of the mobility of each row
-    /// that the rows before it leave, and zero for a row that depends on them.
+    /// Returns the pivots of the scaled matrix `A` in the last solution, `(m,)`, in the first SIMD lane: the
+    /// part of the mobility of each row that the rows before it do not constrain, and zero for a row that
+    /// depends on them.
     pub(crate) fn pivots(&self) -> impl Iterator<Item = f64> + '_ {
         let m = self.rows.len();
         (0..m)
@@ -132,7 +136,7 @@ impl<S: Real> ClosedLoops<S> {
             .map(|inverse| if inverse > 0.0 { 1.0 / inverse } else { 0.0 })
     }
 
-    /// Returns the range of the rows of a closure.
+    /// Returns the range of the rows of a closure (index).
     pub fn range_of(&self, closure: usize) -> std::ops::Range<usize> {
         let start = self.closures[..closure].iter().map(Closure::rows).sum::<usize>();
         start..start + self.closures[closure].rows()

@@ -8,14 +8,15 @@ use crate::dynamics::kinematics::{kinematics, positions};
 use crate::model::{Model, integrate};
 use crate::spatial::Real;
 
-/// Constraint error, relative to the distance of the closure from the base plus 1 m, that is treated as rounding
-/// error.
+/// Largest constraint error that is treated as rounding error, relative to 1 m plus the largest distance of a
+/// constrained body from the base.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Largest number of Newton steps within a run, where the error is that of one step of the integrator.
+/// Largest number of Newton steps of one projection within a run, where the error is that of one step of the
+/// integrator.
 const CORRECTIONS: usize = 3;
 /// Largest number of Newton steps from a configuration given by the user.
 const ATTEMPTS: usize = 50;
-/// Longest Newton step, m and rad, from a configuration given by the user.
+/// Largest component of a Newton step, m and rad, from a configuration given by the user.
 const LONGEST: f64 = 0.5;
 
 impl<S: Real> ClosedLoops<S> {
@@ -50,8 +51,9 @@ impl<S: Real> ClosedLoops<S> {
         rounding.less(largest)
     }
 
-    /// Computes the response `δ = −M⁻¹ Jᵀ A⁻¹ x`, `(nv,)`, to the residuals `x`, `(m,)`, with the inertias of
-    /// the last forward dynamics in `data`. Requires up-to-date poses in `data`, whose accelerations change.
+    /// Computes the response `δ = −M⁻¹ Jᵀ A⁻¹ x`, `(nv,)`, to the residuals `x`, which `residual` returns for
+    /// each of the `m` rows, with the inertias of the last forward dynamics in `data`. Requires up-to-date
+    /// poses in `data`, and changes the accelerations in `data`.
     fn correction(
         &mut self,
         model: &Model,
@@ -111,9 +113,9 @@ pub(crate) fn project_configuration<S: Real>(
     }
 }
 
-/// Changes the velocity `v` by `−M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J v`, which changes no momentum, so that it satisfies the
-/// constraints. Requires the kinematics of `v`, and the results of [`project_configuration`] with the same locked
-/// joints, in `data`.
+/// Changes the velocity `v` by `−M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J v`, so that it satisfies the constraints. The change
+/// does not affect the momentum. Requires the kinematics of `v`, and the results of [`project_configuration`]
+/// with the same locked joints, in `data`.
 pub(crate) fn project_velocity<S: Real>(
     model: &Model,
     data: &mut Data<S>,
@@ -127,7 +129,7 @@ pub(crate) fn project_velocity<S: Real>(
     v.iter_mut().zip(&change).for_each(|(v, change)| *v += *change);
 }
 
-/// Computes the articulated-body inertias, or the factors of `M`, at `q`.
+/// Computes the articulated-body inertias, or the factors of `M`, at the configuration `q`, at rest.
 fn factorize<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], locked: Locked<'_>, scratch: &mut [S]) {
     let zeros = vec![S::of(0.0); model.nv()];
     kinematics(model, data, q, &zeros);
@@ -137,15 +139,16 @@ fn factorize<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], locked: Locked
     }
 }
 
-/// Computes the constraint errors of `loops` at `q`, which are then [`ClosedLoops::errors`].
+/// Computes the constraint errors of `loops` at `q`, `(nq,)`; [`ClosedLoops::errors`] returns them
+/// afterwards.
 pub fn closure_errors<S: Real>(model: &Model, data: &mut Data<S>, loops: &mut ClosedLoops<S>, q: &[S]) {
     positions(model, data, q);
     loops.update_errors(data, q);
 }
 
-/// Moves the configuration `q`, `(nq,)`, to the nearest one that satisfies the constraints of `loops`, by Newton's
-/// method in the metric of the kinetic energy. If there is none nearby, [`ClosedLoops::errors`] are not small
-/// afterwards.
+/// Moves the configuration `q`, `(nq,)`, to a nearby one that satisfies the constraints of `loops`, by
+/// Newton's method in the metric of the kinetic energy. [`ClosedLoops::errors`] returns the remaining errors
+/// afterwards, which are not small if there is no such configuration nearby.
 pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) {
     let (mut delta, mut moved) = (vec![0.0; model.nv()], q.to_vec());
     for _ in 0..ATTEMPTS {
@@ -164,8 +167,9 @@ pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<
     closure_errors(model, data, loops, q);
 }
 
-/// Changes the velocity `v`, `(nv,)`, to the nearest one, in the metric of the kinetic energy, that satisfies the
-/// constraints of `loops` at a configuration `q`, `(nq,)`, that satisfies them. No momentum changes.
+/// Replaces the velocity `v`, `(nv,)`, by the nearest one, in the metric of the kinetic energy, that
+/// satisfies the constraints of `loops`. The configuration `q`, `(nq,)`, must close the loops. The momentum
+/// does not change.
 pub fn close_velocity(
     model: &Model,
     data: &mut Data<f64>,

@@ -16,23 +16,24 @@ use crate::model::{Axis, Constraint, Model};
 pub struct ConstrainedFreeFloating {
     /// Independent joints with `G` and `g`.
     pub joints: IndependentJoints,
-    /// `M`, `(f, f)`, kg, kg m, kg m².
+    /// `M`, row major `(f, f)`, in kg, kg m and kg m².
     pub inertia: Vec<f64>,
     /// `c`, `(f,)`, N m (N).
     pub bias: Vec<f64>,
     /// `Q`, `(f,)`, N m (N).
     pub external: Vec<f64>,
-    /// `J`, `(6, f)`.
+    /// `J`, row major `(6, f)`, rows in W axes, linear first.
     pub jacobian: Vec<f64>,
-    /// `d`, `(6,)`, m/s² and rad/s².
+    /// `d`, `(6,)`, m/s² and rad/s², in W axes.
     pub drift: [f64; 6],
 }
 
-/// Computes the reduced model [`ConstrainedFreeFloating`] with one frame (index) as the task, at `q`, `(nq,)`, that
-/// closes the loops, and `v`, `(nv,)`, that satisfies their constraints.
+/// Computes the reduced model [`ConstrainedFreeFloating`] with one frame (index) as the task. The
+/// configuration `q`, `(nq,)`, must close the loops, and the velocity `v`, `(nv,)`, must satisfy their
+/// constraints.
 ///
-/// The independent joints are chosen among those in `preferred` as far as these are independent, otherwise among all
-/// joints without mimic joints.
+/// The independent joints are chosen among those in `preferred` (indices) as far as these are independent.
+/// The others are chosen among all joints, preferably those that do not mimic another joint.
 ///
 /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, sections 3.2 and 8.8.
 pub fn constrained_free_floating(
@@ -87,13 +88,14 @@ pub(crate) fn add_leaders(model: &Model, class: &mut [u8]) {
     }
 }
 
-/// Returns for each joint, `(n,)`, whether its position is a length.
+/// Returns for each joint, `(n,)`, whether its position is a length, m.
 pub(crate) fn length_joints(model: &Model) -> Vec<bool> {
     model.nodes()[1..].iter().map(|node| node.axis == Axis::Prismatic).collect()
 }
 
 impl<S> ClosedLoops<S> {
-    /// Returns for each constraint, `(m,)`, whether it is a length. Mimic joints have the unit of the joint.
+    /// Returns for each constraint, `(m,)`, whether it is treated as a length, m. The constraints of mimic
+    /// joints are not, also if these joints are prismatic.
     pub fn length_rows(&self) -> Vec<bool> {
         let rows = self.closures.iter().flat_map(rows::angular_rows);
         rows.map(|is_angular| !is_angular).collect()

@@ -24,7 +24,7 @@ struct Term<R> {
 #[derive(Debug)]
 pub(super) struct Scratch<S> {
     single: Vec<Term<S>>,
-    /// Terms with several right-hand sides in the lanes of a scalar that only the kernel knows.
+    /// Terms with one right-hand side per lane of a scalar whose type only the kernel knows.
     columns: Box<dyn Any + Send + Sync>,
     /// For robots with dense forward dynamics: `Jᵀ`, `(m, nv)`.
     pub(super) dense: Vec<S>,
@@ -44,8 +44,8 @@ impl<S: Real> Scratch<S> {
 }
 
 /// Computes the lower triangle of `A = J M⁻¹ Jᵀ`: column `c` holds the constraint accelerations that a unit
-/// constraint force in row `c` causes at rest. `compliance`, `(m,)`, receives `Fᵀ I_0⁻¹ F` for the force `F` of each
-/// row on its second body, about the base origin.
+/// constraint force in row `c` causes at rest. `compliance`, `(m,)`, receives `Fᵀ IA_0⁻¹ F` with the force
+/// `F` of each row on its second body, about the base origin, and the articulated inertia `IA_0` of the base.
 #[inline(always)]
 pub(super) fn inverse_apparent_mass<S: Real>(
     (nodes, bodies): (&[Node], &[BodyData<S>]),
@@ -110,7 +110,7 @@ impl<S: Real> ColumnKernel<S> for UnitResponses<'_, S> {
     }
 }
 
-/// Returns the number of a right-hand side from a scalar of several right-hand sides.
+/// Returns the value of one right-hand side, `column`, from a scalar with one right-hand side per lane.
 #[inline(always)]
 fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
     match S::LANES {
@@ -119,8 +119,8 @@ fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
     }
 }
 
-/// Returns the numbers `of` the rows, each in the lane of its right-hand side, of which the first is `first`. The
-/// other lanes are zero.
+/// Returns a scalar with the number `of` each row in the lane of its right-hand side; that of the first row
+/// is `first`. The other lanes are zero.
 #[inline(always)]
 fn to_columns<S: Real, R: Real>(
     rows: &[Row<S>],
@@ -140,7 +140,7 @@ fn to_columns<S: Real, R: Real>(
     )
 }
 
-/// Returns the forces `of` the rows, each in the lane of its right-hand side, of which the first is `first`.
+/// Returns the force `of` each row in the lane of its right-hand side, as [`to_columns`] does for numbers.
 #[inline(always)]
 fn force_columns<S: Real, R: Real>(
     rows: &[Row<S>],
@@ -165,7 +165,8 @@ fn force_columns<S: Real, R: Real>(
     )
 }
 
-/// Returns the forces on the second bodies, about the base origin.
+/// Returns the forces of the rows on their second bodies, about the base origin in base axes, each in the
+/// lane of its right-hand side.
 #[inline(always)]
 fn second_forces<S: Real, R: Real>(
     bodies: &[BodyData<S>],
@@ -227,7 +228,7 @@ fn add_forces<S: Real, R: Real>(
     }
 }
 
-/// Returns the row times the accelerations of a response.
+/// Returns the product of `row` and the accelerations of a response.
 #[inline(always)]
 fn acceleration<S: Real, R: Real>(
     terms: &[Term<R>],
@@ -244,10 +245,10 @@ fn acceleration<S: Real, R: Real>(
     sum
 }
 
-/// Computes the accelerations that the forces and efforts in `terms` cause at rest. The terms of a body follow each
-/// other, one for each of the `groups` of right-hand sides. Forces act only on the bodies `loaded`. The
-/// accelerations of the bodies `moved`, which must contain all of their parents, are computed. Both are in
-/// ascending order.
+/// Computes the accelerations that the forces and efforts in `terms` cause at rest. Each body has `groups`
+/// consecutive terms, one for each group of right-hand sides. Forces act only on the bodies `loaded`. The
+/// accelerations are computed for the base and for the bodies `moved`, which must include all of their
+/// parents. Both lists are in ascending order.
 #[inline(always)]
 fn respond<S: Real, R: Real>(
     (nodes, bodies): (&[Node], &[BodyData<S>]),

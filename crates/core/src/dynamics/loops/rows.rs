@@ -23,7 +23,8 @@ impl<S: Real> Row<S> {
         vec![Self { bodies, forces: [Force::zero(); 2], efforts: efforts.map(S::of) }; closure.rows()]
     }
 
-    /// Returns the row times the velocity: `Σ Fᵀ v_k + Σ e q̇`, where `v` is `(nv,)`.
+    /// Returns the product of the row and the velocity `v`, `(nv,)`: `Σ Fᵀ v_k + Σ e q̇` with the forces `F`
+    /// and the efforts `e` of the row.
     #[inline(always)]
     pub(super) fn rate(&self, data: &Data<S>, v: &[S]) -> S {
         let mut sum = S::of(0.0);
@@ -37,7 +38,8 @@ impl<S: Real> Row<S> {
         sum
     }
 
-    /// Returns the row times the acceleration that is stored in `data` and in `a`, `(nv,)`.
+    /// Returns the product of the row and the accelerations of the bodies in `data` and of the joints in `a`,
+    /// `(nv,)`.
     #[inline(always)]
     pub(super) fn acceleration(&self, data: &Data<S>, a: &[S]) -> S {
         let mut sum = S::of(0.0);
@@ -77,7 +79,8 @@ fn gap<S: Real>(frames: &[Frame; 2], placed: &[Placed<S>; 2], data: &Data<S>) ->
     (b - a) + (placed[1].offset - placed[0].offset)
 }
 
-/// Returns for each row of a closure whether it constrains rotations.
+/// Returns for each row of a closure whether it constrains a rotation; true also for mimic joints, even if
+/// they are prismatic.
 pub(super) fn angular_rows(closure: &Closure) -> Vec<bool> {
     match &closure.constraint {
         Constraint::Frames { kind: LoopKind::Distance, .. } => vec![false],
@@ -157,8 +160,9 @@ pub(super) fn errors<S: Real>(closure: &Closure, data: &Data<S>, q: &[S], out: &
     }
 }
 
-/// Adds to `J a`, with spatial accelerations, the terms of the constraint accelerations `J a + J̇ v` that are
-/// quadratic in the velocities. Requires up-to-date poses and twists in `data`.
+/// Adds the terms that are quadratic in the velocities to `out`, which contains `J a` with spatial
+/// accelerations; the sum is the constraint acceleration `J a + J̇ v`. Requires up-to-date poses and twists
+/// in `data`.
 #[inline(always)]
 pub(super) fn add_drift<S: Real>(closure: &Closure, data: &Data<S>, rows: &[Row<S>], out: &mut [S]) {
     let Constraint::Frames { kind, frames: [a, b], .. } = &closure.constraint else { return };
