@@ -118,7 +118,7 @@ EXPECTED = {
     "link_without_name": malformed("no attribute 'name'"),
     "loop_beside_the_tree": physics("the links 'left', 'right' form a closed loop"),
     "loop_joint": LOADS,
-    "lower_above_upper": warns("lower limit 0 is above upper limit -1"),
+    "lower_above_upper": warns("the lower limit 0 is above the upper limit -1"),
     "lower_equal_to_upper": LOADS,
     "mass_not_a_number": physics('value="nan" of <mass>'),
     "mass_with_comma": physics('value="3,0" of <mass>'),

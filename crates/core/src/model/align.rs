@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
-/// Returns the rotation from axes whose z is `axis` to link axes.
+/// Returns a rotation from joint axes, whose z axis is `axis`, to link axes. `axis` is a nonzero vector in
+/// link axes.
 ///
 /// The result is exact if `axis` is a coordinate axis, so that joints about x, y or z add no rounding error.
 pub(super) fn rotation_to_axis(axis: &Vector3<f64>) -> Matrix3<f64> {

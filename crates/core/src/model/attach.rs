@@ -12,10 +12,10 @@ use nalgebra::{Isometry3, Rotation3};
 pub struct Mount {
     /// Mounting frame of the attached robot; `None` selects its root link.
     pub frame: Option<String>,
-    /// Joints between the frame that the robot is attached to and the robot, each followed by a massless link
-    /// of the same name; empty by default.
+    /// Joints between the frame to which the robot is attached and the robot, each followed by a massless
+    /// link of the same name; usually empty.
     pub joints: Vec<Joint>,
-    /// Pose of the mounting frame in the frame that the robot is attached to, or, if there are `joints`, in
+    /// Pose of the mounting frame in the frame to which the robot is attached or, if there are `joints`, in
     /// the link after the last joint.
     pub pose: Isometry3<f64>,
     /// Prefix for the names of the attached robot's links, joints and frames.
@@ -33,7 +33,8 @@ impl Model {
     /// fixed to the base; otherwise they follow directly after the joints below the body of `frame`.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown frame, a name that both robots have, or too many joints.
+    /// [`ModelError`] for an unknown frame, a name that both robots have, or too many joints, and the errors
+    /// of [`ModelBuilder::build`].
     pub fn attach(&self, frame: &str, other: &Self, mount: &Mount) -> Result<Self, ModelError> {
         let carrier = &self.frames[self.frame(frame)?];
         // `other` is attached to the link that names the body, so that its joints follow those already below
@@ -62,7 +63,7 @@ impl Model {
         builder.build()
     }
 
-    /// Returns this robot with the names of all links, joints and frames preceded by `prefix`.
+    /// Returns this robot with `prefix` before the names of all links, joints, frames and loops.
     ///
     /// # Errors
     /// [`ModelError`] if the description is not valid.
@@ -72,8 +73,8 @@ impl Model {
         builder.build()
     }
 
-    /// Returns a description whose root link is fixed to the frame `name`, with the pose of the frame in that
-    /// link.
+    /// Returns the description of this robot with the link that carries the frame `name` as its root, and the
+    /// pose of the frame in that link.
     fn rooted_below(&self, name: &str) -> Result<(Description, Isometry3<f64>), ModelError> {
         let frame = &self.frames[self.frame(name)?];
         let root = &self.body_frame(frame.body).name;

@@ -10,15 +10,15 @@ use super::well_posed::check_well_posed;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::collections::{HashMap, HashSet};
 
-/// Largest number of moving joints. With this number, the mass matrix takes 32 MB and the derivatives of the
-/// dynamics three times as much.
+/// Largest number of moving joints. With this number, the mass matrix occupies 32 MB, and the derivatives of
+/// the dynamics three times as much.
 const MOST_JOINTS: usize = 2000;
 
 /// Builder of a model from links and joints.
 ///
-/// The first link is the floating base. Each further link is connected by a joint to a link that was added
-/// before. [`close`](ModelBuilder::close) adds closed loops as constraints, and
-/// [`build`](ModelBuilder::build) returns the model.
+/// The first link is the floating base. A joint connects each further link to a link that was added before.
+/// [`close`](ModelBuilder::close) adds closed loops as constraints, and [`build`](ModelBuilder::build)
+/// returns the model.
 #[derive(Clone, Debug)]
 pub struct ModelBuilder {
     pub(super) description: Description,
@@ -51,8 +51,9 @@ impl ModelBuilder {
     /// Adds the link `child`, connected to the link `parent` by `joint`.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown parent, a name used twice, too many moving joints, an axis of length
-    /// zero, negative damping, reversed limits, or an invalid inertia of the child.
+    /// [`ModelError`] for an unknown parent, a name that is empty or used twice, too many moving joints, an
+    /// axis of length zero, another invalid parameter of the joint (such as negative damping or reversed
+    /// limits), or an invalid inertia of the child.
     pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
         let parent = self.link(parent)?;
         if self.has_joint(&joint.name) {
@@ -73,7 +74,8 @@ impl ModelBuilder {
     /// Returns a builder with the links and joints of an existing robot.
     ///
     /// # Errors
-    /// The errors of [`ModelBuilder::new`] and [`ModelBuilder::add`].
+    /// [`ModelError::NoMass`] for a robot without links, and the errors of [`ModelBuilder::new`],
+    /// [`ModelBuilder::add`], [`ModelBuilder::add_frame`] and [`ModelBuilder::close`].
     pub fn from_description(description: Description) -> Result<Self, ModelError> {
         let base = description.links.first().cloned().ok_or(ModelError::NoMass)?;
         let mut builder = Self::new(&description.name, base)?;
@@ -84,7 +86,8 @@ impl ModelBuilder {
     /// Attaches a whole robot to the link `parent`; the robot's root link becomes the child link of `joint`.
     ///
     /// # Errors
-    /// The errors of [`ModelBuilder::add`].
+    /// [`ModelError::NoMass`] for a robot without links, and the errors of [`ModelBuilder::add`],
+    /// [`ModelBuilder::add_frame`] and [`ModelBuilder::close`].
     pub fn add_robot(
         &mut self,
         parent: &str,
@@ -96,7 +99,8 @@ impl ModelBuilder {
         self.add_below_root(robot)
     }
 
-    /// Adds all links and joints of a robot except its root link, which must have been added before.
+    /// Adds all links, joints, frames and loops of a robot except its root link, which must have been added
+    /// before.
     fn add_below_root(&mut self, robot: Description) -> Result<&mut Self, ModelError> {
         let names: Vec<String> = robot.links.iter().map(|link| link.name.clone()).collect();
         for ((parent, joint), link) in robot.joints.into_iter().zip(robot.links.into_iter().skip(1)) {
@@ -150,7 +154,8 @@ impl ModelBuilder {
     /// body with its joint.
     ///
     /// # Errors
-    /// [`ModelError`] for a robot without mass, or with a direction of motion that no inertia resists.
+    /// [`ModelError`] for a robot without mass, a body with an indefinite inertia, a motion that no inertia
+    /// resists, or an invalid loop or mimic joint.
     pub fn build(self) -> Result<Model, ModelError> {
         let model = self.build_part()?;
         check_parts(&model)?;
@@ -218,10 +223,12 @@ impl ModelBuilder {
 }
 
 impl Model {
-    /// Returns a spacecraft without joints, whose only body is `base` with the centre of mass at its origin.
+    /// Returns a spacecraft without joints. Its only body, `base`, has the given mass, kg, its centre of mass
+    /// at its origin, and the given inertia about the centre of mass, kg m².
     ///
     /// # Errors
-    /// [`ModelError`] for a mass that is not positive, or an inertia that is not symmetric positive definite.
+    /// [`ModelError`] for a mass that is not positive, or an inertia that is not symmetric or has a negative
+    /// principal moment.
     pub fn rigid_body(mass: f64, inertia: Matrix3<f64>) -> Result<Self, ModelError> {
         if mass == 0.0 {
             return Err(ModelError::MassNotPositive { link: "base".to_owned(), mass });

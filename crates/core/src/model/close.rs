@@ -11,8 +11,8 @@ impl ModelBuilder {
     /// Closes a loop between two frames that were added before.
     ///
     /// # Errors
-    /// [`ModelError`] for an unknown frame, a loop of a frame with itself, an empty name or one that another
-    /// loop has, a pose that is not finite, or a length outside 1e-6 m to 1e12 m.
+    /// [`ModelError`] for an unknown frame, a loop that connects a frame with itself, an empty name, the name
+    /// of another loop, a pose that is not finite, or a length outside 1e-6 m to 1e12 m.
     pub fn close(&mut self, closing: Loop) -> Result<&mut Self, ModelError> {
         let names = self.description.links.iter().map(|link| link.name.as_str());
         let names = names.chain(self.description.frames.iter().map(|(name, ..)| name.as_str()));

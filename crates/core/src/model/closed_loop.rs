@@ -18,8 +18,8 @@ pub struct Loop {
     pub frames: [String; 2],
     /// Poses of the joint in these frames. The axis of the joint is z.
     pub poses: [Isometry3<f64>; 2],
-    /// Distance of the two origins for [`LoopKind::Distance`], m; `None` means the distance at which all
-    /// joint positions are zero. Other kinds ignore it.
+    /// Distance of the two origins for [`LoopKind::Distance`], m; `None` means the distance at zero joint
+    /// positions. Other kinds ignore the length.
     pub length: Option<f64>,
     /// True if the start of a simulation is moved to the nearest configuration that closes the loop. If
     /// false, a start that does not close the loop is an error.
@@ -46,7 +46,7 @@ pub enum LoopKind {
 pub struct Mimic {
     /// Name of the leader.
     pub leader: String,
-    /// Rate of the joint over the rate of the leader.
+    /// Rate of the joint divided by the rate of the leader.
     pub ratio: f64,
     /// Position of the joint while its leader is at zero, rad (m).
     pub offset: f64,
@@ -63,8 +63,10 @@ impl LoopKind {
         }
     }
 
-    /// Returns the directions along and about which the joint transmits forces, in the axes of the first frame, as
-    /// pairs of an index (0 to 2) and whether it is a moment. A distance has no fixed direction.
+    /// Returns the directions in which the joint transmits forces and moments, in the axes of the first
+    /// frame. Each is a pair of the index of an axis (0 to 2) and a flag: true for a moment about the axis,
+    /// false for a force along it. The list is empty for [`LoopKind::Distance`], whose force has no fixed
+    /// direction.
     pub fn directions(self) -> &'static [(usize, bool)] {
         const ALL: [(usize, bool); 6] = [(0, false), (1, false), (2, false), (0, true), (1, true), (2, true)];
         const PRISMATIC: [(usize, bool); 5] = [(0, false), (1, false), (0, true), (1, true), (2, true)];

@@ -33,7 +33,7 @@ pub enum Constraint {
         joint: usize,
         /// Index of the leader.
         leader: usize,
-        /// Rate of the joint over the rate of the leader.
+        /// Rate of the joint divided by the rate of the leader.
         ratio: f64,
         /// Position of the joint while its leader is at zero, rad (m).
         offset: f64,
@@ -49,7 +49,7 @@ impl Closure {
         }
     }
 
-    /// Returns the directions of [`LoopKind::directions`]; empty for mimic joints.
+    /// Returns the directions of [`LoopKind::directions`]; the list is empty for mimic joints.
     pub fn directions(&self) -> &'static [(usize, bool)] {
         match &self.constraint {
             Constraint::Frames { kind, .. } => kind.directions(),

@@ -97,7 +97,7 @@ pub(super) fn check_parts(model: &Model) -> Result<(), ModelError> {
     Ok(())
 }
 
-/// Returns the child links of each link, in the order in which they were added.
+/// Returns the indices of the child links of each link, in the order in which they were added.
 fn children(description: &Description) -> Vec<Vec<usize>> {
     let mut children = vec![Vec::new(); description.links.len()];
     for (j, (parent, _)) in description.joints.iter().enumerate() {
@@ -106,8 +106,8 @@ fn children(description: &Description) -> Vec<Vec<usize>> {
     children
 }
 
-/// Returns the links in depth-first order, starting from the root: parents before children, branches in the
-/// order in which they were added.
+/// Returns the indices of the links in depth-first order from the root: parents before children, branches in
+/// the order in which they were added.
 fn depth_first(children: &[Vec<usize>]) -> Vec<usize> {
     let (mut order, mut stack) = (Vec::new(), vec![0]);
     while let Some(link) = stack.pop() {

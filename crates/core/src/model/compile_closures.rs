@@ -44,15 +44,18 @@ impl Model {
         Ok(Frame { name: name.to_owned(), body: *body, rot_kf, pos_kf })
     }
 
-    /// Returns the distance of the origins of two frames while all joint positions are zero, m.
+    /// Returns the distance of the origins of two frames at zero joint positions, m, or an error that names
+    /// the loop `name` if it is too short.
     fn distance_at_zero(&self, name: &str, frames: &[Frame; 2]) -> Result<f64, ModelError> {
         let [a, b] = [0, 1].map(|side| self.origin_at_zero(&frames[side]));
         let length = (b - a).norm();
         if length >= SHORTEST {
             return Ok(length);
         }
-        let (what, expected) =
-            ("the distance at joint positions zero", "at least 1e-6 m; give the length of the loop");
+        let (what, expected) = (
+            "the length",
+            "at least 1e-6 m; give a length, because the frames coincide at zero joint positions",
+        );
         Err(ModelError::OutOfRange { what, name: name.to_owned(), value: length, expected })
     }
 

@@ -3,7 +3,7 @@
 use super::tree::Model;
 use crate::spatial::{Quat, Real, Vec3, exp_so3, log_so3};
 
-/// Returns the configuration with the base at the origin, unrotated, and all joints at zero: `(nq,)`.
+/// Returns the configuration, `(nq,)`, with the base at the origin of W, unrotated, and all joints at zero.
 pub fn neutral(model: &Model) -> Vec<f64> {
     let mut q = vec![0.0; model.nq()];
     q[6] = 1.0;
@@ -30,8 +30,8 @@ pub fn integrate<S: Real>(q: &[S], delta: &[S], out: &mut [S]) {
     }
 }
 
-/// Computes `q₂ ⊖ q₁`, the `δ` for which `q₁ ⊕ δ = q₂`; of the two rotations of the base, the smaller is
-/// returned.
+/// Computes `q₂ ⊖ q₁`, the `δ` for which `q₁ ⊕ δ = q₂`; of the two possible rotations of the base, the
+/// smaller is returned.
 ///
 /// `q1`, `q2`: `(nq,)`; `out`: `(nv,)`, m and rad, linear first.
 #[inline(always)]
@@ -49,7 +49,8 @@ pub fn difference<S: Real>(q1: &[S], q2: &[S], out: &mut [S]) {
     }
 }
 
-/// Returns `((1 − cos φ)/φ², (φ − sin φ)/φ³)` with `φ = |θ|`; below 0.1 rad they are computed by series.
+/// Returns `((1 − cos φ)/φ², (φ − sin φ)/φ³)` with `φ = |θ|`; below 0.1 rad, both are computed from their
+/// series.
 #[inline(always)]
 fn left_coefficients<S: Real>(theta: Vec3<S>) -> (S, S) {
     let squared = theta.dot(theta);

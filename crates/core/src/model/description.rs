@@ -16,17 +16,17 @@ pub struct Description {
     pub(super) joints: Vec<(usize, Joint)>,
     /// Additional frames, each with its name, the index of its link and its pose in link axes.
     pub(super) frames: Vec<(String, usize, Isometry3<f64>)>,
-    /// Loops that are closed by constraints.
+    /// Loops that constraints close.
     pub(super) loops: Vec<Loop>,
 }
 
 impl Description {
-    /// Returns the loops that are closed by constraints.
+    /// Returns the loops that constraints close.
     pub fn loops(&self) -> &[Loop] {
         &self.loops
     }
 
-    /// Returns the description with the names of all links, joints and frames preceded by `prefix`.
+    /// Returns the description with `prefix` before the names of all links, joints, frames and loops.
     #[must_use]
     pub fn prefixed(mut self, prefix: &str) -> Self {
         let links = self.links.iter_mut().map(|link| &mut link.name);
@@ -54,7 +54,7 @@ pub struct Inertial {
     pub inertia: Matrix3<f64>,
 }
 
-/// Link of a robot; without an [`Inertial`] it is massless.
+/// Link of a robot. A link without an [`Inertial`] is massless.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Name, unique in the robot.
@@ -63,10 +63,11 @@ pub struct Link {
     pub inertial: Option<Inertial>,
     /// Visual shapes. Without any, the collision shapes are drawn.
     pub visuals: Vec<Visual>,
-    /// Collision shapes, with only those meshes whose file exists. They are drawn if the link has no visual
+    /// Collision shapes, without meshes whose file does not exist. They are drawn if the link has no visual
     /// shapes.
     pub collisions: Vec<Visual>,
-    /// For each collision shape that was not read, the reason, such as a mesh file that does not exist.
+    /// Reasons why collision shapes were not read, such as a mesh file that does not exist; one for each of
+    /// these shapes.
     pub skipped_collisions: Vec<String>,
 }
 
@@ -90,14 +91,14 @@ pub struct Visual {
     pub pose: Isometry3<f64>,
     /// Geometry of the shape.
     pub geometry: Geometry,
-    /// Colour: red, green, blue and opacity, each from 0 to 1; `None` if none is given.
+    /// Colour: red, green, blue and opacity, each from 0 to 1; `None` if no colour is given.
     pub rgba: Option<[f64; 4]>,
 }
 
 /// Geometry of a shape as in URDF; lengths in m.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Geometry {
-    /// Box with full edge lengths.
+    /// Box centred at the origin, with its full edge lengths along x, y and z, m.
     Box([f64; 3]),
     /// Cylinder along z, centred at the origin.
     Cylinder {
@@ -106,11 +107,11 @@ pub enum Geometry {
         /// Full length, m.
         length: f64,
     },
-    /// Capsule along z; its length is the distance between the centres of the caps.
+    /// Capsule along z, centred at the origin.
     Capsule {
         /// Radius, m.
         radius: f64,
-        /// Length of the straight part, m.
+        /// Length of the straight part, which is the distance between the centres of the caps, m.
         length: f64,
     },
     /// Sphere about the origin.
@@ -148,7 +149,7 @@ pub enum Geometry {
     },
 }
 
-/// Joint that connects a new link to an existing one.
+/// Joint that connects a link to its parent link.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Name, unique in the robot.

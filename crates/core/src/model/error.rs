@@ -4,7 +4,7 @@ use crate::number_text::{list, short, unlike};
 use std::fmt;
 use thiserror::Error;
 
-/// Reason why a robot cannot be simulated.
+/// Reason why the model of a robot cannot be built, or why a request to a model fails.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ModelError {
@@ -17,7 +17,8 @@ pub enum ModelError {
     )]
     IndefiniteInertia { link: String, moments: [f64; 3] },
     #[error(
-        "the inertia of link '{link}' is not symmetric: mirrored entries differ by {difference} kg m2; make both entries equal",
+        "the inertia of link '{link}' is not symmetric: mirrored entries differ by {difference} kg m2; make both \
+         entries equal",
         difference = short(*difference)
     )]
     AsymmetricInertia { link: String, difference: f64 },
@@ -79,7 +80,7 @@ pub enum ModelError {
     )]
     StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
     #[error(
-        "joint '{joint}': lower limit {lower} rad (m) is above upper limit {upper} rad (m); exchange the \
+        "joint '{joint}': the lower limit {lower} rad (m) is above the upper limit {upper} rad (m); exchange the \
          two limits",
         lower = unlike(*lower, &[*upper]), upper = short(*upper)
     )]
@@ -116,7 +117,7 @@ pub enum ModelWarning {
         /// Name of the link.
         link: String,
     },
-    /// Text of another problem, found while reading a file.
+    /// Text about another problem, which was found while reading a file.
     Note(String),
 }
 
@@ -155,7 +156,8 @@ impl fmt::Display for ModelWarning {
 }
 
 impl ModelError {
-    /// Returns the existing name closest to an unknown name, if the error is about one.
+    /// Returns the existing name closest to the unknown name of the error. Returns `None` if no name is
+    /// close, or if the error is about something else.
     pub fn suggestion(&self) -> Option<&str> {
         match self {
             Self::UnknownName { name, candidates, .. } => closest(candidates, name),
@@ -207,7 +209,8 @@ fn base_advice(joints: &[String]) -> String {
     }
 }
 
-/// Returns the message about joints that mimic each other in a circle, of which the last is the first.
+/// Returns the message about joints that mimic each other in a circle. The first joint is listed again as the
+/// last.
 fn circle(joints: &[String]) -> String {
     match joints {
         [joint] | [joint, _] => {

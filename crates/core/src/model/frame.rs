@@ -11,6 +11,6 @@ pub struct Frame {
     pub body: usize,
     /// Rotation from frame axes to body axes.
     pub rot_kf: Mat3<f64>,
-    /// Origin in body axes, m.
+    /// Position of the frame origin in body axes, m.
     pub pos_kf: Vec3<f64>,
 }

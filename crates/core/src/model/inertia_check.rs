@@ -31,7 +31,7 @@ pub(super) enum Sense {
     Massless,
 }
 
-/// Checks an inertial and classifies its inertia.
+/// Checks the inertial of the link `link` and classifies its inertia.
 pub(super) fn check_inertial(link: &str, inertial: &Inertial) -> Result<Sense, ModelError> {
     let link = || link.to_owned();
     let Inertial { mass, com, inertia } = inertial;

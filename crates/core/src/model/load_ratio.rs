@@ -7,8 +7,8 @@ use crate::spatial::Vec3;
 /// robots reach ratios of 1e4.
 const LARGEST: f64 = 1e5;
 
-/// Returns true if a light body supports a heavy one, that is, if the ratio of their inertias exceeds the
-/// limit.
+/// Returns true if a light body supports a heavy one, that is, if the ratio of their inertias exceeds
+/// [`LARGEST`].
 pub(super) fn is_heavy_on_light(nodes: &[Node]) -> bool {
     load_ratio(nodes) > LARGEST
 }

@@ -74,7 +74,7 @@ pub struct Model {
     pub(super) nodes: Vec<Node>,
     pub(super) joints: Vec<JointProperties>,
     pub(super) frames: Vec<Frame>,
-    /// For each body, the index of the frame of its link.
+    /// For each body, the index of the frame of the link that names it.
     pub(super) body_frames: Vec<usize>,
     pub(super) visuals: Vec<(usize, Visual)>,
     pub(super) collisions: Vec<(usize, Visual)>,
@@ -134,7 +134,7 @@ impl Model {
         &self.frames
     }
 
-    /// Returns the frame of the link of a body.
+    /// Returns the frame of the link that names a body (index).
     pub fn body_frame(&self, body: usize) -> &Frame {
         &self.frames[self.body_frames[body]]
     }
@@ -150,15 +150,15 @@ impl Model {
         &self.collisions
     }
 
-    /// Returns the reason for each collision shape that was not read, of the link whose frame has the index
-    /// `frame`; empty for a frame that is not a link.
+    /// Returns the reasons why collision shapes of a link were not read; `frame` is the index of the frame of
+    /// that link. The list is empty for a frame that is not that of a link.
     pub fn skipped_collisions(&self, frame: usize) -> &[String] {
         let name = &self.frames[frame].name;
         let link = self.description.links.iter().find(|link| link.name == *name);
         link.map_or(&[], |link| &link.skipped_collisions)
     }
 
-    /// Returns the warnings found when the model was built.
+    /// Returns the warnings about problems that were found when the model was built.
     pub fn warnings(&self) -> &[ModelWarning] {
         &self.warnings
     }
@@ -168,8 +168,8 @@ impl Model {
         self.warnings.push(warning);
     }
 
-    /// Returns the pose of a frame, fixed to some body, in the axes of that body's link: the rotation from
-    /// frame axes to link axes, and the origin of the frame, m.
+    /// Returns the pose of a frame in the axes of the link of its body: the rotation from frame axes to link
+    /// axes, and the origin of the frame, m.
     pub fn pose_in_link(&self, frame: &Frame) -> (Mat3<f64>, Vec3<f64>) {
         let link = self.body_frame(frame.body);
         let to_link = link.rot_kf.transpose();

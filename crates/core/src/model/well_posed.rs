@@ -4,10 +4,11 @@ use super::error::ModelError;
 use super::tree::{Axis, Model, Node};
 use nalgebra::{Matrix3, Matrix6, Rotation3, Vector3};
 
-/// Fraction of its diagonal entry below which a pivot of the mass matrix is treated as rounding error.
+/// A pivot of the mass matrix that is smaller than this fraction of its diagonal entry is treated as a
+/// rounding error.
 const PIVOT_SHARE: f64 = 1e-12;
-/// Fraction of the largest inertia that moves with the joint below which a pivot is treated as rounding
-/// error. For a point mass on the joint axis, the diagonal entry itself is a rounding error.
+/// A pivot that is smaller than this fraction of the largest inertia that moves with the joint is treated as
+/// a rounding error. For a point mass on the joint axis, the diagonal entry itself is a rounding error.
 const ROUNDING_SHARE: f64 = 1e-14;
 
 /// Returns an error if the mass matrix is singular in every configuration.
@@ -37,8 +38,8 @@ pub(super) fn check_well_posed(model: &Model) -> Result<(), ModelError> {
     }
 }
 
-/// Returns the joints between a base without inertia and the first body with inertia, if they form a single
-/// chain, such as the dummy joints of a mobile robot on a fixed world.
+/// Returns the names of the joints between a base without inertia and the first body with inertia, if they
+/// form a single chain, such as the dummy joints of a mobile robot on a fixed world.
 fn massless_chain(model: &Model) -> Vec<String> {
     let is_empty = |node: &&Node| node.mass == 0.0 && node.about_com.to_nalgebra().amax() == 0.0;
     let count = model.nodes.iter().take_while(is_empty).take_while(|node| !node.is_fork).count();
@@ -46,8 +47,8 @@ fn massless_chain(model: &Model) -> Vec<String> {
 }
 
 /// Marks in `is_resisted`, `(nv,)`, the motions whose pivot is larger than rounding error in the
-/// configuration with the joint positions `angle(j)`, rad or m. To be independent of the dynamics algorithms,
-/// uses dense 6 × 6 inertias in body axes.
+/// configuration with the joint positions `angle(j)`, rad or m. The function uses dense 6 × 6 inertias in
+/// body axes, to be independent of the dynamics algorithms.
 fn eliminate(model: &Model, angle: impl Fn(usize) -> f64, is_resisted: &mut [bool]) {
     let mut composite: Vec<_> = model.nodes.iter().map(inertia_about_origin).collect();
     let mut articulated = composite.clone();
@@ -82,8 +83,8 @@ fn is_more_than_rounding(pivot: f64, diagonal: f64, scale: f64) -> bool {
     pivot > PIVOT_SHARE * diagonal && pivot > ROUNDING_SHARE * scale
 }
 
-/// Returns the largest entry of the linear block (kg) for `k < 3`, and of the angular block (kg m²)
-/// otherwise.
+/// Returns the largest entry of the linear block, kg, for `k < 3`, and of the angular block, kg m², for other
+/// `k`.
 fn scale(inertia: &Matrix6<f64>, k: usize) -> f64 {
     let start = if k < 3 { 0 } else { 3 };
     inertia.fixed_view::<3, 3>(start, start).amax()
@@ -98,7 +99,8 @@ fn inertia_about_origin(node: &Node) -> Matrix6<f64> {
 }
 
 /// Returns the matrix that transforms a motion from the axes and origin of the parent to those of the body,
-/// with the joint at `angle`, rad (m): `[[Rᵀ, −Rᵀ p×], [0, Rᵀ]]`.
+/// with the joint at `angle`, rad (m): `[[Rᵀ, −Rᵀ p×], [0, Rᵀ]]`, where `R` and `p` are the rotation and the
+/// position of the body in the parent.
 fn motion_transform(node: &Node, angle: f64) -> Matrix6<f64> {
     let (mut rot, mut pos) = (node.rot_pk.to_nalgebra(), node.pos_pk.to_nalgebra());
     match node.axis {

@@ -67,7 +67,7 @@ pub(super) fn assemble(
     Ok(builder)
 }
 
-/// Indices of the parents and children of links and joints.
+/// Connections of links and joints, as indices.
 struct Tree {
     /// Index of the parent link of every joint.
     parent: Vec<usize>,

@@ -1,9 +1,9 @@
-//! XML elements with the name of the link or joint that they describe, which error messages state.
+//! XML elements with the name of the link or joint that they describe; error messages contain this name.
 
 use super::error::{UrdfError, UrdfProblem};
 use roxmltree::Node;
 
-/// Largest number of values in one attribute, as for a colour or a quaternion.
+/// Largest number of values in one attribute: a colour or a quaternion has four.
 pub(super) const MOST_NUMBERS: usize = 4;
 
 /// XML element with its owner, the link or joint that it describes, such as `link 'hand'`.
@@ -36,7 +36,8 @@ impl<'a> Element<'a> {
         self.node.children().filter(Node::is_element).filter(is_ours).map(move |node| Self { node, ..self })
     }
 
-    /// Returns the first child element with this name, if there is one; urdfdom ignores further ones, too.
+    /// Returns the first child element with this name, if there is one. Further ones are ignored, as in
+    /// urdfdom.
     pub(super) fn child(self, name: &'static str) -> Option<Self> {
         self.children(name).next()
     }
@@ -114,7 +115,7 @@ pub(super) fn has_expression(text: &str) -> bool {
     text.contains("${") || text.contains("$(")
 }
 
-/// Returns the namespace prefix of an element as written in the file, whatever namespace it stands for;
+/// Returns the namespace prefix of an element as it is written in the file, whatever namespace it denotes;
 /// `None` for an element without a prefix.
 pub(super) fn prefix<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
     node.tag_name().namespace()?; // an element without a namespace has no prefix

@@ -5,7 +5,7 @@ use super::error::{UrdfError, UrdfProblem, list};
 use crate::model::ModelWarning;
 use roxmltree::{Document, Error as XmlError, Node, ParsingOptions};
 
-/// Largest number of tags, texts and comments in a file. The file of a large robot has 10⁴.
+/// Largest number of tags, texts and comments in a file. The file of a large robot contains 10⁴ of them.
 const MAX_NODES: u32 = 1_000_000;
 /// Names of children of `<robot>`, besides links, joints and materials, that are ignored without a warning.
 const KNOWN: &[&str] = &[

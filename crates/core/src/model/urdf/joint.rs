@@ -1,4 +1,4 @@
-//! Reader of `<joint>`: type, axis, limits, friction.
+//! Reader of `<joint>`: its kind, axis, limits, friction and rotor inertia, and the joint that it mimics.
 
 use super::element::Element;
 use super::error::UrdfError;
@@ -10,8 +10,9 @@ use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
 use urdf_rs::{JointLimit, JointType, Mimic as MimicOf};
 
-/// Reads the axis, limits and friction of a joint. A joint with several degrees of freedom becomes a chain of
-/// joints with one degree of freedom each. `is_taken` returns true for names that already occur in the file.
+/// Reads the axis, limits, friction, rotor inertia and mimic of a joint. A joint with several degrees of
+/// freedom becomes a chain of joints with one degree of freedom each. `is_taken` returns true for names that
+/// already occur in the file.
 pub(super) fn read_joints(
     joint: &JointElement<'_>,
     is_taken: impl Fn(&str) -> bool,
@@ -63,9 +64,9 @@ fn unread(kind: &str) -> &'static [&'static str] {
     }
 }
 
-/// Converts limits of urdf-rs, in which infinity means no limit. `bounds` is the element with the position
-/// limits, or `None` if the joint has none. If one position limit is missing, its value is 0, as URDF
-/// specifies; if both are missing, the position is unlimited.
+/// Converts limits of urdf-rs, in which infinity means no limit. `bounds` is the `<limit>` element, or `None`
+/// if the joint has no position limits. If one position limit is missing, its value is 0, as URDF specifies;
+/// if both are missing, the position is unlimited.
 fn limits(
     name: &str,
     read: &JointLimit,
@@ -82,7 +83,7 @@ fn limits(
     let position = position.filter(|&(low, high)| {
         if low > high {
             note(format!(
-                "lower limit {} is above upper limit {} (rad or m), so both are ignored; exchange them",
+                "the lower limit {} is above the upper limit {} (rad or m), so both are ignored; exchange them",
                 unlike(low, &[high]),
                 short(high)
             ));

@@ -1,4 +1,4 @@
-//! Name, type and links of a `<joint>`, which are sufficient to check that the robot is a tree.
+//! Name, type and links of a `<joint>`. They are sufficient to check that the robot is a tree.
 
 use super::element::Element;
 use super::error::UrdfError;

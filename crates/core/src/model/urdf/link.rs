@@ -96,7 +96,7 @@ fn read_inertial(element: Element<'_>, context: &mut ReadContext<'_>) -> Result<
     Ok(Some(Inertial { mass: mass.value, com, inertia }))
 }
 
-/// Returns `R I Rᵀ` with exactly equal entries on both sides of the diagonal.
+/// Returns `R I Rᵀ`, made exactly symmetric.
 fn rotated(rot: &Matrix3<f64>, inertia: &Matrix3<f64>) -> Matrix3<f64> {
     let result = rot * inertia * rot.transpose();
     (result + result.transpose()) * 0.5

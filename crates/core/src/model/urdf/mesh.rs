@@ -6,7 +6,7 @@ use crate::model::ModelWarning;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-/// Finder of mesh files, which records the missing ones.
+/// Finder of mesh files. It records the missing ones and those whose location was guessed.
 pub(super) struct Meshes<'a> {
     /// Folder of the URDF file.
     folder: Option<&'a Path>,
@@ -17,7 +17,7 @@ pub(super) struct Meshes<'a> {
     /// True for each folder that exists; cached to avoid a system call for each file in a missing folder.
     folders: HashMap<PathBuf, bool>,
     near: Near<'a>,
-    /// For each file found, the package that the reference to it names.
+    /// For each file that was found, the name of the package in the reference to it.
     taken: HashMap<String, String>,
     missing: Vec<String>,
     guessed: Vec<(String, String)>,
@@ -69,7 +69,7 @@ impl<'a> Meshes<'a> {
         self.look_up(name).map(|found| found.path)
     }
 
-    /// Returns up to two warnings: about missing meshes, and about meshes whose location was guessed.
+    /// Returns up to two warnings: one about missing meshes, and one about meshes whose location was guessed.
     pub(super) fn warnings(&self) -> impl Iterator<Item = ModelWarning> {
         self.about_missing().into_iter().chain(self.about_guessed()).map(ModelWarning::Note)
     }

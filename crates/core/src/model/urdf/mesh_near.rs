@@ -1,4 +1,4 @@
-//! Search near the URDF for meshes that do not exist at the path that their name states.
+//! Search near the URDF for meshes that do not exist at the path given by their name.
 
 use super::mesh_name::tails;
 use std::collections::{HashMap, HashSet};
@@ -15,7 +15,7 @@ pub(super) struct Near<'a> {
     folder: Option<&'a Path>,
     /// Folders that are packages or contain packages.
     packages: &'a [PathBuf],
-    /// Folders that may contain a file, by the folder part of its name.
+    /// Folders that may contain a file, for each folder part of a file name.
     places: HashMap<PathBuf, Rc<[Place]>>,
     /// Names of the entries of each folder; empty if the folder does not exist.
     listings: HashMap<PathBuf, Rc<HashSet<OsString>>>,
@@ -33,8 +33,8 @@ impl<'a> Near<'a> {
         Self { folder, packages, places: HashMap::new(), listings: HashMap::new() }
     }
 
-    /// Returns the files that match the end of a path, the longest match first. Each is paired with true if
-    /// only the bare file name matches.
+    /// Returns the files that match the end of a path, the longest match first. Each is paired with a flag
+    /// that is true if only the bare file name matches.
     pub(super) fn candidates(&mut self, path: &Path) -> Vec<(PathBuf, bool)> {
         let (Some(folder), Some(file)) = (path.parent(), path.file_name()) else { return Vec::new() };
         let places = self.places(folder);

@@ -56,11 +56,11 @@ pub struct Options<'a> {
     pub is_part: bool,
 }
 
-/// Loads a robot with a floating root link. If a mesh file is not found, its name is kept and a warning is
-/// added.
+/// Loads a robot with a floating root link from the URDF file `path`. If a mesh file is not found, its name
+/// is kept and a warning is added.
 ///
 /// # Errors
-/// [`UrdfError`] with the file, the line and the name of the link or joint.
+/// [`UrdfError`] with the file and, as far as they are known, the line and the name of the link or joint.
 pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError> {
     let folder = std::path::absolute(path).ok().and_then(|path| path.parent().map(Path::to_owned));
     precheck::read(path)
@@ -68,10 +68,10 @@ pub fn from_file(path: &Path, options: &Options<'_>) -> Result<Model, UrdfError>
         .map_err(|error| error.in_file(path))
 }
 
-/// Loads a robot from the text of a URDF; relative names of mesh files refer to `folder`.
+/// Loads a robot from the text of a URDF. Relative names of mesh files refer to `folder`, if it is given.
 ///
 /// # Errors
-/// [`UrdfError`] with the line and the name of the link or joint.
+/// [`UrdfError`] with the line and the name of the link or joint, as far as they are known.
 pub fn from_str(xml: &str, folder: Option<&Path>, options: &Options<'_>) -> Result<Model, UrdfError> {
     read(xml, folder, options, None)
 }

@@ -14,8 +14,8 @@ pub(super) enum MultiDof {
     Floating,
 }
 
-/// Returns the chain of joints, in order from the parent, that replaces a joint. Their names are the name of
-/// the joint with a suffix, and with a number if the file already contains that name.
+/// Returns the chain of joints, in order from the parent, that replaces a joint. Their names consist of the
+/// name of the joint, a suffix and, if the file already contains this name, a number.
 ///
 /// A planar joint becomes two prismatic joints along the axes of the plane and a revolute joint about its
 /// normal. A ball joint becomes revolute joints about z, y and x, whose positions are the yaw, pitch and roll

@@ -29,8 +29,8 @@ pub(super) fn read(path: &Path) -> Result<(String, Option<ModelWarning>), UrdfEr
     decode(bytes)
 }
 
-/// Decodes bytes as UTF-8, or else as Latin-1, which occurs in comments and names. UTF-16, which contains
-/// zero bytes, is rejected.
+/// Decodes bytes as UTF-8 or, if they are not UTF-8, as Latin-1, which occurs in comments and names. UTF-16,
+/// which contains zero bytes, is rejected.
 fn decode(bytes: Vec<u8>) -> Result<(String, Option<ModelWarning>), UrdfError> {
     let (bytes, at) = match String::from_utf8(bytes) {
         Ok(text) => return Ok((text, None)),
@@ -49,8 +49,8 @@ fn decode(bytes: Vec<u8>) -> Result<(String, Option<ModelWarning>), UrdfError> {
     Ok((bytes.into_iter().map(char::from).collect(), Some(ModelWarning::Note(note))))
 }
 
-/// Checks that a text may be passed to the parser: not too large, not empty, not too deeply nested, without
-/// tags that have too many attributes.
+/// Checks that a text may be passed to the parser: that it is neither empty nor too large, that its elements
+/// are not nested too deeply, and that no tag has too many attributes.
 pub(super) fn check(xml: &str) -> Result<(), UrdfError> {
     if xml.len() > MAX_BYTES {
         return Err(UrdfError::new(None, UrdfProblem::TooLarge { limit: MAX_BYTES }));

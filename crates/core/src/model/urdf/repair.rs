@@ -9,7 +9,8 @@ use super::tokens::{Kind, Token, tokens};
 use crate::model::ModelWarning;
 use std::ops::Range;
 
-/// Converts `xml` to well-formed XML, and adds a warning if elements outside the robot were removed:
+/// Converts `xml` to well-formed XML, and returns a warning as well if elements outside the robot were
+/// removed:
 ///
 /// - only the outermost `<robot>`, or else the first element, is kept; text after the first zero byte is
 ///   dropped;

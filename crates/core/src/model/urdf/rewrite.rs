@@ -10,7 +10,7 @@ const MOST_PREFIXES: usize = 1000;
 pub(super) struct Writer<'a> {
     out: String,
     prefixes: BTreeSet<&'a str>,
-    /// Offset of the end of the name of the outermost tag.
+    /// Byte offset in `out` at which the name of the outermost tag ends.
     root_name_ends: usize,
     /// True if a document type (`<!DOCTYPE>`) defines entities.
     has_entities: bool,
@@ -38,7 +38,7 @@ impl<'a> Writer<'a> {
         Ok(())
     }
 
-    /// Writes a text with markup characters replaced by references.
+    /// Writes a text with markup characters replaced by references. References that XML predefines are kept.
     pub(super) fn escaped(&mut self, text: &str) -> Written {
         for (at, c) in text.char_indices() {
             match c {
@@ -90,7 +90,7 @@ impl<'a> Writer<'a> {
         self.plain(rest)
     }
 
-    /// Writes a name, in which only the first colon separates a prefix.
+    /// Writes a name. Only its first colon separates a prefix; further colons become underscores.
     fn name(&mut self, name: &'a str) -> Written {
         let is_free = |prefix: &str| !matches!(prefix, "" | "xml" | "xmlns");
         let split = name.split_once(':').filter(|(prefix, local)| is_free(prefix) && !local.is_empty());

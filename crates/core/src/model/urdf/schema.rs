@@ -1,5 +1,5 @@
-//! Schema of the URDF elements that are read: their child elements, and the kinds of values of their
-//! attributes.
+//! Schema of the URDF elements that are read: their child elements, their attributes and the kinds of values
+//! of these attributes.
 
 use super::element::Element;
 use super::error::{UrdfError, UrdfProblem};
@@ -21,10 +21,10 @@ pub(super) enum Kind {
 use Kind::{Limit, Name, Numbers, Sizes, Text};
 
 /// Attribute: name, kind, and the text that is used if the file omits the attribute. If there is no such
-/// text, the default of urdf-rs applies, or the attribute is required.
+/// text, the default of urdf-rs applies; if urdf-rs has no default, the attribute is required.
 pub(super) type Attribute = (&'static str, Kind, Option<&'static str>);
 
-/// Returns those attributes of an element that are read.
+/// Returns those attributes of the elements with the name `tag` that are read.
 pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     match tag {
         "joint" => &[("name", Name, None), ("type", Text, None)],
@@ -58,7 +58,8 @@ pub(super) fn attributes(tag: &str) -> &'static [Attribute] {
     }
 }
 
-/// Returns the names of the child elements that are read; only the first child of each name is used.
+/// Returns the names of the child elements that are read in elements with the name `tag`. Only the first
+/// child of each name is used.
 pub(super) fn elements(tag: &str) -> &'static [&'static str] {
     match tag {
         "joint" => &["parent", "child", "origin", "axis", "limit", "dynamics", "mimic"],

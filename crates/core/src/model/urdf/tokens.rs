@@ -19,7 +19,7 @@ pub(super) enum Kind {
     Empty,
 }
 
-/// Token, a contiguous part of the text.
+/// Contiguous part of a text: a tag, a comment or the text between them.
 #[derive(Clone, Copy)]
 pub(super) struct Token<'a> {
     pub(super) kind: Kind,
@@ -48,12 +48,12 @@ impl<'a> Token<'a> {
     }
 }
 
-/// Returns a tag without its leading `<` and the spaces that follow, which tinyxml2 accepts.
+/// Returns a tag without its leading `<` and the spaces after it, which tinyxml2 accepts.
 fn inside(tag: &str) -> &str {
     tag.strip_prefix('<').map_or(tag, str::trim_start)
 }
 
-/// Returns all tokens of a text in order; concatenated, they are the text.
+/// Returns all tokens of a text in order; together they are the whole text.
 pub(super) fn tokens(xml: &str) -> impl Iterator<Item = Token<'_>> {
     let mut at = 0;
     std::iter::from_fn(move || {
