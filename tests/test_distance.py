@@ -141,7 +141,7 @@ def test_a_mesh_with_a_defect_is_a_hull_with_one_warning(
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        ("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "no convex hull with a volume"),
+        ("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a convex hull with a volume cannot be formed"),
         ("a.obj", "v 0 0\n", "line 1 is 'v 0 0'; expected a vertex with three numbers"),
         ("b.obj", "v 0 0 0\nf 1 2 3\n", "line 2 is 'f 1 2 3'; expected a face with at least three"),
         ("c.obj", "", "the file has no triangles"),

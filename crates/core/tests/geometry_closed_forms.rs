@@ -147,7 +147,7 @@ fn shapes_without_volume_and_poses_that_are_not_finite_are_refused() {
     let flat: Vec<_> = (0..9).map(|k| Vec3::new(f64::from(k % 3), f64::from(k / 3), 0.0)).collect();
     for points in [flat, vec![Vec3::new(f64::NAN, 0.0, 0.0); 5], vec![], vec![Vec3::zero(); 8]] {
         let error = Shape::hull(&points).unwrap_err();
-        assert!(error.to_string().contains("no convex hull with a volume"), "{error}");
+        assert!(error.to_string().contains("a convex hull with a volume cannot be formed"), "{error}");
     }
     let torus = Shape::Torus { major_radius: 1.0, minor_radius: 0.1 };
     let error = closest(&torus, &at, &cube, &at).unwrap_err();

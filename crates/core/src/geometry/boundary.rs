@@ -15,7 +15,8 @@ pub struct BoundaryPoint {
     pub normal: Vec3<f64>,
 }
 
-/// Returns the nearest boundary point to `p`, in the axes of the shape; `None` for a hull or a compound.
+/// Returns the boundary point that is nearest to `p`; both are in the axes of the shape, m. Returns `None`
+/// for a hull or a compound.
 ///
 /// Where several boundary points are equally near, as on the axis of a cylinder, the same one is chosen every time.
 pub fn signed_distance(shape: &Shape, p: Vec3<f64>) -> Option<BoundaryPoint> {
@@ -40,7 +41,7 @@ pub fn signed_distance(shape: &Shape, p: Vec3<f64>) -> Option<BoundaryPoint> {
     }
 }
 
-/// Returns the nearest point to `p` of the sphere with this radius, m, about `center`.
+/// Returns the point nearest to `p` on the sphere with this radius, m, about `center`.
 fn about(center: Vec3<f64>, radius: f64, p: Vec3<f64>) -> BoundaryPoint {
     let apart = p - center;
     let length = apart.norm();
@@ -74,7 +75,8 @@ fn cuboid(half: [f64; 3], p: Vec3<f64>) -> BoundaryPoint {
     BoundaryPoint { distance: beyond[face], point: vector(point), normal: vector(normal) }
 }
 
-/// Returns the nearest boundary point to `p` of the solid that the profile `corners` sweeps about the z axis.
+/// Returns the point nearest to `p` on the boundary of the solid that the profile `corners`, m, sweeps about
+/// the z axis.
 fn revolved(corners: &[[f64; 2]], p: Vec3<f64>) -> BoundaryPoint {
     let away = radial(p);
     let (distance, [rho, z], [n_rho, n_z]) = profile::nearest(corners, [p.x.hypot(p.y), p.z]);

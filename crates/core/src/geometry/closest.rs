@@ -1,4 +1,4 @@
-//! Distance of any two shapes: chooses the method for the pair.
+//! Distance between two shapes of any kind, with the method that fits the pair.
 
 use super::boundary::signed_distance;
 use super::convex;
@@ -13,9 +13,10 @@ use crate::spatial::Vec3;
 
 /// Returns the signed distance of two shapes, its witness points and its normal, in common axes.
 ///
-/// Spheres, pairs of capsules, and half-spaces have closed forms; other convex shapes use GJK and EPA. The
-/// distance of a compound is that of its nearest or most deeply overlapping piece. The result depends only on
-/// the arguments: nothing is stored between calls.
+/// Spheres (except with a hull), pairs of capsules, and half-spaces have closed forms. For a torus, the
+/// nearest point of its middle circle is searched; other pairs of convex shapes use GJK and EPA. The distance
+/// of a compound is that of its nearest or most deeply overlapping piece. The result depends only on the
+/// arguments: nothing is stored between calls.
 ///
 /// # Errors
 /// [`GeometryError`] if a length or a pose is invalid; if no method covers the pair, such as two half-spaces
@@ -94,8 +95,7 @@ fn single(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Proximit
     found.map(|proximity| proximity.in_common(pose_a)).ok_or_else(|| GeometryError::Unavailable(pair()))
 }
 
-/// Returns the rank of a kind of shape: of a pair, the shape of lower rank is the first argument of every
-/// method.
+/// Returns the rank of a kind of shape. In every method, the shape of lower rank is the first argument.
 fn rank(shape: &Shape) -> usize {
     match shape {
         Shape::Sphere { .. } => 0,

@@ -3,12 +3,13 @@
 use super::proximity::Proximity;
 use crate::spatial::{Force, Vec3};
 
-/// Slope between two surfaces from which the far side of a patch has no weight. The wider this transition
-/// is, the nearer to the patch do the moments of its weights act, and the more do small tilts soften a
-/// contact.
+/// Slope between two surfaces above which the shallow side of a patch has no weight. A larger slope widens
+/// the transition: the lever arms that result from changing weights then stay closer to the patch, but small
+/// tilts make a contact softer.
 pub(super) const TILT: f64 = 0.02;
 
-/// Pair of opposite points at which two shapes touch, with the gradients of its depth and weight.
+/// Pair of opposite points at which two shapes touch, with the gradients of its depth and weight, all in
+/// common axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     /// Point of the first shape, m.
@@ -22,12 +23,12 @@ pub struct ContactPoint {
     /// Change of the depth for a displacement of the second shape: m per m of translation and m per rad of
     /// rotation about the middle of the witness points.
     pub depth_gradient: Force<f64>,
-    /// Change of the weight: 1 per m and 1 per rad.
+    /// Change of the weight for the same displacement, 1/m and 1/rad.
     pub weight_gradient: Force<f64>,
 }
 
 impl ContactPoint {
-    /// Returns a point fixed to both shapes, with a constant weight.
+    /// Returns a contact point whose two points are fixed to their shapes and whose weight is constant.
     pub(super) fn new(
         proximity: &Proximity,
         [point_a, point_b]: [Vec3<f64>; 2],

@@ -8,8 +8,8 @@ use super::shape::Shape;
 use super::support::rounding;
 use crate::spatial::Vec3;
 
-/// Distance, relative to the size of the shapes, to which the second shape is moved along the normal to find
-/// the nearest points of close and of overlapping shapes.
+/// Distance, relative to the size of the smaller shape, to which the second shape is moved along the normal
+/// to find the nearest points of shapes that are close or overlap.
 const MARGIN: f64 = 0.1;
 
 /// Largest number of corrections of the normal.
@@ -21,8 +21,8 @@ const FINAL: f64 = 1e-12;
 /// Change of the normal, rad, below which the iteration ends as soon as the change no longer decreases.
 const RESOLUTION: f64 = 1e-7;
 
-/// Largest difference between the distance of the witness points and that of the supporting planes, relative
-/// to the size.
+/// Largest accepted difference between the distance of the witness points and that of the supporting planes,
+/// relative to the size of both shapes.
 const RESOLVED: f64 = 1e-9;
 
 /// Returns the distance of two convex shapes with the pose of the second in the axes of the first, or, if the
@@ -58,12 +58,12 @@ pub(super) fn closest(a: &Shape, b: &Shape, pose: &Pose) -> Result<Proximity, f6
 }
 
 /// Returns the nearest points and the normal of shapes that are close or overlap, from an approximate normal;
-/// `None` if the shapes overlap even after the second was moved along it.
+/// `None` if the shapes overlap even after the second one was moved along this normal.
 ///
 /// The signed distance is the largest separation of supporting planes, `max over n of s(n)`. The second shape
 /// is moved along `n` until it is at the distance `m`, where the normal of the nearest points is the next
 /// `n`. The separation never decreases, and the error of the normal shrinks by `(depth + m)/(R + m)`, with
-/// the radius of curvature `R` of the difference of the shapes: at once for polytopes.
+/// the radius of curvature `R` of the difference of the shapes; for polytopes, a single step suffices.
 fn corrected(cores: &Cores<'_>, mut normal: Vec3<f64>, margin: f64) -> Option<Nearest> {
     let mut separation = cores.separation(normal);
     let (mut found, mut last) = (None, f64::INFINITY);

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Number of derivatives: translations along three axes, then rotations about them.
+/// Number of derivatives: with respect to translations along three axes, then to rotations about them.
 pub(super) const DIRECTIONS: usize = 6;
 
 /// Number of a geometric computation, with or without derivatives.
@@ -17,7 +17,7 @@ pub(super) trait Number:
     }
     /// Returns the number without its derivatives.
     fn value(self) -> f64;
-    /// Returns `f(x)`, given its value and its derivative `slope` at `x`.
+    /// Returns `f(x)` of this number `x`, from the value of `f` and its derivative `slope` at `x`.
     fn function(self, value: f64, slope: f64) -> Self;
 
     fn sqrt(self) -> Self {
@@ -50,7 +50,7 @@ pub(super) struct Dual {
 }
 
 impl Dual {
-    /// Returns `f(x, y)`, given its value and its derivatives by both.
+    /// Returns `f(x, y)`, from the value of `f` and its derivatives with respect to `x` and `y`.
     fn of_two(value: f64, (x, by_x): (Self, f64), (y, by_y): (Self, f64)) -> Self {
         Self { value, slopes: std::array::from_fn(|k| by_x * x.slopes[k] + by_y * y.slopes[k]) }
     }

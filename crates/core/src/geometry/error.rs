@@ -22,7 +22,7 @@ pub enum GeometryError {
     /// A length of a shape is not positive and finite.
     #[error("the {name} of {shape} is {got} m; it must be positive and finite", got = short(*got))]
     Length {
-        /// Kind of the shape.
+        /// Kind of the shape, with its article.
         shape: &'static str,
         /// Name of the length.
         name: &'static str,
@@ -31,7 +31,8 @@ pub enum GeometryError {
     },
     /// Points have no convex hull with a volume.
     #[error(
-        "{points} have no convex hull with a volume ({cause}); give at least four points that are not in a plane",
+        "a convex hull with a volume cannot be formed from {points} ({cause}); give at least four points that are not \
+         in a plane",
         points = number_text::count(*count, "point")
     )]
     Hull {
@@ -46,7 +47,7 @@ pub enum GeometryError {
     /// The pose of a shape has a number that is not finite.
     #[error("the pose of {name} contains infinity or NaN; give a finite position and rotation")]
     Pose {
-        /// Kind of the shape.
+        /// Kind of the shape, with its article.
         name: &'static str,
     },
     /// A link has no collision shape.
@@ -64,7 +65,7 @@ pub enum GeometryError {
     Collision {
         /// Name of the link.
         link: String,
-        /// Reason and remedy, as text.
+        /// Reason, as text; with advice if there is any.
         cause: String,
     },
     /// No distance is defined between two shapes.

@@ -8,15 +8,15 @@ use super::polygon::{Point, clip};
 use crate::spatial::Vec3;
 use std::f64::consts::TAU;
 
-/// Part of the perimeter of a patch that is added to the distance of two corners for their slope, so that a
-/// corner that splits into two passes its weight on to both.
+/// Part of the perimeter of a patch that is added to the distance of two corners in the slope between them.
+/// Without it, the weight would jump where a corner splits into two.
 const SPREAD: f64 = 0.01;
 
-/// Angle, rad, between two edges in a line, and distance of two corners at the same place, relative to the
-/// perimeter.
+/// Largest angle, rad, between two edges that count as one line, and largest distance, relative to the
+/// perimeter, of two corners that count as one.
 const SAME: f64 = 1e-7;
 
-/// Least weight of a corner relative to that by its angle.
+/// Least ratio of the weight of a corner to the weight that follows from its angle.
 const LEAST: f64 = 0.1;
 
 /// Vector of numbers with or without derivatives.
@@ -58,9 +58,9 @@ pub(super) struct Facet<N> {
 }
 
 impl<N: Number> Facet<N> {
-    /// Returns the face of a feature; `None` for features without a face. `plane` is the point and the normal
-    /// of a half-space, `place` and `turn` give points and directions as numbers, and `other` is the normal
-    /// of the other face.
+    /// Returns the face of a feature; `None` for features without a face. `plane` is a point of the surface
+    /// and the normal of a half-space. `place` and `turn` convert points and directions to vectors of
+    /// numbers, and `other` is the normal of the other face.
     pub(super) fn of(
         feature: &Feature,
         plane: (Vec3<f64>, Vec3<f64>),
@@ -173,8 +173,8 @@ fn apart<N: Number>(p: Point<N>, q: Point<N>) -> N {
     (x * x + y * y).sqrt()
 }
 
-/// Returns a polygon without corners at the same place and without corners between two edges in a line,
-/// whose places rounding errors determine.
+/// Returns a polygon without repeated corners and without corners between two edges in a line. Rounding
+/// errors determine the places of such corners.
 fn simplified<N: Number>(mut corners: Vec<Point<N>>) -> Vec<Point<N>> {
     let perimeter = perimeter(&corners).value();
     let is_same = |p: Point<N>, q: Point<N>| apart(p, q).value() <= SAME * perimeter;
@@ -215,9 +215,9 @@ fn angle<N: Number>(before: Point<N>, p: Point<N>, after: Point<N>) -> N {
 /// is the centroid, unless the polygon is almost a line or a factor is raised to [`LEAST`].
 ///
 /// They are `α_i/2π`, with the angle `α_i` by which the boundary turns at the corner `p_i`, times a factor
-/// that is linear in the place, `1 + b (p_i − p̄)`, with the mean `p̄ = Σ p_i α_i/2π` and the vector `b` that
-/// yields the centroid. A corner that splits into two passes its angle on to both, and a point on a straight
-/// edge has none.
+/// that is linear in the position, `1 + b (p_i − p̄)`, with the mean `p̄ = Σ p_i α_i/2π` and the vector `b`
+/// that yields the centroid. A corner that splits into two passes its angle on to both, and a point on a
+/// straight edge has none.
 fn by_angle<N: Number>(corners: &[Point<N>]) -> Vec<N> {
     let count = corners.len();
     let around = |i: usize| [corners[(i + count - 1) % count], corners[i], corners[(i + 1) % count]];
@@ -260,8 +260,8 @@ fn normalized<N: Number>(weights: Vec<N>) -> Vec<N> {
     weights.into_iter().map(|weight| weight / total).collect()
 }
 
-/// Returns the weights of the corners of a patch: that by its angle, for each corner that no other corner
-/// exceeds in depth by a slope of [`TILT`] or more.
+/// Returns the weights of the corners of a patch. They follow from the angles of the corners; a corner has no
+/// weight if the slope from it to a deeper corner is [`TILT`] or more.
 ///
 /// `w_i ∝ a_i g(s_i)` with the weight by angle `a_i`, `g(s) = (1 − s²)²` below `s = 1` and 0 above, and the
 /// largest slope `s_i = max over j of (x_j − x_i)/(TILT (|p_i − p_j| + r))` between the corners `p` with the

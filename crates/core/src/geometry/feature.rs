@@ -6,10 +6,11 @@ use super::shape::Shape;
 use crate::spatial::Vec3;
 use std::f64::consts::TAU;
 
-/// Corners of the polygon in place of a disc.
+/// Number of corners of the polygon that replaces a disc.
 pub(super) const DISC_CORNERS: u32 = 8;
 
-/// Distance of a point from a face below which it lies on the face, relative to the size of the hull.
+/// Largest distance, relative to the size of the hull, between a face and a point that counts as part of the
+/// face.
 const ON_FACE: f64 = 1e-9;
 
 /// Part of a surface.
@@ -30,7 +31,8 @@ pub(super) enum Feature {
         corners: Vec<Vec3<f64>>,
         /// Outward unit normal.
         normal: Vec3<f64>,
-        /// Centre and radius, m, of the disc that the polygon approximates; `None` for a polygon.
+        /// Centre, m, and radius, m, of the disc that the polygon approximates; `None` for a face that is a
+        /// polygon.
         disc: Option<(Vec3<f64>, f64)>,
     },
     /// Boundary plane of a half-space.
@@ -106,8 +108,9 @@ fn box_face(half_edges: [f64; 3], d: [f64; 3]) -> Feature {
     Feature::Face { corners, normal: Vec3::from_slice(&normal), disc: None }
 }
 
-/// Returns a regular polygon in a disc about the z axis, whose first corner, in the direction `away`, is the
-/// lowest.
+/// Returns a regular polygon in the disc about the z axis with this radius and height `z`, m. Its normal is
+/// `sign` times the z axis. Its first corner lies in the direction `away` and is the nearest to the other
+/// shape.
 fn disc(radius: f64, z: f64, away: Vec3<f64>, sign: f64) -> Feature {
     let side = Vec3::new(-away.y, away.x, 0.0);
     let corner = |k: u32| {

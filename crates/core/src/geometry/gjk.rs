@@ -13,16 +13,17 @@ const STEPS: usize = 200;
 /// difference is below [`CLOSE`].
 const PATIENCE: [usize; 2] = [40, 3];
 
-/// Difference of the bounds from which more steps gain little, relative to the largest coordinate.
+/// Difference of the bounds below which further steps improve the result little, relative to the largest
+/// coordinate.
 const CLOSE: f64 = 1e-14;
 
 /// Difference of the bounds at which the iteration ends, relative to the largest coordinate.
 const CONVERGED: f64 = 4e-16;
 
-/// Distance below which shapes touch, relative to the largest coordinate.
+/// Distance below which shapes count as touching, relative to the largest coordinate.
 const TOUCHING: f64 = 1e-13;
 
-/// Cores of two convex shapes, in the axes of the first.
+/// Cores of two convex shapes ([`core_support`]), in the axes of the first.
 #[derive(Clone, Copy)]
 pub(super) struct Cores<'a> {
     pub(super) a: &'a Shape,
@@ -56,7 +57,7 @@ impl Cores<'_> {
         -self.corner(n).apart.dot(n)
     }
 
-    /// Returns the same shapes with the second one moved.
+    /// Returns the same shapes with the second one moved by `by`, m.
     pub(super) fn moved(&self, by: Vec3<f64>) -> Self {
         Self { pose: Pose { pos: self.pose.pos + by, ..self.pose }, ..*self }
     }

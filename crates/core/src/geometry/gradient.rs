@@ -7,15 +7,16 @@ use super::feature::Feature;
 use super::proximity::Proximity;
 use crate::spatial::{Force, Vec3};
 
-/// Height, relative to the distance from the witness points, below which a corner is as deep as they are.
+/// Height of a corner, relative to its distance from the witness points, below which it counts as deep as
+/// they are.
 const LEVEL: f64 = 1e-10;
 
-/// Sine of the angle between two normals below which they are the same.
+/// Sine of the angle between two normals below which they count as equal.
 const PARALLEL: f64 = 1e-9;
 
 /// Returns the contact points of two plane faces, discs or half-spaces; `None` for other features and for
-/// faces without a common part. The deepest corner has the depth of the shapes, and the others lie above it
-/// as on the faces.
+/// faces without a common part. The deepest corner has the depth of the shapes; the other depths differ from
+/// it as on the faces.
 pub(super) fn face_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Vec<ContactPoint>> {
     let flat = common::<f64>(proximity, a, b)?;
     let depth = -proximity.distance;
@@ -55,11 +56,11 @@ pub(super) fn face_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Op
     Some(points)
 }
 
-/// Returns the part of the weight that a patch has: 1 if it is wider than deep or the shapes are apart, `x²
-/// (3 − 2x)` for smaller ratios `x` of `width` to `depth`, m.
+/// Returns the part of the weight that a patch receives: 1 if its `width`, m, is at least the `depth`, m, or
+/// if the shapes are apart; otherwise `x² (3 − 2x)` with the ratio `x` of width to depth.
 ///
-/// The edges of a narrow patch are as deep as the patch is wide. Seen along the bisector of the faces it
-/// may then vanish while the shapes still overlap, and the witness points remain.
+/// The edges of a narrow patch are as deep as the patch is wide. Seen along the bisector of the faces, such a
+/// patch may vanish while the shapes still overlap; only the witness points then remain.
 fn part<N: Number>(width: N, depth: N) -> N {
     if depth.value() <= 0.0 || width.value() >= depth.value() {
         return N::of(1.0);
@@ -72,8 +73,8 @@ fn values(p: Vector<Dual>) -> Vec3<f64> {
     Vec3::new(p[0].value, p[1].value, p[2].value)
 }
 
-/// Returns the common part of two faces, relative to the middle of the witness points, with derivatives by
-/// the displacement of the second shape; `None` for other features and without a common part.
+/// Returns the common part of two faces, relative to the middle of the witness points, with derivatives with
+/// respect to displacements of the second shape; `None` for other features and without a common part.
 fn common<N: Number>(proximity: &Proximity, a: &Feature, b: &Feature) -> Option<Patch<N>> {
     let normal = proximity.normal;
     let place_a = |p: Vec3<f64>| fixed(p - proximity.center());
@@ -97,8 +98,8 @@ fn fixed<N: Number>(v: Vec3<f64>) -> Vector<N> {
     [v.x, v.y, v.z].map(N::of)
 }
 
-/// Returns a vector of the second shape with its derivatives by the displacements of this shape:
-/// translations, for a point, and rotations about the origin.
+/// Returns a vector of the second shape with its derivatives with respect to displacements of this shape:
+/// translations, if it is a point, and rotations about the origin.
 fn moving<N: Number>(v: Vec3<f64>, is_point: bool) -> Vector<N> {
     let shift = f64::from(u8::from(is_point));
     [
@@ -108,11 +109,11 @@ fn moving<N: Number>(v: Vec3<f64>, is_point: bool) -> Vector<N> {
     ]
 }
 
-/// Returns the depth of the shapes, m, with its derivatives: it changes as the distance of the supporting
-/// planes at the witness points.
+/// Returns the depth of the shapes, m, with its derivatives, which are those of the distance of the
+/// supporting planes at the witness points, with the opposite sign.
 ///
-/// On a face, the witness points are taken at the `deepest` corner: where an edge lies level on the face, any
-/// point of the edge may be the witness.
+/// On a face, the `deepest` corner replaces the witness point, because any point of an edge that lies flat on
+/// the face may be the witness point.
 fn depth_at(proximity: &Proximity, [a, b]: [&Feature; 2], deepest: &Corner<Dual>) -> Dual {
     let Proximity { distance, normal, .. } = *proximity;
     let is_on = |feature, side: f64| normal.cross(face_normal(feature, normal * side)).norm() < PARALLEL;

@@ -5,10 +5,11 @@ use super::error::GeometryError;
 use super::polytope::Polytope;
 use crate::spatial::Vec3;
 
-/// Thickness below which points are flat, relative to their extent.
+/// Thickness, relative to their extent, below which points count as lying in a plane.
 const FLAT: f64 = 1e-9;
 
-/// Height of a point above a face below which it is part of the face, relative to the extent of the points.
+/// Height of a point above a face, relative to the extent of the points, below which the point counts as part
+/// of the face.
 const COPLANAR: f64 = 1e-12;
 
 /// Face of a convex hull.
@@ -132,8 +133,8 @@ fn spread(points: &[Vec3<f64>]) -> Option<([usize; 4], f64)> {
     (area > FLAT * extent * extent && thickness > FLAT * extent).then_some(([a, b, c, d], extent))
 }
 
-/// Grows the tetrahedron `first` by the farthest point outside a face until no point is more than
-/// `tolerance`, m, outside; `None` if rounding errors prevent this.
+/// Adds the farthest points outside its faces to the tetrahedron `first` until no point is more than
+/// `tolerance`, m, outside. Returns `None` if rounding errors prevent this.
 fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Polytope> {
     let mut polytope = Polytope::default();
     if !polytope.start(first.map(|i| points[i])) {
@@ -164,7 +165,8 @@ fn grown(points: &[Vec3<f64>], first: [usize; 4], tolerance: f64) -> Option<Poly
     Some(polytope)
 }
 
-/// Assigns each point to the first triangle, from index `first` on, outside of which it lies.
+/// Assigns each of the points `loose` (indices) to the first triangle, from index `first` on, outside of
+/// which it lies.
 fn assign(
     polytope: &Polytope,
     points: &[Vec3<f64>],

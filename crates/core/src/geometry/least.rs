@@ -42,9 +42,9 @@ impl ShapeSet {
         self.shapes.is_empty()
     }
 
-    /// Returns the least distance to the shapes of another set, given the poses of the shapes of both sets;
-    /// `None` if no pair is `permitted`. Pairs whose bounding spheres are farther apart than the nearest pair
-    /// are not computed.
+    /// Returns the least distance to the shapes of another set, given the poses of the shapes of both sets in
+    /// common axes. Only the pairs of indices that `permitted` accepts are considered; returns `None` if
+    /// there are none. Pairs whose bounding spheres are farther apart than the nearest pair are skipped.
     ///
     /// # Errors
     /// The error of [`closest`] for a pair.

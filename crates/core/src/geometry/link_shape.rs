@@ -13,9 +13,9 @@ use std::sync::Arc;
 /// Collision shape of a link.
 #[derive(Clone, Debug)]
 pub struct LinkShape {
-    /// Shape in link axes: a compound, with one piece for each element.
+    /// Shape in link axes: a compound with one piece for each `<collision>` element.
     pub shape: Shape,
-    /// Defects of meshes, one line each; the convex hull is used in spite of them.
+    /// Defects of meshes, one message each. The convex hull of such a mesh is used nevertheless.
     pub warnings: Vec<String>,
 }
 

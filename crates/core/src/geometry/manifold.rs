@@ -5,11 +5,11 @@
 //! points, each with the depth `x_i` of the overlap there. With `g(s) = (1 − s²)²` below `s = 1` and 0
 //! above, the weights of the common part of two faces are `w_i ∝ a_i g(s_i)`:
 //!
-//! - `a_i` by the angle at the corner, such that the weighted mean of the corners is the centroid. A box
-//!   that lies on a plane has `a_i = 1/4`. A corner that splits into two passes its weight on to both, and
-//!   a point on an edge has none.
-//! - `s_i` by the largest slope from the corner to a deeper one, relative to `TILT`. The face loses its
-//!   weight to its deepest edge and corner as it tilts.
+//! - `a_i` follows from the angle at the corner, such that the weighted mean of the corners is the
+//!   centroid. A box that lies on a plane has `a_i = 1/4`. If a corner splits into two, both share its
+//!   weight; a point on an edge has none.
+//! - `s_i` is the largest slope from the corner to a deeper one, relative to `TILT`. As the face tilts, its
+//!   weight passes to its deepest edge and corner.
 //!
 //! The common part is seen along the bisector of the normals of both faces, and the depth of the deepest
 //! corner is that of the shapes. Depths and weights are therefore functions of the pose without jumps where
@@ -17,10 +17,10 @@
 //! rolls from a face to a neighbour with almost the same normal, and where the direction of the least depth
 //! changes by a large angle between two pairs of parallel faces.
 //!
-//! A line on a round surface and a face have as points the ends of their common part, with weights by its
-//! slope. Two lines have the ends of their common part, with weights that fall with the angle between the
-//! lines and their slope; the witness points receive the rest. These points are fixed to the shapes: their
-//! gradients leave out how they slide.
+//! The contact points of a line on a round surface and a face are the ends of their common part, with weights
+//! that depend on its slope. Those of two lines are the ends of their common part, with weights that decrease
+//! with the angle between the lines and with their slope; the witness points receive the rest. All these
+//! points are treated as fixed to the shapes: their gradients do not include their sliding.
 
 use super::closest::{check, check_pose, nearest_pieces};
 use super::contact_point::{ContactPoint, witness};
@@ -41,8 +41,7 @@ pub struct Manifold {
     pub points: Vec<ContactPoint>,
 }
 
-/// Returns the contact points of two shapes, in common axes; for a compound, the contact points of its
-/// nearest piece.
+/// Returns the contact points of two shapes, in common axes; for a compound, those of its nearest piece.
 ///
 /// # Errors
 /// The errors of [`closest`](super::closest()).

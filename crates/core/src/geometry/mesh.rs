@@ -45,7 +45,8 @@ impl Mesh {
         Self { vertices, triangles }
     }
 
-    /// Returns the vertices without repetition, and for each vertex of the mesh its index among them.
+    /// Returns, for each vertex of the mesh, its index in the list of vertices without repetition, and this
+    /// list.
     fn joined_vertices(&self) -> (Vec<usize>, Vec<Vec3<f64>>) {
         let (mut known, mut vertices) = (HashMap::new(), Vec::new());
         let key = |p: &Vec3<f64>| [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits()); // −0 is 0
@@ -58,7 +59,7 @@ impl Mesh {
         (self.vertices.iter().map(number).collect(), vertices)
     }
 
-    /// Returns the defect of the mesh, if it has one. Vertices with equal coordinates count as one
+    /// Returns the defect of the mesh, or `None` if it has none. Vertices with equal coordinates count as one
     /// vertex.
     pub fn defect(&self) -> Option<MeshDefect> {
         let (index, _) = self.joined_vertices();

@@ -66,7 +66,7 @@ fn push(mesh: &mut Mesh, corners: [Vec3<f64>; 3]) {
     mesh.triangles.push([first, first + 1, first + 2]);
 }
 
-/// Returns the three numbers after the keyword of a line.
+/// Returns the three numbers after the keyword of a line, or an error message with the line number `number`.
 fn vector(line: &str, number: usize) -> Result<Vec3<f64>, String> {
     let read = |text: &str| text.parse::<f64>().ok();
     let values: Vec<_> = line.split_whitespace().skip(1).take(3).filter_map(read).collect();

@@ -1,5 +1,5 @@
-//! Distances between collision shapes: closed forms for spheres, pairs of capsules and half-spaces, and GJK
-//! and EPA for the other pairs of convex shapes.
+//! Distances between collision shapes: closed forms for spheres, pairs of capsules and half-spaces, a search
+//! along the middle circle for tori, and GJK and EPA for the other pairs of convex shapes.
 //!
 //! | Equation | Function |
 //! |-|-|

@@ -8,7 +8,8 @@ use super::projection::Projection;
 use super::proximity::Proximity;
 use crate::spatial::Vec3;
 
-/// Returns the contact points of two features: the witness points unless both have an extent.
+/// Returns the contact points of two features. They are the witness points unless both features have an
+/// extent.
 pub(super) fn contact_points(proximity: &Proximity, a: &Feature, b: &Feature) -> Vec<ContactPoint> {
     let is_plane = |feature: &Feature| matches!(feature, Feature::Face { .. } | Feature::Plane);
     if is_plane(a) && is_plane(b) {
@@ -71,8 +72,9 @@ fn length(corners: &[Point], i: usize) -> f64 {
     (q[0] - p[0]).hypot(q[1] - p[1])
 }
 
-/// Returns the weights of the corners of a patch, `w` of [`manifold`](mod@super::manifold), from the corners
-/// and the depths there, m.
+/// Returns the weights of the corners of the common part of a line and a face from the depths at the corners,
+/// m. The weights sum to 1. They are those by length or area if the depths are equal; as the slope approaches
+/// [`TILT`], the weight passes to the deepest edge and corner.
 fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     let extent = extent(corners, |i| depths[i]);
     let band = TILT * extent;
@@ -100,7 +102,8 @@ fn tilted_weights(corners: &[Point], depths: &[f64]) -> Vec<f64> {
     by_area.iter().zip(&by_edge).map(blend).collect()
 }
 
-/// Returns the length of a patch along the steepest descent of a linear depth, m; 0 if the depth is constant.
+/// Returns the length of a patch, m, in the direction in which a linear depth changes most; 0 if the depth is
+/// constant.
 fn extent(corners: &[Point], depth: impl Fn(usize) -> f64) -> f64 {
     // the gradient from the moments of the corners about their mean
     let count = corners.len() as f64;
@@ -128,7 +131,7 @@ fn extent(corners: &[Point], depth: impl Fn(usize) -> f64) -> f64 {
     high - low
 }
 
-/// Returns the contact points of two lines on round surfaces with the sum `radius` of their radii: the ends
+/// Returns the contact points of two lines on round surfaces whose radii have the sum `radius`, m: the ends
 /// of their common part, in the mean direction of both, and the witness points; `None` without a common part.
 fn lines(
     plane: &Projection,

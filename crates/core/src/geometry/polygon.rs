@@ -2,7 +2,7 @@
 
 use super::dual::Number;
 
-/// Point of the plane, m.
+/// Coordinates of a point of the plane, m.
 pub(super) type Point<N = f64> = [N; 2];
 
 fn cross<N: Number>(o: Point<N>, a: Point<N>, b: Point<N>) -> N {
@@ -42,10 +42,10 @@ pub(super) fn clip<N: Number>(subject: &[Point<N>], window: &[Point<N>]) -> Vec<
 /// Returns weights of the corners of a convex polygon or a segment. They sum to 1, and the weighted mean of
 /// the corners is the centroid.
 ///
-/// With the polygon cut into triangles from its centroid, of areas `A_i` from corner `i` to `i + 1` and `A`
-/// in total, the weight is `w_i = (A_{i−1} + A_i)/2A`. For any function that is linear on the polygon, `Σ
-/// w_i f_i` is its mean. A corner that splits into two passes its weight on to them, so the weights of a
-/// patch that changes its shape are continuous.
+/// The polygon is divided into triangles with the centroid as a common corner. With the area `A_i` of the
+/// triangle from corner `i` to `i + 1` and the total area `A`, the weight is `w_i = (A_{i−1} + A_i)/2A`. For
+/// any function that is linear on the polygon, `Σ w_i f_i` is its mean. If a corner splits into two, both
+/// share its weight, so that the weights are continuous while a patch changes its shape.
 pub(super) fn weights(corners: &[Point]) -> Vec<f64> {
     let count = corners.len();
     let next = |i: usize| corners[(i + 1) % count];

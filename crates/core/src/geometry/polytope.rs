@@ -19,7 +19,7 @@ pub(super) struct Triangle {
     pub(super) is_flat: bool,
 }
 
-/// Convex polytope with triangular faces, including those that were replaced.
+/// Convex polytope with triangular faces. The list of triangles includes those that were replaced.
 #[derive(Default)]
 pub(super) struct Polytope {
     pub(super) points: Vec<Vec3<f64>>,
@@ -54,8 +54,9 @@ impl Polytope {
         face.normal.dot(point - self.points[face.corners[0]])
     }
 
-    /// Adds a point that is visible from the triangle `seed`: replaces all triangles more than `tolerance` below it.
-    /// Returns the index of the first new triangle, or `None` if rounding has made the horizon ambiguous.
+    /// Adds a point that is outside the triangle `seed`, and replaces all connected triangles of whose planes
+    /// the point is more than `tolerance`, m, outside. Returns the index of the first new triangle, or `None`
+    /// if rounding has made the boundary of the replaced triangles ambiguous.
     pub(super) fn add(&mut self, point: Vec3<f64>, seed: usize, tolerance: f64) -> Option<usize> {
         let apex = self.points.len();
         self.points.push(point);

@@ -7,7 +7,7 @@ use crate::spatial::{Mat3, Vec3};
 pub struct Pose {
     /// Rotation from the axes of the shape to common axes.
     pub rot: Mat3<f64>,
-    /// Origin of the shape, m.
+    /// Origin of the shape in common axes, m.
     pub pos: Vec3<f64>,
 }
 
@@ -22,12 +22,12 @@ impl Pose {
         Self { rot: Mat3::identity(), pos }
     }
 
-    /// Returns the common coordinates of a point of the shape.
+    /// Returns the coordinates, m, in common axes of a point that is given in the axes of the shape.
     pub fn to_common(&self, point: Vec3<f64>) -> Vec3<f64> {
         self.rot * point + self.pos
     }
 
-    /// Returns the coordinates of a point in the axes of the shape.
+    /// Returns the coordinates, m, in the axes of the shape of a point that is given in common axes.
     pub fn to_shape(&self, point: Vec3<f64>) -> Vec3<f64> {
         self.rot.transpose_mul(point - self.pos)
     }

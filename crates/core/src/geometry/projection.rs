@@ -6,8 +6,8 @@ use super::proximity::Proximity;
 use super::segment::perpendicular;
 use crate::spatial::Vec3;
 
-/// Smallest cosine of the angle between the normals of a contact and of a face that is part of the contact.
-/// For a line, smallest sine of its angle with the normal.
+/// Smallest cosine of the angle between the normal of a contact and the normal of a face that can be part of
+/// the contact. For a line, the smallest sine of its angle with the normal of the contact.
 const STEEP: f64 = 0.1;
 
 /// Plane through the first witness point and perpendicular to the normal.

@@ -3,10 +3,10 @@
 use super::pose::Pose;
 use crate::spatial::Vec3;
 
-/// Signed distance of two shapes, with witness points and normal.
+/// Signed distance of two shapes, with witness points and normal in common axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Proximity {
-    /// Distance, m; where the shapes overlap, minus the length of the shortest translation that separates
+    /// Distance, m. If the shapes overlap, it is minus the length of the shortest translation that separates
     /// them.
     pub distance: f64,
     /// Point on the surface of the first shape, m.

@@ -2,13 +2,13 @@
 
 use crate::spatial::Vec3;
 
-/// Sine of the angle below which segments are parallel.
+/// Sine of the angle below which segments count as parallel.
 const PARALLEL: f64 = 1e-12;
 
-/// Distance below which segments intersect, relative to their coordinates.
+/// Distance below which segments count as intersecting, relative to their size and distance.
 const INTERSECTING: f64 = 1e-14;
 
-/// Segment `center + s axis` with `|s| ≤ half_length`; `axis` is a unit vector.
+/// Segment `center + s axis` with `|s| ≤ half_length`, m; `axis` is a unit vector.
 #[derive(Clone, Copy)]
 pub(super) struct Segment {
     pub(super) center: Vec3<f64>,

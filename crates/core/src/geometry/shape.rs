@@ -60,12 +60,13 @@ impl Shape {
     /// Returns the convex hull of points, m.
     ///
     /// # Errors
-    /// [`GeometryError`] if a coordinate is not finite or the points lie in a plane.
+    /// [`GeometryError`] if a coordinate is not finite, or if the points lie in a plane or are too close to
+    /// each other.
     pub fn hull(points: &[Vec3<f64>]) -> Result<Self, GeometryError> {
         Hull::new(points).map(|hull| Self::Hull(Arc::new(hull)))
     }
 
-    /// Returns the name of the kind of shape.
+    /// Returns the name of the kind of shape, with its article.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Sphere { .. } => "a sphere",
@@ -83,7 +84,8 @@ impl Shape {
     /// Checks the dimensions of the shape.
     ///
     /// # Errors
-    /// [`GeometryError`] if a length is not finite or not positive, or if a compound has no pieces.
+    /// [`GeometryError`] if a length is not finite or not positive, if a compound has no pieces, or if the
+    /// pose of a piece is not finite.
     pub fn check(&self) -> Result<(), GeometryError> {
         let lengths: &[(&'static str, f64)] = match self {
             Self::Sphere { radius } => &[("radius", *radius)],
@@ -114,7 +116,7 @@ impl Shape {
         }
     }
 
-    /// Returns true if all surfaces are plane.
+    /// Returns true if all surfaces of the shape are plane.
     pub(crate) fn is_polyhedral(&self) -> bool {
         match self {
             Self::HalfSpace | Self::Box { .. } | Self::Hull(_) => true,

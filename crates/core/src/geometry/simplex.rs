@@ -31,7 +31,7 @@ impl Simplex {
         self.corners[..self.count].iter().any(|known| known.apart == corner.apart)
     }
 
-    /// Returns the mean of a vector of each corner, weighted with the weights of the corners.
+    /// Returns the weighted mean of the vectors that `of` returns for the corners.
     pub(super) fn mean(&self, of: impl Fn(&Corner) -> Vec3<f64>) -> Vec3<f64> {
         let used = self.corners[..self.count].iter().zip(&self.weights);
         used.fold(Vec3::zero(), |sum, (corner, weight)| of(corner).scale_add(*weight, sum))
@@ -41,8 +41,8 @@ impl Simplex {
     /// Returns `None` if the simplex is a tetrahedron that contains the origin. The newest corner is part of
     /// the result, because this corner is nearer to the origin than the plane of the other corners.
     ///
-    /// All subsets with the newest corner are compared. Thresholds on areas, which would end the search early
-    /// for curved shapes, are not needed.
+    /// All subsets with the newest corner are compared. This requires no thresholds on areas, which would end
+    /// the search too early for curved shapes.
     pub(super) fn reduce(&mut self) -> Option<Vec3<f64>> {
         if self.count == 4 && self.contains_origin() {
             return None;
@@ -86,7 +86,8 @@ impl Simplex {
     }
 }
 
-/// Returns the weights of the nearest point of the plane through the first `count` points, if none is negative.
+/// Returns the weights of the point that is nearest to the origin on the plane (or the line) through the
+/// first `count` points; `None` if a weight is negative.
 fn weights([a, b, c]: [Vec3<f64>; 3], count: usize) -> Option<[f64; 3]> {
     let found = match count {
         1 => [1.0, 0.0, 0.0],

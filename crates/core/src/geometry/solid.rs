@@ -14,11 +14,11 @@ const CONVEX: f64 = 1e-6;
 /// Solid bounded by a closed mesh.
 #[derive(Clone, Debug)]
 pub struct Solid {
-    /// Scaled mesh with equal vertices joined and with normals that point outwards.
+    /// Scaled mesh, m, with equal vertices joined and with normals that point outwards.
     pub mesh: Mesh,
     /// Convex hull of the mesh.
     pub hull: Hull,
-    /// Warning about normals that point inwards in the file, as text; `None` for a file without defect.
+    /// Text of a warning if the normals in the file point inwards; otherwise `None`.
     pub warning: Option<String>,
 }
 
@@ -26,7 +26,8 @@ impl Solid {
     /// Reads a mesh file and scales the mesh by `x`, `y` and `z` along its axes.
     ///
     /// # Errors
-    /// The reason, as text, for which the file has no inside: it cannot be read, is open or has no volume.
+    /// The reason, as text, why the file does not describe a solid: it cannot be read, its surface is open,
+    /// or it has no volume.
     pub fn read(filename: &str, [x, y, z]: [f64; 3]) -> Result<Self, String> {
         let mut mesh =
             read_mesh(Path::new(filename)).map_err(|cause| format!("{filename}: {cause}"))?.joined();
@@ -50,7 +51,7 @@ impl Solid {
         Ok(Self { mesh, hull, warning })
     }
 
-    /// Returns true if the solid is its convex hull, apart from rounding.
+    /// Returns true if the solid equals its convex hull, apart from rounding errors.
     pub fn is_convex(&self) -> bool {
         self.mesh.volume() >= (1.0 - CONVEX) * self.hull.volume()
     }

@@ -40,7 +40,8 @@ pub(super) fn core_support(shape: &Shape, d: Vec3<f64>) -> Option<Vec3<f64>> {
     }
 }
 
-/// Returns the radius of a sphere or a capsule, by which the shape extends beyond its core, m; otherwise 0.
+/// Returns the distance, m, by which a shape extends beyond its core: the radius of a sphere or a capsule,
+/// and 0 for other shapes.
 pub(super) fn rounding(shape: &Shape) -> f64 {
     match shape {
         Shape::Sphere { radius } | Shape::Capsule { radius, .. } => *radius,

@@ -1,4 +1,5 @@
-//! Distance of a torus from another shape: the distance of the torus's middle circle less its minor radius.
+//! Distance of a torus from another shape: the distance of its middle circle from the shape, less its minor
+//! radius.
 
 use super::boundary::{BoundaryPoint, signed_distance};
 use super::convex;
@@ -19,8 +20,8 @@ const HALVINGS: usize = 52;
 /// Radius of a sphere that replaces a point, relative to the size of a hull.
 const POINT: f64 = 1e-3;
 
-/// Point of the circle at an angle, rad, with the nearest boundary point of the other shape and the rate of
-/// their distance along the circle, m/rad.
+/// Point of the circle at an angle, rad, with the nearest boundary point of the other shape, their distance,
+/// m, and the change of this distance per length along the circle.
 #[derive(Clone, Copy)]
 struct Sample {
     angle: f64,
@@ -37,7 +38,8 @@ struct Sample {
 /// does not converge.
 ///
 /// The distance along the circle may have several minima. Each interval between neighbouring samples that
-/// contains a minimum is bisected to find the angle at which the rate `nᵀ c'` of the distance changes sign.
+/// contains a minimum is bisected to find the angle at which the rate `nᵀ t` of the distance changes sign,
+/// with the normal `n` and the unit tangent `t` of the circle.
 pub(super) fn closest(a: &Shape, torus: (f64, f64), pose: &Pose) -> Option<Proximity> {
     let (major_radius, minor_radius) = torus;
     let at = |angle: f64| sample(a, major_radius, pose, angle);
