@@ -223,7 +223,7 @@ Errors, ROW = oo.exceptions, [MOVE]
 WRONG: list[tuple[Callable[[oo.Stepper], None], type[Exception], str]] = [
     (lambda s: s.send("contrl", position=MOVE), Errors.ControlError, "did you mean 'control'"),
     (lambda s: s.send("control"), Errors.ControlError, "is empty"),
-    (lambda s: s.send("control", position=MOVE[:3]), Errors.ShapeError, "have 7 numbers, .* it has 3 numbers"),
+    (lambda s: s.send("control", position=MOVE[:3]), Errors.ShapeError, "have 7 numbers, .* has 3 numbers"),
     (lambda s: s.send("control", effort=[np.nan] * 7), Errors.InputError, "finite"),
     (lambda s: s.send("control", velocity=[np.inf] * 7), Errors.InputError, "finite"),
     (lambda s: s.send("control", position=1e99 * MOVE), Errors.InputError, "within"),

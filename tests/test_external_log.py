@@ -178,7 +178,7 @@ BAD = [
     ('{"time": 0.1, "control": "arm", "position": [0, 0, 0, 0, 0]}', MISSING),
     ('{"time": 0.1, "system": "chasr", "control": "arm", "position": [0]}', "there is no system 'chasr'"),
     ('{"time": 0.1, "system": "chaser", "control": "arn", "position": [0]}', "did you mean 'arm'"),
-    ('{"time": 0.1, "system": "chaser", "control": "arm", "position": [0]}', "must have 5 numbers, .* but it has 1 number"),
+    ('{"time": 0.1, "system": "chaser", "control": "arm", "position": [0]}', "have 5 numbers, .* 1 number"),
     ('{"time": 0.1, "system": "chaser", "control": "arm", "position": "up"}', "list of finite numbers"),
     ('{"time": 0.1, "system": "chaser", "control": "wrist", "position": [0, 0]}', "require kp > 0"),
     ('{"time": 0.1, "system": "chaser", "control": "arm"}', "give position, velocity"),

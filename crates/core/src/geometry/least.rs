@@ -43,8 +43,8 @@ impl ShapeSet {
     }
 
     /// Returns the least distance to the shapes of another set, given the poses of the shapes of both sets in
-    /// common axes. Only the pairs of indices that `permitted` accepts are considered; returns `None` if
-    /// there are none. Pairs whose bounding spheres are farther apart than the nearest pair are skipped.
+    /// common axes. Only the pairs of indices that `permitted` accepts are considered; without such a pair,
+    /// returns `None`. Pairs whose bounding spheres are farther apart than the nearest pair are skipped.
     ///
     /// # Errors
     /// The error of [`closest`] for a pair.
