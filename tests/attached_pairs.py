@@ -1,4 +1,4 @@
-"""Pairs of random trees attached by random frames, with states in which all links move alike in both."""
+"""Pairs of random trees attached by random frames, with states of equal motion apart and attached."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def drawn(seed: int, links: int) -> Tree:
 
 
 def prefixed(tree: Tree) -> oo.Model:
-    """Returns the model with all names of links, joints and the tool prefixed, as attached."""
+    """Returns the model of a tree with ``PREFIX`` before the names of links, joints and tool, as attached."""
     base = tree.parts[0]
     builder = oo.ModelBuilder(
         "part", base=PREFIX + base.name, mass=base.mass, com=base.com, inertia=base.inertia
@@ -41,7 +41,7 @@ def prefixed(tree: Tree) -> oo.Model:
 
 
 def add_parts(builder: oo.ModelBuilder, tree: Tree, prefix: str) -> None:
-    """Adds all links but the base of a tree, and its tool, with prefixed names."""
+    """Adds all links of a tree except its base, and its tool frame, with ``prefix`` before their names."""
     for part in tree.parts[1:]:
         builder.add_link(
             prefix + part.name, parent=f"{prefix}{part.parent}", joint=prefix + part.joint,

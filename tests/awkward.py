@@ -14,7 +14,11 @@ FOLDER = Path(__file__).parent / "fixtures" / "awkward"
 
 @dataclass(frozen=True)
 class Expected:
-    """``text`` is part of the warning or error; empty if the file loads without a warning."""
+    """Expected result for a file: whether it loads, and a part of its warning or error.
+
+    ``text`` is empty for a file that loads without a warning. ``is_physics`` is true if Pinocchio loads the
+    file, but a robot in orbit cannot be simulated from it.
+    """
 
     loads: bool
     text: str = ""
@@ -29,12 +33,15 @@ def warns(text: str) -> Expected:
 
 
 def physics(text: str) -> Expected:
-    """Refused, although Pinocchio loads it: unknown mass, links that form no tree, undetermined motion."""
+    """Returns the result for a file that is rejected, although Pinocchio loads it.
+
+    The reasons are unknown masses, links that form no tree, and undetermined motions.
+    """
     return Expected(loads=False, text=text, is_physics=True)
 
 
 def malformed(text: str) -> Expected:
-    """Refused, as by Pinocchio."""
+    """Returns the result for a file that both this package and Pinocchio reject."""
     return Expected(loads=False, text=text)
 
 

@@ -1,4 +1,4 @@
-"""Reads bags with the packages rosbags and mcap-ros2-support; the numbers that a run must have in them."""
+"""Reads bags with rosbags and mcap-ros2-support, and computes the numbers that they must contain."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def read_mcap(file: Path) -> Messages:
 
 
 def expected(source: Recorded) -> dict[str, list[tuple[int, list[float]]]]:
-    """Returns times, ns, and numbers of each message of the topics with rows, in order."""
+    """Returns the time, ns, and the numbers of each message, in order, for topics with a message per row."""
     found: dict[str, list[tuple[int, list[float]]]] = defaultdict(list)
     for series in topics(source.models, source.rows, source.orbit).series:
         rows = source.rows[series.system]
@@ -74,7 +74,7 @@ def numbers(message: list[Any]) -> list[float]:
 
 
 def differences(found: Messages, wanted: dict[str, list[tuple[int, list[float]]]]) -> list[str]:
-    """Returns a text for each topic whose times or numbers differ in any bit."""
+    """Returns the names of the topics whose times or numbers differ in any bit."""
     wrong = []
     for topic, rows in wanted.items():
         got = sorted((time, numbers(message)) for time, message in found[topic])

@@ -19,7 +19,7 @@ CUBE = np.eye(3)
 
 
 def wrist() -> oo.Model:
-    """Returns a z-y-z wrist with massless links between: at zero, the first and last axes coincide."""
+    """Returns a z-y-z wrist with massless links; at zero, its first and last axes coincide."""
     builder = oo.ModelBuilder("wrist", base="base", mass=10.0, inertia=np.eye(3))
     builder.add_link("a", parent="base", joint="j1", axis=[0, 0, 1])
     builder.add_link("b", parent="a", joint="j2", axis=[0, 1, 0])
@@ -97,7 +97,7 @@ BUILT_IN = {
 
 
 def check(bad: Bad) -> None:
-    """Checks class, built-in base class, fields, one-line message with value and fix, and pickling."""
+    """Checks that a call raises the error: class, built-in base class, message, fields, and pickling."""
     with pytest.raises(oo.OnOrbitError) as caught:
         bad.call()
     error = caught.value

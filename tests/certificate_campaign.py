@@ -24,7 +24,7 @@ from onorbit_rs.exceptions import SimulationError
 
 @dataclass
 class Tally:
-    """Results of a campaign."""
+    """Results of a campaign: runs by kind, cases judged wrongly, and the value nearest to its gate."""
 
     runs: Counter[str] = field(default_factory=Counter)
     mistaken: list[str] = field(default_factory=list)
@@ -33,7 +33,8 @@ class Tally:
     def __str__(self) -> str:
         kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(self.runs.items()))
         return (
-            f"{self.runs.total()} runs ({kinds}): {len(self.mistaken)} mistaken; nearest {self.nearest:.2g}"
+            f"{self.runs.total()} runs ({kinds}): {len(self.mistaken)} judged wrongly; "
+            f"the value nearest to its gate is {self.nearest:.2g} times the gate"
         )
 
 
@@ -48,7 +49,7 @@ def nearest(trace: oo.Trace) -> float:
 
 
 def exact(count: int, seed: int, most_rows: int, until: float = np.inf) -> Tally:
-    """Runs exact motions and counts those whose certificates fail by mistake."""
+    """Runs up to ``count`` exact motions and collects those whose certificates fail by mistake."""
     tally = Tally()
     for kind, case, rng in _cases(EXACT, count, seed, until):
         run: Run = case(rng, most_rows)
@@ -61,7 +62,7 @@ def exact(count: int, seed: int, most_rows: int, until: float = np.inf) -> Tally
 
 
 def wrong(count: int, seed: int, until: float = np.inf) -> Tally:
-    """Runs ``count`` faulty motions and counts those whose certificates pass by mistake."""
+    """Runs up to ``count`` faulty motions and collects those whose certificates pass by mistake."""
     tally = Tally(nearest=np.inf)
     for kind, case, rng in _cases(WRONG, 1000 * count, seed, until):
         if tally.runs.total() >= count:
@@ -116,11 +117,11 @@ def main(arguments: list[str] | None = None) -> int:
     mistaken = 0
     for name, job in (
         ("exact", lambda until: exact(given.exact, given.seed, given.rows, until)),
-        ("made wrong", lambda until: wrong(given.wrong, given.seed, until)),
+        ("faulty", lambda until: wrong(given.wrong, given.seed, until)),
     ):
         started = time.monotonic()
         tally = job(started + 60.0 * given.minutes)
-        print(f"{name}: {tally} gates; {time.monotonic() - started:.0f} s", flush=True)
+        print(f"{name}: {tally}; {time.monotonic() - started:.0f} s", flush=True)
         print("\n".join(tally.mistaken))
         mistaken += len(tally.mistaken)
     return int(mistaken > 0)

@@ -12,9 +12,9 @@ import numpy as np
 import onorbit_rs as oo
 
 OFF = 1e-2
-"""A run is faulty if the error of a joint or of the attitude exceeds this angle, rad,"""
+"""Error of a joint or of the attitude, rad, that a faulty run exceeds."""
 FRACTION = 1e-3
-"""and this fraction of the distance travelled at its fastest rate."""
+"""Part of the distance travelled at the fastest rate that the error of a faulty run exceeds."""
 CHAOS = 10.0
 """A motion is chaotic if a small difference of rates grows by this factor beyond linear growth."""
 
@@ -23,7 +23,10 @@ Rng = np.random.Generator
 
 @dataclass(frozen=True)
 class Run:
-    """Settings of a case; ``is_wrong`` decides whether the run is faulty, None if it is by construction."""
+    """Settings of a case.
+
+    ``is_wrong`` returns true if the run is faulty; it is None if this is known from the kind of the case.
+    """
 
     model: oo.Model
     q: Any
@@ -38,9 +41,10 @@ class Run:
         return oo.Simulation(self.model, self.q, self.v, time_step=self.time_step, **self.settings)
 
     def rows(self, finer: int = 1, moved: float = 0.0, phase: float = 0.0) -> oo.Trace:
-        """Runs with ``finer`` steps and with the initial rates changed by a fraction, each differently.
+        """Returns the trace of a run with shorter steps and changed initial rates.
 
-        A common factor on all rates would only rescale time.
+        The step is divided by ``finer``. ``moved`` is the largest change of a rate relative to the largest
+        rate, and ``phase``, rad, varies the changes. A common factor on all rates would only rescale time.
         """
         v = self.v + moved * np.abs(self.v).max() * np.cos(2.0 * np.arange(len(self.v)) + phase)
         run = replace(self, time_step=self.time_step / finer, v=v)
@@ -71,7 +75,7 @@ def body(rng: Rng) -> tuple[oo.Model, Any]:
 
 
 def sparse(rng: Rng) -> dict[str, Any]:
-    """Returns a random interval between recorded steps."""
+    """Returns a random number of steps between recorded rows, as a setting of a run."""
     return {"record_every": int(rng.choice([1, 1, 7, 100]))}
 
 
@@ -115,7 +119,7 @@ def held(rng: Rng, most_rows: int) -> Run:
 
 
 def circular(rng: Rng, eccentricity: float = 0.0) -> oo.Kepler:
-    """Returns a circular low orbit."""
+    """Returns a random low orbit, which is circular by default."""
     return oo.Kepler(
         semi_major_axis=rng.uniform(6.7e6, 9e6), eccentricity=eccentricity, inclination=rng.uniform(0, np.pi)
     )
@@ -197,13 +201,13 @@ def light_link(rng: Rng) -> Run:
 
 
 class InconsistentEngine:
-    """An engine that reports a wrench on the base without applying it, or applies it without reporting it."""
+    """Engine that reports a wrench on the base without applying it, or applies it without reporting it."""
 
     def __init__(self, model: oo.Model, force: Any, *, applies: bool) -> None:
         self.model, self.force, self.applies = model, force, applies
 
     def step(self, start: float, end: float, q: Any, v: Any, *_: Any) -> Any:
-        """Advances by a step of the engine, whose momentum is consistent with the applied wrench."""
+        """Returns the state after a step under the applied wrench, and an impulse that contradicts it."""
         effects = [oo.BodyWrench("base", force=self.force)] if self.applies else []
         h = end - start
         own = oo.Simulation(self.model, q, v, environment=effects, time_step=max(h, 1e-3)).run(max(h, 1e-3))

@@ -15,7 +15,7 @@ def arm(
     names: str = "",
     base: tuple[float, float] = (100, 20),
 ) -> str:
-    """Returns a chain of (name, type, axis) joints on a base of 100 kg, with links of 0.2 m."""
+    """Returns the URDF of a chain of (name, type, axis) joints on a base of 100 kg, with links of 0.2 m."""
     parts = [f'<link name="base">{INERTIAL.format(mass=base[0], i=base[1])}</link>']
     parent = "base"
     for index, (name, kind, axis) in enumerate(joints):

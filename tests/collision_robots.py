@@ -55,6 +55,6 @@ def binary_stl(path: Path, vertices: ArrayLike, faces: list[tuple[int, int, int]
 
 
 def random_pose(rng: np.random.Generator, apart: float) -> NDArray[np.float64]:
-    """Return a configuration ``[p, quat_xyzw]``."""
+    """Return a random configuration ``[p, quat_xyzw]``; each component of p is within ``apart``, m."""
     turn = rng.normal(size=4)
     return np.concatenate([rng.uniform(-apart, apart, 3), turn / np.linalg.norm(turn)])

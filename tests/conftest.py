@@ -15,12 +15,12 @@ from onorbit_rs.tools.validation.case import CannotRunError
 
 @pytest.fixture
 def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Turns off the figures and recordings of runs in this process, which take most of their time."""
+    """Turns off the figures and recordings of runs in this process, because they take most of their time."""
     monkeypatch.setattr(finish, "write_pictures", lambda *_, **__: None)
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Compiles spartpy before the workers start, which would otherwise all write the same file."""
+    """Compiles spartpy before the workers start; otherwise all of them would write the same file."""
     if getattr(config.option, "numprocesses", None) and importlib.util.find_spec("SPARTpy"):
         with contextlib.suppress(CannotRunError):
             against_spart.spart(oo.robots.path("humanoid_torso").read_text())

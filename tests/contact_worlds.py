@@ -19,12 +19,12 @@ def ball() -> oo.Model:
 
 
 def moving(name: str, place: Any, velocity: Any, spin: Any = (0.0, 0.0, 0.0)) -> oo.System:
-    """Returns a sphere with its place and velocities in W."""
+    """Returns a sphere with its position, m, velocity, m/s, and angular velocity, rad/s, in W."""
     return oo.System(name, ball(), [*place, 0.0, 0.0, 0.0, 1.0], [*velocity, *spin])
 
 
 def pair(*, gap: float = 0.02, speed: float = 0.2, beside: float = 0.0, **contact: Any) -> oo.World:
-    """Returns two spheres, the first of which moves towards the second along x."""
+    """Returns a world of two spheres, the first of which moves towards the second along x."""
     systems = [
         moving("a", [0.0, 0.0, 0.0], [speed, 0.0, 0.0]),
         moving("b", [np.sqrt(0.04 - beside**2) + gap, beside, 0.0], [0.0, 0.0, 0.0]),

@@ -26,7 +26,7 @@ RATE = 20.0  # rad/s, of Baumgarte's stabilisation
 def _simulate(
     acceleration: Callable[..., Any], model: oo.Model, q: Any, v: Any, step: float
 ) -> SimpleNamespace:
-    """Returns configurations, velocities and energies of a run by Runge's and Kutta's method."""
+    """Returns configurations, velocities and energies of a run by the Runge-Kutta method."""
     rows = [(q, v)]
     for _ in range(round(LASTS / step)):
         q, v = rows[-1]
@@ -58,7 +58,7 @@ def baumgarte(model: oo.Model, q: Any, v: Any, duration: float, step: float = 1e
 
 
 def close_by_joints(model: oo.Model, q: Any, v: Any) -> tuple[Any, Any]:
-    """Closes the loops by changes of the joints alone, which move the mass centre and change the momentum."""
+    """Closes the loops by the joints alone, which moves the centre of mass and changes the momentum."""
     for _ in range(20):
         inverse = np.linalg.pinv(loops_gauss.rows(model, q)[:, JOINTS_V], rcond=1e-8)
         q = model.integrate(q, np.r_[np.zeros(BASE_NV), -inverse @ model.loop_errors(q)])

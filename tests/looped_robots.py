@@ -13,14 +13,14 @@ LENGTHS = 0.2, 0.5, 0.4, 0.5
 
 
 def at_x(x: float) -> Any:
-    """Return the pose of a frame shifted along x, (4, 4)."""
+    """Return the pose (4, 4) of a frame that is shifted by ``x``, m, along x."""
     pose = np.eye(4)
     pose[0, 3] = x
     return pose
 
 
 def rod(mass: float, length: float) -> dict[str, Any]:
-    """Return mass properties of a rod along x."""
+    """Return the mass properties of a uniform rod along x; ``mass`` in kg, ``length`` in m."""
     inertia = np.diag([0.01, 1.0, 1.0]) * mass * length**2 / 12.0
     return {"mass": mass, "com": [length / 2.0, 0.0, 0.0], "inertia": inertia}
 
@@ -46,7 +46,7 @@ def closing(name: str = "closing", kind: Any = "revolute", *, project: bool = Fa
 
 
 def start(model: oo.Model) -> Any:
-    """Return a configuration near a closed one: left, knee and right, then zeros."""
+    """Return a configuration near a closed one: values for the joints left, knee and right, then zeros."""
     q = model.neutral()
     q[7:10] = [1.0, 0.1, 1.4]
     return q

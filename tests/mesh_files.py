@@ -88,7 +88,7 @@ def collada(
     material: str = "shine",
     corners: np.ndarray = CORNERS,
 ) -> str:
-    """Return a file with one box per matrix, red or with a texture."""
+    """Return the text of a COLLADA file with one box per matrix, red or with a texture."""
     appearance = "<color>1 0 0 1</color>"
     images = params = ""
     if texture:

@@ -17,7 +17,7 @@ X, Y, Z = (-0.5, -0.3, 0.3, 0.5), (-0.25, 0.25), (0.0, 0.2, 0.8)
 
 
 def prism(path: Path, cells: set[Cell], *, drop: int = 0, is_reversed: bool = False) -> Path:
-    """Write the surface of the union of cells (i, k) between planes, without its first triangles."""
+    """Write the surface of the union of cells (i, k), without its first ``drop`` triangles."""
     vertices: list[tuple[float, float, float]] = []
     faces: list[tuple[int, int, int]] = []
 

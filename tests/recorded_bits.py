@@ -33,10 +33,10 @@ def in_baseline() -> dict[str, dict[str, str]]:
 
 
 def digests() -> dict[str, dict[str, str]]:
-    """Digest of each column of each scenario, and of the mathematical functions of the C library.
+    """Returns the digests of each column of each scenario, and of mathematical functions of the C library.
 
-    The engine takes sine, cosine and their like from the C library, whose last bits differ between versions
-    and processors: digests can be compared only where those of ``libm`` agree.
+    The engine uses sine, cosine and similar functions of the C library, whose last bits differ between
+    versions and processors. Digests can be compared only if those of ``libm`` agree.
     """
     from bundled import ONE_ROBOT, WORLDS
 

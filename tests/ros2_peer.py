@@ -1,6 +1,6 @@
 """A process that speaks DDS through CycloneDDS' own typed messages, driven by JSON lines on standard input.
 
-It needs neither ROS nor rosbags nor the package, so it is an independent witness of what is on the wire.
+It needs neither ROS nor rosbags nor this package, so it checks independently what is transmitted.
 """
 
 from __future__ import annotations
@@ -70,13 +70,13 @@ class Peer:
         self.writers: dict[str, DataWriter] = {}
 
     def hear(self, topic: str, kind: str, is_latched: bool = False) -> None:
-        """Subscribes a topic anew; only names that begin with a slash are those of ROS topics."""
+        """Subscribes to a topic, again if it was subscribed before; a leading slash marks a ROS topic."""
         name = f"rt{topic}" if topic.startswith("/") else topic
         named = Topic(self.participant, name, TYPES[kind])
         self.readers[topic] = DataReader(self.participant, named, qos=_qos(is_latched))
 
     def take(self, topic: str, count: int, seconds: float = 20.0) -> list[Any]:
-        """Returns at least `count` messages, or those that arrive within a time."""
+        """Returns at least `count` messages, or those that arrive within `seconds`."""
         found: list[Any] = []
         end = time.monotonic() + seconds
         while True:
@@ -90,9 +90,10 @@ class Peer:
         self, topic: str, kind: str, values: Any, seconds: float = 20.0, nodes: Sequence[list[int]] = (),
         times: int = 1,
     ) -> bool:  # fmt: skip
-        """Sends a message when somebody listens, which must be one of some nodes if they are given.
+        """Sends a message as soon as there is a subscriber; returns false if none appears within `seconds`.
 
-        Of several equal messages, all have arrived afterwards.
+        If `nodes` are given, the subscriber must be one of them. Of several equal messages, all have arrived
+        when the call returns true.
         """
         is_new = topic not in self.writers
         if is_new:
@@ -113,7 +114,10 @@ class Peer:
     def publisher(
         self, topic: str, seconds: float = 20.0, nodes: Sequence[list[int]] = ()
     ) -> list[int] | None:
-        """Returns the identity of the publisher of a subscribed topic, of some nodes, when it is found."""
+        """Returns the identity of a publisher of a subscribed topic; None if none appears within `seconds`.
+
+        If `nodes` are given, the publisher must be one of them.
+        """
         reader, end = self.readers[topic], time.monotonic() + seconds
         while True:
             found = _known(reader.get_matched_publications(), reader.get_matched_publication_data, nodes)
@@ -123,7 +127,10 @@ class Peer:
 
 
 def _known(handles: list[int], data_of: Any, nodes: Sequence[list[int]]) -> list[Any]:
-    """Returns the data of matched endpoints of some nodes; a node of an earlier test may be leaving."""
+    """Returns the data of matched endpoints that belong to `nodes`, or of all if `nodes` is empty.
+
+    A node of an earlier test may be leaving.
+    """
     found = []
     for handle in handles:
         try:

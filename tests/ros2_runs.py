@@ -73,7 +73,7 @@ class Peer:
 
 @contextmanager
 def node_of(run: oo.Simulation, **options: Any) -> Iterator[Node]:
-    """A node in the domain of this process, which leaves it at the end of the block."""
+    """Yields a node in the DDS domain of this process; the node leaves the domain at the end of the block."""
     from onorbit_rs.ros2 import Node
 
     node = Node(run, domain=DOMAIN, **options)
@@ -88,7 +88,7 @@ def node_of(run: oo.Simulation, **options: Any) -> Iterator[Node]:
 
 @contextmanager
 def spinning(node: Node, duration: float | None = None) -> Iterator[list[Any]]:
-    """Runs a node in a thread; its trace is in the list at the end of the block."""
+    """Runs a node in a thread; the list contains its trace at the end of the block."""
     found: list[Any] = []
     thread = threading.Thread(target=lambda: found.append(node.spin(duration)), daemon=True)
     thread.start()

@@ -20,7 +20,7 @@ def scenario(name: str = "humanoid_reach", **settings: Any) -> oo.Simulation:
 
 
 def passive(**settings: Any) -> oo.Simulation:
-    """A robot that nothing controls."""
+    """Returns a simulation of a robot without a controller."""
     model = oo.robots.load("humanoid_torso")
     return oo.Simulation(model, model.neutral(), np.full(model.nv, 0.01), **settings)
 
@@ -33,7 +33,7 @@ def assert_same_bits(a: oo.Trace, b: oo.Trace) -> None:
 
 
 class Hold(oo.Controller):
-    """Commands a torque that depends on the time alone."""
+    """Controller whose torque depends only on the time."""
 
     def __init__(self, torque: Callable[[float], Any]) -> None:
         self.torque, self.calls = torque, 0

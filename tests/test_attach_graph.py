@@ -123,7 +123,7 @@ def test_a_part_that_is_not_in_the_tree_is_refused(two: Pair) -> None:
 
 
 def test_a_chain_of_attachments_is_taken_apart_again() -> None:
-    """A third robot on the second: each part of the three has its state."""
+    """A base carries the tree of two robots; their states follow directly, or by way of the tree of two."""
     two = pair(3)
     base = oo.Model.rigid_body(30.0, np.diag([2.0, 3.0, 4.0]))
     rng = np.random.default_rng(1)

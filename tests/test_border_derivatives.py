@@ -19,7 +19,7 @@ REDUCED = ("torque_dq", "torque_dv", "acceleration_dq", "acceleration_dv", "velo
 
 
 def along(function: Any) -> Any:
-    """Returns central differences along ``integrate(Q1, h e_j)`` (0, NV) or at ``V1 + h e_j``."""
+    """Returns the central differences of a function of a step (NV,), with one column for each direction."""
     h = 1e-6  # truncation 1e-11, rounding 1e-9
     return np.array([(function(h * e) - function(-h * e)) / (2 * h) for e in np.eye(NV)]).T
 

@@ -72,7 +72,7 @@ def test_adaptive_steps_leave_rows_on_the_grid() -> None:
 
 @pytest.mark.parametrize("time_step", [0.01, 5.0, 20.0])
 def test_recorded_rows_do_not_affect_restitution(time_step: float) -> None:
-    """Once, stops became inelastic after 32 bounces within a ``time_step``, the interval of rows."""
+    """Stops once became inelastic after 32 bounces within a ``time_step``, the interval of rows."""
     simulation = oo.Simulation(
         slider(), slider().neutral(), V, enforce_limits=True, restitution=1.0,
         integrator="dormand_prince", time_step=time_step,

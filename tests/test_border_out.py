@@ -94,7 +94,7 @@ def roll(**how: Any) -> Any:
 
 
 def overlapping() -> tuple[Any, Any]:
-    """Returns overlapping arrays for the end of a rollout, ten numbers too small."""
+    """Returns arrays for the end of a rollout that overlap by ten numbers."""
     room = np.empty(20 * (NQ + NV) - 10)
     return room[: 20 * NQ].reshape(20, NQ), room[-20 * NV :].reshape(20, NV)
 

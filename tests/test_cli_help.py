@@ -14,7 +14,7 @@ PAGE = (Path(__file__).parents[1] / "docs" / "cli.md").read_text()
 
 
 def rows(heading: str) -> list[list[str]]:
-    """Yields the cells of the table below a heading."""
+    """Returns the cells of the table below a heading, row by row."""
     section = PAGE.split(f"## {heading}\n")[1].split("\n## ")[0]
     lines = [line for line in section.splitlines() if line.startswith("| ")]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[1:]]

@@ -135,7 +135,7 @@ def dynamics(urdf: str, values: str) -> str:
 def test_stiff_dampers_use_the_adaptive_integrator(
     quick: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """This is detected before the first run, or after fixed steps fail."""
+    """Stiffness is detected before the first run, or after fixed steps fail."""
     monkeypatch.setattr(trial, "FAST", quick)
     text, summary = drafted(dynamics(arm(SEVEN[:2], names="tool"), 'damping="200"'), tmp_path)
     assert "\n  integrator: dormand_prince " in text

@@ -45,7 +45,7 @@ def kinds(trace: Any) -> list[tuple[str, str]]:
 
 @pytest.fixture(scope="module")
 def bounced(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    """A run with several touches of two contacts, with its folder."""
+    """Returns a run with several touches of two contacts, and its folder."""
     folder = tmp_path_factory.mktemp("bounced")
     (folder / "bouncing.yaml").write_text(BOUNCING)
     return oo.run(folder / "bouncing.yaml", folder / "run", quiet=True)
@@ -93,7 +93,7 @@ def test_a_capture_ends_the_touch() -> None:
 
 
 def bouncing() -> oo.Simulation:
-    """Three balls in a row with three touches or more of two contacts, and a fourth ball on its own."""
+    """Returns a simulation of three balls with at least three touches of two contacts, and a fourth ball."""
     systems = [
         moving("a", [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
         moving("alone", [0.0, 3.0, 0.0], [0.1, 0.0, 0.0]),

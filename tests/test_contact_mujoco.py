@@ -1,4 +1,4 @@
-"""Contacts on MuJoCo: the declared normal force at MuJoCo's points, MuJoCo's friction, and where it parts."""
+"""Contacts on MuJoCo: the declared normal force at MuJoCo's points, and where its friction differs."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def test_the_normal_force_beside_friction_is_that_of_the_law() -> None:
 
 
 def test_friction_of_mujoco_has_no_elastic_tangential_motion() -> None:
-    """A rigid contact that sticks takes 2/7 of the sliding velocity; elastic bristles return part of it."""
+    """A rigid contact that sticks removes 2/7 of the sliding velocity; elastic bristles return part of it."""
     ours, theirs = spheres(0.1, friction=oo.Friction(0.5), gap=1e-4, beside=0.05)
     normal = theirs.contacts["touch"].normal[0]
     slid = 0.2 * np.linalg.norm(np.array([1.0, 0.0, 0.0]) - normal[0] * normal)

@@ -155,7 +155,7 @@ class Integral(oo.Controller):
 
 
 def stopped(controller: oo.Controller) -> tuple[oo.Simulation, list[oo.Checkpoint]]:
-    """Returns the folder of a run that Ctrl-C ended after its first checkpoint."""
+    """Returns a simulation whose run Ctrl-C ended after its first checkpoint, and its checkpoints."""
     model = oo.robots.load("humanoid_torso")
     v = np.full(model.nv, 0.02)
     simulation = oo.Simulation(model, model.neutral(), v, time_step=1e-3, controller=controller)

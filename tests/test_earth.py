@@ -140,7 +140,10 @@ def test_third_bodies_move_a_robot_away_from_its_point_mass_orbit() -> None:
 
 
 def kernel(path: Path, segments: list[tuple[int, int, float, float, Any]]) -> None:
-    """Returns a type 2 SPICE kernel; each segment: target, centre, start, interval, (intervals, 3, n)."""
+    """Writes a SPICE kernel of type 2 with segments (target, centre, start, interval, coefficients).
+
+    The coefficients of a segment are (intervals, 3, n); start and interval are in s.
+    """
     words, summaries, at = [], [], 3 * 128 + 1
     for target, center, start, length, coefficients in segments:
         pieces, _, n = coefficients.shape

@@ -17,7 +17,7 @@ from onorbit_rs.scenario.build import build
 
 @pytest.fixture
 def robot(tmp_path: Path) -> str:
-    """Returns a robot of two hinges with effort limits of 0.5 and 50 N m in its file."""
+    """Writes the URDF of two hinges with effort limits of 0.5 and 50 N m, and returns its path."""
     body = "<inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial>"
     links = "".join(f"<link name='{name}'>{body}</link>" for name in ("base", "of_weak", "of_strong"))
     hinges = "".join(
@@ -31,7 +31,7 @@ def robot(tmp_path: Path) -> str:
 
 
 def led(robot: str, **law: Any) -> dict[str, Any]:
-    """Runs both hinges with an error of 1 rad, for which a gain of 5 requires 5 N m."""
+    """Returns a scenario in which both hinges are 1 rad off their reference, so that they require 5 N m."""
     reference = {"kind": "joint_waypoints", "points": [[1.0, 1.0]], "times": [0.001]}
     return {
         "robot": {"urdf": robot}, "controller": {"kind": "joint_pid", "p": 5.0, "d": 5.0} | law,

@@ -100,7 +100,7 @@ def test_points_are_interpolated_as_by_joint_trajectory_controller(kind: str) ->
 
 
 def test_a_new_trajectory_starts_from_the_desired_state() -> None:
-    """Also where the joints lag behind, so that commands do not shake the arm."""
+    """This holds even if the joints lag behind, so that commands do not shake the arm."""
     stepper = started(oo.External(4, 4), time_step=1e-2)
     q = stepper.q[7:].copy()
     rest = {"velocities": [0 * MOVE], "accelerations": [0 * MOVE]}
@@ -170,7 +170,7 @@ def test_before_the_first_command(kp: float, kd: float, expected: str) -> None:
 @pytest.mark.parametrize("command", ["position", "velocity", "effort", "trajectory"])
 @pytest.mark.parametrize("on_timeout", ["hold", "damp", "zero"])
 def test_a_timeout(command: str, on_timeout: Any) -> None:
-    """A stale velocity or effort must not go on: the joints stop, or move freely."""
+    """A stale velocity or effort must not continue: the joints stop, or move freely."""
     stepper = started(oo.External(100, 20, timeout=0.5, on_timeout=on_timeout), time_step=1e-2)
     q = stepper.q[7:].copy()
     if command == "trajectory":

@@ -61,7 +61,7 @@ def test_a_trajectory_moves_a_captured_load_as_the_law_of_the_joints_does(knows:
 @pytest.mark.parametrize("integrator", ["rk4", "dormand_prince", "semi_implicit_euler"])
 @pytest.mark.parametrize("body", ["target/bus", "servicer/tool"])
 def test_a_wrench_on_a_captured_system_is_that_of_an_effect(body: str, integrator: Any) -> None:
-    """Also where the controllers compensate it, and in the row of a look at the run before it."""
+    """This holds if the controllers compensate the wrench, and in a row that is read before the next step."""
     force, torque, start = [2.0, -1.0, 0.5], [0.1, 0.2, -0.3], 0.25
     settings: Any = {"time_step": 5e-3, "integrator": integrator, "record_wrenches": True}
     effect = oo.BodyWrench(body, force=force, torque=torque, start=start)

@@ -59,7 +59,7 @@ def entries(random: np.random.Generator) -> list[dict[str, Any]]:
 
 
 def live(scenario: Path, file: Path, seed: int) -> tuple[Any, CommandLog]:
-    """Returns the trace of a run in random pieces, at which it is looked at now and then, and its log."""
+    """Returns the trace and the log of a run that is advanced in random pieces and inspected in between."""
     random = np.random.default_rng(seed)
     from onorbit_rs.scenario import load
     from onorbit_rs.scenario.build_world import build_world

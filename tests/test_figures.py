@@ -155,7 +155,7 @@ def test_the_balance_figure_shows_unexplained_changes(reach: oo.Run) -> None:
 
 
 def unexplained(trace: Any) -> list[float]:
-    """Returns the largest value of each panel on the right."""
+    """Returns the largest value of each panel on the right, which shows what the balance does not explain."""
     return [float(np.max(axes.lines[0].get_ydata())) for axes in figures.ledger(trace).axes[1::2]]
 
 

@@ -94,7 +94,7 @@ def test_targets_come_from_the_scenario() -> None:
 
 
 def moment_of(scenario: Any) -> oo.Run:
-    """Returns an instant of a scenario."""
+    """Runs the first 0.05 s of a scenario."""
     data = scenario.resolved()
     data["simulation"] |= {"duration": 0.05, "time_step": 5e-3}
     return oo.run(data, quiet=True)

@@ -29,7 +29,7 @@ def robot(base: float, friction: float = FRICTION) -> oo.Model:
 
 
 class Torque(oo.Controller):
-    """Constant torques."""
+    """Controller with constant torques."""
 
     def __init__(self, torque: list[float]) -> None:
         self.torque = np.array(torque)

@@ -64,7 +64,7 @@ def long_many_times() -> Call:
 
 
 def long_start() -> Call:
-    """The reference orbit is integrated for years before the run begins."""
+    """Returns a call that integrates the reference orbit for years before the run begins."""
     body = oo.Model.rigid_body(1.0, np.eye(3))
     orbit = numerical(t0=-2e8)
     q, v = body.neutral(), np.zeros(body.nv)

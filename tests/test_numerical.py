@@ -81,7 +81,7 @@ def test_a_scenario_uses_an_integrated_orbit() -> None:
 
 @pytest.mark.parametrize("share", [0.9899, 0.9901, 0.999, 4e14 / oo.MU_EARTH, 1.0, 1.0099, 1.0101])
 def test_figures_and_engine_use_the_same_earth_radius(share: float) -> None:
-    """At 6000 km from the centre of the Earth is ground; other planets have no known radius."""
+    """A point 6000 km from the centre of the Earth is below ground; other planets have no known radius."""
     mu = share * oo.MU_EARTH
     is_ground = False
     try:

@@ -40,7 +40,7 @@ def rust_offsets(source: str) -> list[str]:
 
 
 def is_offset(node: ast.AST | None) -> bool:
-    """True for the numbers 6 and 7, and for sums and differences with them."""
+    """Returns true for the numbers 6 and 7, and for sums and differences with them."""
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
         return is_offset(node.left) or is_offset(node.right)
     return isinstance(node, ast.Constant) and type(node.value) is int and node.value in (6, 7)

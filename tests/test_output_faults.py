@@ -49,7 +49,7 @@ def small_disk(tmp_path: Path) -> Any:
 def test_a_checkpoint_that_cannot_be_written_warns_once_and_the_run_continues(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """It once ended the whole run. The missing rows are written with the next checkpoint."""
+    """A failure once ended the whole run. The missing rows are written with the next checkpoint."""
     calls = {"failed": 0, "written": 0}
     append = checkpoints._append
 

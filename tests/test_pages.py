@@ -145,7 +145,7 @@ def test_a_name_that_does_not_exist_is_detected() -> None:
 
 
 def listed(entry: Any) -> list[str]:
-    """Yields the pages of a section of the navigation."""
+    """Returns the pages of a section of the navigation."""
     if isinstance(entry, str):
         return [entry]
     return [page for part in (entry.values() if isinstance(entry, dict) else entry) for page in listed(part)]
@@ -176,7 +176,7 @@ def test_every_figure_is_in_the_api_pages() -> None:
 
 
 def kinds(part: type[Part]) -> set[type[Part]]:
-    """Yields the classes of a scenario that a ``kind`` selects."""
+    """Returns the classes of a scenario that a ``kind`` selects."""
     below = {kind for child in part.__subclasses__() for kind in kinds(child)}
     return below | ({part} if "kind" in part.model_fields else set())
 

@@ -186,7 +186,7 @@ class RateDamper:
 
 
 def laws(robot: oo.Model, q: Any) -> dict[str, tuple[Any, Any]]:
-    """Every law with a reference."""
+    """Returns every law with a reference."""
     start = robot.frame_pose(q, "tool")
     end = start.copy()
     end[:3, 3] += [0.02, -0.03, 0.01]

@@ -296,7 +296,7 @@ def test_short_ramps_respect_the_limits(ramp: float) -> None:
 
 @pytest.mark.parametrize("span", [3.0, 1.5, 0.6])
 def test_the_rate_of_the_local_frame_is_correct_on_a_short_path(span: float) -> None:
-    """Its plane rotates with the jerk of the path; difference quotients once exceeded its ends."""
+    """The orbital plane turns with the jerk of the path; differences were once formed beyond its ends."""
     times = np.linspace(0.0, span, 31)
     r, v = oo.Kepler(semi_major_axis=6.8e6).state(times)
     a = -oo.MU_EARTH * r / np.linalg.norm(r, axis=1)[:, None] ** 3

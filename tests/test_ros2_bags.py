@@ -76,7 +76,10 @@ def test_joint_states_are_the_columns_of_the_run(arm: oo.Run, file: Path) -> Non
 
 
 def test_a_run_whose_orbit_data_are_gone_is_exported_with_a_warning(tmp_path: Path) -> None:
-    """Its rate is that of the recorded state, without the slow turn of the plane; all else is the same."""
+    """The rate of the frame `orbit` then follows from the recorded state, without the slow turn of the plane.
+
+    All other messages are unchanged.
+    """
     t = np.linspace(0.0, 10.0, 11)
     path = np.stack([t, 7e6 * np.cos(1e-3 * t), 7e6 * np.sin(1e-3 * t), 0.0 * t], axis=1)
     np.savetxt(tmp_path / "path.csv", path, delimiter=",", header="t,x,y,z", comments="", fmt="%.17g")

@@ -34,7 +34,7 @@ EVENTS = ("/events", "diagnostic_msgs/msg/DiagnosticArray")
 
 
 def simulation(**wrist: Any) -> oo.Simulation:
-    """A robot whose arm follows positions and whose wrist follows efforts."""
+    """Returns a simulation of a robot whose arm follows positions and whose wrist follows efforts."""
     controls = [
         oo.Control(oo.External(kp=100.0, kd=20.0), joints=ARM, name="arm"),
         oo.Control(oo.External(**wrist), joints=WRIST, name="wrist"),
@@ -121,7 +121,7 @@ def test_every_kind_of_command_moves_the_robot_and_the_log_repeats_the_run(
 
 
 def test_a_command_takes_effect_at_the_next_update(peer: Peer) -> None:
-    """Effort from the outside is in the state at most two control periods after it was sent."""
+    """An external effort is in the state at most two control periods after it was sent."""
     with node_of(simulation(), pace="stepped") as node:
         peer.hear(*EVENTS)
         assert peer.publisher("/events")
@@ -258,7 +258,7 @@ def test_the_timeout_acts_when_a_sender_vanishes() -> None:
 
 
 def wrenches(trace: oo.Trace) -> np.ndarray:
-    """Returns the linear impulse of each time step."""
+    """Returns the linear impulse of each time step, N s."""
     return np.asarray(np.diff(trace.impulse[:, :3], axis=0))
 
 
@@ -333,7 +333,7 @@ HINGE = '<joint name="hinge" type="continuous"><parent link="{}"/><child link="{
 
 @pytest.mark.parametrize(("parent", "child"), [("base", "tip"), ("root", "base")])
 def test_a_wrench_in_the_frame_base_is_on_the_root_link(peer: Peer, parent: str, child: str) -> None:
-    """Also if another link is named `base`, whose frame is then `base_2`."""
+    """This holds even if another link is named `base`; the frame of that link is then `base_2`."""
     text = "".join(map(LINK.format, (parent, child))) + HINGE.format(parent, child)
     robot = oo.Model.from_urdf_string(f'<robot name="r">{text}</robot>')
     run = oo.Simulation(robot, robot.neutral(), np.zeros(robot.nv))

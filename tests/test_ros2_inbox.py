@@ -27,7 +27,7 @@ TOO_MANY = (
 
 
 def simulation() -> oo.Simulation:
-    """A robot whose arm and wrist follow efforts."""
+    """Returns a simulation of a robot whose arm and wrist follow efforts."""
     controls = [oo.Control(oo.External(), joints=joints, name=name) for name, joints in CONTROLS.items()]
     return oo.Simulation(ROBOT, ROBOT.neutral(), np.zeros(ROBOT.nv), controller=controls)
 
@@ -111,7 +111,7 @@ class FakeReader:
 
 
 class FakeParticipant:
-    """Readers that have received bytes."""
+    """A participant whose readers have received bytes."""
 
     def __init__(self, payloads: list[bytes]) -> None:
         self.payloads, self.topics = payloads, 0

@@ -22,7 +22,7 @@ from onorbit_rs.ros2.topics import Topics, topics  # noqa: E402
 
 
 def one_robot() -> tuple[Topics, dict[str, Rows]]:
-    """A robot with all kinds of topics: an orbit, joints, recorded wrenches."""
+    """Returns the topics and rows of a robot with an orbit, joints and recorded wrenches."""
     data = load("humanoid_reach").resolved()
     data["simulation"] |= {"duration": 0.01, "record_wrenches": True}
     simulation = build(load(data)).simulation

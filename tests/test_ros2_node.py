@@ -99,7 +99,7 @@ def test_the_bits_are_those_of_the_run_also_without_listeners_and_in_real_time()
 
 
 class Counting(oo.Controller):
-    """Commands torques that grow with the number of its updates."""
+    """Controller whose torques grow with the number of its updates."""
 
     def __init__(self) -> None:
         self.updates = 0

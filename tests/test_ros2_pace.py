@@ -24,7 +24,7 @@ TICK = 1e-3
 
 
 class Machine:
-    """A clock that each look advances by a microsecond, and sleeps that end too late."""
+    """A clock that advances by a microsecond whenever it is read, with sleeps that end too late."""
 
     def __init__(self, late: float) -> None:
         self.now, self.late = 100.0, late
@@ -40,7 +40,7 @@ class Machine:
 
 
 def paced(machine: Machine, is_calibrated: bool) -> dict[str, float]:
-    """Returns how late 100 ticks were."""
+    """Returns the report of the delays of 100 ticks, s."""
     pace = RealTime(TICK, clock=machine.clock, sleep=machine.sleep)
     if is_calibrated:
         pace.calibrate()

@@ -133,7 +133,7 @@ def test_iss_gravity_gradient_librates_with_the_period_of_linear_theory() -> Non
     expected = 2.0 * np.pi / (n * np.sqrt(3.0 * (y - x) / z))
 
     def left_over(period: float) -> float:
-        """Returns the in-plane residual after fitting a sine of this period."""
+        """Returns the sum of squared residuals after fitting a sine of this period, s."""
         phase = 2.0 * np.pi / period * trace.time
         terms = np.stack([np.ones_like(phase), np.cos(phase), np.sin(phase)], axis=1)
         return float(np.linalg.lstsq(terms, angles[:, 2], rcond=None)[1][0])

@@ -36,7 +36,7 @@ def judged(family: str, name: str) -> Verdict:
 
 
 def now_and_then(call: Callable[..., Any], spoilt: Callable[[Any], Any]) -> Callable[..., Any]:
-    """Spoils every second result, but not the first."""
+    """Returns a function like ``call`` of which every second result, from the second on, is spoilt."""
     calls: list[None] = []
 
     def called(*given: Any, **settings: Any) -> Any:

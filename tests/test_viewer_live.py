@@ -143,7 +143,7 @@ def test_rows_that_the_viewer_cannot_read_cause_a_warning() -> None:
 
 
 class Eye:
-    """A view that counts the rows it is given."""
+    """A view that counts the rows that it receives."""
 
     def __init__(self) -> None:
         self.seen, self.ended = 0, []

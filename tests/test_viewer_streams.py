@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="threads and mem
 
 
 def rerun_threads() -> int:
-    """Returns the threads that rerun started for its streams in this process."""
+    """Returns the number of threads that rerun has started for its streams in this process."""
     names = [(task / "comm").read_text().strip() for task in Path("/proc/self/task").iterdir()]
     return sum(name.startswith(("RecordingStream", "ChunkBatcher")) for name in names)
 

@@ -11,6 +11,9 @@ assert spec is not None and spec.loader is not None
 links = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(links)
 
+MISSING = "does not exist; correct the link"
+LOADED = "from another site; use a file of this site"
+
 
 def site(folder: Path, body: str) -> tuple[list[str], set[str]]:
     (folder / "sub").mkdir()
@@ -27,12 +30,12 @@ def test_a_consistent_site_has_no_errors(tmp_path: Path) -> None:
 
 def test_errors_of_a_site_are_found(tmp_path: Path) -> None:
     wrong = {
-        '<a href="sub/others.html">': "index.html: sub/others.html does not exist",
-        '<a href="sub/other.html#there">': "index.html: the anchor of sub/other.html#there does not exist",
-        '<img src="picture.png">': "index.html: picture.png does not exist",
-        '<script src="https://unpkg.com/x"></script>': "index.html: loads https://unpkg.com/x",
-        '<link rel="stylesheet" href="https://fonts.example/x">': "index.html: loads https://fonts.example/x",
-        "<p>$$ M </p>": "index.html: an equation was not converted",
+        '<a href="sub/others.html">': f"the target of the link sub/others.html {MISSING}",
+        '<a href="sub/other.html#there">': f"the anchor of the link sub/other.html#there {MISSING}",
+        '<img src="picture.png">': f"the target of the link picture.png {MISSING}",
+        '<script src="https://unpkg.com/x"></script>': f"the page loads https://unpkg.com/x {LOADED}",
+        '<link rel="stylesheet" href="https://a.b/x">': f"the page loads https://a.b/x {LOADED}",
+        "<p>$$ M </p>": "an equation was not converted; write each $$ on a separate line",
     }
     found, _ = site(tmp_path, " ".join(wrong))
-    assert sorted(found) == sorted(wrong.values())
+    assert sorted(found) == sorted(f"index.html: {message}" for message in wrong.values())

@@ -18,7 +18,7 @@ OFFSET = np.array([-0.1, 0.0, 0.02])
 
 
 def pair(frame: Any, offset: Any, spin: float = 0.05) -> Any:
-    """A servicer whose tool keeps its initial pose in a frame of a tumbling satellite."""
+    """Returns a world of a servicer whose tool keeps its initial pose in a frame of a tumbling satellite."""
     servicer, target = oo.robots.load("servicer"), oo.robots.load("target_satellite")
     q = servicer.neutral()
     q[JOINTS_Q] = GRASPED
@@ -164,7 +164,7 @@ def test_a_control_may_start_after_one_that_follows_a_frame(tmp_path: Path):
 def grasped(
     *, end: float | None = None, replaced: bool = False, seat: float | None = None, **settings: Any
 ) -> Any:
-    """A servicer whose tool grasps a handle at 1 s, while its control still moves the tool."""
+    """Returns a simulation in which a tool grasps a handle at 1 s while its control still moves the tool."""
     servicer, target = oo.robots.load("servicer"), oo.robots.load("target_satellite")
     q, q_target = servicer.neutral(), target.neutral()
     q[JOINTS_Q] = GRASPED

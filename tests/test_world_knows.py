@@ -27,7 +27,7 @@ def systems(controller: Any, target: Any, knows: list[str], rates: float = 1.0) 
 
 
 def panelled() -> Any:
-    """A target with a panel that turns freely."""
+    """Returns a target with a panel that turns freely."""
     builder = oo.ModelBuilder("target", base="bus", mass=200, inertia=np.diag([40.0, 60, 50]))
     builder.add_link(
         "panel", parent="bus", joint="hinge", axis=[0, 1, 0], xyz=[0, 0.8, 0],
@@ -43,7 +43,7 @@ def assert_certified(trace: oo.WorldTrace) -> None:
 
 
 def tracking_error(knows: list[str], target: Any, law: Any) -> float:
-    """Largest error of the joints from 1 s on; the capture is at 1 s and the reference moves from then on."""
+    """Returns the largest joint error, rad, after 3 s; capture and motion of the reference start at 1 s."""
     path = oo.JointWaypoints([GRASPED, GRASPED, np.array(GRASPED) + 0.2], times=[0.0, 1.0, 6.0])
     control = oo.Control(law, reference=path, name="arm")
     world = oo.World(
@@ -140,7 +140,7 @@ def test_knowledge_without_effect_is_warned_of(knows: list[str], captures: list[
 
 
 def control(law: str, robot: Any, joints: list[str]) -> Any:
-    """Control of the arm by a law that uses the model of ``robot``."""
+    """Returns a control of the arm by a law that uses the model of ``robot``."""
     servicer = oo.robots.load("servicer")
     q = servicer.neutral()
     q[JOINTS_Q] = GRASPED

@@ -21,7 +21,7 @@ def craft(name: str, mass: float, inertia: list[float], position: list[float], t
 
 
 def pair() -> list[Any]:
-    """Two bodies at rest, 2 m apart."""
+    """Returns two bodies at rest, 2 m apart."""
     return [
         craft("a", 90.0, [9, 9, 9], [0, 0, 0], [0] * 6),
         craft("b", 10.0, [1, 1, 1], [2, 0, 0], [0] * 6),
@@ -40,7 +40,7 @@ def run(systems: list[Any], events: list[Any], duration: float, **settings: Any)
 
 
 def relative_pose(trace: Any, row: int = -1) -> np.ndarray:
-    """Pose of the base of the second system in the base of the first."""
+    """Returns the pose of the base of the second system in the base of the first."""
     a, b = (np.eye(4), np.eye(4))
     for matrix, name in ((a, "a"), (b, "b")):
         q = trace[name].q[row]

@@ -1,6 +1,6 @@
 """Builds the website and checks it: any output of the tools other than progress is an error.
 
-Run from the repository's root: python website/build.py
+Run from the root of the repository: python website/build.py
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def main() -> int:
     if built.returncode or lines or found:
         return 1
     pages = len(list(SITE.rglob("*.html")))
-    print(f"{pages} pages; external links, not checked: {', '.join(sorted(outside))}")
+    print(f"built {pages} pages; external links were not checked: {', '.join(sorted(outside))}")
     print(f"open {(SITE / 'index.html').resolve().as_uri()}")
     return 0
 

@@ -20,7 +20,7 @@ class EngineDocstrings(griffe.Extension):
     """Adds docstrings to the stub and converts Sphinx syntax to Markdown."""
 
     def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
-        """Adds and converts the docstrings of the package after griffe has loaded it."""
+        """Adds the docstrings of the engine to the loaded package, and converts all docstrings."""
         engine = pkg["_core"]
         fill(engine, importlib.import_module("onorbit_rs._core"))
         own = {name: it for name, it in engine.members.items() if not it.is_alias and it.is_attribute}

@@ -61,7 +61,7 @@ class Equations(Extension):
     """Registers the processors of equations."""
 
     def extendMarkdown(self, md: Markdown) -> None:
-        """Registers blocks after fenced code (priority 25), inline equations after inline code (190)."""
+        """Registers displayed equations after fenced code (25) and inline ones after inline code (190)."""
         md.preprocessors.register(Blocks(md), "equations", 24)
         md.inlinePatterns.register(Inline(INLINE, md), "equation", 185)
         md.inlinePatterns.register(Number(NUMBER, md), "number", 5)

@@ -64,7 +64,7 @@ WORDS = {
 
 @cache
 def package() -> griffe.Module:
-    """Returns the package as parsed from its source, with annotations as written."""
+    """Returns the package as griffe parses it from its source, with annotations as written."""
     python = Path(__file__).parents[1] / "python"
     loaded = griffe.load("onorbit_rs", search_paths=[python], allow_inspection=False)
     assert isinstance(loaded, griffe.Module)
@@ -72,7 +72,7 @@ def package() -> griffe.Module:
 
 
 def table(path: str) -> str:
-    """Returns the docstring of a class and a table of its keys in Markdown."""
+    """Returns the docstring of a class and a table of its keys in Markdown; ``path`` is ``module.Class``."""
     module, name = path.rsplit(".", 1)
     live: type[BaseModel] = getattr(importlib.import_module(module), name)
     written = package()[path.removeprefix("onorbit_rs.")]
@@ -127,7 +127,7 @@ def in_yaml(default: Any) -> str:
 
 
 def value_of(annotation: str) -> str:
-    """Returns the description of a type annotation: ``length`` for ``Annotated[Length, Positive] | None``."""
+    """Returns a type annotation in words: ``length`` for ``Annotated[Length, Positive] | None``."""
     inner = r"(?:[^\[\]]|\[[^\[\]]*\])*"
     text = re.sub(rf"Annotated\[([\w.]+(?:\[[^\[\]]*\])?), {inner}\]", r"\1", " ".join(annotation.split()))
     parts = [part.strip(" ()") for part in re.split(r" \| (?![^\[]*\])", text)]
@@ -135,7 +135,7 @@ def value_of(annotation: str) -> str:
 
 
 def in_words(part: str) -> str:
-    """Returns the description of one member of a union."""
+    """Returns one member of a union of types in words."""
     name = part.split(".")[-1]
     if literal := re.fullmatch(r"Literal\[(.*)\]", part):
         return ", ".join("`{}`".format(word.strip(" '\"")) for word in literal[1].split(","))

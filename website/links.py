@@ -10,7 +10,7 @@ LOADED = {("script", "src"), ("img", "src"), ("iframe", "src")}
 
 
 class Page(HTMLParser):
-    """Links of one page, files that the page loads, and its anchors."""
+    """Links and anchors of one page, the files that it loads, and its text."""
 
     def __init__(self, text: str) -> None:
         """Parses the page."""
@@ -37,19 +37,19 @@ class Page(HTMLParser):
 
 
 def problems(site: Path) -> tuple[list[str], set[str]]:
-    """Returns the problems of the site, one line each, and its external links."""
+    """Returns the problems of the site, one line each, and the external links, which are not checked."""
     pages = {file.resolve(): Page(file.read_text()) for file in sorted(site.rglob("*.html"))}
     wrong, outside = [], set()
     for file, page in pages.items():
         name = file.relative_to(site.resolve())
         if "$$" in page.text:
-            wrong.append(f"{name}: an equation was not converted")
+            wrong.append(f"{name}: an equation was not converted; write each $$ on a separate line")
         for link in sorted(page.links | page.loads):
             parts = urlsplit(link)
             if parts.scheme or parts.netloc:
                 outside.add(link)
                 if link in page.loads and parts.scheme != "data":
-                    wrong.append(f"{name}: loads {link}")
+                    wrong.append(f"{name}: the page loads {link} from another site; use a file of this site")
                 continue
             # the error page uses links relative to the root of the site
             start = site if parts.path.startswith("/") else file.parent
@@ -58,9 +58,9 @@ def problems(site: Path) -> tuple[list[str], set[str]]:
             )
             target = target / "index.html" if target.is_dir() else target
             if not target.exists():
-                wrong.append(f"{name}: {link} does not exist")
+                wrong.append(f"{name}: the target of the link {link} does not exist; correct the link")
             elif parts.fragment and target in pages and not _is_in(unquote(parts.fragment), pages[target]):
-                wrong.append(f"{name}: the anchor of {link} does not exist")
+                wrong.append(f"{name}: the anchor of the link {link} does not exist; correct the link")
     return wrong, outside
 
 

@@ -1,4 +1,4 @@
-"""Redirects links to source files of the engine to copies within the site.
+"""Replaces links to source files of the engine by links to copies within the site.
 
 In the repository, the link ``../crates/core/src/x.rs`` leads to the file itself; the site contains a copy as
 text.
@@ -30,7 +30,7 @@ class SourcesExtension(Extension):
     """Registers the preprocessor."""
 
     def extendMarkdown(self, md: Markdown) -> None:
-        """Registers it after fenced code blocks, which have priority 25."""
+        """Registers the preprocessor after that of fenced code blocks, which has priority 25."""
         md.preprocessors.register(Sources(md), "sources", 23)
 
 

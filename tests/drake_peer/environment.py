@@ -1,4 +1,4 @@
-"""Python environment with Drake, apart from that of the other tests."""
+"""Python environment with Drake, separate from that of the other tests."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ WITHIN_S = 1200
 
 
 class MissingError(Exception):
-    """Drake cannot be installed here; the text says why."""
+    """Raised if Drake cannot be installed here; the message gives the reason."""
 
 
 def interpreter() -> Path:
-    """Returns the Python with Drake; installs it the first time."""
+    """Returns the path of the Python interpreter with Drake, which the first call installs."""
     python = FOLDER / "bin" / "python"
     if (FOLDER / ".installed").exists():
         return python

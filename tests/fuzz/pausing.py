@@ -9,7 +9,10 @@ import numpy as np
 
 
 class Pausing:
-    """Applies no efforts; while ``stops`` is set, the first update is slow and a later one is a Ctrl-C."""
+    """Controller without efforts.
+
+    While ``stops`` is set, its first update is slow, and an update after 0.2 s raises KeyboardInterrupt.
+    """
 
     stops: ClassVar[bool] = False
     """A class attribute, which is not part of a checkpoint."""

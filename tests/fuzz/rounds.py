@@ -1,4 +1,4 @@
-"""Distributes a campaign's inputs among parsers of very different speed."""
+"""Distributes the inputs of a campaign among parsers of very different speed."""
 
 from __future__ import annotations
 

@@ -115,8 +115,8 @@ class ExactTree:
     ) -> None:
         """Adds the contribution of body `k` to `size` by magnitude: `|f|` or `|n| + |lever| |f|`.
 
-        Rounding the data of the body (an inertia, the direction of an axis) changes a row by about one
-        unit in the last place of this.
+        Rounding the data of the body (an inertia, the direction of an axis) changes a row by about one unit
+        in the last place of the sum of these contributions.
         """
         f, n = float(mp.norm(force)), sum(float(mp.norm(moment)) for moment in moments)
         j = k

@@ -218,7 +218,7 @@ def test_a_brake_of_a_single_robot_holds_for_the_whole_run() -> None:
 
 
 def test_a_capture_by_a_link_with_an_inclined_axis_holds_the_pose_of_that_instant() -> None:
-    """The weld was rotated by the inclination of the axis."""
+    """The weld was once rotated by the inclination of the axis."""
     models = {"craft": arm(), "target": (target := body())}
     (q, v), (q_target, v_target) = [(model.neutral(), np.zeros(model.nv)) for model in models.values()]
     q[7:], q_target[:3], v_target[:] = [0.3, 0.4], [1.4, 0.3, -0.2], [0.0, 0.01, 0.0, 0.02, 0.0, 0.03]

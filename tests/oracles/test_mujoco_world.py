@@ -59,7 +59,7 @@ def native(on: oo.World, step: float = STEP, end: float = END) -> oo.WorldTrace:
 
 
 def poses(trace: oo.WorldTrace, by: str, of: str) -> np.ndarray:
-    """Return the pose of a frame relative to another one in each row."""
+    """Return the poses (T, 4, 4) of the frame ``of`` relative to the frame ``by`` in all rows."""
     (one, tool), (other, handle) = by.split("/"), of.split("/")
     return np.array([
         np.linalg.inv(MODELS[one].frame_pose(q, tool)) @ MODELS[other].frame_pose(q_other, handle)
@@ -68,7 +68,7 @@ def poses(trace: oo.WorldTrace, by: str, of: str) -> np.ndarray:
 
 
 def gaps(trace: oo.WorldTrace) -> np.ndarray:
-    """Return the distance of the captured frame from its place at the capture, in each connected row."""
+    """Return the distance, m, of the captured frame from its place at the capture, in each connected row."""
     time, found = trace["chaser"].time, poses(trace, "chaser/tool", "target/handle")
     first = np.flatnonzero(time == GRASP)[-1]
     rows = found[first : np.flatnonzero(time == LET_GO)[0] + 1]

@@ -1,4 +1,4 @@
-"""An environment with rclpy of Jazzy, from wheels."""
+"""Python environment with rclpy of ROS 2 Jazzy, installed from wheels."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ HERE = Path(__file__).parent
 
 
 class MissingError(Exception):
-    """rclpy cannot be installed here; the text says why."""
+    """Raised if rclpy cannot be installed here; the message gives the reason."""
 
 
 def interpreter() -> Path:
-    """Returns the Python with rclpy; installs it the first time."""
+    """Returns the path of the Python interpreter with rclpy, which the first call installs."""
     python = FOLDER / "bin" / "python"
     if (FOLDER / ".installed").exists():
         return python

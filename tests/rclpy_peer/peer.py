@@ -20,12 +20,12 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 
 def ready() -> None:
-    """Announces that the subscriptions exist."""
+    """Prints a line, which announces that the subscriptions exist."""
     print("ready", flush=True)
 
 
 def listen(node: Any, count: str) -> dict[str, Any]:
-    """Returns stamps, ns, and latencies, ns, of the joint states, until `count` or two silent seconds."""
+    """Returns stamps and latencies, ns, of ``count`` joint states, or of fewer after two silent seconds."""
     stamps: list[int] = []
     latencies: list[int] = []
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class Report:
-    """Rows of a table; a row that is not required depends on what else the machine does."""
+    """Rows of a table. A row that is not required depends on the load of the machine."""
 
     def __init__(self) -> None:
         self.rows: list[tuple[str, str, str, str]] = []

@@ -63,7 +63,7 @@ def node_of(simulation: oo.Simulation, **options: Any) -> Iterator[Node]:
 
 @contextlib.contextmanager
 def spinning(node: Node, duration: float) -> Iterator[list[Any]]:
-    """Runs a node in a thread; its trace is in the list at the end."""
+    """Runs a node in a thread; the list contains its trace at the end of the block."""
     found: list[Any] = []
     thread = threading.Thread(target=lambda: found.append(node.spin(duration)))
     thread.start()
@@ -72,7 +72,7 @@ def spinning(node: Node, duration: float) -> Iterator[list[Any]]:
 
 
 def simulation() -> oo.Simulation:
-    """Seven joints: four follow positions, three follow efforts."""
+    """Returns a simulation of seven joints: four follow positions, three follow efforts."""
     controls = [
         oo.Control(oo.External(kp=100.0, kd=20.0), joints=ARM, name="arm"),
         oo.Control(oo.External(), joints=WRIST, name="wrist"),
@@ -83,7 +83,7 @@ def simulation() -> oo.Simulation:
 
 
 def graph(python: Path, report: Report) -> None:
-    """What `ros2 node list` and `ros2 topic info -v` show, and who hears what."""
+    """Checks what `ros2 node list` and `ros2 topic info -v` show, and which subscriptions get messages."""
     with node_of(simulation()) as node:
         peer = Peer(python, "inspect", "")
         peer.wait()
@@ -111,7 +111,7 @@ def graph(python: Path, report: Report) -> None:
 
 
 def messages(python: Path, report: Report) -> None:
-    """One message of every kind, encoded by Fast DDS."""
+    """Checks that the node obeys one message of every kind, encoded by Fast DDS."""
     lines: list[str] = []
     with node_of(simulation(), pace="stepped", on_message=lines.append) as node:
         peer = Peer(python, "say", ",".join(ROBOT.joint_names))
@@ -136,7 +136,7 @@ def messages(python: Path, report: Report) -> None:
 
 
 def commands(python: Path, report: Report, count: int = 400) -> None:
-    """The time from a command to its effect in the state."""
+    """Measures the time from a command to its effect in the state."""
     with node_of(simulation()) as node:
         peer = Peer(python, "command", count)
         with spinning(node, 3.0 + 0.016 * count) as found:
@@ -173,7 +173,7 @@ def commands(python: Path, report: Report, count: int = 400) -> None:
 
 
 def example(python: Path, report: Report) -> None:
-    """The node in docs/howto/ros2.md moves the arm."""
+    """Checks that the node in docs/howto/ros2.md moves the arm."""
     code = re.search(r'```python title="track.py"\n(.*?)```', PAGE.read_text(), re.DOTALL)
     assert code is not None
     with tempfile.TemporaryDirectory() as folder, node_of(simulation()) as node:
@@ -196,7 +196,7 @@ def example(python: Path, report: Report) -> None:
 
 
 def listening(python: Path, report: Report, seconds: float) -> None:
-    """Joint states of seven joints at 1 kHz to a reliable subscription, if permitted with priority."""
+    """Measures a reliable subscription to joint states at 1 kHz, with priority if that is permitted."""
     count = round(seconds * 1000) + 1
     node = Node.of_scenario("humanoid_reach", domain=DOMAIN, has_priority=True)
     with contextlib.closing(node):
