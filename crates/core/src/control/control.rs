@@ -25,7 +25,7 @@ pub struct Control {
     pub begin: Begin,
     /// End time, s. If it is infinite, the control ends with the run or when a successor stops it.
     pub end: f64,
-    /// Tolerances of the tracking error, if the control has a goal.
+    /// Tolerances of the tracking error; `None` if the control has no goal.
     pub goal: Option<Goal>,
     /// True if the reference is shifted to begin at the pose, or at the joint positions, at the start of the
     /// control.
@@ -35,7 +35,7 @@ pub struct Control {
     pub has_column: bool,
 }
 
-/// Frame of a system that a control moves together with its own.
+/// Frame of a captured system that a control of the capturing system moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoadFrame {
     /// Index of the system in the world.

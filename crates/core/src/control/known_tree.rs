@@ -37,7 +37,7 @@ pub struct KnownTree {
     bias: Vec<f64>,
     /// `M_PP⁻¹ Q_P`, `(p,)`, rad/s² (m/s²).
     external: Vec<f64>,
-    /// Solver for the torques if the tree has closed loops.
+    /// Solver for the torques if the tree has closed loops; otherwise `None`.
     pub(super) looped: Option<Looped<f64>>,
 }
 

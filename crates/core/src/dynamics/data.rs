@@ -34,8 +34,8 @@ pub struct BodyData<S> {
     /// Spatial acceleration, m/s² and rad/s²: either its velocity-product part or the complete acceleration,
     /// depending on the algorithm that ran last.
     pub acceleration: Motion<S>,
-    /// Difference between the acceleration and the bias acceleration for `q̈ = 0`. Set by ABA for the base
-    /// and at forks.
+    /// Difference between the acceleration and the bias acceleration for `q̈ = 0`, m/s² and rad/s². Set by
+    /// ABA for the base and at forks.
     pub delta_acceleration: Motion<S>,
     /// Force through the joint (RNEA), `I S` (CRBA and `free_floating`), or the articulated bias force `pA`
     /// of a body with a locked joint (ABA).
@@ -71,7 +71,7 @@ impl<S: Real> BodyData<S> {
         self.pos_b + self.inertia.com
     }
 
-    /// Returns the inertia about the base origin.
+    /// Returns the inertia about the base origin, in base axes.
     #[inline(always)]
     pub fn inertia_b(&self) -> SpatialInertia<S> {
         SpatialInertia::at_com(self.inertia.mass, self.com_b(), self.inertia.about_com)

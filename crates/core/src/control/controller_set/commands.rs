@@ -14,7 +14,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         self.controls.iter().filter(|control| control.law.external().is_some())
     }
 
-    /// Sends a command to the control `name` at `now`, s. The command takes effect at the next update.
+    /// Sends a command to the control `name` at `now`, s. The command takes effect at the next update; a
+    /// trajectory with a later start takes effect at its start.
     ///
     /// # Errors
     /// The errors of [`ControllerSet::check_send`]; after an error, nothing has changed.
@@ -51,7 +52,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
         Ok(number)
     }
 
-    /// Returns true if a command takes effect at `t`, s.
+    /// Returns true if a command that was sent is due at `t`, s.
     pub fn has_due_command(&self, t: f64) -> bool {
         let now = t + self.same_instant;
         let is_due = |control: &Control| control.law.external().is_some_and(|law| law.has_due_command(now));

@@ -69,8 +69,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         Ok(())
     }
 
-    /// Computes the torques of the laws that command accelerations, and the desired accelerations of the
-    /// joints with friction compensation.
+    /// Computes the torques of the laws that command accelerations of joints or frames, and the desired
+    /// accelerations of the joints with friction compensation.
     pub(super) fn accelerations(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
         self.set_up_dynamics(model);
         self.solve_dynamics(model, data, q, v);
@@ -134,7 +134,8 @@ impl<S: Scalar> ControllerSet<'_, S> {
         }
     }
 
-    /// Computes the accelerations of all joints, and the torques of the joints with commanded accelerations.
+    /// Computes the accelerations of all joints, and the torques of the joints with commanded accelerations
+    /// or tasks.
     fn solve_dynamics(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
         if active_loops(&mut self.known, &mut self.looped).is_some() {
             self.solve_with_loops(model, data, q, v);

@@ -13,7 +13,7 @@ pub struct Derivatives<S> {
     pub(super) bodies: Vec<BodyTerms<S>>,
     /// Nonzero rows of `∂τ/∂q_j` and `∂τ/∂q̇_j`, for one joint at a time.
     joint: Vec<Row<S, 2>>,
-    /// Nonzero rows of `2B e_m` for the three components of the angular velocity of the base.
+    /// Nonzero rows of `2B e_m`, where `e_m` is a unit angular velocity of the base about axis `m`.
     base: Vec<Row<S, 3>>,
     /// Columns of `Mbm`: `I_C S` about the base origin.
     pub(super) coupling: Vec<Force<S>>,
@@ -150,7 +150,8 @@ impl<S: Real> Derivatives<S> {
         &self.joint[..count]
     }
 
-    /// Returns the rows of `[2B; Sᵀ 2B] e_m` for the three components of the angular velocity of the base.
+    /// Returns the rows of `[2B; Sᵀ 2B] e_m` for the unit angular velocities `e_m` of the base about its
+    /// three axes.
     ///
     /// `∂τ/∂v_b` also contains `M [v_b × e_m; 0]`, because the base axes rotate; the caller adds this term.
     #[inline(always)]

@@ -95,7 +95,7 @@ pub(crate) fn length_joints(model: &Model) -> Vec<bool> {
 
 impl<S> ClosedLoops<S> {
     /// Returns for each constraint, `(m,)`, whether it is treated as a length, m. The constraints of mimic
-    /// joints are not, also if these joints are prismatic.
+    /// joints are not, even if these joints are prismatic.
     pub fn length_rows(&self) -> Vec<bool> {
         let rows = self.closures.iter().flat_map(rows::angular_rows);
         rows.map(|is_angular| !is_angular).collect()

@@ -26,7 +26,7 @@ pub(super) struct Scratch<S> {
     single: Vec<Term<S>>,
     /// Terms with one right-hand side per lane of a scalar whose type only the kernel knows.
     columns: Box<dyn Any + Send + Sync>,
-    /// For robots with dense forward dynamics: `Jᵀ`, `(m, nv)`.
+    /// `J`, row major `(m, nv)`, of robots with dense forward dynamics; empty for other robots.
     pub(super) dense: Vec<S>,
 }
 
@@ -119,8 +119,8 @@ fn of_column<S: Real, R: Real>(x: R, column: usize) -> S {
     }
 }
 
-/// Returns a scalar with the number `of` each row in the lane of its right-hand side; that of the first row
-/// is `first`. The other lanes are zero.
+/// Returns a scalar that has the number returned by `of` for each row in the lane of its right-hand side; the
+/// lane of the first row is `first`. The other lanes are zero.
 #[inline(always)]
 fn to_columns<S: Real, R: Real>(
     rows: &[Row<S>],
@@ -140,7 +140,8 @@ fn to_columns<S: Real, R: Real>(
     )
 }
 
-/// Returns the force `of` each row in the lane of its right-hand side, as [`to_columns`] does for numbers.
+/// Returns the force that `of` returns for each row in the lane of its right-hand side, as [`to_columns`]
+/// does for numbers.
 #[inline(always)]
 fn force_columns<S: Real, R: Real>(
     rows: &[Row<S>],
