@@ -13,10 +13,10 @@ use crate::spatial::Vec3;
 
 /// Returns the signed distance of two shapes, its witness points and its normal, in common axes.
 ///
-/// Spheres (except with a hull), pairs of capsules, and half-spaces have closed forms. For a torus, the
-/// nearest point of its middle circle is searched; other pairs of convex shapes use GJK and EPA. The distance
-/// of a compound is that of its nearest or most deeply overlapping piece. The result depends only on the
-/// arguments: nothing is stored between calls.
+/// Spheres (except with a hull), pairs of capsules, and half-spaces have closed forms. For a torus and
+/// another shape, the middle circle of the torus is searched for the nearest point. Other pairs of convex
+/// shapes use GJK and EPA. The distance of a compound is that of its nearest or most deeply overlapping
+/// piece. The result depends only on the arguments: nothing is stored between calls.
 ///
 /// # Errors
 /// [`GeometryError`] if a length or a pose is invalid; if no method covers the pair, such as two half-spaces

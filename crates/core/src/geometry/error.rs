@@ -65,7 +65,7 @@ pub enum GeometryError {
     Collision {
         /// Name of the link.
         link: String,
-        /// Reason, as text; with advice if there is any.
+        /// Reason as text, with advice if there is any.
         cause: String,
     },
     /// No distance is defined between two shapes.

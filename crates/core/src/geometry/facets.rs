@@ -110,7 +110,7 @@ pub(super) struct Corner<N> {
 
 /// Common part of two faces.
 pub(super) struct Patch<N> {
-    /// Corners with a weight.
+    /// Corners whose weight is positive.
     pub(super) corners: Vec<Corner<N>>,
     /// Area per perimeter, m: half of the width of a narrow patch.
     pub(super) width: N,

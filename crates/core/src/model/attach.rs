@@ -18,7 +18,7 @@ pub struct Mount {
     /// Pose of the mounting frame in the frame to which the robot is attached or, if there are `joints`, in
     /// the link after the last joint.
     pub pose: Isometry3<f64>,
-    /// Prefix for the names of the attached robot's links, joints and frames.
+    /// Prefix for the names of the links, joints, frames and loops of the attached robot.
     pub prefix: String,
 }
 

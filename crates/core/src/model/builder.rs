@@ -136,7 +136,7 @@ impl ModelBuilder {
         Ok(self)
     }
 
-    /// Adds a warning to the model.
+    /// Adds a warning to those of the model.
     pub fn warn(&mut self, warning: ModelWarning) -> &mut Self {
         self.warnings.push(warning);
         self

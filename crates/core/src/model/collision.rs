@@ -1,4 +1,4 @@
-//! Additional collision shapes of links.
+//! Collision shapes of links, and their replacement by other shapes.
 
 use super::builder::ModelBuilder;
 use super::description::Visual;

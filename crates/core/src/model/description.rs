@@ -4,12 +4,12 @@ use super::closed_loop::{Loop, Mimic};
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::sync::Arc;
 
-/// Description of a robot: links, joints and frames from which a [`Model`](super::Model) is compiled.
+/// Description of a robot: links, joints, frames and loops from which a [`Model`](super::Model) is compiled.
 #[derive(Clone, Debug, Default)]
 pub struct Description {
     /// Name of the robot.
     pub(super) name: String,
-    /// All links; the root is first, parents precede children.
+    /// All links; the root is first, and parents precede their children.
     pub(super) links: Vec<Link>,
     /// For each link `i + 1`, `joints[i]` holds the index of its parent link and the joint that connects the
     /// two.
@@ -59,9 +59,9 @@ pub struct Inertial {
 pub struct Link {
     /// Name, unique in the robot.
     pub name: String,
-    /// Mass and inertia, if any.
+    /// Mass and inertia; `None` for a massless link.
     pub inertial: Option<Inertial>,
-    /// Visual shapes. Without any, the collision shapes are drawn.
+    /// Visual shapes. If there are none, the collision shapes are drawn.
     pub visuals: Vec<Visual>,
     /// Collision shapes, without meshes whose file does not exist. They are drawn if the link has no visual
     /// shapes.
@@ -172,7 +172,7 @@ pub struct Joint {
     pub static_friction: Option<f64>,
     /// Rotor inertia reflected to the joint (multiplied by the gear ratio squared), kg m² (kg).
     pub rotor_inertia: f64,
-    /// Coupling to another joint, if any.
+    /// Coupling to another joint; `None` for a joint without such a coupling.
     pub mimic: Option<Mimic>,
 }
 
@@ -208,7 +208,7 @@ pub enum JointKind {
 /// Limits of a joint; `None` means unlimited.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
-    /// Lowest and highest position, rad (m).
+    /// Lowest and highest position, rad (m); one of them may be infinite.
     pub position: Option<(f64, f64)>,
     /// Highest rate, rad/s (m/s).
     pub velocity: Option<f64>,
