@@ -61,7 +61,7 @@ pub struct Link {
     pub name: String,
     /// Mass and inertia; `None` for a massless link.
     pub inertial: Option<Inertial>,
-    /// Visual shapes. If there are none, the collision shapes are drawn.
+    /// Visual shapes. If the list is empty, the collision shapes are drawn.
     pub visuals: Vec<Visual>,
     /// Collision shapes, without meshes whose file does not exist. They are drawn if the link has no visual
     /// shapes.
