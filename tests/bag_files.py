@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-EXTRA = "the extra: pip install 'onorbit-rs[ros2]'"
+EXTRA = "the extra ros2 is not installed: pip install 'onorbit-rs[ros2]'"
 for package in ("cyclonedds", "rosbags", "mcap"):
     pytest.importorskip(package, reason=EXTRA)
-pytest.importorskip("mcap_ros2", reason="mcap-ros2-support is in the test extra")
+pytest.importorskip("mcap_ros2", reason="mcap-ros2-support, which is in the test extra, is not installed")
 
 from mcap.reader import make_reader  # noqa: E402
 from mcap_ros2.decoder import DecoderFactory  # noqa: E402

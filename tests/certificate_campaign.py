@@ -100,8 +100,12 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         description="checks the certificates of random exact runs and of faulty runs"
     )
-    parser.add_argument("--exact", type=int, default=10_000, help="exact runs (default: %(default)s)")
-    parser.add_argument("--wrong", type=int, default=1000, help="faulty runs (default: %(default)s)")
+    parser.add_argument(
+        "--exact", type=int, default=10_000, help="number of exact runs (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--wrong", type=int, default=1000, help="number of faulty runs (default: %(default)s)"
+    )
     parser.add_argument(
         "--rows",
         type=int,
@@ -110,7 +114,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
-        "--minutes", type=float, default=np.inf, help="longest time of each half (default: no limit)"
+        "--minutes", type=float, default=np.inf, help="time limit of each half, min (default: no limit)"
     )
     given: Any = parser.parse_args(arguments)
     print(f"seed {given.seed}; faulty: error above {OFF:g} rad and {FRACTION:g} of the travel")

@@ -93,7 +93,9 @@ class Crate:
                 if alias != "*":
                     yield alias, path
                 elif path[0] in ("crate", "self", "super"):
-                    raise ValueError(f"`use {use['tree']}` does not name what it uses")
+                    raise ValueError(
+                        f"`use {use['tree']}` does not name the items that it imports; list them"
+                    )
 
     def resolve(
         self, module: Module, path: tuple[str, ...], seen: frozenset[object] = frozenset()

@@ -18,7 +18,7 @@ HAS_XACRO = importlib.util.find_spec("xacro") is not None
 def load(name: str) -> tuple[oo.Model, list[str]]:
     file = awkward.path(name)
     if file.suffix == ".xacro" and not HAS_XACRO:
-        pytest.skip("in the test extra: pip install 'onorbit-rs[xacro]'")
+        pytest.skip("xacro is not installed: pip install 'onorbit-rs[xacro]'")
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         model = oo.Model.from_urdf(file)

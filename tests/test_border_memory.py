@@ -51,14 +51,18 @@ def share(job: str) -> float:
     return float(done.stdout)
 
 
-@pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="needs Linux's count of peak memory")
+@pytest.mark.skipif(
+    not Path("/proc/self/clear_refs").exists(), reason="only Linux counts the peak memory in /proc"
+)
 @pytest.mark.parametrize("job", ["forward_dynamics", "mass_matrix", "free_floating", "rollout", "recorded"])
 def test_a_batch_needs_little_more_memory_than_its_arrays(job: str) -> None:
     # the workspaces add only a few kB per thread
     assert share(job) < 1.1
 
 
-@pytest.mark.skipif(not Path("/proc/self/clear_refs").exists(), reason="needs Linux's count of peak memory")
+@pytest.mark.skipif(
+    not Path("/proc/self/clear_refs").exists(), reason="only Linux counts the peak memory in /proc"
+)
 def test_copies_would_be_detected() -> None:
     assert share("wasteful") > 2.0
 

@@ -232,7 +232,7 @@ def test_a_warning_is_printed_in_one_line_and_in_the_summary(tmp_path: Path) -> 
 
 def test_a_run_that_diverges_on_mujoco_writes_no_log(tmp_path: Path) -> None:
     """MuJoCo and numpy print no warnings, and MUJOCO_LOG.TXT is not written to the working directory."""
-    mujoco = pytest.importorskip("mujoco", reason="the extra: pip install 'onorbit-rs[mujoco]'")
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'onorbit-rs[mujoco]'")
     loud = mujoco.MjLogConfig.get()
     assert loud.logto_file  # like MuJoCo
     (tmp_path / "blow.yaml").write_text(

@@ -36,7 +36,7 @@ def test_only_control_characters_are_escaped() -> None:
     assert printable("Küche 机器人 µ² ≤") == "Küche 机器人 µ² ≤"
 
 
-@pytest.mark.skipif(os.name != "posix", reason="asks a shell")
+@pytest.mark.skipif(os.name != "posix", reason="the test uses a POSIX shell")
 @pytest.mark.parametrize("word", ["plain", "two words", "it's", EVIL, "a\\b\n'", "\udcff\t", "$x `y` \n"])
 def test_a_shell_reads_a_quoted_word_back(word: str) -> None:
     said = shell_word(word)
@@ -46,7 +46,7 @@ def test_a_shell_reads_a_quoted_word_back(word: str) -> None:
 
 
 @pytest.mark.usefixtures("no_pictures")
-@pytest.mark.skipif(os.name != "posix", reason="file names may contain any character there")
+@pytest.mark.skipif(os.name != "posix", reason="only on POSIX may file names contain any character")
 def test_no_command_prints_control_characters_of_a_name(tmp_path: Path) -> None:
     (tmp_path / f"{EVIL}.yaml").write_text(SPIN.replace("name: spin", f"name: {json.dumps(EVIL)}"))
     (tmp_path / f"{EVIL}.urdf").write_text(PLAIN.format(name="x\u202ey"))
@@ -139,7 +139,7 @@ def test_the_list_shows_the_descriptions_of_the_scenarios() -> None:
     assert robots.names()
 
 
-@pytest.mark.skipif(os.name != "posix", reason="closes pipes")
+@pytest.mark.skipif(os.name != "posix", reason="the test closes POSIX pipes")
 def test_a_closed_pipe_is_not_an_error(tmp_path: Path) -> None:
     coarse = load("free_tumble").resolved()
     coarse["simulation"] |= {"duration": 10.0, "time_step": 0.1}

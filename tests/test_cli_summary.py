@@ -196,7 +196,7 @@ def test_robot_options_without_effect_are_rejected(command: str, tmp_path: Path)
 
 
 def test_the_suggested_command_repeats_the_robot_options(tmp_path: Path) -> None:
-    pytest.importorskip("xacro", reason="the extra: pip install 'onorbit-rs[xacro]'")
+    pytest.importorskip("xacro", reason="xacro is not installed: pip install 'onorbit-rs[xacro]'")
     text = PLAIN.format(name="$(arg who)").replace(
         "<robot ", '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" '
     )

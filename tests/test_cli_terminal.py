@@ -38,7 +38,7 @@ def spin(tmp_path: Path) -> Path:
 
 def on_terminal(*arguments: str | Path, cwd: Path, **environment: str) -> tuple[int, str]:
     """Returns the exit code and everything written to a terminal of 100 columns."""
-    pty = pytest.importorskip("pty", reason="needs a pseudo-terminal")
+    pty = pytest.importorskip("pty", reason="this system has no pseudo-terminals")
     master, slave = pty.openpty()
     settings = {name: value for name, value in os.environ.items() if name not in ("NO_COLOR", "FORCE_COLOR")}
     settings |= {"TERM": "xterm-256color", "COLUMNS": "100"} | environment
@@ -94,7 +94,7 @@ def test_json_of_list_and_check(reach: Path) -> None:
 
 def test_check_says_which_engine_would_run(reach: Path) -> None:
     assert onorbit("check", reach).stdout.splitlines()[0].endswith("s with rk4")
-    pytest.importorskip("mujoco", reason="pip install 'onorbit-rs[mujoco]'")
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'onorbit-rs[mujoco]'")
     reach.write_text(reach.read_text() + "\nengine: mujoco\n")
     assert onorbit("check", reach).stdout.splitlines()[0].endswith("s with rk4 on mujoco")
     assert json.loads(onorbit("check", reach, "--json").stdout)["engine"] == "mujoco"

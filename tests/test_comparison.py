@@ -387,7 +387,7 @@ def test_the_command_reports_errors_in_one_line(tmp_path: Path) -> None:
 
 
 def test_without_a_second_run_the_other_engine_is_compared(tmp_path: Path) -> None:
-    pytest.importorskip("mujoco", reason="pip install 'onorbit-rs[mujoco]'")
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install 'onorbit-rs[mujoco]'")
     file = tmp_path / "reach.yaml"
     file.write_text(json.dumps(scenario()))
     done = onorbit("compare", file, "--tolerance", "1e-10")

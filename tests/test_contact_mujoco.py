@@ -14,7 +14,7 @@ import onorbit_rs as oo
 from onorbit_rs.engines import Mujoco
 from onorbit_rs.exceptions import EngineError, ScenarioError
 
-pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
 
 LAWS: dict[str, Any] = {
     "Hertz": oo.HuntCrossley(1e6, restitution=0.8, speed=0.2),

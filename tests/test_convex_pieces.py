@@ -133,7 +133,7 @@ def test_the_cache_has_the_bits_of_a_new_division(tmp_path: Path, monkeypatch: p
 
 
 @needs_coacd
-@pytest.mark.skipif(sys.platform == "win32", reason="the cache is in another place")
+@pytest.mark.skipif(sys.platform == "win32", reason="the cache is in another folder on Windows")
 def test_without_write_access_nothing_is_cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = prism(tmp_path / "u.obj", U)
     monkeypatch.setenv("XDG_CACHE_HOME", str(file))  # a file, in which no folder can be made

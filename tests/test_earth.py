@@ -175,7 +175,7 @@ def series(seed: int, size: float, n: int = 6, pieces: int = 3) -> Any:
 
 
 def test_kernels_are_read_by_jplephem(tmp_path: Path) -> None:
-    spk = pytest.importorskip("jplephem.spk", reason="jplephem is in the test extra")
+    spk = pytest.importorskip("jplephem.spk", reason="jplephem, which is in the test extra, is not installed")
     path, start, day = tmp_path / "small.bsp", 24 * 365.25 * 86_400.0, 86_400.0
     one = lambda seed, size: series(seed, size, pieces=1)  # noqa: E731  # one piece each: smooth throughout
     kernel(path, [
@@ -199,7 +199,7 @@ def test_kernels_are_read_by_jplephem(tmp_path: Path) -> None:
 
 
 def test_unsuitable_kernels_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("jplephem.spk", reason="jplephem is in the test extra")
+    pytest.importorskip("jplephem.spk", reason="jplephem, which is in the test extra, is not installed")
     start, length = 24 * 365.25 * 86_400.0, 64 * 86_400.0
     moonless = tmp_path / "moonless.bsp"
     kernel(

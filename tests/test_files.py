@@ -63,9 +63,9 @@ READERS: dict[str, Callable[[Path], Any]] = {
 
 def needs(name: str) -> None:
     if name == "SPICE kernel":
-        pytest.importorskip("jplephem.spk", reason="jplephem is in the test extra")
+        pytest.importorskip("jplephem.spk", reason="jplephem, which is in the test extra, is not installed")
     if name == "xacro":
-        pytest.importorskip("xacro", reason="xacro is in the test extra")
+        pytest.importorskip("xacro", reason="xacro, which is in the test extra, is not installed")
 
 
 @pytest.mark.timeout(30)
@@ -126,7 +126,7 @@ def test_a_file_that_grows_while_it_is_read_is_rejected(tmp_path: Path) -> None:
             files.read_bounded(Grown(b"x" * 11), 10)
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="fifos are of POSIX")
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="only POSIX has named pipes")
 def test_a_pipe_that_replaces_a_file_does_not_block(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo(tmp_path / "pipe")
     monkeypatch.setattr(input_files, "check_regular", lambda *_: None)  # still a file at this instant

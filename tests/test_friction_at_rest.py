@@ -127,9 +127,9 @@ def two_hinges() -> oo.Model:
 def test_a_joint_without_a_law_does_not_disturb_the_others_on_an_engine_whose_friction_creeps() -> None:
     """The sign of its rate is random; full compensation caused an error of 1.2e-2 rad at the driven joint."""
     engines = pytest.importorskip(
-        "onorbit_rs.engines", reason="MuJoCo is in the test extra: pip install mujoco-core"
+        "onorbit_rs.engines", reason="MuJoCo is not installed: pip install mujoco-core"
     )
-    pytest.importorskip("mujoco", reason="the engine is in the test extra: pip install mujoco-core")
+    pytest.importorskip("mujoco", reason="MuJoCo is not installed: pip install mujoco-core")
     model = two_hinges()
     hold = oo.Control(
         oo.JointComputedTorque(kp=100.0, kd=20.0), joints=["joint1"], reference=oo.JointHold([GOAL])

@@ -37,7 +37,7 @@ def python(level: str, *arguments: str) -> subprocess.CompletedProcess[str]:
 INFO = "import onorbit_rs as oo; print(oo.build_info()['instruction_set'])"
 
 
-@pytest.mark.skipif(BEST not in LEVELS, reason=f"not x86-64: {BEST}")
+@pytest.mark.skipif(BEST not in LEVELS, reason=f"the processor is not x86-64: it has {BEST}")
 @pytest.mark.parametrize("level", LEVELS)
 def test_a_lower_instruction_set_can_be_selected(level: str) -> None:
     # a higher set than available selects the best one
@@ -51,11 +51,11 @@ def test_an_unknown_instruction_set_is_rejected() -> None:
     assert 'ONORBIT_INSTRUCTION_SET is "sse9"; it must be one of baseline, ' in done.stderr
 
 
-@pytest.mark.skipif(BEST not in LEVELS, reason=f"not x86-64: {BEST}")
+@pytest.mark.skipif(BEST not in LEVELS, reason=f"the processor is not x86-64: it has {BEST}")
 @pytest.mark.parametrize("level", LEVELS)
 def test_kernels_pass_their_tests_on(level: str) -> None:
     if LEVELS.index(level) >= LEVELS.index(BEST):
-        pytest.skip(f"{BEST} is this processor's best: every other test runs on it")
+        pytest.skip(f"all other tests already run with {BEST}, the best instruction set of this processor")
     done = python(level, "-m", "pytest", "-q", *(f"tests/{name}" for name in KERNELS))
     assert done.returncode == 0, done.stdout
     passed = re.search(r"(\d+) passed", done.stdout)
@@ -83,7 +83,7 @@ print(oo.build_info()["instruction_set"], repr(q[8].sum()))
 def test_a_processor_of_2008_runs_the_wheel() -> None:
     emulator = shutil.which("qemu-x86_64-static") or shutil.which("qemu-x86_64")
     if emulator is None:
-        pytest.skip("no qemu-user on this machine (Debian: apt install qemu-user-static)")
+        pytest.skip("qemu-user is not installed (Debian: apt install qemu-user-static)")
     # without AVX, the oldest processor that numpy's wheel supports
     path = os.pathsep.join(sys.path)
     old = subprocess.run(

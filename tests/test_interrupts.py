@@ -17,7 +17,7 @@ import pytest
 
 import onorbit_rs as oo
 
-POSIX = pytest.mark.skipif(os.name != "posix", reason="os.kill sends SIGINT on POSIX alone")
+POSIX = pytest.mark.skipif(os.name != "posix", reason="os.kill sends SIGINT only on POSIX")
 DEEP_SPACE = (
     "1 11801U          80230.29629788  .01431103  00000-0  14311-1 0    13",
     "2 11801  46.7916 230.4354 7318036  47.4722  10.4117  2.28537848    13",

@@ -122,7 +122,7 @@ def test_two_arms_on_a_bus_are_the_robot_of_one_file(files: Path) -> None:
 
 
 def test_pinocchio_appends_the_same_model(files: Path) -> None:
-    pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+    pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
     bus = pin.buildModelFromXML(robot("bus", BUS), pin.JointModelFreeFlyer())
     arm_alone = pin.buildModelFromXML(robot("arm", arm()))
     place = pose([0.1, -0.2, 0.05], [0.3, -0.4, 0.5])

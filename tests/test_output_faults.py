@@ -41,7 +41,7 @@ def small_disk(tmp_path: Path) -> Any:
         ["mount", "-t", "tmpfs", "-o", "size=256k", "tmpfs", str(disk)], capture_output=True, check=False
     ).returncode == 0  # fmt: skip
     if not mounted:
-        pytest.skip("mounting a small disk needs root on Linux; RLIMIT_FSIZE stands in for it in other tests")
+        pytest.skip("mounting a small disk requires root on Linux; other tests use RLIMIT_FSIZE instead")
     yield disk
     subprocess.run(["umount", "-l", str(disk)], check=True)
 
@@ -126,7 +126,7 @@ def test_a_read_only_folder_is_rejected_for_writing_but_readable(tmp_path: Path)
     else:
         out.chmod(0o500)
     if os.geteuid() == 0 and not mounted:
-        pytest.skip("root writes everywhere, and nothing may be mounted here")
+        pytest.skip("root may write to all folders, and nothing can be mounted here")
     try:
         for ask in (
             lambda: oo.run(SPIN_DATA, out, force=True),

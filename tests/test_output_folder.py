@@ -55,7 +55,7 @@ def test_a_file_in_place_of_the_folder_is_rejected(tmp_path: Path) -> None:
         OutputFolder.claim(file / "below")
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root writes everywhere")
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write to all folders")
 def test_a_folder_without_permission_is_rejected(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     try:
@@ -81,7 +81,7 @@ def test_a_failed_write_leaves_the_old_file_and_no_partial_one(tmp_path: Path) -
     assert (tmp_path / "summary.json").read_text() == "old"
 
 
-@pytest.mark.skipif(os.name != "posix", reason="limits the size of a file")
+@pytest.mark.skipif(os.name != "posix", reason="only POSIX can limit the size of files")
 def test_a_full_disk_ends_the_run_with_one_line(tmp_path: Path) -> None:
     # 400 blocks of 1 KiB: the recording does not fit; rerun's file sink once hung here
     command = f"ulimit -f 400; exec {sys.executable} -m onorbit_rs run kepler_orbit -q -o {tmp_path / 'out'}"

@@ -126,7 +126,7 @@ def test_two_threads_exclude_each_other_like_two_processes(tmp_path: Path) -> No
     OutputFolder.claim(tmp_path).close()
 
 
-@pytest.mark.skipif(not hasattr(os, "fork"), reason="processes are not forked here")
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system has no fork")
 def test_a_forked_child_does_not_keep_the_lock(tmp_path: Path) -> None:
     """A pool of workers that outlived its parent once kept the lock."""
     held = FolderLock(tmp_path)

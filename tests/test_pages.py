@@ -41,7 +41,9 @@ def command(line: str) -> None:
 @pages
 def test_a_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs a page from top to bottom in one folder; titled blocks are files, Python blocks continue."""
-    pytest.importorskip(NEEDS.get(page.name, "numpy"), reason="the oracle is in the test extra")
+    pytest.importorskip(
+        NEEDS.get(page.name, "numpy"), reason="the oracle, which is in the test extra, is not installed"
+    )
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
     for language, title, body in FENCE.findall(page.read_text()):
@@ -70,7 +72,9 @@ def test_scenario_fragments_are_valid(page: Path) -> None:
 
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda script: script.stem)
 def test_an_example_runs(script: Path, tmp_path: Path) -> None:
-    pytest.importorskip(NEEDS.get(script.name, "numpy"), reason="the oracle is in the test extra")
+    pytest.importorskip(
+        NEEDS.get(script.name, "numpy"), reason="the oracle, which is in the test extra, is not installed"
+    )
     assert len(script.read_text().splitlines()) <= 60
     run = [sys.executable, "-W", "error", str(script)]
     done = subprocess.run(run, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
@@ -127,12 +131,12 @@ def test_names_in_the_text_exist(page: Path) -> None:
 
 
 def test_names_of_pinocchio_exist() -> None:
-    pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+    pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
     assert missing(in_text(DOCS / "coming_from" / "pinocchio.md"), {"pin": pin, "data": pin.Data}) == []
 
 
 def test_names_of_mujoco_exist() -> None:
-    mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+    mujoco = pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
     importlib.import_module("mujoco.rollout")
     roots = {"mujoco": mujoco, "data": mujoco.MjData, "opt": mujoco.MjOption}
     assert missing(in_text(DOCS / "coming_from" / "mujoco.md"), roots) == []

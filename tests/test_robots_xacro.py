@@ -18,7 +18,9 @@ from commands import refusal
 import onorbit_rs as oo
 
 HAS_XACRO = importlib.util.find_spec("xacro") is not None
-needs_xacro = pytest.mark.skipif(not HAS_XACRO, reason="in the test extra: pip install 'onorbit-rs[xacro]'")
+needs_xacro = pytest.mark.skipif(
+    not HAS_XACRO, reason="xacro is not installed: pip install 'onorbit-rs[xacro]'"
+)
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 LINK = (

@@ -19,7 +19,9 @@ from cyclonedds.core import DDSException  # noqa: E402
 from onorbit_rs.ros2 import Node, graph, loopback, node, participant  # noqa: E402
 
 WRENCH = ("/wrench_command", "geometry_msgs/msg/WrenchStamped", {"wrench": {"force": {"x": 1.0}}})
-full = pytest.mark.skipif(not Path("/dev/full").exists(), reason="writes to /dev/full")
+full = pytest.mark.skipif(
+    not Path("/dev/full").exists(), reason="the test writes to /dev/full, which does not exist here"
+)
 
 
 def failing(error: BaseException, after: int, real: Any) -> Any:
@@ -126,7 +128,7 @@ def test_a_log_on_a_full_disk_ends_the_run() -> None:
     assert len(one.commands) == 1 and not list(loopback.udp_sockets())
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="limits the size of files")
+@pytest.mark.skipif(sys.platform != "linux", reason="the test limits the size of files as Linux does")
 def test_a_recording_on_a_full_disk_is_an_error_and_leaves_the_old_file(tmp_path: Path) -> None:
     import resource
     import signal

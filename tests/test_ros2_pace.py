@@ -218,7 +218,7 @@ def test_the_priority_ends_with_the_block() -> None:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
         os.sched_setscheduler(0, before, os.sched_param(0))
     except PermissionError:
-        pytest.skip("this user may not use SCHED_FIFO")
+        pytest.skip("this user does not have the permission for SCHED_FIFO")
     with prioritized(True) as has_priority:
         assert has_priority and os.sched_getscheduler(0) == os.SCHED_FIFO
     assert os.sched_getscheduler(0) == before

@@ -25,7 +25,9 @@ from onorbit_rs.ros2.participant import Participant  # noqa: E402
 
 STATES = ("/joint_states", "sensor_msgs/msg/JointState")
 JOINED = "from onorbit_rs.ros2.participant import Participant as P; P({})"
-linux = pytest.mark.skipif(sys.platform != "linux", reason="reads the sockets of a process from /proc")
+linux = pytest.mark.skipif(
+    sys.platform != "linux", reason="the test reads the sockets of a process from /proc"
+)
 
 
 def open_ports() -> list[str]:
@@ -146,9 +148,9 @@ def test_without_a_network_the_error_names_what_to_enable() -> None:
     try:
         done = subprocess.run(alone, capture_output=True, text=True, timeout=60, check=False)
     except FileNotFoundError:
-        pytest.skip("needs unshare to be without a network")
+        pytest.skip("unshare, which removes the network, is not installed")
     if "unshare" in done.stderr:
-        pytest.skip(f"cannot be without a network here: {done.stderr.strip()}")
+        pytest.skip(f"the network cannot be removed here: {done.stderr.strip()}")
     message = "the loopback interface cannot be used (Network is unreachable); enable it: ip link set lo up"
     assert done.stderr.splitlines()[-1].endswith(message)
     assert "interfaces" not in done.stderr, "CycloneDDS prints its cause"

@@ -162,7 +162,7 @@ def test_a_captured_pair_under_wrench_drag_and_light_moves_like_one_robot() -> N
 
 
 def test_a_captured_pair_under_a_wrench_agrees_with_mujoco() -> None:
-    pytest.importorskip("mujoco", reason="the oracle is in the test extra")
+    pytest.importorskip("mujoco", reason="the oracle, which is in the test extra, is not installed")
     pushed = {"start": 0.5, "end": 1.5}
     trace = captured(thrust("target/bus", **pushed))
     both, q, v = pair_after(trace)

@@ -16,7 +16,8 @@ from onorbit_rs.robots.expressions import evaluate
 from onorbit_rs.robots.functions import FUNCTIONS, Work
 
 needs_xacro = pytest.mark.skipif(
-    importlib.util.find_spec("xacro") is None, reason="in the test extra: pip install 'onorbit-rs[xacro]'"
+    importlib.util.find_spec("xacro") is None,
+    reason="xacro is not installed: pip install 'onorbit-rs[xacro]'",
 )
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
@@ -197,7 +198,7 @@ def test_files_outside_the_package_are_not_read(tmp_path: Path) -> None:
 
 
 @needs_xacro
-@pytest.mark.skipif(sys.platform == "win32", reason="fifos and /dev are of POSIX")
+@pytest.mark.skipif(sys.platform == "win32", reason="only POSIX has named pipes and /dev")
 def test_only_regular_files_are_read(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "fifo")
     with pytest.raises(ModelError, match="a pipe or a device"):

@@ -38,6 +38,6 @@ def _run(command: list[str]) -> None:
             timeout=WITHIN_S,
         )
     except subprocess.TimeoutExpired:
-        raise MissingError(f"{' '.join(command)}: took longer than {WITHIN_S} s") from None
+        raise MissingError(f"{' '.join(command)} took longer than {WITHIN_S} s") from None
     if done.returncode:
         raise MissingError(f"{' '.join(command)}: {(done.stdout.strip().splitlines() or ['failed'])[-1]}")

@@ -45,7 +45,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--seconds", type=float, default=10.0, help="time limit of each parser")
     parser.add_argument("--count", type=int, default=10**9, help="limit of the total number of inputs")
     parser.add_argument("--seed", type=int, default=int(time.time()))
-    parser.add_argument("--only", default="", help="parsers whose name contains this")
+    parser.add_argument("--only", default="", help="run only the parsers whose name contains this text")
     parser.add_argument("--replay", nargs=2, metavar=("PARSER", "FILE"))
     return parser.parse_args()
 
@@ -111,11 +111,13 @@ def main() -> int:
 
     weights = dict.fromkeys(engines, ENGINE) | dict.fromkeys(targets, PYTHON)
     reports = in_rounds(weights, given.count, given.seconds, run)
-    print("in all:", *(LINE.format(**report) for report in reports), sep="\n")
+    print("total:", *(LINE.format(**report) for report in reports), sep="\n")
     inputs, findings = (sum(report[key] for report in reports) for key in ("inputs", "findings"))
     print(f"{inputs} inputs in {sum(report['seconds'] for report in reports):.0f} s, {findings} findings")
     if findings:
-        print(f"see {WORK / 'findings'}; again: python tests/fuzz --replay PARSER FILE")
+        print(
+            f"the findings are in {WORK / 'findings'}; repeat one with python tests/fuzz --replay PARSER FILE"
+        )
     return 1 if findings else 0
 
 
@@ -127,7 +129,7 @@ def replay(name: str, file: str) -> int:
     trial = Trial(name, WORK / "findings", 0)
     trial(Path(file).read_bytes())
     trial.room.close()
-    print(*trial.places or ["no finding"])
+    print(*trial.places or ["the input has no finding"])
     return 1 if trial.places else 0
 
 

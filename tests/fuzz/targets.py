@@ -100,7 +100,7 @@ def all_finite(what: str, *arrays: Any) -> None:
     """Fails if accepted input yields non-finite numbers."""
     for array in arrays:
         if not np.all(np.isfinite(array)):
-            raise AssertionError(f"{what} accepted, and give {array}")
+            raise AssertionError(f"{what} were accepted, but they give numbers that are not finite: {array}")
 
 
 def quantity(data: bytes, room: Room) -> None:
@@ -173,7 +173,7 @@ def controller_state(data: bytes, room: Room) -> None:
     """Parses a Python controller's state in a checkpoint; writing and reading it again must not change it."""
     text = encode(decode(data))
     if encode(decode(text)) != text:
-        raise AssertionError(f"{text!r} is written otherwise once it was read")
+        raise AssertionError(f"reading {text!r} and writing it again changes it")
 
 
 def manifest(data: bytes, room: Room) -> None:
@@ -187,13 +187,13 @@ def manifest(data: bytes, room: Room) -> None:
     listed = read_manifest(folder)
     (folder / "manifest.json").write_bytes((listed or Manifest()).as_bytes())
     if read_manifest(folder) != listed:
-        raise AssertionError(f"{listed} is written otherwise once it was read")
+        raise AssertionError(f"reading {listed} and writing it again changes it")
     with contextlib.suppress(IntegrityError, NotFoundError):
         read_summary(folder)
         read_trace(folder)
     OutputFolder.claim(folder, force=True).close()
     if not all(file.exists() for file in others):
-        raise AssertionError(f"{listed} made --force remove what is no run's")
+        raise AssertionError(f"with {listed}, --force removes files that no run has written")
 
 
 def xacro(data: bytes, room: Room) -> None:

@@ -43,7 +43,7 @@ def text_of(wheel: Path, name: str, start: str, modelname: str) -> str:
         head = data[begin : begin + 4000]
         if re.search(rf"modelname\s+{modelname}\b", head.split("end_of_head")[0]):
             return data[begin : begin + 2_000_000]
-    raise SystemExit(f"no {modelname} in {wheel}")
+    raise SystemExit(f"{wheel} does not contain the model {modelname}")
 
 
 def value(text: str, key: str) -> str:

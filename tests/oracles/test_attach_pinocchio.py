@@ -10,7 +10,7 @@ from attached_pairs import PREFIX, SEEDS, Pair, pair
 
 from onorbit_rs.tools.validation.trees import Tree, deviation, random_state
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 import pin_robot  # noqa: E402
 
 GATE = 1e-12  # as in test_pinocchio.py

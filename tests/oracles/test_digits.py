@@ -19,8 +19,8 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.tools.validation.trees import Array, Part, State, Tree, build, random_state
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
-mp = pytest.importorskip("mpmath", reason="the oracle is in the test extra: pip install mpmath")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
+mp = pytest.importorskip("mpmath", reason="the oracle is not installed: pip install mpmath")
 import pin_robot  # noqa: E402
 from exact_tree import DIGITS, ExactTree, as_floats  # noqa: E402
 

@@ -11,7 +11,7 @@ from collision_robots import body, element, obj_file, random_pose, world_of
 
 import onorbit_rs as oo
 
-coal = pytest.importorskip("coal", reason="the oracle is in the test extra: pip install pin")
+coal = pytest.importorskip("coal", reason="the oracle is not installed: pip install pin")
 
 KINDS = ("sphere", "capsule", "box", "cylinder", "hull")
 ACCEPTED = 1e-9

@@ -15,7 +15,7 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.common.rotations import angle_between
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 import pin_robot  # noqa: E402
 
 pytestmark = pytest.mark.filterwarnings("ignore:the inertia of link 'link_5'")

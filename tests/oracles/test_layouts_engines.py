@@ -39,7 +39,7 @@ def same_state(mine: tuple[Array, Array], again: tuple[Array, Array]) -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_pinocchio(seed: int) -> None:
-    pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+    pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
     text = urdf(random_tree(seed, rotors=False))
     model = oo.Model.from_urdf_string(text)
     theirs = pin.buildModelFromXML(text, pin.JointModelFreeFlyer())
@@ -64,7 +64,7 @@ def test_pinocchio(seed: int) -> None:
 
 def test_the_order_of_pinocchios_joints_matters() -> None:
     """Pinocchio sorts siblings by name: without reordering, the joints of two arms would be swapped."""
-    pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+    pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
     theirs = pin.buildModelFromXML(oo.robots.path("humanoid_dual_arm").read_text(), pin.JointModelFreeFlyer())
     assert list(theirs.names)[2:] != DUAL.joint_names
     q, v = state(DUAL, 3)
@@ -75,7 +75,7 @@ def test_the_order_of_pinocchios_joints_matters() -> None:
 
 @pytest.mark.parametrize("seed", range(8))
 def test_mujoco(seed: int) -> None:
-    mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+    mujoco = pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
     from onorbit_rs.tools.validation.against_mujoco import mjcf
 
     tree = random_tree(seed)
@@ -139,7 +139,7 @@ def test_drake_s_table() -> None:
 
 def test_drake_itself() -> None:
     parsing = pytest.importorskip(
-        "pydrake.multibody.parsing", reason="large: pip install drake to run this one"
+        "pydrake.multibody.parsing", reason="Drake, a large package, is not installed: pip install drake"
     )
     from pydrake.multibody.plant import MultibodyPlant
 

@@ -16,7 +16,7 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.tools.validation.trees import deviation
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 from dense_loops import can_move, dense  # noqa: E402
 from pin_loops import Looped, by_pinocchio, looped  # noqa: E402
 

@@ -15,7 +15,7 @@ from attached_pairs import PREFIX, Pair, add_parts, pair
 import onorbit_rs as oo
 from onorbit_rs.tools.validation.trees import BASE, Array, deviation
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 import pin_robot  # noqa: E402
 from pin_loops import solve  # noqa: E402
 from test_world_pinocchio import captured  # noqa: E402

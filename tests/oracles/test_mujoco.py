@@ -15,7 +15,7 @@ import onorbit_rs as oo
 from onorbit_rs.tools.validation.against_mujoco import GATE, MujocoRobot, compare, tree_of
 from onorbit_rs.tools.validation.trees import Tree, build, deviation, random_state, random_tree
 
-pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
 
 
 @pytest.mark.parametrize("name", ["humanoid_torso", "humanoid_dual_arm"])

@@ -27,7 +27,7 @@ from onorbit_rs.exceptions import EngineError, ModelError, ScenarioError
 from onorbit_rs.scenario import load
 from onorbit_rs.simulation import run
 
-mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+mujoco = pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
 
 pytestmark = pytest.mark.filterwarnings("ignore:the inertia of link:UserWarning")  # ETS-VII, as published
 

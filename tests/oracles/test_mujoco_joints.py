@@ -15,7 +15,7 @@ import pytest
 
 import onorbit_rs as oo
 
-mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+mujoco = pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
 
 DAMPING = (0.4, 1.5, 0.1)
 FRICTION = (0.15, 0.6, 0.03)

@@ -12,7 +12,7 @@ import onorbit_rs as oo
 from onorbit_rs.engines import Mujoco
 from onorbit_rs.exceptions import EngineError
 
-mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+mujoco = pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
 
 STEP, END = 2e-3, 2.0
 RATES = np.array([0.0, 0.0, 0.0, 0.1, -0.2, 0.15, 0.8, 0.0, 0.0])

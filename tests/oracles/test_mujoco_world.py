@@ -12,7 +12,7 @@ from onorbit_rs.engines import Mujoco
 from onorbit_rs.exceptions import EngineError, ScenarioError
 from onorbit_rs.output.checks import advice
 
-mujoco = pytest.importorskip("mujoco", reason="the oracle is in the test extra: pip install mujoco-core")
+mujoco = pytest.importorskip("mujoco", reason="the oracle is not installed: pip install mujoco-core")
 
 STEP = 0.01
 GRASP, LET_GO, END = 1.0, 6.0, 8.0

@@ -12,7 +12,7 @@ import pytest
 
 import onorbit_rs as oo
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 import pin_file  # noqa: E402
 
 GATE = 1e-12  # as in test_pinocchio.py
@@ -58,7 +58,7 @@ COMPARED = [
 
 def load(file: Path) -> oo.Model:
     if file.suffix == ".xacro" and not HAS_XACRO:
-        pytest.skip("in the test extra: pip install 'onorbit-rs[xacro]'")
+        pytest.skip("xacro is not installed: pip install 'onorbit-rs[xacro]'")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # test_awkward_files.py has them
         return oo.Model.from_urdf(file)

@@ -16,7 +16,7 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.tools.validation.trees import TOOL, State, build, deviation, random_state, random_tree
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 import pin_robot  # noqa: E402
 
 GATE = 1e-10

@@ -11,7 +11,7 @@ import quirky_robots
 import onorbit_rs as oo
 from onorbit_rs.tools.validation.trees import TOOL, build, deviation, random_state, random_tree, urdf
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 import pin_file  # noqa: E402
 import pin_robot  # noqa: E402
 

@@ -12,7 +12,7 @@ import pytest
 
 import onorbit_rs as oo
 
-msis = pytest.importorskip("pymsis.msis", reason="pymsis is in the test extra")
+msis = pytest.importorskip("pymsis.msis", reason="pymsis, which is in the test extra, is not installed")
 
 EPOCHS = ["2001-03-20T05:40:10", "2009-12-31T23:50:00", "2014-06-21T12:00:00", "2020-02-29T18:20:30"]
 INDICES = [(68.0, 70.0, 3.0), (150.0, 140.0, 15.0), (240.0, 190.0, 120.0)]

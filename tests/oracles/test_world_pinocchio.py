@@ -16,7 +16,7 @@ from onorbit_rs.tools.validation.capture import run
 from onorbit_rs.tools.validation.gauss import project
 from onorbit_rs.tools.validation.trees import Array, State
 
-pin = pytest.importorskip("pinocchio", reason="the oracle is in the test extra: pip install pin")
+pin = pytest.importorskip("pinocchio", reason="the oracle is not installed: pip install pin")
 import pin_robot  # noqa: E402
 from test_attach_pinocchio import appended  # noqa: E402
 

@@ -17,7 +17,7 @@ def main() -> int:
     """Returns 0 if no sample was lost, the medians are below their gates, and all messages are right."""
     parser = argparse.ArgumentParser()
     parser.add_argument(
-        "--seconds", type=float, default=60.0, help="length of the measurement of joint states"
+        "--seconds", type=float, default=60.0, help="duration of the measurement of joint states, s"
     )
     seconds = parser.parse_args().seconds
     try:
