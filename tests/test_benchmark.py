@@ -76,7 +76,7 @@ def test_all_programs_have_the_same_robot(versus: Any, arms: int, tmp_path: Path
 def test_both_hands_hold_one_load_in_all_programs(versus: Any, tmp_path: Path) -> None:
     versus.inputs.write(tmp_path, 2)
     tree = oo.Model.from_urdf(tmp_path / "held.urdf")
-    model = tree.with_loops([versus.held_load.WELD])
+    model = tree.with_loops([oo.Loop("weld", "weld", "grip_a", "grip_b")])
     # the table has the load in the body of the first hand
     table = [line.split() for line in (tmp_path / "held.txt").read_text().splitlines()]
     assert sum(float(line[5]) for line in table[2:-1]) + float(table[1][0]) == pytest.approx(tree.mass)

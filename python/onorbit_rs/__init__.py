@@ -109,6 +109,7 @@ if TYPE_CHECKING:
     from onorbit_rs import engines, layouts, ros2
     from onorbit_rs.clearance import Clearance, KeepOut, MinimumDistance, Violation, clearances
     from onorbit_rs.scenario import Scenario, WorldScenario
+    from onorbit_rs.simulation.batch import run_batch
     from onorbit_rs.simulation.command_format import read_commands
     from onorbit_rs.simulation.commands import CommandLog
     from onorbit_rs.simulation.replay import replay_commands
@@ -219,6 +220,7 @@ __all__ = [
     "rollout",
     "ros2",
     "run",
+    "run_batch",
     "scenarios",
 ]
 
@@ -231,6 +233,7 @@ _LAZY = {
     "CommandLog": "simulation.commands",
     "read_commands": "simulation.command_format", "replay_commands": "simulation.replay",
     "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
+    "run_batch": "simulation.batch",
 }  # fmt: skip
 """Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
 _LAZY_MODULES = ("engines", "layouts", "ros2", "scenario")
