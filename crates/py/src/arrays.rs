@@ -15,7 +15,7 @@ pub(crate) fn type_name(value: &Bound<'_, PyAny>) -> String {
     value.get_type().name().map_or_else(|_| "an object".to_owned(), |name| name.to_string())
 }
 
-/// Reads an integer; floats, booleans and text are rejected.
+/// Reads an integer; floats, booleans and text are errors whose message contains `name`.
 pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
     let py = value.py();
     let number = if value.is_instance_of::<PyBool>() { None } else { Some(value.extract::<i64>()) };
@@ -41,7 +41,7 @@ pub(crate) fn whole(value: &Bound<'_, PyAny>, name: &str) -> PyResult<i64> {
     }
 }
 
-/// Reads an integer of at least `least`; the message for a smaller one ends with `hint`.
+/// Reads an integer that must be at least `least`; the message for a smaller integer ends with `hint`.
 fn count(value: &Bound<'_, PyAny>, name: &str, least: usize, hint: &str) -> PyResult<usize> {
     let number = whole(value, name)?;
     usize::try_from(number).ok().filter(|count| *count >= least).ok_or_else(|| {
@@ -51,17 +51,17 @@ fn count(value: &Bound<'_, PyAny>, name: &str, least: usize, hint: &str) -> PyRe
     })
 }
 
-/// Reads a number of steps.
+/// Reads the argument `steps`, a number of steps that may be zero.
 pub(crate) fn steps(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "steps", 0, "")
 }
 
-/// Reads a number of steps per recorded row.
+/// Reads the argument `record_every`, the number of steps per recorded row, which is at least one.
 pub(crate) fn record_every(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "record_every", 1, " step")
 }
 
-/// Reads the index of the first row that is to be returned.
+/// Reads the argument `since`, the index of the first row to return.
 pub(crate) fn first_row(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     count(value, "since", 0, "")
 }
@@ -108,8 +108,8 @@ pub(crate) fn wrong_entry(entry: &Bound<'_, PyAny>, name: &str, what: &str) -> P
     raise(py, "DtypeError", &message, &fields!(py, "name": name, "got": got, "expected": what))
 }
 
-/// Reads a list of names; `what` describes them in messages. For text that is given instead of a list, the
-/// message suggests a list with that text.
+/// Reads a list of names; `what` describes them in messages. The message for any other value shows a list of
+/// one name: the value itself if it is text, otherwise `example`.
 pub(crate) fn names_in(
     value: &Bound<'_, PyAny>,
     name: &str,
@@ -121,7 +121,7 @@ pub(crate) fn names_in(
     entries.iter().map(|entry| entry.extract()).collect()
 }
 
-/// Reads text; `what` describes it in messages.
+/// Reads text; `what` describes the expected text in messages.
 pub(crate) fn text(value: &Bound<'_, PyAny>, name: &str, what: &str) -> PyResult<String> {
     value.extract().map_err(|_| {
         let (py, got) = (value.py(), type_name(value));
@@ -163,8 +163,8 @@ impl<'py> Input<'py> {
         let numpy = py.import("numpy")?;
         if numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()? {
             let message = format!(
-                "{name} is a masked array with masked entries; replace them by {name}.filled(x), or remove \
-                 them by {name}.compressed()"
+                "{name} is a masked array with masked entries; replace them with {name}.filled(x), or remove \
+                 them with {name}.compressed()"
             );
             let fields = fields!(py, "name": name, "got": "masked entries", "expected": "float64");
             return Err(raise(py, "DtypeError", &message, &fields));
@@ -211,7 +211,8 @@ impl<'py> Input<'py> {
     }
 }
 
-/// Reads an array of real numbers; another shape than `shape`, or an entry that is not finite, is an error.
+/// Reads an array of `N` real numbers. A shape other than `shape`, or an entry that is not finite, is an
+/// error.
 pub(crate) fn fixed<const N: usize>(
     value: &Bound<'_, PyAny>,
     name: &str,
@@ -228,14 +229,15 @@ pub(crate) fn fixed<const N: usize>(
     }
 }
 
-/// Returns an error that quotes the first number that is not finite, if there is one.
+/// Returns an error if a number is not finite; the message contains `name` and the first such number.
 pub(crate) fn finite(py: Python<'_>, name: &str, numbers: &[f64]) -> PyResult<()> {
     let Some(x) = numbers.iter().find(|x| !x.is_finite()) else { return Ok(()) };
     let message = format!("{name} holds {x}; all values must be finite");
     Err(raise(py, "InputError", &message, &fields!(py, "name": name, "got": *x)))
 }
 
-/// Reads the times of an argument `t`, s, and their shape: `()` for a number, `(T,)` for an array.
+/// Reads the argument `t`: simulation times, s. Also returns their shape: `()` for a number, `(T,)` for an
+/// array.
 pub(crate) fn times(t: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<usize>)> {
     if let Ok(one) = t.extract::<f64>() {
         return Ok((vec![one], Vec::new()));
@@ -264,7 +266,7 @@ pub(crate) fn shape_text(shape: &[usize]) -> String {
 /// Number of elements (8 MiB) up to which an allocation is assumed to succeed.
 const SMALL: usize = 1 << 20;
 
-/// Creates an array of zeros for results of the core; fails if it does not fit in memory.
+/// Creates an array of zeros for results of the core; an array that does not fit in memory is an error.
 pub(crate) fn zeros<'py>(py: Python<'py>, shape: &[usize]) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let count = shape.iter().try_fold(1_usize, |count, n| count.checked_mul(*n));
     if count.is_some_and(|count| count <= SMALL) {

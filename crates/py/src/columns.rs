@@ -4,8 +4,8 @@ use onorbit_core::simulation::{Column, Length, Part, columns};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMappingProxy, PySlice, PyTuple};
 
-/// Returns the columns of a part of an array (T, k) that `column` describes: (T,) if the part has one column,
-/// otherwise (T, k).
+/// Returns the part `name` of `values`, an array with one row per time and the parts of `column` side by
+/// side. The result has one axis if each row of the part is a single number, otherwise two.
 pub(crate) fn part_of<'py>(
     column: &Column,
     values: &Bound<'py, PyAny>,
@@ -25,12 +25,13 @@ pub(crate) fn part_of<'py>(
 /// Attributes
 /// ----------
 /// name : str
-///     Attribute of the trace.
+///     Name of the attribute of the trace that contains the quantity.
 /// path : str
 ///     Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control, of an effect or of
 ///     a contact.
 /// shape : tuple of str and int
-///     Length of each axis: ``T`` rows, ``nq``, ``nv``, ``n`` joints, ``bodies``, ``k`` errors, ``K`` events.
+///     Length of each axis: a number, or ``T`` for the rows, ``nq``, ``nv``, ``n`` for the joints,
+///     ``bodies``, ``k`` for the components of a tracking error, or ``K`` for the events.
 /// unit : str
 ///     Unit, or the unit of each part, separated by semicolons; ``1`` if dimensionless.
 /// frame : str
@@ -38,21 +39,23 @@ pub(crate) fn part_of<'py>(
 /// meaning : str
 ///     Description of the quantity.
 /// condition : str
-///     Condition under which the quantity is recorded.
+///     Condition under which the quantity is recorded, such as ``always`` or ``with an orbit``.
 /// parts : mapping of str to tuple of slice and str
-///     By the name of each part, the slice of the last axis and the unit; empty for a column without parts.
+///     Slice of the last axis and unit of each part, by the name of the part; empty for a column without
+///     parts.
 #[pyclass(name = "Column", frozen, module = "onorbit_rs")]
 pub(crate) struct PyColumn(&'static Column);
 
 #[pymethods]
 impl PyColumn {
-    /// Name of the attribute of the trace.
+    /// Name of the attribute of the trace that contains the quantity.
     #[getter]
     fn name(&self) -> &'static str {
         self.0.name
     }
 
-    /// Name in files; ``*`` stands for the name of a control, of an effect or of a contact.
+    /// Name in ``trace.npz`` and in a checkpoint; ``*`` stands for the name of a control, of an effect or of
+    /// a contact.
     #[getter]
     fn path(&self) -> &'static str {
         self.0.path
@@ -86,13 +89,14 @@ impl PyColumn {
         self.0.meaning
     }
 
-    /// Condition under which the quantity is recorded.
+    /// Condition under which the quantity is recorded, such as ``always`` or ``with an orbit``.
     #[getter]
     fn condition(&self) -> &'static str {
         self.0.condition.text()
     }
 
-    /// By the name of each part, the slice of the last axis and the unit; empty for a column without parts.
+    /// Slice of the last axis and unit of each part, by the name of the part; empty for a column without
+    /// parts.
     #[getter]
     fn parts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyMappingProxy>> {
         let parts = PyDict::new(py);
@@ -110,7 +114,7 @@ impl PyColumn {
     }
 }
 
-/// Returns the read-only mapping from names to descriptions.
+/// Returns the read-only mapping from the names of the columns to their descriptions.
 fn table(py: Python<'_>) -> PyResult<Bound<'_, PyMappingProxy>> {
     let all = PyDict::new(py);
     for column in columns() {
@@ -119,7 +123,7 @@ fn table(py: Python<'_>) -> PyResult<Bound<'_, PyMappingProxy>> {
     Ok(PyMappingProxy::new(py, all.as_mapping()))
 }
 
-/// Adds the class and the table to the module.
+/// Adds the class `Column` and the table `COLUMNS` to the module.
 pub(crate) fn add(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<PyColumn>()?;
     m.add("COLUMNS", table(m.py())?)

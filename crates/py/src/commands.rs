@@ -1,4 +1,4 @@
-//! Commands to joints, and wrenches, that the caller of a stepper sends to a run.
+//! Commands to joints, and wrenches on bodies, that the caller of a stepper sends to a run.
 
 use crate::arrays::{Input, fixed, wrong_shape};
 use crate::errors::{IntoPython, fields, raise};
@@ -13,15 +13,15 @@ use pyo3::types::PyDict;
 type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 impl PyStepper {
-    /// Sets the joint torques of a system, N m (N), that the caller commands.
+    /// Sets the joint torques, N m (N for prismatic joints), that the caller commands to a system.
     pub(crate) fn command_system(&self, system: usize, tau: &Bound<'_, PyAny>) -> PyResult<()> {
         let torques = torques(&self.systems.models[system], tau)?;
         self.try_with(tau.py(), |stepper| stepper.command(system, &torques))
     }
 
     /// Sends a constant command to a control of a system. `values` are the positions (rad or m), their first
-    /// and second derivatives, and the efforts (N m or N), each `None` if it is not commanded. If
-    /// `check_only`, the command is checked and not sent.
+    /// and second time derivatives, and the efforts (N m or N), each `None` if it is not commanded. If
+    /// `check_only` is true, the command is checked but not sent.
     pub(crate) fn send_to(
         &self,
         py: Python<'_>,
@@ -37,8 +37,8 @@ impl PyStepper {
         })
     }
 
-    /// Sends a trajectory to a control: the simulation time of its start (default: the present time), times
-    /// after the start, s, and positions, rad or m, with optional velocities and accelerations.
+    /// Sends a trajectory to a control of a system: the simulation time of its start, s (default: the present
+    /// time), times after the start, s, and positions, rad or m, with optional velocities and accelerations.
     pub(crate) fn send_trajectory_to(
         &self,
         py: Python<'_>,
@@ -52,8 +52,8 @@ impl PyStepper {
         self.try_with(py, |stepper| stepper.send(system, control, command))
     }
 
-    /// Applies a wrench at the origin of a frame of a system: force, N, torque, N m, and their axes,
-    /// `"world"` or `"body"`.
+    /// Applies a wrench at the origin of the frame `body` of a system: force, N, torque, N m, and the axes in
+    /// which both are expressed, `"world"` or `"body"`.
     pub(crate) fn wrench_on(
         &self,
         py: Python<'_>,
@@ -75,8 +75,8 @@ impl PyStepper {
         Ok(names.unbind())
     }
 
-    /// Returns, for each external control of a system, the quantity that its gains can track: "position",
-    /// "velocity" or, without gains, "effort".
+    /// Returns the quantity that the gains of each external control of a system can track: `"position"`,
+    /// `"velocity"` or, without gains, `"effort"`.
     pub(crate) fn interfaces_of(&self, py: Python<'_>, system: usize) -> PyResult<Py<PyDict>> {
         let interfaces = PyDict::new(py);
         for control in self.with(py, |stepper| stepper.external(system))? {
@@ -91,7 +91,8 @@ impl PyStepper {
     }
 }
 
-/// Reads a constant command to joints: positions, velocities, accelerations and efforts, each (k,) or `None`.
+/// Reads a constant command to k joints: positions, velocities, accelerations and efforts, each (k,) or
+/// `None`.
 fn setpoint(values: [Optional<'_, '_>; 4]) -> PyResult<Setpoint> {
     let read = |value: Optional<'_, '_>, name| value.map(|value| array(value, name, 1)).transpose();
     let [position, velocity, acceleration, effort] = values;
@@ -103,8 +104,8 @@ fn setpoint(values: [Optional<'_, '_>; 4]) -> PyResult<Setpoint> {
     })
 }
 
-/// Reads a motion of joints through points. It starts at simulation time `start`, s; `times`, (K,), are
-/// relative to it, and positions and derivatives are (K, k).
+/// Reads a motion of k joints through K points. It starts at simulation time `start`, s. The `times`, (K,),
+/// s, are relative to the start; positions, velocities and accelerations are (K, k).
 fn trajectory(
     start: f64,
     times: &Bound<'_, PyAny>,
@@ -122,7 +123,8 @@ fn trajectory(
     })
 }
 
-/// Reads a wrench, given in the axes `frame`; a missing force or torque is zero.
+/// Reads a wrench whose force, N, and torque, N m, are in the axes `frame`; a missing force or torque is
+/// zero.
 fn wrench(
     py: Python<'_>,
     force: Optional<'_, '_>,
@@ -143,7 +145,7 @@ fn wrench(
     Ok(WrenchCommand { force: vector(force, "force")?, torque: vector(torque, "torque")?, axes })
 }
 
-/// Reads the numbers of an array with one axis (joints, or times) or two (times and joints).
+/// Reads the numbers of an array with `axes` axes: one (joints or times) or two (times and joints).
 fn array(value: &Bound<'_, PyAny>, name: &str, axes: usize) -> PyResult<Vec<f64>> {
     let input = Input::new(value, name)?;
     if input.shape().len() != axes {

@@ -10,9 +10,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Environment of a run. ``wrenches(t, q, v)`` returns an array (bodies, 6) for time ``t``, s, within the
-/// current step: the force through the centre of mass of each body, N, and the torque about it, N m, axes of
-/// W.
+/// Environment of a run, as an external engine evaluates it during a step.
+///
+/// ``wrenches(t, q, v)`` returns an array (bodies, 6) for a time ``t``, s, within the current step and the
+/// state ``q``, ``v`` of all systems. Each row contains the force on a body, N, which acts at its centre of
+/// mass, and the torque about its centre of mass, N m, in the axes of W.
 #[pyclass(name = "Wrenches", frozen, module = "onorbit_rs")]
 struct PyWrenches {
     query: Mutex<(EnvironmentQuery, (f64, f64))>,
@@ -61,8 +63,8 @@ fn state<'py>(value: &Bound<'py, PyAny>, name: &str, n: usize) -> PyResult<Input
     Ok(input)
 }
 
-/// Engine of a run that is a Python object with the method `step(start, end, q, v, tau, wrenches)`, or
-/// `step_world` for several systems or contacts.
+/// External engine of a run: a Python object with the method `step(start, end, q, v, tau, wrenches)`, or
+/// `step_world` if there are several systems or the engine computes contacts.
 pub(crate) struct PythonEngine {
     object: Py<PyAny>,
     wrenches: Py<PyWrenches>,
@@ -71,13 +73,13 @@ pub(crate) struct PythonEngine {
     /// Names of the closed loops and mimic joints whose constraints the engine satisfies.
     loops: Vec<String>,
     is_world: bool,
-    /// True if the methods take the engaged brakes as the argument `brakes`.
+    /// True if the methods accept the engaged brakes as the keyword argument `brakes`.
     supports_brakes: bool,
 }
 
 impl PythonEngine {
-    /// Wraps the engine of a simulation, to which all effects must have been added before. Fails if the
-    /// engine lacks `step_world` but needs it.
+    /// Wraps the engine of a simulation, after all effects have been added to the simulation. An engine that
+    /// needs `step_world` but lacks it is an error.
     pub(crate) fn new(engine: &Bound<'_, PyAny>, simulation: &Simulation) -> PyResult<Self> {
         let py = engine.py();
         let models = || simulation.systems.iter().map(|system| &system.model);
@@ -97,8 +99,9 @@ impl PythonEngine {
         };
         let is_world = simulation.systems.len() > 1 || !contacts.is_empty();
         if is_world && !engine.hasattr("step_world")? {
-            let message = "an engine of a world of several systems needs a method step_world; see the notes of \
-                           Simulation, or use the native engine";
+            let message = "the engine has no step_world, but an engine that computes contacts or moves a \
+                           world of several systems needs a method step_world; add the method as described \
+                           for Simulation, or use the native engine";
             return Err(raise(py, "EngineError", message, &fields!(py, "name": "engine")));
         }
         let query = Mutex::new((simulation.outside(), (0.0, 0.0)));
@@ -145,7 +148,8 @@ impl PythonEngine {
         Ok(())
     }
 
-    /// Returns the argument `brakes`, a list of system, joint and slip torque, if the engine supports brakes.
+    /// Returns the keyword argument `brakes` if the engine supports brakes: one tuple of system index, joint
+    /// index and slip torque (N m or N) for each engaged brake.
     fn options<'py>(&self, py: Python<'py>, input: &StepInput<'_>) -> PyResult<Option<Bound<'py, PyDict>>> {
         if !self.supports_brakes {
             return Ok(None);
@@ -156,8 +160,8 @@ impl PythonEngine {
         Ok(Some(options))
     }
 
-    /// Splits the tuple that ``step_world`` returned. Its last entry belongs to the contacts and is absent
-    /// without contacts.
+    /// Splits the tuple that `step_world` returned. Its tenth entry is the array of the contacts, which is
+    /// absent if the engine computes no contacts.
     fn returned<'py>(&self, result: &Bound<'py, PyAny>) -> PyResult<Returned<'py>> {
         if self.contacts.is_empty() {
             return Ok((result.extract()?, None));
@@ -168,13 +172,13 @@ impl PythonEngine {
     }
 }
 
-/// Result of ``step_world``: nine arrays, and that of the contacts, which is `None` if the engine computes
-/// none.
+/// Result of `step_world`: nine arrays, and the array of the contacts if the engine computes contacts.
 type Returned<'py> = ([Bound<'py, PyAny>; 9], Option<Bound<'py, PyAny>>);
 
 const IMPULSE: &str = "the impulse that the engine returned";
 
-/// Connection as passed to Python: system and body of both sides, the two points, and the rotation.
+/// Connection as passed to Python: indices of system and body of both sides, the points (2, 3), m, and the
+/// rotation (3, 3) of [`BodyWeld`].
 type Described<'py> = ((usize, usize), (usize, usize), Bound<'py, PyAny>, Bound<'py, PyAny>);
 
 fn described<'py>(py: Python<'py>, weld: &BodyWeld) -> Described<'py> {
@@ -185,8 +189,8 @@ fn described<'py>(py: Python<'py>, weld: &BodyWeld) -> Described<'py> {
     (by, of, array_of(py, &[2, 3], &points).into_any(), array_of(py, &[3, 3], &rotation).into_any())
 }
 
-/// Reads an array (contacts, 14): force, moment and power of each contact at the start of the step, and their
-/// integrals over the step. The moment at the start is not used.
+/// Reads an array (contacts, 14): force (N), moment (N m) and power (W) of each contact at the start of the
+/// step, then the integrals of these seven numbers over the step. The moment at the start is not used.
 fn read_contacts(output: &mut StepOutput, value: &Bound<'_, PyAny>) -> PyResult<()> {
     let name = "the contacts that the engine returned";
     let (rows, n) = (Input::new(value, name)?, output.contacts.len());
@@ -203,8 +207,9 @@ fn read_contacts(output: &mut StepOutput, value: &Bound<'_, PyAny>) -> PyResult<
     Ok(())
 }
 
-/// Reads the exchange of each system in a step of a world: impulse, work and loss; impulse and work of the
-/// connections; and the time integral of the moment about the common centre of mass, N m s.
+/// Reads six arrays of a step of a world. For each system: impulse (N s and N m s), work (J), loss (J), and
+/// impulse and work of the connections. For the world: the time integral of the moment about the common
+/// centre of mass, N m s.
 fn read_exchange(output: &mut StepOutput, values: [&Bound<'_, PyAny>; 6]) -> PyResult<()> {
     let [impulse, work, loss, weld_impulse, weld_work, orbital] = values;
     let n = output.systems.len();

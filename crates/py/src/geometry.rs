@@ -13,25 +13,28 @@ use pyo3::types::PyDict;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Signed distance of two links, with its witness points and normal, as returned by :func:`distance`.
+/// Signed distance between two links, with the nearest points and the normal, as returned by
+/// :func:`distance`.
 #[pyclass(name = "Distance", frozen, module = "onorbit_rs")]
 pub(crate) struct PyDistance(Proximity);
 
 #[pymethods]
 impl PyDistance {
-    /// Distance, m; where the links overlap, minus the length of the shortest translation that separates them.
+    /// Signed distance, m. If the links overlap, it is minus the length of the shortest translation that
+    /// separates them.
     #[getter]
     fn distance(&self) -> f64 {
         self.0.distance
     }
 
-    /// Nearest point on the surface of the first link, in W, (3,), m; the deepest one if they overlap.
+    /// Point on the surface of the first link that is nearest to the second link or, if they overlap, deepest
+    /// in it: (3,), in W, m.
     #[getter]
     fn point_a<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         vector(py, self.0.point_a)
     }
 
-    /// Nearest point on the surface of the second link, in W, (3,), m: ``point_a + distance * normal``.
+    /// Corresponding point on the surface of the second link, ``point_a + distance * normal``: (3,), in W, m.
     #[getter]
     fn point_b<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         vector(py, self.0.point_b)
@@ -54,24 +57,26 @@ fn vector(py: Python<'_>, v: Vec3<f64>) -> Bound<'_, PyArrayDyn<f64>> {
     array_of(py, &[3], &[v.x, v.y, v.z])
 }
 
-/// Return the signed distance of two links, from their collision shapes.
+/// Return the signed distance between the collision shapes of two links.
 ///
-/// The shapes are those of the ``<collision>`` elements: boxes, cylinders, spheres, capsules, and the convex hulls
-/// of STL and OBJ meshes. A link with several elements has the distance of the nearest one.
+/// The shapes are those of the ``<collision>`` elements (boxes, cylinders, spheres, capsules, and the convex
+/// hulls of STL and OBJ meshes) and those added with :meth:`Model.with_collision`. If a link has several
+/// shapes, the smallest distance counts.
 ///
 /// Parameters
 /// ----------
 /// model_or_world : Model or World
 ///     Robot, or world of several systems.
 /// q : (nq,) array or dict of str to (nq,) array
-///     Configuration; for a world, that of each system that ``a`` and ``b`` name.
+///     Configuration, m and rad; for a world, a dict with the configuration of each system that ``a`` and
+///     ``b`` name.
 /// a, b : str
 ///     Names of two links; in a world, ``"SYSTEM/LINK"``.
 ///
 /// Returns
 /// -------
 /// Distance
-///     ``distance`` (m, negative where the links overlap), ``point_a``, ``point_b`` (m) and ``normal``, in W.
+///     ``distance`` (m, negative if the links overlap), ``point_a``, ``point_b`` (m) and ``normal``, in W.
 ///
 /// Raises
 /// ------
@@ -84,7 +89,7 @@ fn vector(py: Python<'_>, v: Vec3<f64>) -> Bound<'_, PyArrayDyn<f64>> {
 /// InputError
 ///     If ``a`` and ``b`` are the same link, or the configuration of a system is missing or invalid.
 /// ShapeError, DtypeError
-///     If a configuration has the wrong shape, or an argument the wrong type.
+///     If a configuration has the wrong shape, or an argument has the wrong type.
 /// ConvergenceError
 ///     If the iterations for the distance do not converge.
 #[pyfunction]
@@ -138,7 +143,8 @@ fn posed(model: &Bound<'_, PyModel>, q: Any<'_, '_>, link: &str) -> PyResult<(Sh
 fn in_world(world: &PyWorld, q: Any<'_, '_>, path: &str) -> PyResult<(Shape, Pose)> {
     let py = q.py();
     let Some((system, link)) = path.split_once('/') else {
-        let message = format!("'{path}' does not name a link of a world; write 'SYSTEM/LINK'");
+        let message =
+            format!("'{path}' does not name a link of a world; write SYSTEM/LINK, such as 'chaser/gripper'");
         return Err(raise(py, "WorldError", &message, &fields!(py, "name": path, "got": path)));
     };
     let model = world.model_of(py, system)?;

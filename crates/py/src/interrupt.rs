@@ -19,7 +19,8 @@ pub(crate) const LONG_BATCH: usize = 1 << 16;
 /// Number of steps of an integrated orbit between two checks for signals.
 const STEPS: usize = 16;
 
-/// Converts an interval of wall-clock time, s; `name` is the name of the argument in messages.
+/// Converts an interval of wall-clock time in s to a duration; `name` is the name of the argument in
+/// messages.
 pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Duration> {
     Duration::try_from_secs_f64(seconds).map_err(|_| {
         let message = format!("{name} is {} s; it must be from 0 to 1.8e19 s", short(seconds));
@@ -27,7 +28,8 @@ pub(crate) fn period(py: Python<'_>, name: &str, seconds: f64) -> PyResult<Durat
     })
 }
 
-/// Runs a batch without the GIL; Ctrl-C interrupts it if `is_long` is true.
+/// Runs a batch without the GIL on `count` threads (default: all cores); Ctrl-C interrupts it if `is_long` is
+/// true.
 pub(crate) fn batch<R: Send>(
     py: Python<'_>,
     count: Option<usize>,
@@ -62,7 +64,7 @@ pub(crate) fn abandonable<R: Send + 'static>(
     py.detach(|| worker.join()).map_err(|panic| std::panic::resume_unwind(panic))
 }
 
-/// Integrates an orbit over `times`; Ctrl-C interrupts it.
+/// Integrates a numerical orbit over `times`, s; Ctrl-C interrupts the integration. Other orbits need none.
 pub(crate) fn prepare(py: Python<'_>, orbit: &dyn Orbit, times: &[f64]) -> PyResult<()> {
     if orbit.prepare(times, 0) {
         return Ok(());
@@ -74,8 +76,8 @@ pub(crate) fn prepare(py: Python<'_>, orbit: &dyn Orbit, times: &[f64]) -> PyRes
 }
 
 /// Runs `work` without the GIL on successive ranges of `rows`, with checks for signals in between. The first
-/// range has `first` rows; later ones have as many rows as take about one interval. Ranges begin at multiples
-/// of `first`, a power of two.
+/// range has `first` rows; the size of later ranges is adjusted so that each takes about [`PACE`]. Ranges
+/// begin at multiples of `first`, a power of two.
 pub(crate) fn in_pieces<E: IntoPython + Send>(
     py: Python<'_>,
     rows: usize,
@@ -132,7 +134,7 @@ pub(crate) fn interruptible<R: Send>(
     })
 }
 
-/// Waits for the worker, at most for the interval between two checks for signals.
+/// Waits for the worker to finish, at most for [`PACE`].
 fn wait(finished: &Mutex<mpsc::Receiver<()>>) -> Result<(), mpsc::RecvTimeoutError> {
     finished.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(PACE)
 }

@@ -1,4 +1,4 @@
-//! Least distances between sets of links and shapes, for many configurations at once.
+//! Least distances between two sets of shapes, for many poses at once.
 
 use crate::arrays::array_of;
 use crate::errors::{IntoPython, fields, raise};
@@ -24,14 +24,14 @@ type Rows<'py> = PyReadonlyArrayDyn<'py, f64>;
 /// poses_b : (T, n_b, 4, 4) array
 ///     Poses of these shapes in common axes, m.
 /// permitted : list of list of bool
-///     Pairs that are considered, (n_a, n_b).
+///     Table (n_a, n_b) with True for each pair of shapes that is considered.
 ///
 /// Returns
 /// -------
 /// gap, point_a, point_b, normal, pair : (T,), (T, 3), (T, 3), (T, 3) and (T, 2) arrays
-///     Signed distance, m, nearest points of both sides, m, unit normal from the first side to the second,
-///     and indices (as floats) of the nearest shapes in ``shapes_a`` and ``shapes_b``; all in the common
-///     axes.
+///     Signed distance (m, negative if shapes overlap), nearest points of both sides (m), unit normal from
+///     the first side to the second, and indices (as floats) of the nearest shapes in ``shapes_a`` and
+///     ``shapes_b``. Points and normals are in the common axes.
 ///
 /// Raises
 /// ------
@@ -54,7 +54,7 @@ pub(crate) fn least_distances<'py>(
 ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Array<'py>)> {
     let (a, b) = (shape_set(&shapes_a)?, shape_set(&shapes_b)?);
     if !permitted.iter().flatten().any(|permitted| *permitted) {
-        let message = "no pair of links is left to compare; give two different links";
+        let message = "no pair of shapes is permitted, so there is no distance; give two different links";
         return Err(raise(py, "InputError", message, &fields!(py,)));
     }
     let (rows_a, rows_b) = (poses_of(&poses_a)?, poses_of(&poses_b)?);
@@ -80,7 +80,7 @@ pub(crate) fn least_distances<'py>(
     ))
 }
 
-/// Reads the shapes of one side.
+/// Reads the shapes of one side, each a `Shape` or a pair of a model and the name of a link.
 fn shape_set(items: &[Bound<'_, PyAny>]) -> PyResult<ShapeSet> {
     let read = |item: &Bound<'_, PyAny>| -> PyResult<Shape> {
         if let Ok(shape) = item.cast::<PyShape>() {

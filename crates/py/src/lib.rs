@@ -1,4 +1,5 @@
-//! Python bindings of `onorbit-core`. This crate only converts data; all computations are in the core.
+//! Python bindings of `onorbit-core`. This crate converts arguments, results and errors; all physics is
+//! computed in the core.
 
 mod arrays;
 mod batch;
@@ -36,12 +37,13 @@ use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Return the version and the instruction set of the engine.
+/// Return the version of the engine and the instruction set that it uses on this computer.
 ///
 /// Returns
 /// -------
 /// dict
-///     ``version`` and ``instruction_set`` (``baseline``, ``avx2+fma`` or ``avx512``; on ARM, ``fma``).
+///     ``version`` and ``instruction_set``, both str. The instruction set is ``baseline``, ``avx2+fma`` or
+///     ``avx512``, or ``fma`` on ARM.
 #[pyfunction]
 fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     let info = PyDict::new(py);
@@ -51,7 +53,7 @@ fn build_info(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
 }
 
 /// Disables instructions newer than the instruction set named by the environment variable
-/// `ONORBIT_INSTRUCTION_SET`.
+/// `ONORBIT_INSTRUCTION_SET`. An unset or empty variable changes nothing; an unknown name is an error.
 fn limit_instructions() -> PyResult<()> {
     let level = std::env::var("ONORBIT_INSTRUCTION_SET").unwrap_or_default();
     if level.is_empty() {

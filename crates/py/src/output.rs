@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Output array for results.
+/// Array in which a call stores results.
 pub(crate) struct Output<'py> {
     array: Bound<'py, PyArrayDyn<f64>>,
     /// Exclusive borrow of the caller's array during the call.
@@ -20,7 +20,7 @@ impl<'py> Output<'py> {
         Ok(Self { array: zeros(py, shape)?, borrowed: None })
     }
 
-    /// Borrows the caller's array, which must have this shape.
+    /// Borrows the caller's array, which must be a writable, contiguous array of `f64` with this shape.
     fn given(value: Any<'_, 'py>, name: &str, shape: &[usize]) -> PyResult<Self> {
         let refuse = |class: &str, got: &str| {
             let (py, needed) = (value.py(), shape_text(shape));
@@ -92,7 +92,7 @@ pub(crate) fn outputs<'py, const N: usize>(
     Ok(made)
 }
 
-/// Reads the argument `out=(a, b)`, if it is given; `what` names the arrays in messages.
+/// Reads the argument `out=(a, b)`, if it is given; `what` describes the two arrays in messages.
 pub(crate) fn pair<'py>(out: Option<Any<'_, 'py>>, what: &str) -> PyResult<Option<[Bound<'py, PyAny>; 2]>> {
     let Some(out) = out else { return Ok(None) };
     let (a, b) = out.extract::<(Bound<'py, PyAny>, Bound<'py, PyAny>)>().map_err(|_| {

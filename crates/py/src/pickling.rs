@@ -1,4 +1,4 @@
-//! Pickling of objects by the call that constructed them.
+//! Pickles objects by recording the call that constructed them.
 
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -16,7 +16,8 @@ impl ConstructorCall {
         Self::new(constructor, (), keywords)
     }
 
-    /// Records a call that has only keyword arguments, of which arrays and lists are copied.
+    /// Records a call that has only keyword arguments. Arrays, lists and tuples are copied, so later changes
+    /// to them do not affect the record.
     pub(crate) fn with_copies(constructor: &str, keywords: &Bound<'_, PyDict>) -> PyResult<Self> {
         let copies = keywords.copy()?;
         for (name, value) in keywords.iter() {
@@ -43,7 +44,7 @@ impl ConstructorCall {
         Ok(Self((constructor, arguments, keywords).into_pyobject(py)?.unbind()))
     }
 
-    /// Returns the arguments and keywords if the object was constructed by `constructor`.
+    /// Returns the arguments and keywords if the object was constructed by `constructor`, otherwise `None`.
     pub(crate) fn arguments_of<'py>(
         &self,
         py: Python<'py>,
@@ -73,8 +74,8 @@ impl ConstructorCall {
     }
 }
 
-/// Records the call of a constructor, given its name and variables with the names and values of its
-/// arguments.
+/// Records the call of a constructor, given its name and one variable per argument that has the name and the
+/// value of the argument.
 macro_rules! call_of {
     ($py:expr, $constructor:literal, $($name:ident),+ $(,)?) => {{
         let keywords = pyo3::types::PyDict::new($py);
@@ -89,7 +90,7 @@ pub(crate) fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }
 
-/// Returns a deep copy of a value, if there is one, which later changes of the original do not affect.
+/// Returns a deep copy of a value, if there is one. Later changes to the original do not affect the copy.
 pub(crate) fn deep_copy<'py>(value: Option<&Bound<'py, PyAny>>) -> PyResult<Option<Bound<'py, PyAny>>> {
     value.map(|value| value.py().import("copy")?.call_method1("deepcopy", (value,))).transpose()
 }

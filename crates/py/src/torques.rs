@@ -1,4 +1,4 @@
-//! Torques that the caller of a stepper commands.
+//! Joint torques that the caller of a stepper commands.
 
 use crate::arrays::{Input, wrong_shape};
 use crate::errors::{fields, raise};
@@ -6,8 +6,8 @@ use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Reads the torques commanded to a system, N m (N for a prismatic joint), one per joint; `None` for joints
-/// that a dict does not name.
+/// Reads the torques commanded to a system, N m (N for a prismatic joint): an array (n,), or a dict from
+/// names of joints to torques. Returns one torque per joint; `None` for joints that the dict does not name.
 pub(crate) fn torques(model: &Model, tau: &Bound<'_, PyAny>) -> PyResult<Vec<Option<f64>>> {
     let py = tau.py();
     let n = model.joint_count();

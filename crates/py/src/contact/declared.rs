@@ -1,4 +1,4 @@
-//! Declaration of a contact.
+//! The class `Contact`, which declares a contact between links.
 
 use super::laws::{PyFriction, normal_law};
 use crate::arrays::{list_of, names_in, text};
@@ -20,11 +20,11 @@ use std::sync::Arc;
 /// Parameters
 /// ----------
 /// links_a, links_b : str or list of str
-///     Links of both sides, or patterns that match them.
+///     Links of the first and of the second side, or patterns that match them.
 /// normal : HuntCrossley or SpringDashpot, optional
 ///     Law of the normal force. Without it, only the distance is recorded and no force acts.
 /// friction : Friction, optional
-///     Friction; without it, the contact is smooth.
+///     Law of friction; default: no friction.
 /// name : str, optional
 ///     Name of the contact; default: ``"links_a|links_b"``.
 /// start_overlapping : bool
@@ -40,16 +40,16 @@ pub(crate) struct PyContact {
     /// Name of the contact.
     #[pyo3(get)]
     pub(crate) name: String,
-    /// Links of the first side.
+    /// Links or patterns of the first side.
     #[pyo3(get)]
     links_a: Vec<String>,
-    /// Links of the second side.
+    /// Links or patterns of the second side.
     #[pyo3(get)]
     links_b: Vec<String>,
     /// Law of the normal force; None if only the distance is recorded.
     #[pyo3(get)]
     normal: Option<Py<PyAny>>,
-    /// Friction; None without friction.
+    /// Law of friction; None without friction.
     #[pyo3(get)]
     friction: Option<Py<PyFriction>>,
     /// True if the links may overlap at the start of a run.
@@ -129,7 +129,7 @@ impl PyContact {
     }
 }
 
-/// Reads one or several links.
+/// Reads one link, or a list of at least one link.
 fn links(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<Vec<String>> {
     if value.is_instance_of::<PyString>() {
         return Ok(vec![value.extract()?]);
@@ -148,7 +148,7 @@ pub(crate) fn contacts_in(value: &Bound<'_, PyAny>) -> PyResult<Vec<Py<PyContact
     Ok(contacts.into_iter().map(Bound::unbind).collect())
 }
 
-/// Returns the contacts of a world whose systems have these names and models.
+/// Returns the contacts of the core for a world whose systems have these names and models.
 pub(crate) fn contacts_of(
     py: Python<'_>,
     contacts: &[Py<PyContact>],

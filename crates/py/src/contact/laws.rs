@@ -1,4 +1,4 @@
-//! Laws of normal force and friction.
+//! Laws of the normal force and of friction in contacts.
 
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
@@ -6,22 +6,23 @@ use onorbit_core::contact::{Friction, NormalLaw, dissipation_for, material_pair}
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Normal force of Hunt and Crossley, ``F = k x**n (1 + d v)``, with the depth ``x`` and the speed of approach
-/// ``v``. The force never pulls.
+/// Normal force of Hunt and Crossley, ``F = k x**n (1 + d v)``, with the depth ``x`` (m) and the speed of
+/// approach ``v`` (m/s). The force never pulls.
 ///
-/// Give either ``dissipation``, or ``restitution`` and ``speed``; without any of them, nothing is dissipated.
+/// Give either ``dissipation``, or ``restitution`` and ``speed``; without any of them, no energy is
+/// dissipated.
 ///
 /// Parameters
 /// ----------
 /// stiffness : float
-///     Stiffness ``k``, N/m**n. For two spheres of the same radius R, Young's modulus E and Poisson's ratio
-///     nu, Hertz's theory gives ``k = E sqrt(2 R)/(3 (1 - nu**2))`` with ``n = 1.5``.
+///     Stiffness ``k``, N/m**n. For two spheres with the same radius ``R``, Young's modulus ``E`` and
+///     Poisson's ratio ``nu``, Hertz's theory gives ``k = E sqrt(2 R)/(3 (1 - nu**2))`` with ``n = 1.5``.
 /// exponent : float
 ///     Exponent ``n``, at least 1: 1.5 for curved surfaces, 1 for flat pads.
 /// dissipation : float, optional
-///     Dissipation ``d``, s/m.
+///     Dissipation ``d``, s/m; default: 0.
 /// restitution : float, optional
-///     Coefficient of restitution, more than 0 and at most 1, of a central impact at ``speed``.
+///     Coefficient of restitution of a central impact at ``speed``, more than 0 and at most 1.
 /// speed : float, optional
 ///     Speed of approach to which ``restitution`` refers, m/s.
 ///
@@ -71,15 +72,17 @@ impl PyHuntCrossley {
             }
             (None, Some(_), None) => {
                 return refuse(
-                    "restitution is given without speed, the speed of approach to which it refers; give speed, such as 0.05 (m/s)",
+                    "restitution is given without speed, the speed of approach to which it refers; give \
+                     speed, such as 0.05 (m/s)",
                 );
             }
             (None, None, Some(_)) => {
-                return refuse("speed is given without restitution; give both or neither");
+                return refuse("speed is given without restitution; give both, or omit speed");
             }
             _ => {
                 return refuse(
-                    "dissipation is given together with restitution or speed; give either dissipation, or restitution and speed",
+                    "dissipation is given together with restitution or speed; give either dissipation, or \
+                     restitution and speed",
                 );
             }
         };
@@ -107,8 +110,10 @@ impl PyHuntCrossley {
     }
 }
 
-/// Normal force of a linear spring and damper, ``F = k x + c v``, with the depth ``x`` and the speed of
-/// approach ``v``. The force never pulls, but jumps to ``c v`` at touch-down; ``HuntCrossley`` does not.
+/// Normal force of a linear spring and damper, ``F = k x + c v``, with the depth ``x`` (m) and the speed of
+/// approach ``v`` (m/s).
+///
+/// The force never pulls. It jumps to ``c v`` when the contact begins, unlike that of :class:`HuntCrossley`.
 ///
 /// Parameters
 /// ----------
@@ -169,10 +174,10 @@ pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<NormalLaw> {
     Err(raise(py, "DtypeError", &message, &fields!(py, "name": "normal", "got": got)))
 }
 
-/// Coulomb friction with elastic bristles.
+/// Coulomb friction with an elastic deflection before sliding.
 ///
-/// A contact whose load stays inside the friction cone does not creep: it deflects elastically and returns to
-/// its place. On the cone it slips.
+/// While the load stays inside the friction cone, the contact deflects elastically, does not creep, and
+/// returns to its place when it is unloaded. On the cone, it slides.
 ///
 /// Parameters
 /// ----------
@@ -181,12 +186,12 @@ pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<NormalLaw> {
 /// kinetic : float, optional
 ///     Coefficient of kinetic friction; default: ``static``.
 /// torsional : float, optional
-///     Coefficient of torsional friction, m: the largest moment about the normal per unit of normal force. It
-///     is two thirds of the friction coefficient times the radius for a uniformly pressed disc. By default a
-///     contact transmits no such moment.
+///     Coefficient of torsional friction, m: the largest moment about the normal per unit of normal force.
+///     For a uniformly pressed disc, it is two thirds of the friction coefficient times the radius. Default:
+///     0, no torsional friction.
 /// stiffness : float, optional
 ///     Tangential stiffness inside the cone, N/m; default: 0.82 times the stiffness of the normal force (at a
-///     depth of 0.1 mm if it varies), as for elastic bodies with Poisson's ratio 0.3.
+///     depth of 0.1 mm if that stiffness varies), as for elastic bodies with Poisson's ratio 0.3.
 /// damping : float, optional
 ///     Tangential damping inside the cone, N s/m; default: a tenth of critical damping.
 ///
@@ -201,19 +206,19 @@ pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<NormalLaw> {
 #[pyclass(name = "Friction", frozen, module = "onorbit_rs")]
 #[derive(Clone)]
 pub(crate) struct PyFriction {
-    /// Coefficient of static friction.
+    /// Coefficient of static friction, dimensionless.
     #[pyo3(get, name = "static")]
     static_coefficient: f64,
-    /// Coefficient of kinetic friction.
+    /// Coefficient of kinetic friction, dimensionless.
     #[pyo3(get)]
     kinetic: f64,
     /// Coefficient of torsional friction, m; 0 without torsional friction.
     #[pyo3(get)]
     torsional: f64,
-    /// Tangential stiffness, N/m; None for the default.
+    /// Tangential stiffness inside the friction cone, N/m; None for the default.
     #[pyo3(get)]
     stiffness: Option<f64>,
-    /// Tangential damping, N s/m; None for the default.
+    /// Tangential damping inside the friction cone, N s/m; None for the default.
     #[pyo3(get)]
     damping: Option<f64>,
 }
@@ -236,14 +241,15 @@ impl PyFriction {
         Ok(friction)
     }
 
-    /// Return friction with typical coefficients of two materials with clean and dry surfaces.
+    /// Return the friction between two materials, with coefficients that are typical of clean and dry
+    /// surfaces.
     ///
     /// Parameters
     /// ----------
     /// a, b : str
     ///     Names of the materials, such as ``"aluminium"`` and ``"mild steel"``.
     /// torsional, stiffness, damping : float, optional
-    ///     As for ``Friction``.
+    ///     Other parameters, as for ``Friction``.
     ///
     /// Returns
     /// -------
@@ -256,8 +262,8 @@ impl PyFriction {
     ///
     /// Notes
     /// -----
-    /// Coatings, films and vacuum change friction by factors. Source: Marks' Standard Handbook for Mechanical
-    /// Engineers, 10th edition, 1996, table 3.2.1.
+    /// Coatings, surface films and vacuum can change friction several-fold. Source: Marks' Standard Handbook
+    /// for Mechanical Engineers, 10th edition, 1996, table 3.2.1.
     #[staticmethod]
     #[pyo3(signature = (a, b, *, torsional=None, stiffness=None, damping=None))]
     fn of(
@@ -288,7 +294,7 @@ impl PyFriction {
 }
 
 impl PyFriction {
-    /// Returns the law; `stiffness` is the default of the tangential stiffness, N/m.
+    /// Returns the law of the core; `stiffness` is the default tangential stiffness, N/m.
     pub(super) fn law(&self, stiffness: f64) -> Friction {
         Friction {
             static_coefficient: self.static_coefficient,

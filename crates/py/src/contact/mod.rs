@@ -9,7 +9,7 @@ pub(crate) use recorded::PyContactTrace;
 
 use pyo3::prelude::*;
 
-/// Adds the classes to the module.
+/// Adds the classes of contacts to the module.
 pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<laws::PyHuntCrossley>()?;
     m.add_class::<laws::PySpringDashpot>()?;

@@ -5,10 +5,10 @@ use onorbit_core::number_text::count;
 use onorbit_core::simulation::CONTACTS;
 use pyo3::prelude::*;
 
-/// Recorded distances and forces of a contact, with one row per time of the trace.
+/// Recorded distances and forces of a contact, with one row for each of the ``T`` rows of the trace.
 ///
-/// Between rows, the forces may be much larger: an impact can be shorter than the interval between two rows,
-/// but while bodies touch, every step is a row if ``record_every=1``.
+/// The forces between two rows may be much larger than in the rows, because an impact can be shorter than the
+/// interval between them. With ``record_every=1``, every step is a row while bodies touch.
 #[pyclass(name = "ContactTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyContactTrace {
     /// Array (T, 19) with all quantities, in the order of ``onorbit_rs.COLUMNS["contacts"].parts``.
@@ -24,7 +24,7 @@ impl PyContactTrace {
 
 #[pymethods]
 impl PyContactTrace {
-    /// Smallest distance of the two sides, (T,), m; where they overlap, the negative depth.
+    /// Smallest distance between the two sides, (T,), m; minus the depth of the overlap if they overlap.
     #[getter]
     fn gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "gap")
@@ -48,13 +48,13 @@ impl PyContactTrace {
         part_of(&CONTACTS, self.values.bind(py), "normal")
     }
 
-    /// Sliding speed at ``point``, (T,), m/s.
+    /// Magnitude of the sliding velocity at ``point``, (T,), m/s.
     #[getter]
     fn slip<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "sliding_speed")
     }
 
-    /// Power that the contact takes from the motion, to store or dissipate it, (T,), W.
+    /// Power that the contact removes from the motion and stores or dissipates, (T,), W.
     #[getter]
     fn power<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "power")
@@ -66,25 +66,25 @@ impl PyContactTrace {
         part_of(&CONTACTS, self.values.bind(py), "elastic")
     }
 
-    /// Energy that the contact has dissipated since the start, (T,), J.
+    /// Energy that the contact has dissipated since the start of the run, (T,), J.
     #[getter]
     fn dissipated<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "dissipated")
     }
 
-    /// Impulse on the second side since the start, (T, 3), N s, axes of W.
+    /// Impulse of the contact on the second side since the start of the run, (T, 3), N s, axes of W.
     #[getter]
     fn impulse<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "impulse")
     }
 
-    /// Number of touches since the start, (T,).
+    /// Number of times that the sides have touched since the start of the run, (T,).
     #[getter]
     fn touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "touches")
     }
 
-    /// Largest normal force since the start, (T,), N. It includes the steps between two rows.
+    /// Largest normal force since the start of the run, (T,), N, including the steps between two rows.
     #[getter]
     fn largest_force<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "largest_force")

@@ -14,11 +14,12 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Compliance control of a tool by a virtual spring and damper: ``tau = Jg^T (K e + D e') - k N qdot``.
 ///
-/// ``Jg`` is the generalized Jacobian of the tool, ``e`` its pose error, and ``N`` the projection on joint
-/// rates that do not move the tool. The law is passive, and in free fall there is no gravity load to
-/// compensate. Friction is not compensated and may prevent the tool from reaching its goal. Because torques
-/// are held between control ticks, the motion is unstable if the damping exceeds about twice the inertia of
-/// the tool divided by the control period.
+/// ``Jg`` is the generalized Jacobian of the tool, ``e`` and ``e'`` are its pose and velocity errors (desired
+/// minus actual), ``qdot`` are the joint rates, and ``N`` is the projection on joint rates that do not move
+/// the tool. The law is passive, and in free fall there is no gravity load to compensate. Friction is not
+/// compensated and may prevent the tool from reaching its goal. Because torques are held between control
+/// ticks, the motion is unstable if the damping exceeds about twice the inertia of the tool divided by the
+/// control period.
 ///
 /// Parameters
 /// ----------
@@ -29,9 +30,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// stiffness : float, (6,) or (6, 6) array
 ///     Stiffness ``K`` of the spring, linear rows first, N/m and N m/rad.
 /// damping : float, (6,) or (6, 6) array
-///     Damping ``D``, linear rows first, N s/m and N m s/rad.
+///     Damping ``D`` of the damper, linear rows first, N s/m and N m s/rad.
 /// null_space_damping : float
-///     Damping ``k`` of joint motion that does not move the tool, N m s/rad.
+///     Damping coefficient ``k`` of joint motion that does not move the tool, N m s/rad.
 ///
 /// Raises
 /// ------

@@ -12,8 +12,11 @@ use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Task-space computed torque with the generalized Jacobian: Eq. (6)-(8) of the OnOrbitROS paper with the
-/// exact drift.
+/// Task-space computed torque with the generalized Jacobian.
+///
+/// The tool's acceleration is ``ẍ = ẍd + kd (ẋd - ẋ) + kp (xd - x)`` with the desired pose ``xd`` and the
+/// actual pose ``x``, away from singularities of the generalized Jacobian. This is Eq. (6)-(8) of the
+/// OnOrbitROS paper (cited in ``docs/concepts/control.md``), with the exact drift.
 ///
 /// Parameters
 /// ----------
@@ -26,22 +29,23 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// kd : float, (6,) or (6, 6) array, optional
 ///     Velocity gain, linear rows first, 1/s; default: 20.
 /// damping : float
-///     The inverse of the generalized Jacobian ``Jg`` is damped while ``tr[(Jg Jgᵀ)⁻¹]^(-1/2)``, a lower
-///     bound of its smallest singular value, is below this value.
+///     Threshold for the damping of the inverse of the generalized Jacobian ``Jg``. The inverse is damped
+///     while ``tr[(Jg Jgᵀ)⁻¹]^(-1/2)``, a lower bound of the smallest singular value of ``Jg``, is below this
+///     value.
 /// null_space_damping : float
-///     Damping of joint motion that does not move the tool, 1/s.
+///     Damping rate of joint motion that does not move the tool, 1/s.
 /// compensate_environment : bool
-///     If True, the external wrenches are compensated.
+///     If True, the wrenches of the environment are compensated.
 /// compensate_friction : bool
-///     If True, the damping of the joints is compensated, and the joint drives compensate Coulomb friction at
-///     every instant: joints move as if they had no friction, from rest and through reversals, and joints at
-///     their goal (within 2e-8 rad or m) stay at rest.
+///     If True, the viscous damping of the joints is compensated, and the joint drives compensate Coulomb
+///     friction at every instant: joints move as if they had no friction, from rest and through reversals,
+///     and joints at their goal (within 2e-8 rad or m) stay at rest.
 ///
 /// Raises
 /// ------
 /// ControlError, FrameError, ShapeError
-///     If a gain is invalid or has the wrong shape, if the frame does not exist, or if it is moved by fewer
-///     than six joints.
+///     If a gain is invalid or has the wrong shape, if the frame does not exist, or if fewer than six joints
+///     move the frame.
 #[pyclass(name = "ComputedTorque", frozen, module = "onorbit_rs")]
 pub(crate) struct PyComputedTorque {
     pub(crate) law: ComputedTorque,

@@ -1,4 +1,4 @@
-//! Controls: control laws with their joints, references, goals and times.
+//! The classes `Control` and `Goal`: control laws with their joints, references, goals and times.
 
 use super::LAWS;
 use super::gains::per_joint;
@@ -17,16 +17,18 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// Tolerances with which a control must follow its reference, as in the joint trajectory controller of ROS.
 ///
-/// The outcome is stored in ``trace.results``. After a failure, the control holds the current pose or joint
-/// positions.
+/// The goal fails if an error exceeds ``path_tolerance`` before the end of the reference. After the end, the
+/// goal is reached as soon as all errors are within ``tolerance``, and fails after ``time``. The outcome is
+/// stored in ``trace.results``. After a failure, the control holds the current pose or joint positions.
 ///
 /// Parameters
 /// ----------
 /// tolerance : float or array
-///     Permitted error at the end of the reference: a number for all components, (m, rad) for a task, or (k,)
-///     for joints, rad or m (rad/s or m/s if the reference commands rates).
+///     Permitted error after the end of the reference: a number for all components; for a tool, an array with
+///     the distance (m) and the angle (rad); or for the ``k`` joints of the control, an array (k,), rad or m
+///     (rad/s or m/s if the reference commands rates).
 /// path_tolerance : float or array, optional
-///     Permitted error during the motion, in the form of ``tolerance``; default: unlimited.
+///     Permitted error during the motion, in the same form as ``tolerance``; default: unlimited.
 /// time : float, optional
 ///     Time allowed after the end of the reference, s; default: unlimited.
 ///
@@ -61,16 +63,17 @@ impl PyGoal {
     }
 }
 
-/// Controller of some or all joints of a robot, with its reference and times.
+/// Controller of some or all joints of a robot, with its reference and the interval in which it is active.
 ///
 /// Joints that belong to no control have no motor torque, unless :meth:`Stepper.command` sets one.
 ///
 /// Parameters
 /// ----------
 /// controller : control law or object
-///     Control law, or an object with ``update(t, state)`` that returns joint torques (k,).
+///     Control law, or an object whose method ``update(t, state)`` returns the torques of the ``k`` joints,
+///     (k,), N m or N.
 /// reference : Reference or JointReference, optional
-///     Reference, whose time is zero when the control starts.
+///     Reference that the controller tracks. It starts when the control starts.
 /// joints : list of str, optional
 ///     Names of the joints; default: all.
 /// tool : str, optional
@@ -84,19 +87,19 @@ impl PyGoal {
 ///     Simulation time at which the control ends, s; default: the end of the run.
 /// after : str, optional
 ///     Name of another control or of an event of the world. The control starts when the goal of the other
-///     control is decided or the other control ends, or when the event happens. A control started by an event
-///     replaces those that drive its joints.
+///     control is decided or the other control ends, or when the event happens. A control that an event
+///     starts replaces the controls that are active on its joints.
 /// goal : Goal, optional
-///     Goal with tolerances.
+///     Tolerances of the goal; default: none, so the goal is never decided.
 /// starts_at_present : bool
 ///     If True, the reference is shifted so that it begins at the current pose or joint positions.
 /// load : str, optional
-///     Frame of a captured system, ``SYSTEM/FRAME``, that the reference of a tool applies to instead of the tool. The
-///     tool must hold the body of this frame while the control is active, and the system must know the other
-///     (``knows``).
+///     Frame of a captured system, ``SYSTEM/FRAME``, to which the reference applies instead of the tool. The
+///     robot must hold the body of this frame while the control is active, and the ``knows`` of the robot's
+///     :class:`System` must contain the captured system.
 /// internal_forces : list of InternalForce
-///     Forces that closed loops are to transmit while the control is active. They require a law that commands
-///     accelerations, such as :class:`ComputedTorque` or :class:`JointComputedTorque`.
+///     Forces that closed loops transmit while the control is active. They require a law that commands
+///     accelerations, such as :class:`ComputedTorque` or :class:`JointComputedTorque`. Default: none.
 ///
 /// Raises
 /// ------
@@ -185,8 +188,8 @@ impl PyControl {
     }
 }
 
-/// Returns the controls of a run, given as a single controller with the reference of the run or as a list of
-/// `Control`.
+/// Returns the controls of a run. `controller` is a single controller, which uses the reference of the run,
+/// or a list of `Control`.
 pub(crate) fn controls_of(
     controller: Any<'_, '_>,
     reference: Option<Any<'_, '_>>,
@@ -213,7 +216,7 @@ pub(crate) fn controls_of(
     items.iter().zip(&names).map(|(item, name)| item.get().bind(py, name, &names, robot)).collect()
 }
 
-/// Returns an entry of a list of controls, or an error if it has another type.
+/// Returns an entry of a list of controls. An entry that is not a `Control` is an error.
 fn one_control(item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
     item.cast_into::<PyControl>().map_err(|error| {
         let item = error.into_inner();
@@ -227,7 +230,8 @@ fn one_control(item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
 }
 
 impl PyControl {
-    /// Returns the control of the core for a robot; `names` are the names of all controls.
+    /// Returns the control of the core with the names of joints, frames, events and other controls resolved.
+    /// `names` are the names of all controls of the robot.
     fn bind(&self, py: Python<'_>, name: &str, names: &[String], robot: &Robot<'_>) -> PyResult<Control> {
         let joints = match &self.joints {
             None => (0..robot.model.joint_count()).collect(),
@@ -269,7 +273,7 @@ impl PyControl {
     }
 }
 
-/// Returns the control law for a Python object and its reference; None if the object is not a controller.
+/// Returns the control law for a Python object and its reference; `None` if the object is not a controller.
 fn law_of(
     controller: Any<'_, '_>,
     reference: Option<Any<'_, '_>>,
@@ -288,8 +292,8 @@ fn law_of(
         (None, _) => None,
         (Some(reference), Some(tool)) => Some((tool, reference::extract(reference, &robot.around)?)),
         (Some(_), None) => {
-            let message =
-                "a controller with a reference requires a frame that tracks the reference; give 'tool'";
+            let message = "a Python controller has a reference, but no frame that tracks it; give tool, the \
+                           name of a frame";
             return Err(plain(controller.py(), "ControlError", message));
         }
     };

@@ -1,4 +1,4 @@
-//! Joint-space control that follows external commands.
+//! Joint control that follows external commands.
 
 use super::gains::{one_count, per_joint};
 use super::native_law::{Group, NativeLaw};
@@ -13,27 +13,32 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// :meth:`Stepper.send_trajectory`.
 ///
 /// A command is held until the next command. If a command has positions or velocities, the torque is that of
-/// :class:`JointComputedTorque` plus the commanded effort. A position without a velocity is to be held at
-/// rest, and a velocity without a position causes no position error. If a command has only efforts, they are
-/// the torques. Before the first command, the joints hold their initial positions if ``kp`` is positive, are
-/// brought to rest if only ``kd`` is positive, and have no torque if both are zero.
+/// :class:`JointComputedTorque` plus the commanded effort. A command of positions without velocities means
+/// that the joints rest there; a command of velocities without positions causes no position error. If a
+/// command has only efforts, they are the torques. Before the first command, the joints hold their initial
+/// positions if ``kp`` is positive, come to rest if only ``kd`` is positive, and have no torque if both are
+/// zero.
 ///
 /// Parameters
 /// ----------
 /// kp : float or (k,) array
-///     Position gain, 1/s², such as 100; required for commands of positions and for trajectories.
+///     Position gain of the ``k`` joints, 1/s², such as 100; required for commands of positions and for
+///     trajectories.
 /// kd : float or (k,) array
-///     Rate gain, 1/s, such as 20; required for commands of velocities.
+///     Rate gain of the ``k`` joints, 1/s, such as 20; required for commands of velocities.
 /// timeout : float, optional
 ///     Time after the last command, or after the end of the last trajectory, at which ``on_timeout`` applies,
 ///     s; default: never.
 /// on_timeout : {"hold", "damp", "zero"}
-///     ``hold``: the commanded positions are held at rest or, after a command without positions, the
-///     positions at the timeout. ``damp``: ``kd`` brings the joints to rest. ``zero``: no torque.
+///     Behaviour after the timeout. ``hold``: the joints rest at the commanded positions or, after a command
+///     without positions, at their positions at the timeout. ``damp``: ``kd`` brings the joints to rest.
+///     ``zero``: the joints have no torque.
 /// compensate_environment : bool
-///     As for :class:`JointComputedTorque`; applies while positions or velocities are commanded.
+///     Compensation of external wrenches as for :class:`JointComputedTorque`; it applies while positions or
+///     velocities are commanded.
 /// compensate_friction : bool
-///     As for :class:`JointComputedTorque`; applies while positions or velocities are commanded.
+///     Compensation of friction as for :class:`JointComputedTorque`; it applies while positions or velocities
+///     are commanded.
 ///
 /// Raises
 /// ------
@@ -98,8 +103,8 @@ impl PyExternal {
 impl NativeLaw for PyExternal {
     fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law> {
         if group.reference.is_some() {
-            let message = "an External controller gets its motion from commands, so it has no reference; omit it, or \
-                           use JointComputedTorque";
+            let message = "a reference is given to an External controller, which gets its motion from \
+                           commands; omit the reference, or use JointComputedTorque";
             return Err(plain(py, "ControlError", message));
         }
         Ok(Law::External(Box::new(self.law.clone())))

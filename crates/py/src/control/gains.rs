@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Reads a task-space gain: a number, a (6,) array or a (6, 6) array.
+/// Reads a task-space gain: a number, a (6,) array or a (6, 6) array. Returns the (6, 6) matrix, row-major.
 pub(super) fn gains(value: Any<'_, '_>, name: &str) -> PyResult<[f64; 36]> {
     if let Ok(gain) = value.extract::<f64>() {
         return Ok(ComputedTorque::diagonal([gain; 6]));
@@ -19,8 +19,8 @@ pub(super) fn gains(value: Any<'_, '_>, name: &str) -> PyResult<[f64; 36]> {
     }
 }
 
-/// Reads a joint gain, which is a number or a (k,) array, and returns it with its length, which is 1 for a
-/// number or the default.
+/// Reads a gain or limit of joints, which is a number or a (k,) array. Returns it with its length, which is 1
+/// for a number and for the default.
 pub(super) fn per_joint(value: Option<Any<'_, '_>>, name: &str, default: f64) -> PyResult<(PerJoint, usize)> {
     let Some(value) = value else { return Ok((default.into(), 1)) };
     if let Ok(number) = value.extract::<f64>() {
@@ -33,7 +33,8 @@ pub(super) fn per_joint(value: Option<Any<'_, '_>>, name: &str, default: f64) ->
     }
 }
 
-/// Returns the common length of those gains that have more than one entry; 1 if all are numbers.
+/// Returns the common length of those gains that have more than one entry; 1 if there are none. Different
+/// lengths are an error.
 pub(super) fn one_count(py: Python<'_>, gains: &[&(PerJoint, usize)]) -> PyResult<usize> {
     let mut counts: Vec<usize> = gains.iter().map(|gain| gain.1).filter(|n| *n > 1).collect();
     counts.sort_unstable();
@@ -43,7 +44,7 @@ pub(super) fn one_count(py: Python<'_>, gains: &[&(PerJoint, usize)]) -> PyResul
         [n] => Ok(n),
         _ => {
             let message = format!(
-                "the arrays of gains have the lengths {counts:?}; each must have one entry per joint"
+                "the arrays of gains and limits have the lengths {counts:?}; each must have one entry per joint"
             );
             Err(raise(py, "ShapeError", &message, &fields!(py, "name": "gains", "got": counts)))
         }

@@ -8,22 +8,25 @@ use pyo3::types::PyDict;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Force that a control commands a closed loop to transmit, such as the force with which two hands squeeze a load.
+/// Force that a control commands a closed loop to transmit, such as the force with which two hands squeeze a
+/// load.
 ///
-/// It is the wrench on the second body of the loop, in the axes of the loop's joint on its first frame and about the
-/// origin of this joint. For a capture that closes a loop, it is the wrench of the capturing frame on the captured
-/// system, in the axes of the captured frame at its origin; ``trace.loops`` records the same wrench in W. The
-/// torques that produce it do not move the robot.
+/// Force and moment act on the second body of the loop. They are expressed in the axes of the loop's joint on
+/// its first frame, and the moment is about the origin of this joint. For a capture that closes a loop, they
+/// are the wrench of the capturing frame on the captured system, in the axes of the captured frame about its
+/// origin; ``trace.loops`` records the same wrench in the axes of W. The torques that produce an internal
+/// force do not move the robot.
 ///
 /// Parameters
 /// ----------
 /// loop : str
-///     Name of a loop of the robot, or of the capture that closes it. While the loop is not closed, the force has no
-///     effect.
+///     Name of a loop of the robot, or of the capture that closes it. While the loop is not closed, the force
+///     has no effect.
 /// force : (3,) array, optional
-///     Force, N. By default, it is that of the torques with the least norm.
+///     Force, N. Default: the force is not commanded and results from the joint torques with the least norm.
 /// moment : (3,) array, optional
-///     Moment, N m. By default, it is that of the torques with the least norm.
+///     Moment, N m. Default: the moment is not commanded and results from the joint torques with the least
+///     norm.
 ///
 /// Raises
 /// ------
@@ -71,7 +74,7 @@ impl PyInternalForce {
     }
 }
 
-/// Reads a vector (3,).
+/// Reads a vector (3,) of finite numbers.
 fn vector(value: Any<'_, '_>, name: &'static str) -> PyResult<[f64; 3]> {
     let (py, given) = (value.py(), Input::new(value, name)?);
     let [x, y, z] = *given.data() else { return Err(wrong_shape(py, name, "(3,)", given.shape())) };

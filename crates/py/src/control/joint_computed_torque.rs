@@ -9,21 +9,23 @@ use pyo3::prelude::*;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Joint-space computed torque on the reduced model. Every joint error ``e`` obeys ``e'' + kd e' + kp e =
-/// 0``, whatever the motion of the base.
+/// Joint-space computed torque on the reduced model.
+///
+/// If all external wrenches and friction are compensated, the error ``e`` of each joint (desired minus actual
+/// position) obeys ``e'' + kd e' + kp e = 0`` for any motion of the base.
 ///
 /// Parameters
 /// ----------
 /// kp : float or (k,) array, optional
-///     Position gain, 1/s²; default: 100.
+///     Position gain of the ``k`` joints, 1/s²; default: 100.
 /// kd : float or (k,) array, optional
-///     Rate gain, 1/s; default: 20.
+///     Rate gain of the ``k`` joints, 1/s; default: 20.
 /// compensate_environment : bool
-///     If True, the external wrenches are compensated.
+///     If True, the wrenches of the environment are compensated.
 /// compensate_friction : bool
-///     If True, the damping of the joints is compensated, and the joint drives compensate Coulomb friction at
-///     every instant: the error obeys its equation from rest and through reversals, and a joint at its goal
-///     (within 2e-8 rad or m) stays at rest.
+///     If True, the viscous damping of the joints is compensated, and the joint drives compensate Coulomb
+///     friction at every instant: the error obeys its equation from rest and through reversals, and a joint
+///     at its goal (within 2e-8 rad or m) stays at rest.
 ///
 /// Raises
 /// ------

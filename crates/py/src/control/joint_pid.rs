@@ -10,11 +10,11 @@ use pyo3::prelude::*;
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
 /// PID controller for each joint, as in ROS Control: ``tau = p e + i ∫e dt + d e'`` with the error ``e`` of
-/// the commanded quantity.
+/// the commanded quantity (desired minus actual).
 ///
-/// At least one gain is required, except for the interface ``effort``. At a limit, the integral does not
-/// increase further. Friction is not compensated: a joint that sticks does not move until the effort exceeds
-/// its static friction.
+/// At least one gain is required, except for the interface ``effort``. While the effort is at its limit, the
+/// integral does not grow further in that direction. Friction is not compensated: a joint that sticks does
+/// not move until the effort exceeds its static friction.
 ///
 /// Parameters
 /// ----------
@@ -22,14 +22,14 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Quantity that the reference commands. For ``effort``, the positions of the reference are efforts, N m
 ///     or N, and no gains may be given.
 /// p, i, d : float or (k,) array, optional
-///     Proportional, integral and derivative gains. For ``position`` they are in N m/rad, N m/(rad s) and N m
-///     s/rad, or N/m, N/(m s) and N s/m for prismatic joints; for ``velocity``, they are in these units times
-///     s.
+///     Proportional, integral and derivative gains; default: 0. For ``position`` they are in N m/rad, N
+///     m/(rad s) and N m s/rad, or N/m, N/(m s) and N s/m for prismatic joints; for ``velocity``, they are in
+///     these units times s.
 /// i_limit : float or (k,) array, optional
-///     Limit of the integral term, N m or N.
+///     Limit of the magnitude of the integral term, N m or N; default: no limit.
 /// effort_limit : float or (k,) array, optional
-///     Limit of the effort, N m or N; ``inf`` for no limit. Default: the effort limits in the URDF, if there
-///     are any.
+///     Limit of the magnitude of the effort, N m or N; ``inf`` for no limit. Default: the effort limits of
+///     the robot's joints, if there are any.
 ///
 /// Raises
 /// ------
@@ -62,8 +62,7 @@ impl PyJointPid {
         if lacks_gains && matches!(interface, "position" | "velocity") {
             let message = format!(
                 "a PID with interface '{interface}' and no gains has no effect; give 'p', 'i' or 'd', or \
-                 leave these \
-                 joints without a controller"
+                 leave these joints without a controller"
             );
             return Err(raise(py, "ControlError", &message, &fields!(py, "name": "gains")));
         }

@@ -25,7 +25,7 @@ use joint_pid::PyJointPid;
 pub(crate) use native_law::Robot;
 use native_law::{LawOf, law_of};
 
-/// Control laws of the core. To add a law, add a file, an entry in this list and a class in this module.
+/// Functions that read the control laws of the core, one per Python class.
 const LAWS: [LawOf; 5] = [
     law_of::<PyComputedTorque>,
     law_of::<PyJointComputedTorque>,

@@ -12,14 +12,15 @@ use std::sync::Arc;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Robot, tool and orbit to which the controls belong.
+/// Robot to which controls belong, with the index of its tool's frame and the objects to which controls may
+/// refer.
 pub(crate) struct Robot<'a> {
     pub(crate) model: &'a Arc<Model>,
     pub(crate) tool: Option<usize>,
     pub(crate) around: Around<'a>,
 }
 
-/// Reference, joints and robot of a control, from which its law is created.
+/// Reference, joints (by index) and robot of a control, from which its law is created.
 pub(super) struct Group<'a, 'py> {
     pub(super) reference: Option<Any<'a, 'py>>,
     pub(super) joints: &'a [usize],
@@ -38,18 +39,20 @@ impl Group<'_, '_> {
     }
 
     fn required(&self, py: Python<'_>) -> PyResult<Any<'_, '_>> {
-        let message = "a controller is given without the reference that it tracks; give reference, such as a Hold or a JointHold";
+        let message = "a controller is given without the reference that it tracks; give reference, such as a \
+                       Hold or a JointHold";
         self.reference.ok_or_else(|| plain(py, "ControlError", message))
     }
 }
 
 /// Python class of a control law that the core implements.
 pub(super) trait NativeLaw: PyClass<Frozen = True> + Sync {
-    /// Creates the law for a group of joints, with its reference.
+    /// Creates the law for the joints and the reference of a control.
     fn law(&self, py: Python<'_>, group: &Group<'_, '_>) -> PyResult<Law>;
 }
 
-/// Function that creates the law of a group if the controller is an instance of one class.
+/// Function that creates the law of a control if the controller is an instance of a certain class, and
+/// otherwise returns `None`.
 pub(super) type LawOf = fn(Any<'_, '_>, &Group<'_, '_>) -> Option<PyResult<Law>>;
 
 /// Implements [`LawOf`] for the class `L`.
@@ -66,11 +69,12 @@ pub(super) fn same_robot(py: Python<'_>, own: &Arc<Model>, model: &Arc<Model>) -
     let message = if own == other {
         format!(
             "the controller was constructed from another model of robot '{own}', with other frames or joints; \
-             construct it from the model of the run"
+             construct the controller from the model of the run"
         )
     } else {
         format!(
-            "the controller belongs to robot '{own}', but the robot is '{other}'; construct it from the same model"
+            "the controller belongs to robot '{own}', but the robot of the run is '{other}'; construct the \
+             controller from the model of the run"
         )
     };
     Err(plain(py, "ControlError", &message))

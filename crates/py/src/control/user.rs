@@ -15,14 +15,14 @@ pub(crate) struct PyState {
     v: Py<PyAny>,
     /// Names of the joints of the control, in the order of the torques.
     joints: Vec<String>,
-    /// Desired pose of the tool, (4, 4), m, or None without a reference: relative to the base for a reference in
-    /// the frame ``"base"``, otherwise in W.
+    /// Desired pose of the tool, (4, 4), m: relative to the base for a reference in the frame ``"base"``,
+    /// otherwise in W. None without a reference.
     reference_pose: Option<Py<PyAny>>,
-    /// Desired twist of the tool, (6,), linear part first, m/s and rad/s, in the frame of ``reference_pose``,
-    /// or None.
+    /// Desired twist of the tool, (6,), linear part first, m/s and rad/s, in the frame of ``reference_pose``.
+    /// None without a reference.
     reference_velocity: Option<Py<PyAny>>,
     /// Desired acceleration of the tool, (6,), linear part first, m/s² and rad/s², in the frame of
-    /// ``reference_pose``, or None.
+    /// ``reference_pose``. None without a reference.
     reference_acceleration: Option<Py<PyAny>>,
 }
 
@@ -47,7 +47,7 @@ impl PyState {
     }
 }
 
-/// Controller of the core that calls a Python object with `update(t, state)`.
+/// Controller of the core that calls the method `update(t, state)` of a Python object.
 pub(crate) struct PythonController {
     pub(crate) object: Py<PyAny>,
 }
@@ -96,7 +96,7 @@ impl Controller for PythonController {
 }
 
 impl PythonController {
-    /// Calls a method of the object. If the object has no such method, calls that of the Python class
+    /// Calls a method of the object or, if the object has no such method, that of the Python class
     /// `Controller`.
     fn call<'py>(&self, py: Python<'py>, name: &str, arguments: impl PyCallArgs<'py>) -> PyResult<Py<PyAny>> {
         let object = self.object.bind(py);
@@ -112,7 +112,7 @@ impl PythonController {
     }
 }
 
-/// Returns the module that converts plain data to text and vice versa.
+/// Returns the Python module that encodes the state of a controller as bytes and decodes it.
 fn plain_data(py: Python<'_>) -> PyResult<Bound<'_, PyModule>> {
     py.import("onorbit_rs.simulation.controller_state")
 }

@@ -1,4 +1,4 @@
-//! Derivatives of the dynamics.
+//! Derivatives of the equations of motion and of the reduced model.
 
 use super::evaluate;
 use crate::arrays::Threads;
@@ -8,10 +8,11 @@ use onorbit_core::batch::Kernel;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-/// Derivatives of the reduced model (see :class:`FreeFloating` for its symbols) at given joint accelerations,
-/// in the tangent space of ``Model.integrate``.
+/// Derivatives of the reduced model at given joint accelerations, in the tangent space of
+/// ``Model.integrate``.
 ///
-/// ``q`` and ``v`` are the state of base and joints; ``q̈`` is the acceleration of the joints.
+/// ``q`` and ``v`` are the state of base and joints, and ``q̈`` are the joint accelerations;
+/// :class:`FreeFloating` defines the other symbols. All derivatives are in SI units.
 #[pyclass(name = "FreeFloatingDerivatives", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyFreeFloatingDerivatives {
     /// Derivative ``∂τ/∂q`` of the joint torques ``τ = M* q̈ + c* - Q*``, (n, nv) or (B, n, nv).
@@ -28,7 +29,8 @@ pub(crate) struct PyFreeFloatingDerivatives {
     velocity_dq: Py<PyAny>,
 }
 
-/// Computes the derivatives of the reduced model in new arrays or in those of `out`.
+/// Computes the derivatives of the reduced model of the frame with index `frame`, in new arrays or those of
+/// `out`.
 pub(crate) fn free_floating_derivatives<'py>(
     py: Python<'py>,
     model: &PyModel,
@@ -69,7 +71,7 @@ pub(crate) fn evaluate_three<'py>(
 ) -> PyResult<Bound<'py, PyTuple>> {
     let out = out.map(|out| out.extract::<[Bound<'py, PyAny>; 3]>()).transpose().map_err(|_| {
         let needed = "a sequence of three arrays of shape (nv, nv) or (B, nv, nv)";
-        let message = format!("out is not {needed}; give such arrays, for example an earlier result");
+        let message = format!("out is not {needed}; pass an earlier result, or omit out");
         raise(py, "InputError", &message, &fields!(py, "name": "out", "expected": needed))
     })?;
     let square: &[usize] = &[model.model.nv(); 2];

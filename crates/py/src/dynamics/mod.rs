@@ -1,4 +1,4 @@
-//! Dynamics functions of a model, for one state `(n,)` or a batch `(B, n)`.
+//! Evaluation of a model's functions for one state or for a batch of states.
 
 mod derivatives;
 mod free_floating;
@@ -22,8 +22,8 @@ type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Evaluates `kernel` for one state or a batch of states.
 ///
-/// `values` are its inputs and `external` the wrenches by frame. `shapes` are the shapes of its outputs for
-/// one state; `out` holds the arrays in which they are stored, if given.
+/// `values` are the inputs of the kernel and `external` the wrenches by frame. `shapes` are the shapes of the
+/// outputs for one state. If `out` is given, the outputs are stored in its arrays, otherwise in new arrays.
 pub(crate) fn evaluate<'py, const N: usize>(
     py: Python<'py>,
     model: &PyModel,
@@ -64,8 +64,8 @@ pub(crate) fn evaluate<'py, const N: usize>(
     Ok(outputs.map(Output::into_array))
 }
 
-/// Returns the batch size if the first argument is a batch, otherwise `None`. Fails if another argument has a
-/// different number of axes.
+/// Returns the batch size if the first input is a batch, otherwise `None`. An input with a different number
+/// of axes is an error.
 fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Option<usize>> {
     let first = inputs[0].shape();
     for (input, name) in inputs.iter().zip(names) {
@@ -82,7 +82,8 @@ fn batch_of(py: Python<'_>, inputs: &[Input<'_>], names: &[&str]) -> PyResult<Op
     Ok((first.len() == 2).then(|| first[0]))
 }
 
-/// Reads `{frame: (6,)}`: wrenches on one state in frame axes about the frame origin, N and N m, linear first.
+/// Reads `{frame: (6,)}`: for one state, the force, N, and the moment, N m, in the axes of each frame about
+/// its origin.
 pub(crate) fn single_wrenches(
     model: &PyModel,
     external: Option<&Bound<'_, PyAny>>,
@@ -94,9 +95,10 @@ pub(crate) fn single_wrenches(
     Ok(frames.into_iter().zip(&inputs).map(wrench).collect())
 }
 
-/// Reads `{frame: (6,) or (B, 6)}`: wrenches in frame axes about the frame origin, N and N m, linear first.
+/// Reads `{frame: (6,) or (B, 6)}`: the force, N, and the moment, N m, in the axes of each frame about its
+/// origin.
 ///
-/// Appends their numbers to `inputs` and returns their frames.
+/// Appends the arrays to `inputs`, and returns the indices of the frames in the same order.
 fn wrenches<'py>(
     model: &PyModel,
     external: Option<&Bound<'py, PyAny>>,

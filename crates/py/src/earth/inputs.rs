@@ -12,7 +12,7 @@ use std::path::PathBuf;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Reads an epoch from text or from a ``datetime`` with a time zone.
+/// Reads an epoch from text or from a `datetime` with a time zone.
 pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
     let py = epoch.py();
     let text = if epoch.is_instance_of::<PyString>() {
@@ -35,8 +35,8 @@ pub(super) fn epoch(epoch: Any<'_, '_>) -> PyResult<Epoch> {
     Epoch::parse(&text).map_err(|error| error.into_python(py))
 }
 
-/// Reads Earth orientation parameters from a table, or from UT1 - UTC, s, and polar motion, rad, both zero by
-/// default.
+/// Reads Earth orientation parameters from the table `eop`, or from UT1 - UTC, s, and polar motion, rad,
+/// which are zero by default. A table together with either of the others is an error.
 pub(super) fn earth_parameters(
     py: Python<'_>,
     eop: Option<Any<'_, '_>>,
@@ -46,7 +46,8 @@ pub(super) fn earth_parameters(
     match (eop, ut1_minus_utc, polar_motion) {
         (Some(table), None, None) => parameter_table(table),
         (Some(_), ..) => {
-            let message = "eop is given together with ut1_minus_utc or polar_motion; give either eop or the other two, not both";
+            let message = "eop is given together with ut1_minus_utc or polar_motion, which eop replaces; omit \
+                           either eop or the other two";
             Err(raise(py, "EarthError", message, &fields!(py,)))
         }
         (None, ut1_minus_utc, pole) => {
@@ -78,7 +79,8 @@ pub(super) fn about_z(
     })
 }
 
-/// Reads Earth orientation parameters from a file or from rows.
+/// Reads Earth orientation parameters from a file, or from rows (N, 4) with MJD (UTC), pole coordinates, rad,
+/// and UT1 - UTC, s.
 fn parameter_table(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     let py = eop.py();
     if let Ok(path) = eop.extract::<PathBuf>() {
@@ -91,7 +93,7 @@ fn parameter_table(eop: Any<'_, '_>) -> PyResult<EarthParameters> {
     Ok(EarthParameters::from_rows(rows.data().as_chunks().0))
 }
 
-/// Reads the positions of Sun and Moon from a SPICE kernel by means of PyPI's `jplephem`.
+/// Reads the positions of Sun and Moon from a SPICE kernel with PyPI's `jplephem`.
 pub(super) fn spice_kernel(py: Python<'_>, path: PathBuf) -> PyResult<SpiceKernel> {
     type Parts<'py> = Vec<(f64, f64, f64, Bound<'py, PyAny>)>;
     let read = py.import("onorbit_rs.ephemeris.spice")?.getattr("segments")?;

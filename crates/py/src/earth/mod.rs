@@ -1,4 +1,4 @@
-//! Rotation of the Earth, and positions of the Sun and the Moon.
+//! The class `Earth`: epoch, rotation of the Earth, and positions of the Sun and the Moon.
 
 mod inputs;
 
@@ -23,8 +23,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Parameters
 /// ----------
 /// epoch : str or datetime, optional
-///     Time zero: text with its time scale, such as ``2024-03-01T12:00:00 UTC`` (or ``Z``, TAI, TT, TDB), or a
-///     ``datetime`` with a time zone. ``iau2006`` requires an epoch.
+///     Time zero: text with its time scale, such as ``2024-03-01T12:00:00 UTC`` (or ``Z``, TAI, TT, TDB), or
+///     a ``datetime`` with a time zone. ``iau2006`` requires an epoch.
 /// rotation : {"iau2006", "about_z"}
 ///     ``iau2006`` is the precession of IAU 2006 with the nutation of 2000A (accurate to 2 mas); ``about_z``
 ///     is a uniform rotation about z. Without an epoch, ``about_z`` provides no positions of the Sun and the
@@ -32,7 +32,7 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// ut1_minus_utc : float, optional
 ///     UT1 - UTC for ``iau2006``, constant during the run, s; default: 0.
 /// polar_motion : (2,) array, optional
-///     Coordinates of the pole for ``iau2006``, constant during the run, rad; default: 0.
+///     Coordinates ``(x_p, y_p)`` of the pole for ``iau2006``, constant during the run, rad; default: 0.
 /// eop : path or (N, 4) array, optional
 ///     Table of Earth orientation parameters, which replaces ``ut1_minus_utc`` and ``polar_motion``: a file
 ///     (``finals2000A`` or ``eopc04`` of the IERS, or CSV with the header
@@ -44,15 +44,16 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Angular velocity for ``about_z``, rad/s; default: that of the Earth.
 /// ephemeris : path, optional
 ///     SPICE kernel for the Sun and the Moon, such as ``de440s.bsp``, read by PyPI's jplephem. By default the
-///     positions are computed by an analytic series (2″ and 10″ from JPL's DE421 over 1900-2050).
+///     positions are computed from analytic series, whose directions differ from JPL's DE421 by at most 2″
+///     (Sun) and 10″ (Moon) from 1900 to 2050.
 /// axes : {"GCRF", "TEME"}
 ///     Inertial axes used by the methods; a run uses the axes of its orbit.
 ///
 /// Raises
 /// ------
 /// EarthError, NotFoundError, ReadError
-///     If an argument is invalid or does not apply to the rotation, or a file does not exist or cannot be
-///     read.
+///     If an argument is invalid or does not apply to the chosen ``rotation``, or if a file does not exist or
+///     cannot be read.
 #[pyclass(name = "Earth", frozen, module = "onorbit_rs")]
 pub(crate) struct PyEarth {
     pub(crate) earth: Arc<Earth>,
@@ -86,7 +87,8 @@ impl PyEarth {
         let epoch = epoch.map(inputs::epoch).transpose()?;
         let earth = match rotation {
             "iau2006" if angle.is_some() || rate.is_some() => {
-                let message = "angle or rate is given for rotation 'iau2006', but they apply only to 'about_z'; omit them";
+                let message = "angle or rate is given for rotation 'iau2006', but both apply only to 'about_z'; \
+                               omit them";
                 return Err(raise(py, "EarthError", message, &fields!(py,)));
             }
             "iau2006" => {
@@ -96,8 +98,8 @@ impl PyEarth {
                 Earth::new(epoch, &parameters).map_err(|error| error.into_python(py))?
             }
             "about_z" if eop.is_some() || ut1_minus_utc.is_some() || polar_motion.is_some() => {
-                let message = "eop, ut1_minus_utc or polar_motion is given for rotation 'about_z', but they apply only \
-                               to 'iau2006'; give angle and rate instead";
+                let message = "eop, ut1_minus_utc or polar_motion is given for rotation 'about_z', but all \
+                               three apply only to 'iau2006'; give angle and rate instead";
                 return Err(raise(py, "EarthError", message, &fields!(py,)));
             }
             "about_z" => inputs::about_z(py, angle, rate, epoch)?,
@@ -119,7 +121,7 @@ impl PyEarth {
         Ok(Self { earth: Arc::new(earth), constructor_call })
     }
 
-    /// Time zero: ISO 8601, UTC (TAI before 1972); None without an epoch.
+    /// Epoch of time zero as ISO 8601 text in UTC (TAI before 1972); None without an epoch.
     #[getter]
     fn epoch(&self) -> Option<String> {
         self.earth.epoch().map(|epoch| epoch.to_string())
@@ -131,8 +133,9 @@ impl PyEarth {
         self.earth.axes().map(Axes::name)
     }
 
-    /// Return the rotation ``rot_fi`` from inertial axes (``axes``) to Earth-fixed axes, which are ITRF axes
-    /// for ``iau2006`` and uniformly rotating axes for ``about_z``.
+    /// Return the rotation matrix from inertial axes (:attr:`axes`) to Earth-fixed axes.
+    ///
+    /// Earth-fixed axes are ITRF axes for ``iau2006`` and uniformly rotating axes for ``about_z``.
     ///
     /// Parameters
     /// ----------
@@ -142,7 +145,8 @@ impl PyEarth {
     /// Returns
     /// -------
     /// (3, 3) or (T, 3, 3) array
-    ///     Rotation matrix, dimensionless.
+    ///     Rotation matrix ``rot_fi``, dimensionless: ``rot_fi @ r`` has Earth-fixed components if ``r`` has
+    ///     inertial components.
     ///
     /// Raises
     /// ------
@@ -152,7 +156,7 @@ impl PyEarth {
         self.at(py, t, &[3, 3], Earth::rotations)
     }
 
-    /// Return the angular velocity of the Earth.
+    /// Return the angular velocity of the Earth relative to inertial axes.
     ///
     /// Parameters
     /// ----------
@@ -284,7 +288,7 @@ impl PyEarth {
     }
 }
 
-/// Returns the error for an argument that is not one of the `known` choices.
+/// Returns the error for an argument that is not one of the choices, which the text `known` lists.
 fn unknown(py: Python<'_>, name: &str, got: &str, known: &str) -> PyErr {
     let message = format!("{name} is '{got}'; the choices are {known}");
     raise(py, "EarthError", &message, &fields!(py, "name": name, "got": got))
@@ -292,12 +296,12 @@ fn unknown(py: Python<'_>, name: &str, got: &str, known: &str) -> PyErr {
 
 /// Function of the core that computes a quantity at each of the given times.
 type AtTimes = fn(&Earth, &[f64], &mut [f64]) -> Result<(), EarthError>;
-/// Function of the core that converts one position per time.
+/// Function of the core that computes three numbers from each position and its time.
 type OfPositions = fn(&Earth, &[f64], &[f64], &mut [f64]) -> Result<(), EarthError>;
 
 impl PyEarth {
-    /// Returns the Earth in the axes of an orbit; it is unchanged without an orbit, or if it has no inertial
-    /// axes.
+    /// Returns the Earth with the inertial axes of an orbit. Without an orbit, or if the Earth has no
+    /// inertial axes, the Earth is unchanged.
     pub(crate) fn in_axes_of(&self, orbit: Option<&dyn Orbit>) -> Arc<Earth> {
         match orbit {
             Some(orbit) if self.earth.axes().is_some_and(|axes| axes != orbit.axes()) => {
@@ -325,7 +329,7 @@ impl PyEarth {
         Ok(result.into_any())
     }
 
-    /// Converts positions at one time or at an array of times.
+    /// Computes three numbers from the position at one time, or from each position of an array.
     fn of<'py>(
         &self,
         py: Python<'py>,

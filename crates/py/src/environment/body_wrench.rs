@@ -14,8 +14,8 @@ use pyo3::prelude::*;
 /// Parameters
 /// ----------
 /// body : str
-///     Link or frame. The wrench acts at its origin and is expressed in its axes. In a world of several
-///     systems, the path ``SYSTEM/LINK``.
+///     Name of a link or frame; in a world of several systems, the path ``SYSTEM/LINK``. The wrench acts at
+///     the origin of this frame and is expressed in its axes.
 /// force : (3,) array, optional
 ///     Force, N; default: 0.
 /// torque : (3,) array, optional

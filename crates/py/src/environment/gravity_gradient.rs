@@ -6,9 +6,10 @@ use pyo3::types::PyDict;
 
 /// Gravity-gradient torque on each body about its centre of mass.
 ///
-/// For a point mass it is ``3μ/r³ r̂ × I r̂``, with the inertia ``I`` about the centre of mass, the distance
-/// ``r`` from the planet's centre and the unit vector ``r̂`` along it. Other fields of the run contribute by
-/// their gradients. The effect requires an orbit around a planet.
+/// In the gravity of a point mass, the torque is ``3μ/r³ r̂ × I r̂``, with the gravitational parameter ``μ``,
+/// the body's inertia ``I`` about its centre of mass, its distance ``r`` from the planet's centre, and the
+/// unit vector ``r̂`` from the planet's centre to the body. The gradients of gravity fields and third bodies
+/// of the run contribute as well. The effect requires an orbit around a planet.
 #[pyclass(name = "GravityGradient", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyGravityGradient;
 

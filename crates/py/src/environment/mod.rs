@@ -34,7 +34,8 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     surfaces::add_classes(m)
 }
 
-/// Base class of effects on the bodies, which are the entries of ``environment``.
+/// Base class of environment effects, which act on the bodies of a simulation. The argument ``environment``
+/// of a simulation is a list of effects.
 #[pyclass(name = "Effect", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyEffect {
     kind: Kind,
@@ -92,7 +93,7 @@ impl PyEffect {
         Ok(PyClassInitializer::from(Self { kind, constructor_call }))
     }
 
-    /// Returns the gravity field, if the effect is one.
+    /// Returns the gravity field if the effect is a gravity field, otherwise `None`.
     pub(crate) fn field(&self) -> Option<&Arc<GravityField>> {
         match &self.kind {
             Kind::GravityField(field) => Some(field),
@@ -100,7 +101,7 @@ impl PyEffect {
         }
     }
 
-    /// Returns the Sun or the Moon, if the effect is the gravity of one of them.
+    /// Returns the Sun or the Moon if the effect is the gravity of one of them, otherwise `None`.
     pub(crate) fn luminary(&self) -> Option<Luminary> {
         match &self.kind {
             Kind::ThirdBody(body) => Some(*body),
@@ -108,12 +109,13 @@ impl PyEffect {
         }
     }
 
-    /// Returns true if the effect is part of gravity, which a reference orbit may follow.
+    /// Returns true if the effect is a part of gravity. Only such effects can act on a numerical orbit.
     pub(crate) fn is_gravity(&self) -> bool {
         matches!(self.kind, Kind::GravityField(_) | Kind::ThirdBody(_))
     }
 
-    /// Returns the effect on the given systems; `None` if it is a part of gravity.
+    /// Returns the effect with the names of its bodies resolved in the given systems; `None` for a part of
+    /// gravity.
     pub(crate) fn on(&self, py: Python<'_>, targets: &[Target<'_>]) -> PyResult<Option<Arc<dyn Effect>>> {
         Ok(Some(match &self.kind {
             Kind::GravityField(_) | Kind::ThirdBody(_) => return Ok(None),

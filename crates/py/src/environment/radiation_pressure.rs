@@ -1,4 +1,4 @@
-//! Radiation pressure.
+//! Radiation pressure of sunlight.
 
 use super::surfaces::{SurfaceAssignment, copied};
 use super::{Any, Kind, PyEffect};
@@ -10,15 +10,16 @@ use pyo3::prelude::*;
 ///
 /// The force on a sunlit face with area ``A``, outward normal ``n`` and fractions ``ρs`` and ``ρd`` of
 /// specular and diffuse reflection is ``-P A cos θ [(1 - ρs) ŝ + 2 (ρs cos θ + ρd/3) n]``, with ``cos θ =
-/// n·ŝ``, and that on a cannonball ``-P C_R A ŝ``. ``ŝ`` points to the Sun, and ``P = ν (flux/c) (1 au/d)²``,
-/// where ``d`` is the distance of the Sun and ``ν`` the fraction of the solar disc that the Earth does not
-/// occult. Light reflected or emitted by the Earth is neglected. The effect requires an orbit and an
-/// ``earth`` with an epoch.
+/// n·ŝ``. The force on a cannonball with the coefficient ``C_R`` is ``-P C_R A ŝ``. The unit vector ``ŝ``
+/// points to the Sun. ``P = ν (flux/c) (1 au/d)²`` is the pressure, with the speed of light ``c``, the
+/// distance ``d`` from the Sun and the fraction ``ν`` of the solar disc that the Earth does not occult. Light
+/// reflected or emitted by the Earth is neglected. The effect requires an orbit and an ``earth`` with an
+/// epoch.
 ///
 /// Parameters
 /// ----------
 /// surfaces : Surface or dict of str to Surface, optional
-///     Surfaces of the links, as for ``Drag``.
+///     Surfaces of the bodies, as for ``Drag``.
 /// flux : float
 ///     Solar flux at 1 au, W/m².
 /// shadow : bool
@@ -29,7 +30,7 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// EffectError, DtypeError
-///     If a number is outside its range, the dict of surfaces is empty, or it contains anything but surfaces.
+///     If a number is outside its range, the dict of surfaces is empty, or a value is not a surface.
 #[pyclass(name = "RadiationPressure", extends = PyEffect, frozen, module = "onorbit_rs")]
 pub(super) struct PyRadiationPressure;
 

@@ -14,8 +14,8 @@ pub(crate) struct Target<'a> {
     pub(crate) surfaces: Option<&'a SurfaceAssignment>,
 }
 
-/// Returns the number of the system and the index of the frame with the path ``SYSTEM/LINK``. If there is
-/// only one system, its name may be omitted.
+/// Returns the indices of the system and of the frame with the path `SYSTEM/LINK`. If there is only one
+/// system, its name may be omitted.
 pub(super) fn frame_at(py: Python<'_>, targets: &[Target<'_>], path: &str) -> PyResult<(usize, usize)> {
     let on_system = |system: usize, frame: &str| {
         let frame = targets[system].model.frame(frame).map_err(|error| error.into_python(py))?;
@@ -30,7 +30,7 @@ pub(super) fn frame_at(py: Python<'_>, targets: &[Target<'_>], path: &str) -> Py
     }
 }
 
-/// Returns the number of the system with this name, or `None` if there is no such system.
+/// Returns the index of the system with this name, or `None` if there is no such system.
 pub(super) fn named(targets: &[Target<'_>], name: &str) -> Option<usize> {
     targets.iter().position(|target| target.name == name)
 }

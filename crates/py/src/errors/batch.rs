@@ -1,4 +1,4 @@
-//! Errors of calls with many states.
+//! Converts errors of batched calls to Python exceptions.
 
 use super::{IntoPython, fields, plain, raise, shape_error};
 use onorbit_core::batch::InputError;

@@ -1,4 +1,4 @@
-//! Errors of contacts.
+//! Converts errors of contacts to Python exceptions.
 
 use super::{IntoPython, fields, raise};
 use onorbit_core::contact::ContactError;

@@ -1,4 +1,4 @@
-//! Errors of controllers and references.
+//! Converts errors of controllers and references to Python exceptions.
 
 use super::{IntoPython, fields, plain, raise, shape_error, with_message};
 use onorbit_core::control::ControlError;

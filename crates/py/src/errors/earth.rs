@@ -1,4 +1,4 @@
-//! Errors of epochs, Earth orientation, Sun and Moon.
+//! Converts errors of epochs, Earth orientation, Sun and Moon to Python exceptions.
 
 use super::{IntoPython, fields, raise};
 use onorbit_core::earth::EarthError;

@@ -1,4 +1,4 @@
-//! Errors of environment effects.
+//! Converts errors of environment effects to Python exceptions.
 
 use super::{IntoPython, fields, plain, raise};
 use onorbit_core::environment::EnvironmentError;

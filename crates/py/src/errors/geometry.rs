@@ -1,4 +1,4 @@
-//! Errors of collision shapes and distances.
+//! Converts errors of collision shapes and distances to Python exceptions.
 
 use super::{IntoPython, fields, raise};
 use onorbit_core::geometry::GeometryError;

@@ -1,4 +1,4 @@
-//! Errors of gravity fields and their files.
+//! Converts errors of gravity fields and their files to Python exceptions.
 
 use super::{IntoPython, fields, raise};
 use onorbit_core::gravity::GravityError;

@@ -1,4 +1,4 @@
-//! Conversion of all errors of the core to the classes of `onorbit_rs.exceptions`.
+//! Converts all errors of the core to the exception classes of `onorbit_rs.exceptions`.
 
 mod batch;
 mod contact;
@@ -20,7 +20,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::Path;
 
-/// Error of the core that has a Python class.
+/// Error of the core that is converted to a Python exception.
 pub(crate) trait IntoPython {
     /// Returns the exception, with the fields of the error as attributes.
     fn into_python(self, py: Python<'_>) -> PyErr;
@@ -44,7 +44,7 @@ pub(crate) fn raise(py: Python<'_>, class: &str, message: &str, fields: &Bound<'
     }
 }
 
-/// Returns true for a Ctrl-C or another exception that ends a program.
+/// Returns true for a Ctrl-C or another exception that is not a subclass of Python's `Exception`.
 pub(crate) fn is_interrupt(py: Python<'_>, error: &PyErr) -> bool {
     !error.is_instance_of::<PyException>(py)
 }
@@ -58,14 +58,14 @@ pub(crate) fn in_file(py: Python<'_>, path: &Path, error: impl IntoPython) -> Py
     with_message(py, error, &message)
 }
 
-/// Returns the error with another message.
+/// Replaces the message of an exception that has one, and returns the exception.
 pub(crate) fn with_message(py: Python<'_>, error: PyErr, message: &str) -> PyErr {
     let _ = error.value(py).setattr("message", message); // if this fails, the message is unchanged
     error
 }
 
-/// Largest accepted size of a table of Earth orientation or space weather, bytes; real tables have up to ten
-/// million.
+/// Largest accepted size of a table of Earth orientation or space weather, in bytes. Published tables have up
+/// to ten million bytes.
 pub(crate) const LARGEST_TABLE: usize = 100_000_000;
 
 /// Returns the error for a text file that cannot be read; `what` names its content.
@@ -80,7 +80,7 @@ pub(crate) fn unreadable(py: Python<'_>, path: &Path, what: &str, error: &TextFi
     raise(py, class, &message, &fields!(py, "path": file.to_string(), "kind": what))
 }
 
-/// Creates an error without fields.
+/// Returns the exception `onorbit_rs.exceptions.<class>(message)`, without fields.
 pub(crate) fn plain(py: Python<'_>, class: &str, message: &str) -> PyErr {
     raise(py, class, message, &PyDict::new(py))
 }

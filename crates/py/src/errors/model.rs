@@ -1,4 +1,4 @@
-//! Errors of robots and their files.
+//! Converts errors of robots and their files to Python exceptions.
 
 use super::{IntoPython, fields, plain, raise};
 use onorbit_core::model::ModelError;

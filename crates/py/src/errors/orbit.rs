@@ -1,4 +1,4 @@
-//! Errors of orbits: invalid definitions and times outside their span.
+//! Converts errors of orbits to Python exceptions: invalid definitions, and times without a state.
 
 use super::{IntoPython, fields, plain, raise};
 use onorbit_core::orbit::sgp4::{ElementSetError, Sgp4Error};

@@ -1,11 +1,11 @@
-//! Errors of runs, some with the partial trace.
+//! Converts errors of runs to Python exceptions, some of which carry the partial trace.
 
 use super::{IntoPython, fields, plain, raise, shape_error, with_message};
 use onorbit_core::control::ControlError;
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
 
-/// Converts the error of a run to its class and attaches the partial trace, if there is one.
+/// Converts the error of a run to a Python exception and attaches the partial trace, if there is one.
 pub(crate) trait SimulationErrorExt {
     fn into_python_with(self, py: Python<'_>, trace: Option<Py<PyAny>>) -> PyErr;
 }

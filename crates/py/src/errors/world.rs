@@ -1,4 +1,4 @@
-//! Errors of the systems and events of a world.
+//! Converts errors of the systems and events of a world to Python exceptions.
 
 use super::{IntoPython, fields, raise};
 use onorbit_core::world::WorldError;

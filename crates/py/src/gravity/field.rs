@@ -14,8 +14,8 @@ use std::sync::Arc;
 /// Gravity field of a planet, excluding its point mass.
 ///
 /// As an effect of a simulation, the field acts on every body. Its ``mu`` is then used instead of the orbit's
-/// value, from which it may differ by at most a relative 1e-5; otherwise the simulation raises
-/// ``GravityError``. The orientation of the planet is that of the simulation's ``earth``. A field of order 0
+/// value; if the relative difference of the two exceeds 1e-5, the simulation raises ``GravityError``. The
+/// orientation of the planet is that of the simulation's ``earth``. A field of order 0
 /// does not require an ``earth``; without one, the axis of the field is z. Positions are from the planet's
 /// centre in planet-fixed axes.
 ///
@@ -69,14 +69,14 @@ impl PyGravityField {
         )
     }
 
-    /// Return a field with zonal harmonics only, which is evaluated in closed form.
+    /// Return a field with zonal harmonics only. It is evaluated in closed form.
     ///
     /// Parameters
     /// ----------
     /// degree : int, optional
     ///     Highest degree, 2 to 6, of the Earth's zonal harmonics (EGM2008); default: 6.
     /// j : (k,) array, optional
-    ///     Zonal coefficients J2, J3 and so on, up to J6, not normalised; may be given instead of ``degree``.
+    ///     Unnormalised zonal coefficients J2, J3 and so on, up to J6; may be given instead of ``degree``.
     /// mu : float, optional
     ///     Gravitational parameter of the planet to which ``j`` belongs, m³/s²; required with ``j``.
     /// radius : float, optional
@@ -89,8 +89,8 @@ impl PyGravityField {
     /// Raises
     /// ------
     /// GravityError
-    ///     If ``degree`` is out of range, if a number is invalid, or if ``degree`` is given together with any
-    ///     of ``j``, ``mu`` and ``radius``, or only some of the latter are given.
+    ///     If ``degree`` is out of range, if a number is invalid, if ``degree`` is given together with any of
+    ///     ``j``, ``mu`` and ``radius``, or if only some of these three are given.
     #[staticmethod]
     #[pyo3(signature = (degree=None, *, j=None, mu=None, radius=None))]
     fn zonal<'py>(
@@ -116,7 +116,8 @@ impl PyGravityField {
                 return Err(plain(
                     py,
                     "GravityError",
-                    "the zonal field is not determined; give either degree, for the Earth, or all of j, mu and radius",
+                    "the arguments do not determine the zonal field; give only degree (for the Earth), or j, \
+                     mu and radius",
                 ));
             }
         };
@@ -239,7 +240,7 @@ impl PyGravityField {
         self.field.order()
     }
 
-    /// Return the acceleration due to the field, excluding the point mass.
+    /// Return the gravitational acceleration due to the field, excluding the point mass.
     ///
     /// Parameters
     /// ----------
@@ -261,7 +262,8 @@ impl PyGravityField {
         self.at_each(py, r, &[3], GravityField::accelerations)
     }
 
-    /// Return the gradient of the acceleration, which is symmetric with zero trace.
+    /// Return the gradient of :meth:`acceleration` with respect to the position. It is symmetric with zero
+    /// trace.
     ///
     /// Parameters
     /// ----------
@@ -329,7 +331,7 @@ fn order_of(value: Any<'_, '_>) -> PyResult<Option<usize>> {
     if value.is_none() { Ok(None) } else { degree_or_order(value, "order").map(Some) }
 }
 
-/// Reads a degree or an order, which must not be negative.
+/// Reads the argument `name`, a degree or an order. Negative values are an error.
 fn degree_or_order(value: Any<'_, '_>, name: &str) -> PyResult<usize> {
     let number = whole(value, name)?;
     usize::try_from(number).map_err(|_| {

@@ -41,8 +41,8 @@ pub(crate) fn gravity_of(
         (None, _) if bodies.is_empty() => return Ok(None),
         (None, Some(mu)) => Ok(Gravity::point_mass(mu)),
         (None, None) => {
-            let message =
-                "a third body requires an orbit around a planet; set an orbit, or the mu of a custom path";
+            let message = "a third body is given without an orbit around a planet; set an orbit, or the mu \
+                           of a custom path";
             return Err(plain(py, "OrbitError", message));
         }
     };

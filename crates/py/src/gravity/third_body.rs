@@ -5,11 +5,11 @@ use crate::errors::{fields, raise};
 use onorbit_core::gravity::Luminary;
 use pyo3::prelude::*;
 
-/// Gravity of the Sun or the Moon, which acts on the robot and the reference.
+/// Gravity of the Sun or the Moon, which accelerates both the robot and the reference.
 ///
-/// The acceleration relative to the Earth's centre is ``μ [(s - r)/|s - r|³ - s/|s|³]`` at the position
-/// ``r``, where ``μ`` is the gravitational parameter of the third body and ``s`` its position, both positions
-/// from the Earth's centre.
+/// The acceleration at the position ``r``, relative to that of the Earth's centre, is ``μ [(s - r)/|s - r|³ -
+/// s/|s|³]``. ``μ`` is the gravitational parameter of the third body and ``s`` its position; both positions
+/// are from the Earth's centre.
 ///
 /// The effect requires an orbit around the Earth, and an ``earth`` with an epoch.
 ///

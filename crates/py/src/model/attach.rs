@@ -30,7 +30,8 @@ use std::path::PathBuf;
 ///     Mounting frame of ``other``. Defaults to its root link. If the frame is on a link that joints move,
 ///     ``other`` is first re-rooted at that link (:meth:`Model.rerooted`).
 /// pose : (4, 4) array, optional
-///     Homogeneous transform of the mounting frame in ``frame``, m. Defaults to the identity.
+///     Pose of the mounting frame relative to ``frame``, a homogeneous transform, m. Defaults to the
+///     identity.
 /// prefix : str, optional
 ///     Prefix for the names of all links, joints and frames of ``other``, such as ``"left_"``.
 ///
@@ -43,8 +44,8 @@ use std::path::PathBuf;
 /// FrameError
 ///     If a frame does not exist.
 /// ModelError
-///     If both robots have a link, joint or frame of the same name, the pose is invalid, or the file of
-///     ``other`` does not describe a valid robot.
+///     If a link, joint or frame of one robot has the same name as one of the other, the pose is invalid, or
+///     the file of ``other`` does not describe a valid robot.
 /// NotFoundError, ReadError
 ///     If the file of ``other`` does not exist or cannot be read.
 #[pyfunction]
@@ -78,7 +79,7 @@ pub(super) fn attach(
     PyModel::wrap(py, whole, Some(call), &known)
 }
 
-/// Returns `other` as an object; if it is a path, reads the file.
+/// Returns `other` if it is a robot; if it is a path, reads the robot from the file.
 fn model_or_part<'py>(other: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
     if other.is_instance_of::<PyModel>() || other.is_instance_of::<PyRobotPart>() {
         return Ok(other.clone());
@@ -92,7 +93,7 @@ fn model_or_part<'py>(other: Any<'_, 'py>) -> PyResult<Bound<'py, PyAny>> {
     Ok(Bound::new(py, PyRobotPart::from_urdf(py, path, None, None, false, None)?)?.into_any())
 }
 
-/// Converts a (4, 4) homogeneous transform.
+/// Reads the argument `pose`, a (4, 4) homogeneous transform, m.
 pub(crate) fn isometry(pose: Any<'_, '_>) -> PyResult<Isometry3<f64>> {
     let refuse = |message: &str| plain(pose.py(), "ModelError", message);
     let rows = fixed::<16>(pose, "pose", &[4, 4])?;

@@ -52,7 +52,7 @@ impl PyModelBuilder {
 
     /// Add a link and the joint that connects it to its parent.
     ///
-    /// Position limits are enforced only with ``Simulation(enforce_limits=True)``, and rate limits are not
+    /// Position limits are enforced only with ``Simulation(enforce_limits=True)``; rate limits are not
     /// enforced. Effort limits are the default limits of :class:`JointPid`.
     ///
     /// Parameters
@@ -69,15 +69,15 @@ impl PyModelBuilder {
     ///     Joint axis in link axes, of any length; default: z.
     /// xyz, rpy : (3,) array, optional
     ///     Position, m, and roll, pitch, yaw, rad, of the link frame in the parent's frame at joint position
-    ///     zero.
+    ///     zero. Default: zero.
     /// mass : float, optional
     ///     Mass, kg. Default: the link is massless.
     /// com : (3,) array, optional
-    ///     Centre of mass in link axes, m.
+    ///     Centre of mass in link axes, m; only with ``mass``. Default: the origin of the link.
     /// inertia : (3, 3) array, optional
-    ///     Inertia about the centre of mass in link axes, kg m².
+    ///     Inertia about the centre of mass in link axes, kg m²; only with ``mass``. Default: zero.
     /// damping : float
-    ///     Viscous friction, N m s/rad or N s/m.
+    ///     Coefficient of viscous friction, N m s/rad or N s/m.
     /// friction : float
     ///     Kinetic Coulomb friction, which acts while the joint moves, N m or N.
     /// rotor_inertia : float
@@ -92,8 +92,9 @@ impl PyModelBuilder {
     ///     Largest torque or force that static friction can hold, N m or N; at least ``friction``, which is
     ///     the default.
     /// mimic : str or (str, float, float), optional
-    ///     Leading joint, or leading joint, ratio and offset (rad or m): the joint is constrained to ratio times
-    ///     the position of its leader plus offset. Default ratio and offset: 1 and 0.
+    ///     Name of the leading joint, or a tuple of this name, a ratio and an offset (rad or m). The position
+    ///     of the joint is constrained to the ratio times the position of its leader, plus the offset.
+    ///     Default ratio and offset: 1 and 0.
     ///
     /// Raises
     /// ------
@@ -163,7 +164,7 @@ impl PyModelBuilder {
     /// link : str
     ///     Link to which the frame is fixed.
     /// xyz, rpy : (3,) array, optional
-    ///     Position, m, and roll, pitch, yaw, rad, in the link's frame.
+    ///     Position, m, and roll, pitch, yaw, rad, of the frame in the link's frame. Default: zero.
     ///
     /// Raises
     /// ------
@@ -222,7 +223,7 @@ impl PyModelBuilder {
     }
 }
 
-/// Returns a spacecraft without joints, with its mass, kg, and its inertia (3, 3) about the centre of mass,
+/// Returns a spacecraft without joints, with the given mass, kg, and inertia (3, 3) about its centre of mass,
 /// kg m².
 pub(super) fn rigid_body(py: Python<'_>, mass: f64, inertia: Any<'_, '_>) -> PyResult<PyModel> {
     let numbers = fixed::<9>(inertia, "inertia", &[3, 3])?;
@@ -238,14 +239,14 @@ pub(super) fn vector(value: Option<Any<'_, '_>>, name: &str, default: [f64; 3]) 
     Ok(Vector3::from(value.map_or(Ok(default), |value| fixed(value, name, &[3]))?))
 }
 
-/// Reads a position, m, and roll, pitch, yaw, rad; each is zero by default.
+/// Reads a pose from a position, m, and roll, pitch, yaw, rad; both are zero by default.
 fn pose(xyz: Option<Any<'_, '_>>, rpy: Option<Any<'_, '_>>) -> PyResult<Isometry3<f64>> {
     let angles = vector(rpy, "rpy", [0.0; 3])?;
     let rotation = UnitQuaternion::from_euler_angles(angles.x, angles.y, angles.z);
     Ok(Isometry3::from_parts(Translation3::from(vector(xyz, "xyz", [0.0; 3])?), rotation))
 }
 
-/// Reads the inertial properties of a link; `None` if no mass is given.
+/// Reads mass, kg, centre of mass, m, and inertia, kg m², of a link. Returns `None` if none of them is given.
 fn inertial(
     py: Python<'_>,
     mass: Option<f64>,
@@ -254,7 +255,8 @@ fn inertial(
 ) -> PyResult<Option<Inertial>> {
     let Some(mass) = mass else {
         if com.is_some() || inertia.is_some() {
-            return Err(raise(py, "ModelError", "com and inertia require a mass; give mass", &fields!(py,)));
+            let message = "com or inertia is given without mass; give the mass (kg) as well, or omit both";
+            return Err(raise(py, "ModelError", message, &fields!(py,)));
         }
         return Ok(None);
     };

@@ -20,23 +20,24 @@ const KINDS: [(&str, LoopKind); 5] = [
 
 /// Joint between two frames of a robot that closes a kinematic loop.
 ///
-/// The joint is a constraint and has no joint position. Its pose in each frame is that of the frame by default;
-/// its axis is z.
+/// The joint is a constraint and has no joint position. By default, it coincides with each of the two frames
+/// when the loop is closed. Its axis is the z axis of its pose.
 ///
 /// Parameters
 /// ----------
 /// name : str
 ///     Name, unique among the loops of the robot.
 /// kind : {"weld", "revolute", "spherical", "prismatic", "distance"}
-///     Type of the joint: ``weld`` permits no relative motion, ``revolute`` rotation about z, ``spherical``
-///     all rotations, ``prismatic`` translation along z. ``distance`` keeps the distance of the two origins,
-///     like a massless rod with ball joints.
+///     Type of the joint: ``weld`` permits no relative motion, ``revolute`` permits rotation about z,
+///     ``spherical`` all rotations, and ``prismatic`` translation along z. ``distance`` keeps the distance
+///     between the two origins constant, like a massless rod with ball joints.
 /// frame_a, frame_b : str
 ///     Links or frames on two different bodies; in a :class:`World`, ``SYSTEM/FRAME``.
 /// pose_a, pose_b : (4, 4) array, optional
 ///     Pose of the joint in ``frame_a`` and in ``frame_b``, m. Default: the identity.
 /// length : float, optional
-///     Distance of the origins, m, only with ``distance``. Default: the distance with all joint positions zero.
+///     Distance between the origins, m; only with ``distance``. Default: the distance with all joint
+///     positions zero.
 /// project : bool
 ///     If True, a simulation starts in the nearest configuration that closes the loop. If False, a start that
 ///     does not close the loop is an error.
@@ -98,19 +99,19 @@ impl PyLoop {
         &self.closing.name
     }
 
-    /// Type of the joint.
+    /// Type of the joint: ``weld``, ``revolute``, ``spherical``, ``prismatic`` or ``distance``.
     #[getter]
     fn kind(&self) -> &'static str {
         KINDS.into_iter().find(|(_, kind)| *kind == self.closing.kind).map_or("", |(name, _)| name)
     }
 
-    /// First frame.
+    /// Name of the first frame.
     #[getter]
     fn frame_a(&self) -> &str {
         &self.closing.frames[0]
     }
 
-    /// Second frame.
+    /// Name of the second frame.
     #[getter]
     fn frame_b(&self) -> &str {
         &self.closing.frames[1]
@@ -128,13 +129,15 @@ impl PyLoop {
         rows(&self.closing.poses[1])
     }
 
-    /// Distance of the origins, m; None for the default.
+    /// Distance between the origins, m; None for the distance with all joint positions zero, and for other
+    /// kinds.
     #[getter]
     fn length(&self) -> Option<f64> {
         self.closing.length
     }
 
-    /// Whether a simulation starts in the nearest configuration that closes the loop.
+    /// True if a simulation starts in the nearest configuration that closes the loop; False if a start that
+    /// does not close the loop is an error.
     #[getter]
     fn project(&self) -> bool {
         self.closing.project
@@ -162,7 +165,7 @@ impl PyLoop {
     }
 }
 
-/// Returns the rows of `[[R, p], [0, 1]]`.
+/// Returns the rows of the homogeneous transform `[[R, p], [0, 1]]` with rotation `R` and position `p`, m.
 fn rows(pose: &Isometry3<f64>) -> [[f64; 4]; 4] {
     let matrix = pose.to_homogeneous();
     std::array::from_fn(|i| std::array::from_fn(|j| matrix[(i, j)]))
@@ -174,7 +177,7 @@ pub(crate) fn loops_in(loops: Any<'_, '_>) -> PyResult<Vec<Loop>> {
     Ok(loops.into_iter().map(|closing| closing.get().closing.clone()).collect())
 }
 
-/// Returns the robot with further closed loops.
+/// Returns a copy of the robot with additional closed loops.
 pub(crate) fn with_loops(model: &Bound<'_, PyModel>, loops: Vec<Loop>) -> PyResult<PyModel> {
     let py = model.py();
     let old = &model.get().model;
@@ -184,7 +187,8 @@ pub(crate) fn with_loops(model: &Bound<'_, PyModel>, loops: Vec<Loop>) -> PyResu
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Reads a mimic: the name of the leader, or (name, ratio, offset in rad or m); any other value is an error.
+/// Reads the argument `mimic`: the name of the leading joint, or a tuple of this name, ratio and offset (rad
+/// or m).
 pub(super) fn mimic_in(mimic: Any<'_, '_>) -> PyResult<Mimic> {
     let read = mimic.extract().map(|leader| (leader, 1.0, 0.0)).or_else(|_| mimic.extract());
     let (leader, ratio, offset) = read.map_err(|_| {

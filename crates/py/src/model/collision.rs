@@ -1,4 +1,4 @@
-//! Collision shapes that are added to links.
+//! Changes to the collision shapes of links.
 
 use super::attach::isometry;
 use super::shape::PyShape;
@@ -9,8 +9,8 @@ use nalgebra::Isometry3;
 use onorbit_core::model::{Geometry, Visual};
 use pyo3::prelude::*;
 
-/// Returns a copy of the robot with an additional collision shape on a link, at `pose` in link axes (default:
-/// the identity).
+/// Returns a copy of the robot with an additional collision shape on a link. `pose` is the pose of the shape
+/// in link axes, (4, 4), m (default: the identity).
 pub(super) fn with_collision(
     model: &Bound<'_, PyModel>,
     link: &str,
@@ -29,8 +29,8 @@ pub(super) fn with_collision(
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Returns a copy of the robot in which the collision meshes of a link are replaced by their convex pieces,
-/// at most `pieces` per mesh. Fails if the link has no mesh.
+/// Returns a copy of the robot in which each collision mesh of a link is replaced by at most `pieces` convex
+/// pieces. A link without a collision mesh is an error.
 pub(super) fn with_convex_pieces(
     model: &Bound<'_, PyModel>,
     link: &str,
@@ -40,7 +40,8 @@ pub(super) fn with_convex_pieces(
     let old = &model.get().model;
     let given = old.collisions_of(link).map_err(|error| error.into_python(py))?;
     let failed = |cause: String| {
-        let message = format!("the collision shapes of the link '{link}': {cause}");
+        let message =
+            format!("the collision shapes of link '{link}' cannot be divided into convex pieces: {cause}");
         raise(py, "ModelError", &message, &fields!(py, "name": link))
     };
     let frame = old.frame(link).map_err(|error| error.into_python(py))?;
@@ -59,7 +60,7 @@ pub(super) fn with_convex_pieces(
         }
     }
     if !has_mesh {
-        return Err(failed("none of them is a mesh that could be divided; omit 'pieces'".to_owned()));
+        return Err(failed("none of them is a mesh; omit 'pieces'".to_owned()));
     }
     let new = old.with_collisions(link, shapes).map_err(|error| error.into_python(py))?;
     let call = ConstructorCall::new("Model.with_convex_pieces", (model, link, count), &fields!(py,))?;

@@ -7,10 +7,12 @@ use crate::errors::{IntoPython, fields, raise};
 use onorbit_core::dynamics::constrained_free_floating;
 use pyo3::prelude::*;
 
-/// Reduced model of a free-floating robot with closed loops: ``M ÿ + c = Gᵀ τ + Q`` and ``ẍ = J ÿ + d``, with the
-/// accelerations ``ÿ`` of ``f`` independent joints, the joint torques ``τ`` and the acceleration ``ẍ`` of a frame.
+/// Reduced model of a free-floating robot with closed loops.
 ///
-/// The accelerations of all joints are ``q̈ = G ÿ + g``, and their rates are ``q̇ = G ẏ``.
+/// ``M ÿ + c = Gᵀ τ + Q`` and ``ẍ = J ÿ + d``, with the positions ``y`` of ``f`` independent joints, the
+/// torques ``τ`` of all ``n`` joints and the acceleration ``ẍ`` of a frame. The rates of all joints are ``q̇
+/// = G ẏ``, and their accelerations are ``q̈ = G ÿ + g``. :class:`FreeFloating` defines ``M*``, ``c*``,
+/// ``Q*`` and ``Jg``.
 #[pyclass(name = "ConstrainedFreeFloating", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyConstrainedFreeFloating {
     /// Names of the ``f`` independent joints, in the order of ``ÿ``.
@@ -19,13 +21,14 @@ pub(crate) struct PyConstrainedFreeFloating {
     joint_map: Py<PyAny>,
     /// Joint accelerations ``g`` for ``ÿ = 0``, (n,), rad/s² or m/s².
     joint_drift: Py<PyAny>,
-    /// Reduced mass matrix ``M = Gᵀ M* G``, (f, f), kg m², kg m and kg, with ``M*`` of :class:`FreeFloating`.
+    /// Reduced mass matrix ``M = Gᵀ M* G``, (f, f), kg m², kg m and kg.
     inertia: Py<PyAny>,
     /// Reduced bias forces ``c = Gᵀ (c* + M* g)``, (f,), N m or N.
     bias: Py<PyAny>,
     /// Generalized external forces ``Q = Gᵀ Q*``, (f,), N m or N.
     external: Py<PyAny>,
-    /// Generalized Jacobian ``J = Jg G`` of the frame, (6, f), W axes at the frame's origin, linear rows first.
+    /// Generalized Jacobian ``J = Jg G`` of the frame, (6, f), at the frame's origin in W axes, linear rows
+    /// first; m, rad or dimensionless.
     jacobian: Py<PyAny>,
     /// Drift ``d``, the acceleration of the frame for ``ÿ = 0``, (6,), m/s² and rad/s², W axes.
     drift: Py<PyAny>,
@@ -35,10 +38,11 @@ pub(crate) struct PyConstrainedFreeFloating {
 impl PyModel {
     /// Return the reduced model of a robot with closed loops for one frame, in terms of independent joints.
     ///
-    /// The constraints ``K q̇ = 0`` of closed loops and mimic joints are solved for dependent joints by Gaussian
-    /// elimination with complete pivoting; redundant constraints have no pivot. The model is exact for any momentum
-    /// and wrench. Without constraints, all joints are independent and the result is that of :meth:`free_floating`.
-    /// Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, sections 3.2 and 8.8.
+    /// The constraints ``K q̇ = 0`` of closed loops and mimic joints are solved for the dependent joints by
+    /// Gaussian elimination with complete pivoting; redundant constraints have no pivot. The model is exact
+    /// for any momentum and wrench. Without constraints, all joints are independent and the result is that of
+    /// :meth:`free_floating`. Source: Featherstone, Rigid Body Dynamics Algorithms, 2008, sections 3.2 and
+    /// 8.8.
     ///
     /// Parameters
     /// ----------
@@ -49,8 +53,8 @@ impl PyModel {
     /// frame : str
     ///     Name of the frame.
     /// independent : list of str, optional
-    ///     Names of the independent joints. By default, the dependent joints are those with the largest pivots,
-    ///     mimic joints first.
+    ///     Names of the independent joints. By default, the dependent joints are those with the largest
+    ///     pivots, mimic joints first.
     /// external : dict of str to (6,) array, optional
     ///     Wrench by frame: force, N, and moment, N m, in the frame's axes about its origin.
     ///
@@ -61,10 +65,11 @@ impl PyModel {
     /// Raises
     /// ------
     /// FrameError, ModelError
-    ///     If the frame does not exist, or if the joints in ``independent`` do not exist, depend on each other, or do
-    ///     not determine the motion of all joints.
+    ///     If the frame does not exist, or if the joints in ``independent`` do not exist, depend on each
+    ///     other, or do not determine the motion of all joints.
     /// InputError, ShapeError
-    ///     If a number is not finite, the quaternion is not a unit quaternion, or an array has the wrong shape.
+    ///     If a number is not finite, the quaternion is not a unit quaternion, or an array has the wrong
+    ///     shape.
     #[pyo3(signature = (q, v, frame, *, independent=None, external=None))]
     fn constrained_free_floating(
         &self,
@@ -102,12 +107,12 @@ impl PyModel {
 }
 
 impl PyModel {
-    /// Returns the indices of joints.
+    /// Returns the indices of the joints with these names.
     fn joints_of(&self, py: Python<'_>, names: &[String]) -> PyResult<Vec<usize>> {
         names.iter().map(|name| self.model.joint(name).map_err(|error| error.into_python(py))).collect()
     }
 
-    /// Returns an error unless the `chosen` joints are the `independent` ones.
+    /// Returns an error unless `chosen` and `independent` contain the same joints, given by index.
     fn check_independent(&self, py: Python<'_>, chosen: &[usize], independent: &[usize]) -> PyResult<()> {
         let names = |joints: &mut dyn Iterator<Item = &usize>| -> Vec<&str> {
             joints.map(|&j| &*self.model.joints()[j].name).collect()
@@ -120,15 +125,15 @@ impl PyModel {
             (true, false) => format!("they do not determine the motion of {}", missing.join(", ")),
         };
         let message = format!(
-            "the joints in 'independent' are no independent joints of the closed loops: {problem}; {} joints are \
-             independent, such as {}",
+            "the joints in 'independent' are not a set of independent joints: {problem}; give {} independent \
+             joints, such as {}",
             independent.len(),
             names(&mut independent.iter()).join(", ")
         );
         Err(raise(py, "ModelError", &message, &fields!(py, "name": "independent")))
     }
 
-    /// Reads one velocity, (nv,).
+    /// Reads one velocity, (nv,), m/s and rad/s, whose values must be finite.
     pub(super) fn velocity(&self, v: Any<'_, '_>) -> PyResult<Vec<f64>> {
         let (py, given) = (v.py(), Input::new(v, "v")?);
         if given.shape() != [self.model.nv()] {

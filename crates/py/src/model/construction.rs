@@ -1,4 +1,4 @@
-//! Methods of `Model` that construct robots, and convert states between them.
+//! Methods of `Model` that construct robots or convert states from one robot to another.
 
 use super::collision::{with_collision, with_convex_pieces};
 use super::file::{self, read_file};
@@ -24,7 +24,7 @@ impl PyModel {
     /// package_paths : list of path, optional
     ///     Folders that are ROS packages or contain them, searched for ``package://`` and ``$(find ...)``.
     /// xacro_arguments : dict of str to object, optional
-    ///     Values of ``$(arg name)``.
+    ///     Values of the file's arguments, by name; they replace ``$(arg name)``.
     /// xacro : bool
     ///     If True, the file is expanded as xacro regardless of its name.
     /// links : dict of str to dict, optional
@@ -113,6 +113,8 @@ impl PyModel {
 
     /// Return a copy of the robot with the inertial properties of one link replaced.
     ///
+    /// Properties that are omitted do not change.
+    ///
     /// Parameters
     /// ----------
     /// name : str
@@ -133,7 +135,7 @@ impl PyModel {
     /// FrameError
     ///     If no link has this name.
     /// ModelError
-    ///     If the values are not physical, or if the link has no inertial and no mass is given.
+    ///     If the values are not physical, or if the link has no inertial properties and no mass is given.
     #[pyo3(signature = (name, *, mass=None, com=None, inertia=None))]
     fn with_link(
         slf: &Bound<'_, Self>,
@@ -181,9 +183,9 @@ impl PyModel {
 
     /// Return a copy of the robot with the collision meshes of a link divided into convex pieces.
     ///
-    /// Undivided, the shape of a mesh is its convex hull, which fills notches and holes. CoACD divides the
-    /// meshes, which takes seconds to minutes; the result is kept in the user's folder for caches. A convex
-    /// mesh is one piece.
+    /// The collision shape of a mesh that is not divided is its convex hull, which fills notches and holes.
+    /// The tool CoACD divides the meshes, which takes seconds to minutes; the pieces are stored in the user's
+    /// cache folder. A convex mesh is one piece.
     ///
     /// Parameters
     /// ----------
@@ -203,8 +205,8 @@ impl PyModel {
     /// InputError
     ///     If ``pieces`` is below 1 or above 1000.
     /// ModelError
-    ///     If the link has no collision mesh, or a mesh is missing or open or has no volume, or CoACD is not
-    ///     installed (``pip install 'onorbit-rs[meshes]'``) or fails.
+    ///     If the link has no collision mesh, if a mesh is missing, open or without volume, or if CoACD fails
+    ///     or is not installed (``pip install 'onorbit-rs[meshes]'``).
     fn with_convex_pieces(slf: &Bound<'_, Self>, link: &str, pieces: Any<'_, '_>) -> PyResult<Self> {
         with_convex_pieces(slf, link, pieces)
     }
@@ -239,11 +241,12 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) array
-    ///     Configuration of this model.
+    ///     Configuration of this model, m and rad.
     /// v : (nv,) array
-    ///     Velocity of this model.
+    ///     Velocity of this model, m/s and rad/s.
     /// to : Model
-    ///     Other model. All of its joints, and the link that is its base, must exist in this model.
+    ///     Model to whose coordinates the state is converted. All of its joints, and the link that is its
+    ///     base, must exist in this model.
     ///
     /// Returns
     /// -------
@@ -271,8 +274,7 @@ impl PyModel {
             Some(call) => call.reduce_robot(slf),
             None => Err(PyTypeError::new_err(
                 "a model built link by link cannot be pickled; build it in the process that uses it, or \
-                 write it as \
-                 URDF and load the file",
+                 write it as URDF and load the file",
             )),
         }
     }

@@ -1,4 +1,4 @@
-//! Convex pieces of meshes.
+//! Division of collision meshes into convex pieces.
 
 use super::Any;
 use crate::arrays::{array_of, whole};
@@ -13,13 +13,12 @@ use pyo3::prelude::*;
 use std::ffi::CString;
 use std::path::Path;
 
-/// Largest number of pieces of a mesh.
+/// Largest accepted number of pieces per mesh.
 const MOST: i64 = 1000;
-/// Largest excess of the volume of the pieces over the volume of the mesh, relative to the latter, without a
-/// warning.
+/// Ratio of the excess volume of the pieces to the volume of the mesh above which a warning is issued.
 const EXCESS: f64 = 0.1;
 
-/// Reads the argument `pieces`: the largest number of convex pieces, 1 to [`MOST`].
+/// Reads the argument `pieces`: the largest number of convex pieces per mesh, from 1 to [`MOST`].
 pub(super) fn count(value: Any<'_, '_>) -> PyResult<i64> {
     let count = whole(value, "pieces")?;
     if (1..=MOST).contains(&count) {
@@ -31,7 +30,8 @@ pub(super) fn count(value: Any<'_, '_>) -> PyResult<i64> {
     Err(raise(py, "InputError", &message, &fields!(py, "name": "pieces", "got": count, "expected": expected)))
 }
 
-/// Returns at most `count` convex pieces of a mesh in a file. A convex mesh is one piece.
+/// Reads a mesh, multiplies its coordinates by `scale`, and returns at most `count` convex pieces. A convex
+/// mesh is one piece.
 pub(super) fn of_mesh(
     py: Python<'_>,
     filename: &str,
@@ -53,8 +53,8 @@ pub(super) fn of_mesh(
         warn(
             py,
             format!(
-                "the {} convex pieces of {filename} have {:.0} % more volume than the mesh, so they fill part of its \
-                 notches; for a closer shape, give a larger number than pieces: {count}",
+                "the {} convex pieces of {filename} have {:.0} % more volume than the mesh, so they fill part \
+                 of its notches; for a closer shape, increase pieces from {count} to a larger number",
                 hulls.len(),
                 100.0 * excess
             ),

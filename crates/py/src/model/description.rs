@@ -23,27 +23,27 @@ pub(super) struct PyJoint {
     pose: Matrix4,
     /// Unit vector along the axis, in the child link's axes: (3,).
     axis: [f64; 3],
-    /// Point on the axis, in the child link's axes, m: (3,). It is zero unless ``Model.rerooted`` or
-    /// ``attach`` reversed the joint.
+    /// Point on the axis, relative to the child link's origin in the child link's axes, m: (3,). It is zero
+    /// unless ``Model.rerooted`` or ``attach`` reversed the joint.
     anchor: [f64; 3],
-    /// Lower position limit, rad or m, or None.
+    /// Lower position limit, rad or m; None without a lower limit.
     lower: Option<f64>,
-    /// Upper position limit, rad or m, or None.
+    /// Upper position limit, rad or m; None without an upper limit.
     upper: Option<f64>,
-    /// Rate limit, rad/s or m/s, or None.
+    /// Largest rate, rad/s or m/s; None without a limit.
     velocity: Option<f64>,
-    /// Effort limit, N m or N, or None.
+    /// Largest torque or force of the joint, N m or N; None without a limit.
     effort: Option<f64>,
-    /// Viscous friction, N m s/rad or N s/m.
+    /// Coefficient of viscous friction, N m s/rad or N s/m.
     damping: f64,
-    /// Kinetic Coulomb friction, N m or N.
+    /// Kinetic Coulomb friction, which acts while the joint moves, N m or N.
     friction: f64,
     /// Largest torque or force that static friction can hold, N m or N.
     static_friction: f64,
     /// Rotor inertia reflected to the joint, kg m² or kg.
     rotor_inertia: f64,
-    /// Leading joint, ratio and offset (rad or m) of a mimic joint, or None. The position of the joint is ratio
-    /// times that of its leader plus offset.
+    /// Leading joint, ratio and offset (rad or m) of a mimic joint; None for other joints. The position of a
+    /// mimic joint is the ratio times the position of its leader, plus the offset.
     mimic: Option<(String, f64, f64)>,
 }
 
@@ -67,30 +67,30 @@ pub(super) struct PyFrame {
     name: String,
     /// Name of the body to which the frame is fixed.
     body: String,
-    /// Pose relative to the body's first link: (4, 4), m.
+    /// Pose relative to the body's first link, a homogeneous transform: (4, 4), m.
     pose: Matrix4,
 }
 
-/// Shape that is fixed to a frame.
+/// Visual or collision shape that is fixed to a frame.
 #[pyclass(name = "Visual", frozen, get_all, module = "onorbit_rs")]
 pub(super) struct PyVisual {
     /// Name of the frame to which the shape is fixed.
     link: String,
-    /// Pose in that frame: (4, 4), m.
+    /// Pose of the shape in that frame, a homogeneous transform: (4, 4), m.
     pose: [[f64; 4]; 4],
-    /// Type of the shape: ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``; collision shapes may also
-    /// be a ``cone``, ``torus``, ``half_space`` or ``hull`` (a convex piece of a mesh).
+    /// Type of the shape: ``box``, ``cylinder``, ``capsule``, ``sphere`` or ``mesh``; collision shapes may
+    /// also be a ``cone``, ``torus``, ``half_space`` or ``hull`` (a convex piece of a mesh).
     kind: &'static str,
-    /// Edge lengths of a box, radius and length of a cylinder, capsule or cone, radii of the circle and of the
-    /// tube of a torus, or radius of a sphere, m; empty for a mesh, a hull and a half-space.
+    /// Dimensions, m: edge lengths of a box; radius and length of a cylinder, capsule or cone; radii of the
+    /// circle and of the tube of a torus; radius of a sphere. Empty for a mesh, a hull and a half-space.
     size: Vec<f64>,
-    /// Corners of a hull: (k, 3), m; empty for other shapes.
+    /// Positions of the ``k`` corners of a hull: (k, 3), m; empty for other shapes.
     points: Vec<[f64; 3]>,
-    /// Path of a mesh file, or None.
+    /// Path of the file of a mesh; None for other shapes.
     filename: Option<String>,
-    /// Scale of a mesh along its axes: (3,), dimensionless.
+    /// Scale factors of a mesh along its axes: (3,), dimensionless.
     scale: [f64; 3],
-    /// Red, green, blue and opacity from 0 to 1, or None.
+    /// Red, green, blue and opacity, each from 0 to 1; None without a colour.
     rgba: Option<[f64; 4]>,
 }
 
@@ -119,7 +119,8 @@ impl PyVisual {
     }
 }
 
-/// Returns the descriptions of visual or collision shapes with the indices of their frames.
+/// Returns the descriptions of visual or collision shapes, each of which is given with the index of its
+/// frame.
 pub(super) fn shapes(model: &Model, shapes: &[(usize, Visual)]) -> Vec<PyVisual> {
     let frame = |index: usize| &model.frames()[index].name;
     shapes.iter().map(|(index, shape)| PyVisual::new(frame(*index), shape)).collect()
@@ -167,7 +168,8 @@ pub(super) fn joints(model: &Model) -> Vec<PyJoint> {
     model.joints().iter().enumerate().map(joint).collect()
 }
 
-/// Returns leading joint, ratio and offset of a mimic joint.
+/// Returns leading joint, ratio and offset (rad or m) of the joint with this index; `None` unless it is a
+/// mimic joint.
 fn mimic(model: &Model, joint: usize) -> Option<(String, f64, f64)> {
     model.closures().iter().find_map(|closure| match closure.constraint {
         Constraint::Mimic { joint: own, leader, ratio, offset } if own == joint => {
@@ -200,7 +202,7 @@ pub(super) fn frames(model: &Model) -> Vec<PyFrame> {
     model.frames().iter().map(frame).collect()
 }
 
-/// Returns the rows of `[[R, p], [0, 1]]`.
+/// Returns the rows of the homogeneous transform `[[R, p], [0, 1]]` with rotation `R` and position `p`, m.
 fn pose(rot: &Mat3<f64>, pos: Vec3<f64>) -> Matrix4 {
     let (rot, pos) = (rot.to_nalgebra(), pos.to_nalgebra());
     std::array::from_fn(|i| {

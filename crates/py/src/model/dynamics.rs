@@ -14,7 +14,7 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// threads, out
     ///     As described for :class:`Model`.
     ///
@@ -33,15 +33,15 @@ impl PyModel {
         self.one(Kernel::MassMatrix, &[q], None, &[nv, nv], threads, out)
     }
 
-    /// Return the bias forces ``c - Σ Jᵀ F``: Coriolis and centrifugal forces ``c`` less the generalized
+    /// Return the bias forces ``c - Σ Jᵀ F``: the Coriolis and centrifugal forces ``c`` minus the generalized
     /// forces of the external wrenches ``F``, with the Jacobians ``J`` of their frames.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// external : dict of str to (6,) or (B, 6) array, optional
     ///     Wrench by frame: force, N, and moment, N m, in the frame's axes about its origin.
     /// threads, out
@@ -69,11 +69,11 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// a : (nv,) or (B, nv) array
-    ///     Acceleration, the time derivative of ``v``.
+    ///     Acceleration, the time derivative of ``v``, m/s² and rad/s².
     /// external : dict of str to (6,) or (B, 6) array, optional
     ///     Wrench by frame: force, N, and moment, N m, in the frame's axes about its origin.
     /// threads, out
@@ -102,9 +102,9 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// tau : (nv,) or (B, nv) array
     ///     Wrench on the base in base axes, then joint efforts, N and N m.
     /// external : dict of str to (6,) or (B, 6) array, optional
@@ -132,17 +132,18 @@ impl PyModel {
     /// Return the derivatives of :meth:`inverse_dynamics`.
     ///
     /// Column ``j`` of the derivative with respect to ``q`` is the derivative along ``integrate(q, eps *
-    /// e_j)``. The columns are translations (m) and rotations (rad) of the base in base axes, then the
-    /// joints. ``external`` is held constant in the axes of its frames.
+    /// e_j)`` with respect to ``eps`` at zero, where ``e_j`` is a unit vector. The columns belong to
+    /// translations (m) and rotations (rad) of the base in base axes, then to the joints (rad or m).
+    /// ``external`` is held constant in the axes of its frames.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// a : (nv,) or (B, nv) array
-    ///     Acceleration, the time derivative of ``v``.
+    ///     Acceleration, the time derivative of ``v``, m/s² and rad/s².
     /// external : dict of str to (6,) or (B, 6) array, optional
     ///     Wrench by frame: force, N, and moment, N m, in the frame's axes about its origin.
     /// threads, out
@@ -151,7 +152,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// dq, dv, da : (nv, nv) or (B, nv, nv) array
-    ///     Derivatives with respect to ``q``, ``v`` and ``a``; ``da`` is the mass matrix.
+    ///     Derivatives with respect to ``q``, ``v`` and ``a``, in SI units; ``da`` is the mass matrix.
     #[pyo3(signature = (q, v, a, *, external=None, threads=None, out=None))]
     fn inverse_dynamics_derivatives<'py>(
         &self,
@@ -172,9 +173,9 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// tau : (nv,) or (B, nv) array
     ///     Wrench on the base in base axes, then joint efforts, N and N m.
     /// external : dict of str to (6,) or (B, 6) array, optional
@@ -185,7 +186,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// dq, dv, dtau : (nv, nv) or (B, nv, nv) array
-    ///     Derivatives with respect to ``q``, ``v`` and ``tau``; ``dtau`` is the inverse mass matrix.
+    ///     Derivatives with respect to ``q``, ``v`` and ``tau``, in SI units; ``dtau`` is the inverse mass
+    ///     matrix.
     #[pyo3(signature = (q, v, tau, *, external=None, threads=None, out=None))]
     fn forward_dynamics_derivatives<'py>(
         &self,

@@ -10,8 +10,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 
-/// Reads a URDF or xacro file. Also returns the keyword arguments with which the same file can be read from
-/// another working directory.
+/// Reads a URDF or xacro file; the base of the robot may be massless if `is_part` is true. Also returns the
+/// keyword arguments with which the same file can be read from another working directory.
 pub(super) fn read_file<'py>(
     py: Python<'py>,
     path: &Path,

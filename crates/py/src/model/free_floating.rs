@@ -8,17 +8,17 @@ use pyo3::prelude::*;
 #[pymethods]
 impl PyModel {
     /// Return the reduced model for one frame: ``M*``, ``c*``, ``Q*``, ``Jg`` and ``d`` of
-    /// :class:`FreeFloating`. It is exact for any momentum and wrench.
+    /// :class:`FreeFloating`.
     ///
-    /// ``out`` is the result of an earlier call with the same number of states; it is overwritten and
-    /// returned.
+    /// The model is exact for any momentum and wrench. ``out`` is the result of an earlier call with the same
+    /// number of states; its contents are overwritten and it is returned.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// frame : str
     ///     Name of the frame.
     /// external : dict of str to (6,) or (B, 6) array, optional
@@ -42,8 +42,9 @@ impl PyModel {
         free_floating(q.py(), self, self.frame(frame)?, &[q, v], external, out, threads)
     }
 
-    /// Return the derivatives of ``M* q̈ + c* - Q*``, ``ẍ = Jg q̈ + d`` and the twist ``ẋ`` of a frame at
-    /// given joint accelerations ``q̈``; :class:`FreeFloating` defines the other symbols.
+    /// Return the derivatives of the torque ``M* q̈ + c* - Q*``, the acceleration ``ẍ = Jg q̈ + d`` of a
+    /// frame and its twist ``ẋ`` at given joint accelerations ``q̈``; :class:`FreeFloating` defines the other
+    /// symbols.
     ///
     /// Tangent vectors and wrenches are treated as in :meth:`inverse_dynamics_derivatives`. For ``q̈ = 0``,
     /// the results for torque and acceleration are the derivatives of ``c* - Q*`` and ``d``. The derivatives
@@ -53,11 +54,11 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// joint_acceleration : (n,) or (B, n) array
-    ///     ``q̈``, rad/s² or m/s².
+    ///     Joint accelerations ``q̈``, rad/s² or m/s².
     /// frame : str
     ///     Name of the frame.
     /// external : dict of str to (6,) or (B, 6) array, optional

@@ -7,15 +7,16 @@ use pyo3::prelude::*;
 
 #[pymethods]
 impl PyModel {
-    /// Return ``q ⊕ dv``, the configuration that is reached from ``q`` with the constant velocity ``dv`` in
-    /// unit time.
+    /// Return ``q ⊕ dv``, the configuration that the robot reaches from ``q`` if it moves with the constant
+    /// velocity ``dv`` for a unit of time.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// dv : (nv,) or (B, nv) array
-    ///     Tangent vector: body twist of the base (m, rad), then joint displacements.
+    ///     Tangent vector: translation (m) and rotation (rad) of the base in base axes, then joint
+    ///     displacements (rad or m).
     /// threads, out
     ///     As described for :class:`Model`.
     ///
@@ -34,22 +35,22 @@ impl PyModel {
         self.one(Kernel::Integrate, &[q, dv], None, &[self.model.nq()], threads, out)
     }
 
-    /// Return ``q2 ⊖ q``, the ``dv`` for which ``integrate(q, dv) = q2``. Of the two possible rotations of
-    /// the base, the shorter one is used.
+    /// Return ``q2 ⊖ q``, the tangent vector ``dv`` for which ``integrate(q, dv) = q2``. The base rotates by
+    /// at most half a turn.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// q2 : (nq,) or (B, nq) array
-    ///     Second configuration.
+    ///     Configuration to reach from ``q``, m and rad.
     /// threads, out
     ///     As described for :class:`Model`.
     ///
     /// Returns
     /// -------
     /// (nv,) or (B, nv) array
-    ///     Tangent vector, m and rad.
+    ///     Tangent vector, m and rad, as for :meth:`integrate`.
     #[pyo3(signature = (q, q2, *, threads=None, out=None))]
     fn difference<'py>(
         &self,
@@ -66,7 +67,7 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// frame : str
     ///     Name of the frame.
     /// threads, out
@@ -75,7 +76,7 @@ impl PyModel {
     /// Returns
     /// -------
     /// (4, 4) or (B, 4, 4) array
-    ///     Homogeneous matrix, m.
+    ///     Homogeneous transform from frame axes to W, m.
     #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_pose<'py>(
         &self,
@@ -87,14 +88,14 @@ impl PyModel {
         self.one(Kernel::FramePose(self.frame(frame)?), &[q], None, &[4, 4], threads, out)
     }
 
-    /// Return the twist of a frame at its origin.
+    /// Return the twist of a frame: the velocity of its origin and its angular velocity, relative to W.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// frame : str
     ///     Name of the frame.
     /// threads, out
@@ -121,7 +122,7 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// frame : str
     ///     Name of the frame.
     /// threads, out
@@ -130,7 +131,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// (6, nv) or (B, 6, nv) array
-    ///     Jacobian with rows in W axes, linear first; dimensionless and m.
+    ///     Jacobian with rows in W axes, linear rows first, and columns in the order of ``v``; dimensionless,
+    ///     m or rad per unit of the joint.
     #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_jacobian<'py>(
         &self,

@@ -1,4 +1,4 @@
-//! Changes of link properties, read from Python arguments.
+//! Changes to the inertial properties of links, read from Python arguments.
 
 use super::builder::vector;
 use super::{Any, PyModel};
@@ -50,7 +50,7 @@ fn call_of_with_link(
     ConstructorCall::new("Model.with_link", (model, name), &keywords)
 }
 
-/// Converts the arguments of ``with_link``: ``com`` (3,), m; ``inertia`` (3, 3), kg m².
+/// Converts the arguments of `with_link`: `mass`, kg; `com` (3,), m; `inertia` (3, 3), kg m².
 fn link_change(
     link: &str,
     mass: Option<f64>,
@@ -63,8 +63,8 @@ fn link_change(
     Ok(LinkChange { link: link.to_owned(), mass, com, inertia })
 }
 
-/// Converts a dict `{link: {"mass": ..., "com": ..., "inertia": ...}}` (kg, m and kg m²); returns no changes
-/// without one.
+/// Converts a dict `{link: {"mass": ..., "com": ..., "inertia": ...}}` (kg, m and kg m²); `None` means no
+/// changes.
 pub(super) fn link_changes(links: Option<&Bound<'_, PyDict>>) -> PyResult<Vec<LinkChange>> {
     let Some(links) = links else { return Ok(Vec::new()) };
     links.iter().map(|(name, values)| change_from_dict(&name.extract::<String>()?, &values)).collect()

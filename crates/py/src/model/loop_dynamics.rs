@@ -11,18 +11,18 @@ use onorbit_core::model::{Closure, QUATERNION};
 use onorbit_core::number_text::{short, unlike};
 use pyo3::prelude::*;
 
-/// Largest opening of a loop, m and rad, that counts as closed.
+/// Error of a loop, m and rad, below which the loop counts as closed.
 const CLOSED: f64 = 1e-11;
 
 #[pymethods]
 impl PyModel {
-    /// Closed loops of the robot.
+    /// Closed loops of the robot, a list of :class:`Loop`.
     #[getter]
     fn loops(&self) -> Vec<PyLoop> {
         self.model.description().loops().iter().map(|closing| PyLoop { closing: closing.clone() }).collect()
     }
 
-    /// Return a copy of the robot with further closed loops.
+    /// Return a copy of the robot with additional closed loops.
     ///
     /// The bodies, joints and frames do not change.
     ///
@@ -50,8 +50,9 @@ impl PyModel {
     /// forces.
     ///
     /// The acceleration is ``a = M⁻¹ (tau - h + Jᵀ λ)`` with ``J a + J̇ v = 0``, the mass matrix ``M``, the
-    /// bias forces ``h`` of :meth:`bias_forces` and the Jacobian ``J`` of the constraints. Without
-    /// constraints, it is that of :meth:`forward_dynamics`. The forces of redundant constraints are zero.
+    /// bias forces ``h`` of :meth:`bias_forces`, the Jacobian ``J`` of the constraints and the constraint
+    /// forces ``λ``. Without constraints, it is that of :meth:`forward_dynamics`. The forces of redundant
+    /// constraints are zero.
     ///
     /// Parameters
     /// ----------
@@ -62,7 +63,7 @@ impl PyModel {
     /// tau : (nv,) or (B, nv) array
     ///     Wrench on the base in base axes, then joint efforts, N and N m.
     /// loops : list of Loop, optional
-    ///     Further loops, in addition to those of the model. For many calls, use :meth:`with_loops`.
+    ///     Loops in addition to those of the model. For many calls, :meth:`with_loops` is faster.
     /// external : dict of str to (6,) or (B, 6) array, optional
     ///     Wrench by frame: force, N, and moment, N m, in the frame's axes about its origin.
     /// threads
@@ -73,15 +74,16 @@ impl PyModel {
     /// a : (nv,) or (B, nv) array
     ///     Acceleration, m/s² and rad/s².
     /// forces : (m,) or (B, m) array
-    ///     Constraint forces ``λ``, N and N m, in the order of :meth:`loop_errors`. Those of a loop act on
-    ///     its second body, in the axes of the joint on its first frame; the force of a distance acts along
-    ///     the line from the first to the second origin; that of a mimic joint is its torque, or its force if
-    ///     it is prismatic.
+    ///     Constraint forces ``λ``, N and N m, in the order of :meth:`loop_errors`. The forces of a loop act
+    ///     on its second body and are expressed in the axes of the joint on its first frame. The force of a
+    ///     loop of kind ``distance`` acts along the line from the first to the second origin. The force of a
+    ///     mimic joint is its torque, or its force if it is prismatic.
     ///
     /// Raises
     /// ------
     /// FrameError, ModelError
-    ///     If a frame of ``loops`` does not exist, both are on one body, or a name is already used.
+    ///     If a frame of ``loops`` does not exist, both frames of a loop are on one body, or a name is
+    ///     already used.
     /// ShapeError
     ///     If an array has the wrong shape.
     #[pyo3(signature = (q, v, tau, loops=None, *, external=None, threads=None))]
@@ -102,21 +104,22 @@ impl PyModel {
         Ok(outputs.into())
     }
 
-    /// Return the errors of closed loops and mimic joints; they are zero where all loops are closed.
+    /// Return the constraint errors of closed loops and mimic joints. They are zero in a configuration that
+    /// closes all loops.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// threads, out
     ///     As described for :class:`Model`.
     ///
     /// Returns
     /// -------
     /// (m,) or (B, m) array
-    ///     Errors, m and rad: for each loop in :attr:`loops`, those of its constrained translations along the
-    ///     axes x, y, z of the joint on the first frame, then those of its constrained rotations. Mimic joints
-    ///     follow in the order of the joints of the robot's description.
+    ///     Errors, m and rad. For each loop in :attr:`loops`, the errors of its constrained translations
+    ///     along the axes x, y, z of the joint on the first frame precede those of its constrained rotations.
+    ///     Mimic joints follow in the order in which the robot's description lists the joints.
     #[pyo3(signature = (q, *, threads=None, out=None))]
     fn loop_errors<'py>(
         &self,
@@ -129,17 +132,18 @@ impl PyModel {
 
     /// Return the nearest configuration that closes all loops and in which mimic joints follow their leaders.
     ///
-    /// Distances are measured with the mass matrix, so that, to first order, the centre of mass does not move.
+    /// Distances are measured with the mass matrix, so that, to first order, the centre of mass does not
+    /// move.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) array
-    ///     Configuration near a closed one.
+    ///     Configuration close to one that closes the loops, m and rad.
     ///
     /// Returns
     /// -------
     /// (nq,) array
-    ///     Configuration whose :meth:`loop_errors` are rounding errors.
+    ///     Configuration whose :meth:`loop_errors` are zero up to rounding, m and rad.
     ///
     /// Raises
     /// ------
@@ -164,8 +168,8 @@ impl PyModel {
             return Ok(array_of(py, &[closed.len()], &closed));
         }
         let message = format!(
-            "the loops cannot all be closed near this configuration: {}; check the poses and lengths of these loops, or start \
-             closer to a configuration that closes them",
+            "the loops cannot all be closed near this configuration: {}; check the poses and lengths of these \
+             loops, or start closer to a configuration that closes them",
             open.join(", ")
         );
         Err(raise(py, "ConvergenceError", &message, &fields!(py,)))
@@ -178,14 +182,14 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) array
-    ///     Configuration that closes the loops.
+    ///     Configuration that closes the loops, m and rad.
     /// v : (nv,) array
-    ///     Velocity, m/s and rad/s.
+    ///     Velocity that need not satisfy the constraints, m/s and rad/s.
     ///
     /// Returns
     /// -------
     /// (nv,) array
-    ///     Velocity, m/s and rad/s.
+    ///     Velocity that satisfies the constraints, m/s and rad/s.
     fn closed_velocity<'py>(&self, q: Any<'_, 'py>, v: Any<'_, 'py>) -> PyResult<Array<'py>> {
         let (py, model) = (q.py(), &*self.model);
         let q = self.configuration(q)?;
@@ -202,7 +206,8 @@ impl PyModel {
         self.model.closures().iter().map(Closure::rows).sum()
     }
 
-    /// Reads one configuration, (nq,), with a unit quaternion.
+    /// Reads one configuration, (nq,), m and rad. Its quaternion must have norm 1 within 1e-6 and is
+    /// normalised.
     pub(super) fn configuration(&self, q: Any<'_, '_>) -> PyResult<Vec<f64>> {
         let (py, nq) = (q.py(), self.model.nq());
         let given = Input::new(q, "q")?;

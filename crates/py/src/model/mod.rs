@@ -1,5 +1,5 @@
 //! The class `Model`. Its methods are in one file per topic: `construction`, `properties`, `kinematics`,
-//! `dynamics`, `momentum` and `free_floating`.
+//! `dynamics`, `momentum`, `free_floating`, `loop_dynamics` and `constrained_free_floating`.
 
 pub(crate) mod attach;
 mod builder;
@@ -57,17 +57,18 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 
 /// Model of a free-floating robot: an immutable tree of bodies.
 ///
-/// Configurations are ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad. Velocities are ``v = [v_body(3),
+/// Configurations are ``q = [p(3), quat_xyzw(4), joints(n)]`` in m and rad: position of the base in W,
+/// rotation from base axes to W axes, and positions of the ``n`` joints. Velocities are ``v = [v_body(3),
 /// w_body(3), rates(n)]`` in m/s and rad/s: linear and angular velocity of the base in base axes, then joint
-/// rates. W is the world frame of the simulation. Methods with an argument ``q``, except
-/// :meth:`transfer_state`, accept one state ``(n,)`` or a batch ``(B, n)`` and return arrays of the
-/// corresponding shape.
+/// rates. So ``nq = 7 + n`` and ``nv = 6 + n``. W is the world frame of the simulation. Methods whose
+/// arguments have the shape ``(nq,) or (B, nq)`` accept one state or a batch of ``B`` states and return
+/// arrays of the corresponding shape.
 ///
-/// Two keyword arguments are common to these methods. ``threads`` is the number of threads for a batch
-/// (default: all cores). ``out`` receives the result and is returned, which avoids the allocation of large
-/// arrays. It is a contiguous float64 array, a tuple of three arrays for the derivatives of the dynamics, or
-/// an earlier result of the same class. It must not be accessed by other threads during the call, and its
-/// contents are undefined after an error.
+/// Most of these methods have two keyword arguments in common. ``threads`` is the number of threads for a
+/// batch (default: all cores). ``out`` is the object in which the result is stored and which is returned; it
+/// avoids the allocation of large arrays. It is a contiguous float64 array, a tuple of three arrays for the
+/// derivatives of the dynamics, or an earlier result of the same class. Other threads must not access it
+/// during the call, and its contents are undefined after an error.
 ///
 /// The methods raise ``ShapeError``, ``DtypeError`` or ``InputError`` for invalid arrays, ``FrameError`` for
 /// an unknown frame, and ``ConvergenceError`` if the mass matrix is numerically singular.
@@ -76,7 +77,7 @@ pub(crate) struct PyModel {
     pub(crate) model: Arc<Model>,
     pub(crate) evaluator: Mutex<Evaluator>,
     constructor_call: Option<ConstructorCall>,
-    /// Collision shapes of links, by the index of the frame, as far as they were used.
+    /// Collision shapes that were used before, by the index of the link's frame.
     collision_shapes: Mutex<HashMap<usize, Shape>>,
 }
 
@@ -114,8 +115,8 @@ impl PyModel {
         self.model.frame(&text.to_cow()?).map_err(|error| error.into_python(py))
     }
 
-    /// Returns the collision shape of the link with this frame. Meshes are read once, and their defects are
-    /// issued as warnings.
+    /// Returns the collision shape of the link whose frame has this index. Meshes are read once; their
+    /// defects cause warnings.
     pub(crate) fn collision_shape(&self, py: Python<'_>, frame: usize) -> PyResult<Shape> {
         let known = |shapes: &Mutex<HashMap<usize, Shape>>| {
             shapes.lock().unwrap_or_else(PoisonError::into_inner).get(&frame).cloned()
@@ -133,7 +134,8 @@ impl PyModel {
         Ok(shapes.entry(frame).or_insert(shape).clone())
     }
 
-    /// Returns the pose of a frame in W, (4, 4), m, for one configuration; a batch is an error.
+    /// Returns the pose (4, 4), m, in W of the frame with this index, for one configuration; a batch is an
+    /// error.
     pub(crate) fn pose_rows<'py>(&self, q: Any<'_, 'py>, frame: usize) -> PyResult<Array<'py>> {
         let pose = self.one(Kernel::FramePose(frame), &[q], None, &[4, 4], None, None)?;
         if pose.ndim() == 2 {
@@ -143,7 +145,7 @@ impl PyModel {
         Err(wrong_shape(q.py(), "q", &format!("({nq},)"), &[states, nq]))
     }
 
-    /// Evaluates a kernel with one output.
+    /// Evaluates a kernel that has one output, of shape `shape` for each state.
     fn one<'py>(
         &self,
         kernel: Kernel,

@@ -13,9 +13,9 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// threads, out
     ///     As described for :class:`Model`.
     ///
@@ -34,14 +34,14 @@ impl PyModel {
         self.one(Kernel::Momentum, &[q, v], None, &[6], threads, out)
     }
 
-    /// Return the kinetic energy in W.
+    /// Return the kinetic energy of the robot relative to W.
     ///
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// v : (nv,) or (B, nv) array
-    ///     Velocity.
+    ///     Velocity, m/s and rad/s.
     /// threads, out
     ///     As described for :class:`Model`.
     ///
@@ -69,14 +69,14 @@ impl PyModel {
     /// Parameters
     /// ----------
     /// q : (nq,) or (B, nq) array
-    ///     Configuration.
+    ///     Configuration, m and rad.
     /// threads, out
     ///     As described for :class:`Model`.
     ///
     /// Returns
     /// -------
     /// (3,) or (B, 3) array
-    ///     Position, m.
+    ///     Position, W axes, m.
     #[pyo3(signature = (q, *, threads=None, out=None))]
     fn center_of_mass<'py>(
         &self,

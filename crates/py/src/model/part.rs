@@ -1,4 +1,4 @@
-//! Robots that will be attached to another robot.
+//! Robots that are read from files only to be attached to another robot.
 
 use super::file::read_file;
 use crate::pickling::{ConstructorCall, Reduced};
@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Robot, read from a file, that will be attached to another robot; its base may be massless.
+/// Robot that is read from a file to be attached to another robot; its base may be massless.
 #[pyclass(name = "RobotPart", frozen, module = "onorbit_rs._core")]
 pub(super) struct PyRobotPart {
     pub(super) model: Model,
@@ -21,7 +21,7 @@ impl PyRobotPart {
     /// Parameters
     /// ----------
     /// path, package_paths, xacro_arguments, xacro, links
-    ///     As for :meth:`Model.from_urdf`.
+    ///     Path and options of the file, as for :meth:`Model.from_urdf`.
     ///
     /// Returns
     /// -------

@@ -1,4 +1,4 @@
-//! Properties of `Model`.
+//! Properties of `Model`, and its neutral configuration.
 
 use super::description::{self, PyBody, PyFrame, PyJoint, PyVisual};
 use super::{Array, PyModel};
@@ -15,19 +15,19 @@ impl PyModel {
         self.model.name()
     }
 
-    /// Length of a configuration, ``7 + n``.
+    /// Length of a configuration: ``7 + n`` for ``n`` moving joints.
     #[getter]
     fn nq(&self) -> usize {
         self.model.nq()
     }
 
-    /// Length of a velocity, ``6 + n``.
+    /// Length of a velocity: ``6 + n`` for ``n`` moving joints.
     #[getter]
     fn nv(&self) -> usize {
         self.model.nv()
     }
 
-    /// Total mass, kg.
+    /// Total mass of the robot, kg.
     #[getter]
     fn mass(&self) -> f64 {
         self.model.mass()
@@ -69,20 +69,20 @@ impl PyModel {
         description::frames(&self.model)
     }
 
-    /// Warnings about the robot file, one line each.
+    /// Warnings about the description of the robot, one line each.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.model.warnings().iter().map(ToString::to_string).collect()
     }
 
-    /// Shapes of the visual geometry.
+    /// Visual shapes of all links.
     #[getter]
     fn visuals(&self) -> Vec<PyVisual> {
         description::shapes(&self.model, self.model.visuals())
     }
 
-    /// Collision shapes, with only those meshes whose file exists. They are drawn instead of visual meshes
-    /// that cannot be drawn, and are the shapes of :func:`distance`.
+    /// Collision shapes of all links, except meshes whose file does not exist. :func:`distance` uses these
+    /// shapes, and they are drawn instead of visual meshes that cannot be drawn.
     #[getter]
     fn collisions(&self) -> Vec<PyVisual> {
         description::shapes(&self.model, self.model.collisions())

@@ -9,7 +9,7 @@ use onorbit_core::model::Model;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Returns the robot re-rooted at the link `link`, which becomes its base.
+/// Returns a copy of the robot in which `link` is the base.
 pub(super) fn rerooted(model: &Bound<'_, PyModel>, link: &str) -> PyResult<PyModel> {
     let py = model.py();
     let old = &model.get().model;
@@ -18,8 +18,8 @@ pub(super) fn rerooted(model: &Bound<'_, PyModel>, link: &str) -> PyResult<PyMod
     PyModel::wrap(py, new, Some(call), old.warnings())
 }
 
-/// Returns the configuration and the velocity of `to` with which the links have the poses and twists that
-/// they have in the state `(q, v)` of `from`.
+/// Returns the configuration and the velocity of `to` with which the links have the same poses and twists as
+/// in the state `(q, v)` of `from`.
 pub(super) fn transfer_state<'py>(
     py: Python<'py>,
     from: &Model,

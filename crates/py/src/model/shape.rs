@@ -11,12 +11,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::PathBuf;
 
-/// Shape for contacts, distances and keep-out zones, about the origin of its axes.
+/// Shape for contacts, distances and keep-out zones.
 ///
-/// Shapes of revolution have their axis along z. There is one constructor per kind: ``Shape.sphere(0.1)``.
+/// Spheres, boxes, cylinders, capsules, cones and tori are centred at the origin of the shape's axes. Shapes
+/// of revolution have their axis along z. There is one constructor per kind, such as ``Shape.sphere(0.1)``.
 #[pyclass(name = "Shape", frozen, module = "onorbit_rs")]
 pub(crate) struct PyShape {
-    /// One geometry, or those of the convex pieces of a mesh.
+    /// One geometry, or one for each convex piece of a mesh.
     pub(super) geometries: Vec<Geometry>,
     pub(crate) shape: Shape,
     call: ConstructorCall,
@@ -24,7 +25,7 @@ pub(crate) struct PyShape {
 
 #[pymethods]
 impl PyShape {
-    /// Return a sphere.
+    /// Return a sphere centred at the origin.
     ///
     /// Parameters
     /// ----------
@@ -45,7 +46,7 @@ impl PyShape {
         Self::new(py, "sphere", keywords, Geometry::Sphere { radius })
     }
 
-    /// Return a box.
+    /// Return a box with edges along x, y and z, centred at the origin.
     ///
     /// Parameters
     /// ----------
@@ -133,12 +134,12 @@ impl PyShape {
         Self::new(py, "cone", keywords, Geometry::Cone { radius, length: height })
     }
 
-    /// Return a torus about z.
+    /// Return a torus about the z axis, centred at the origin.
     ///
     /// Parameters
     /// ----------
     /// major_radius : float
-    ///     Radius of the circle in the middle of the tube, m.
+    ///     Radius of the circle along which the tube runs, measured to the middle of the tube, m.
     /// minor_radius : float
     ///     Radius of the tube, m.
     ///
@@ -149,7 +150,7 @@ impl PyShape {
     /// Raises
     /// ------
     /// InputError
-    ///     If a length is not positive and finite, or if the tube leaves no hole.
+    ///     If a length is not positive and finite, or ``minor_radius`` is not less than ``major_radius``.
     #[staticmethod]
     fn torus(py: Python<'_>, major_radius: f64, minor_radius: f64) -> PyResult<Self> {
         let keywords =
@@ -177,17 +178,19 @@ impl PyShape {
 
     /// Return the convex hull of a mesh, or its convex pieces.
     ///
-    /// Convex pieces follow notches and holes. CoACD computes the pieces, which takes seconds to minutes; the
-    /// result is kept in the user's folder for caches. A convex mesh is one piece.
+    /// Unlike the hull, convex pieces do not fill notches and holes. The tool CoACD computes the pieces,
+    /// which takes seconds to minutes; they are stored in the user's cache folder. A convex mesh is one
+    /// piece.
     ///
     /// Parameters
     /// ----------
     /// path : path
-    ///     STL or OBJ file.
+    ///     Path of an STL or OBJ file with coordinates in m.
     /// scale : (3,) array, optional
-    ///     Factors along the axes of the mesh; default: 1.
+    ///     Factors by which the coordinates of the mesh are multiplied; default: 1.
     /// pieces : int, optional
-    ///     Largest number of convex pieces; default: the convex hull. The mesh must be closed.
+    ///     Largest number of convex pieces, for which the mesh must be closed. Default: the convex hull is
+    ///     used.
     ///
     /// Returns
     /// -------
@@ -198,8 +201,8 @@ impl PyShape {
     /// InputError
     ///     If ``pieces`` is below 1 or above 1000.
     /// ModelError
-    ///     If the file does not exist or is not a mesh with a volume. With ``pieces``, also if the mesh is open, or
-    ///     CoACD is not installed (``pip install 'onorbit-rs[meshes]'``) or fails.
+    ///     If the file does not exist or is not a mesh with a volume. With ``pieces``, also if the mesh is
+    ///     open, or if CoACD fails or is not installed (``pip install 'onorbit-rs[meshes]'``).
     #[staticmethod]
     #[pyo3(signature = (path, *, scale=None, pieces=None))]
     fn mesh(
@@ -275,7 +278,8 @@ impl PyShape {
     }
 }
 
-/// Returns the lengths of a shape as keyword arguments after a check that they are positive and finite.
+/// Returns the lengths of a shape, m, as keyword arguments. A length that is not positive and finite is an
+/// error.
 fn lengths<'py>(py: Python<'py>, kind: &str, given: &[(&str, f64)]) -> PyResult<Bound<'py, PyDict>> {
     let keywords = PyDict::new(py);
     for &(name, got) in given {

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::Path;
 
-/// Reads a robot from a xacro file, which `onorbit_rs.robots.expand` expands.
+/// Reads a robot from a xacro file, which the Python module `onorbit_rs.robots.expand` expands to URDF.
 ///
 /// Error messages name the file but no line, because the line number would refer to the expanded text, which
 /// the user does not see.

@@ -1,4 +1,4 @@
-//! Paths through given points.
+//! Paths through given positions, with or without attitudes.
 
 use super::{Any, PyOrbit, base};
 use crate::arrays::{Input, array_of, wrong_shape};
@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// positions : (T, 3) array
 ///     Positions from the planet's centre, inertial axes, m.
 /// velocities : (T, 3) array, optional
-///     Velocities, inertial axes, m/s.
+///     Velocities, inertial axes, m/s. Default: those of the spline through the positions.
 /// accelerations : (T, 3) array, optional
 ///     Accelerations, inertial axes, m/s²; only together with ``velocities``.
 /// attitudes : (T, 4) array, optional
@@ -108,7 +108,7 @@ impl PyCustomPath {
         Ok(PyClassInitializer::from(orbit).add_subclass(Self { path }))
     }
 
-    /// First and last of the given times, s of simulation.
+    /// First and last of the given simulation times, s.
     #[getter]
     fn span(&self) -> (f64, f64) {
         self.path.span()

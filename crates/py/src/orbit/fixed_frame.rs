@@ -19,7 +19,8 @@ use std::sync::Arc;
 /// Parameters
 /// ----------
 /// position : (3,) array, optional
-///     Position from the planet's centre, inertial axes, m; default: zero.
+///     Position from the planet's centre or, without ``mu``, from any origin; inertial axes, m. Default:
+///     zero.
 /// attitude : (4,) array, optional
 ///     Quaternion (x, y, z, w) from the axes of the reference to inertial axes; default: no rotation.
 /// mu : float, optional

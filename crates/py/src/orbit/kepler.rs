@@ -75,7 +75,7 @@ fn flattening(
 /// J2 and reference radius, m, of the secular rates; `None` for a two-body orbit.
 type Flattening = Option<(f64, f64)>;
 
-/// Creates the initializer of a two-body orbit, with secular rates if `flattening` is given.
+/// Creates the Python object of a two-body orbit, with secular rates if `flattening` is given.
 fn wrap(
     py: Python<'_>,
     kepler: Result<Kepler, OrbitError>,
@@ -159,7 +159,7 @@ impl PyKepler {
         wrap(py, Kepler::new(&elements), flattening, base_object)
     }
 
-    /// Return the orbit through a state at time zero.
+    /// Return the orbit that has the position ``r`` and the velocity ``v`` at time zero.
     ///
     /// Parameters
     /// ----------

@@ -1,4 +1,4 @@
-//! Reference orbits.
+//! Orbits, and their base class.
 
 mod custom_path;
 mod fixed_frame;
@@ -29,14 +29,14 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     relative::add_functions(m)
 }
 
-/// Base class of reference orbits, on which the origin of W moves.
+/// Base class of orbits. The origin of W moves along the orbit that is given to a simulation.
 #[pyclass(name = "Orbit", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyOrbit {
     pub(crate) orbit: Arc<dyn Orbit>,
     constructor_call: ConstructorCall,
 }
 
-/// Creates the base object of an orbit of any kind.
+/// Creates the base object of an orbit, with the constructor and arguments used to pickle it.
 fn base(
     orbit: Arc<dyn Orbit>,
     constructor: &str,
@@ -52,7 +52,7 @@ type FillFrames = fn(&dyn Orbit, &[f64], &mut [f64], &mut [f64]) -> Result<(), O
 
 #[pymethods]
 impl PyOrbit {
-    /// Gravitational parameter of the planet, m³/s², or None without a planet.
+    /// Gravitational parameter of the planet, m³/s²; None if there is no planet.
     #[getter]
     fn mu(&self) -> Option<f64> {
         self.orbit.mu()
@@ -72,7 +72,7 @@ impl PyOrbit {
         self.orbit.velocity_source()
     }
 
-    /// Return position and velocity.
+    /// Return position and velocity at one or more times.
     ///
     /// Parameters
     /// ----------

@@ -16,8 +16,8 @@ use std::sync::Arc;
 
 /// Orbit integrated numerically in a gravity field.
 ///
-/// The integration uses collocation of order 16 and continues when later states are requested. The error
-/// after one day in a low Earth orbit is a micrometre.
+/// The integration uses collocation of order 16. It is extended, forwards or backwards, when a state beyond
+/// the integrated span is requested. After one day in a low Earth orbit, its error is some micrometres.
 ///
 /// Parameters
 /// ----------
@@ -32,10 +32,10 @@ use std::sync::Arc;
 /// earth : Earth, optional
 ///     Orientation of the planet; required by a ``ThirdBody``, and by a ``GravityField`` of an order above 0.
 /// mu : float, optional
-///     Gravitational parameter, m³/s². If there is a ``GravityField``, its value is used, and ``mu`` may
-///     differ from it by at most a relative 1e-5. Otherwise the default is the value of the Earth.
+///     Gravitational parameter, m³/s². If there is a ``GravityField``, its value is used, and the relative
+///     difference of ``mu`` from it must not exceed 1e-5. Otherwise the default is the value of the Earth.
 /// axes : {"GCRF", "TEME"}
-///     Inertial axes.
+///     Inertial axes of the position and the velocity.
 ///
 /// Raises
 /// ------
@@ -123,7 +123,8 @@ impl PyNumerical {
     }
 }
 
-/// Integrates from the state at `t0` in the gravity of the effects.
+/// Creates the Python object of the orbit with the state `(r, v)`, m and m/s, at `t0`, s, in the gravity of
+/// the effects.
 fn wrap(
     py: Python<'_>,
     (r, v, t0): (Vector3<f64>, Vector3<f64>, f64),
@@ -137,9 +138,8 @@ fn wrap(
     let others: Vec<_> = others.map(|effect| type_name(effect)).collect();
     if !others.is_empty() {
         let message = format!(
-            "a numerical orbit is in free fall, so {} cannot act on it; give the orbit only GravityField and \
-             ThirdBody, and \
-             the other effects to the simulation",
+            "a numerical orbit is in free fall, so {} cannot act on it; pass only GravityField and ThirdBody \
+             to the orbit, and the other effects to the simulation",
             others.join(", ")
         );
         return Err(raise(py, "OrbitError", &message, &fields!(py, "name": "environment", "got": others)));

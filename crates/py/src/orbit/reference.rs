@@ -3,14 +3,14 @@
 use onorbit_core::orbit::sgp4::ExternalSgp4;
 use pyo3::prelude::*;
 
-/// Object of the class `Satrec` of `sgp4.api`; each state requires a call to Python.
+/// Object of the class `Satrec` of `sgp4.api`. It is called in Python for each state.
 #[derive(Debug)]
 pub(super) struct Satrec {
     tsince: Py<PyAny>,
 }
 
 impl Satrec {
-    /// Creates a `Satrec` with a function of `onorbit_rs.ephemeris.satrec`.
+    /// Creates a `Satrec` by calling `function` of the Python module `onorbit_rs.ephemeris.satrec`.
     pub(super) fn new<'py>(
         py: Python<'py>,
         function: &str,

@@ -1,4 +1,4 @@
-//! Orbits of element sets.
+//! Orbits of element sets, propagated by SGP4.
 
 use super::reference::Satrec;
 use super::{PyOrbit, base};
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// Orbit of a two-line element set, propagated by SGP4 in improved mode.
 ///
-/// Time zero is the epoch of the element set. Axes are TEME; position and velocity are those of SGP4.
+/// Time zero is the epoch of the element set. Position and velocity are those of SGP4, in TEME axes.
 ///
 /// Parameters
 /// ----------
@@ -56,7 +56,7 @@ fn earth_model(py: Python<'_>, name: &str) -> PyResult<EarthModel> {
     }
 }
 
-/// Returns true if the reference implementation propagates.
+/// Returns true if the argument `propagator` selects the reference implementation.
 fn is_reference(py: Python<'_>, propagator: &str) -> PyResult<bool> {
     match propagator {
         "native" => Ok(false),
@@ -68,7 +68,8 @@ fn is_reference(py: Python<'_>, propagator: &str) -> PyResult<bool> {
     }
 }
 
-/// Creates the initializer of an orbit; if `reference` is given, it propagates instead of the engine.
+/// Creates the Python object of an orbit; if `reference` is given, it computes the states instead of the
+/// engine.
 fn wrap(
     sgp4: Sgp4,
     reference: Option<Satrec>,
@@ -230,7 +231,7 @@ impl PySgp4 {
         self.sgp4.elements().epoch.julian_date()
     }
 
-    /// Period that corresponds to the mean motion, s.
+    /// Period of revolution, which corresponds to the mean motion, s.
     #[getter]
     fn period(&self) -> f64 {
         self.sgp4.period()

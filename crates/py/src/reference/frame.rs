@@ -10,23 +10,21 @@ use onorbit_core::reference::{MovingFrame, ReferenceFrame, Target};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Uniformly moving and rotating spacecraft that defines a frame for references.
-///
-/// No forces act on the spacecraft.
+/// Spacecraft without forces that moves and rotates uniformly in W, and defines a frame for references.
 ///
 /// Parameters
 /// ----------
 /// pose : (4, 4) array
 ///     Pose in W at time zero, m.
 /// velocity : (3,) array, optional
-///     Constant velocity of its origin, W axes, m/s.
+///     Constant velocity of the origin, W axes, m/s; default: zero.
 /// spin : (3,) array, optional
-///     Constant angular velocity, W axes, rad/s.
+///     Constant angular velocity, W axes, rad/s; default: zero.
 ///
 /// Raises
 /// ------
 /// ControlError, InputError, ShapeError
-///     If the pose is not a rigid transform, or a number is not finite, or an array has the wrong shape.
+///     If the pose is not a rigid transform, a number is not finite, or an array has the wrong shape.
 #[pyclass(name = "Target", frozen, module = "onorbit_rs")]
 pub(crate) struct PyTarget {
     target: Target,
@@ -63,13 +61,13 @@ impl PyTarget {
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Around<'a> {
     pub(crate) orbit: Option<&'a Arc<dyn Orbit>>,
-    /// Names of the events.
+    /// Names of the events of the world.
     pub(crate) events: &'a [String],
     /// Names and models of the systems; empty for a single robot.
     pub(crate) systems: &'a [(String, Arc<Model>)],
 }
 
-/// Frame of a reference before the world of the simulation is known.
+/// Frame of a reference whose names are not yet resolved in the world of a simulation.
 pub(super) enum Frame {
     World,
     Lvlh,
@@ -80,7 +78,7 @@ pub(super) enum Frame {
 }
 
 impl Frame {
-    /// Reads the argument ``frame``: a name or a target; W by default. Any other value is an error.
+    /// Reads the argument `frame`: a name or a target; W by default. Any other value is an error.
     pub(super) fn of(value: Option<Any<'_, '_>>) -> PyResult<Self> {
         let Some(value) = value else { return Ok(Self::World) };
         if let Ok(target) = value.cast::<PyTarget>() {
@@ -96,15 +94,16 @@ impl Frame {
                 let py = value.py();
                 let got = value.repr().map_or_else(|_| "?".to_owned(), |text| text.to_string());
                 let message = format!(
-                    "frame is {got}; it must be 'world', 'lvlh', 'base', a frame of another system as SYSTEM/FRAME, or a Target"
+                    "frame is {got}; it must be 'world', 'lvlh', 'base', a frame of another system as \
+                     SYSTEM/FRAME, or a Target"
                 );
                 Err(raise(py, "ControlError", &message, &fields!(py, "name": "frame", "got": got)))
             }
         }
     }
 
-    /// Returns the frame of the core. The frame `"lvlh"` requires the orbit, a frame of a system requires the
-    /// systems.
+    /// Returns the frame of the core. The frame `"lvlh"` requires the orbit of `around`, and a frame of
+    /// another system requires its systems.
     pub(super) fn bind(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<ReferenceFrame> {
         Ok(match self {
             Self::World => ReferenceFrame::World,
@@ -114,7 +113,8 @@ impl Frame {
                 ReferenceFrame::System(moving_frame(py, "the reference is given in", path, around.systems)?)
             }
             Self::Lvlh => {
-                let message = "a reference in the frame 'lvlh' requires an orbit; set orbit";
+                let message =
+                    "a reference in the frame 'lvlh' requires an orbit, but there is none; set orbit";
                 let orbit = around.orbit.ok_or_else(|| {
                     raise(py, "ControlError", message, &fields!(py, "name": "frame", "got": "lvlh"))
                 })?;
@@ -124,7 +124,7 @@ impl Frame {
     }
 }
 
-/// Returns the frame with the path ``SYSTEM/FRAME``; `what` begins the message of an error.
+/// Returns the frame with the path `SYSTEM/FRAME`. The message of an error begins with `what`.
 pub(crate) fn moving_frame(
     py: Python<'_>,
     what: &str,

@@ -15,7 +15,7 @@ pub(super) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
 }
 
 impl PyJointReference {
-    /// Creates the base object of a reference of any kind, which `constructor_call` reconstructs.
+    /// Creates the base object of a reference; `constructor_call` is used to pickle it.
     fn new<P: JointPath + 'static>(
         py: Python<'_>,
         path: Result<P, ReferenceError>,
@@ -25,7 +25,7 @@ impl PyJointReference {
     }
 }
 
-/// Reads a (K, n) array, and returns its number of columns n with the array.
+/// Reads a (K, n) array with one row per point and one column per joint. Returns n and the array.
 fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> {
     let input = Input::new(value, name)?;
     match *input.shape() {
@@ -39,7 +39,7 @@ fn table<'py>(value: Any<'_, 'py>, name: &str) -> PyResult<(usize, Input<'py>)> 
 /// Parameters
 /// ----------
 /// q : (n,) array
-///     Positions, rad or m.
+///     Joint positions, rad or m.
 ///
 /// Raises
 /// ------
@@ -64,16 +64,18 @@ impl PyJointHold {
 /// Parameters
 /// ----------
 /// points : (K, n) array
-///     Positions, rad or m.
+///     Joint positions, one row per point, rad or m.
 /// times : (K,) array, optional
-///     Times of the points, s. By default the limits determine the times: with stops, each piece takes the
-///     shortest time within ``speed`` and ``acceleration``; with ``stops=False``, these times are multiplied
-///     by a common factor with which some joint just reaches a limit at one point of the path.
+///     Times of the points since the start of the reference, s. By default, the limits determine the times.
+///     With stops, each piece takes the shortest time within ``speed`` and ``acceleration``. With
+///     ``stops=False``, these times are multiplied by the common factor with which a joint just reaches one
+///     of its limits.
 /// speed, acceleration : float or (n,) array, optional
 ///     Limits of the rates, rad/s or m/s, and of the accelerations, rad/s² or m/s². Specify either limits or
 ///     ``times``.
 /// stops : bool
-///     If False, the path passes through the points without stopping.
+///     If True, the joints stop at every point; if False, the path passes through the points without
+///     stopping.
 ///
 /// Raises
 /// ------
@@ -113,9 +115,9 @@ impl PyJointWaypoints {
     /// start : (n,) array
     ///     Initial positions, rad or m.
     /// moves : list of tuple of int and float
-    ///     Index of each joint that moves and its new position, rad or m, in the order of the motions.
+    ///     Motions in their order: each is the index of the joint that moves and its new position, rad or m.
     /// times, speed, acceleration
-    ///     As in the constructor.
+    ///     Times or limits, as in the constructor.
     ///
     /// Returns
     /// -------
@@ -146,19 +148,19 @@ impl PyJointWaypoints {
     }
 }
 
-/// C² spline through joint positions at given times.
+/// Twice continuously differentiable spline through joint positions at given times.
 ///
-/// Before the first and after the last time, the joints rest at the first or last position. The rate
-/// therefore jumps at an end at which it is not zero.
+/// Before the first time the joints rest at the first positions, and after the last time at the last
+/// positions. The rate therefore jumps at an end at which the rate of the spline is not zero.
 ///
 /// Parameters
 /// ----------
 /// times : (K,) array
-///     Times, s.
+///     Times since the start of the reference, s.
 /// positions : (K, n) array
-///     Positions, rad or m.
+///     Joint positions, one row per time, rad or m.
 /// rates : (K, n) array, optional
-///     Rates, rad/s or m/s; default: computed from the positions.
+///     Joint rates, rad/s or m/s; default: those of the spline through the positions.
 ///
 /// Raises
 /// ------

@@ -1,21 +1,21 @@
-//! Straight line from rest to rest.
+//! References along a straight line from rest to rest.
 
 use super::{Any, PyReference, pose, timing};
 use crate::pickling::call_of;
 use onorbit_core::reference::{Line, TimeLaw, Timing};
 use pyo3::prelude::*;
 
-/// Straight line from rest to rest, with the attitude on a geodesic of SO(3).
+/// Straight line from rest to rest. The attitude changes by a rotation about a fixed axis, the shortest one.
 ///
 /// Parameters
 /// ----------
 /// start_pose, end_pose : (4, 4) array
 ///     Initial and final pose of the tool in ``frame``, m.
 /// duration : float, optional
-///     Duration, s. By default it is the shortest duration within the limits below, of which at least one is
-///     then required.
+///     Duration, s. Default: the shortest duration within the limits below, of which at least one is then
+///     required.
 /// speed, acceleration : float, optional
-///     Limits of the speed and acceleration of the origin, m/s and m/s².
+///     Limits of the speed and acceleration of the tool's origin, m/s and m/s².
 /// angular_speed, angular_acceleration : float, optional
 ///     Limits of the angular velocity and acceleration, rad/s and rad/s². Limits cannot be combined with
 ///     ``duration``.

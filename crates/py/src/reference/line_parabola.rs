@@ -1,4 +1,4 @@
-//! Line with a superimposed parabola.
+//! References along a line with a superimposed parabola.
 
 use super::{Any, PyReference, pose, vector};
 use crate::pickling::call_of;
@@ -6,10 +6,10 @@ use nalgebra::Vector3;
 use onorbit_core::reference::LineParabola;
 use pyo3::prelude::*;
 
-/// Line with a superimposed parabola, ``p(t) = p0 + s d + s (1 - s) h``, with constant attitude.
+/// Line with a superimposed parabola, from rest to rest with constant attitude.
 ///
-/// ``p0`` is the initial position, and ``s`` a quintic polynomial of time that rises from 0 to 1 within the
-/// duration.
+/// The position is ``p(t) = p0 + s d + s (1 - s) h``, with the initial position ``p0`` and a quintic
+/// polynomial ``s`` of time that rises from 0 to 1 within the duration.
 ///
 /// Parameters
 /// ----------
@@ -20,8 +20,8 @@ use pyo3::prelude::*;
 /// duration : float
 ///     Duration, s.
 /// height : (3,) array, optional
-///     Coefficient ``h`` of the parabola, axes of ``frame``, m; at half the distance, the lateral offset is a
-///     quarter of ``h``.
+///     Coefficient ``h`` of the parabola, axes of ``frame``, m; the offset from the line is a quarter of
+///     ``h`` at half the distance. Default: zero, a straight line.
 /// frame : {"world", "lvlh", "base"} or Target, optional
 ///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
 ///

@@ -1,4 +1,4 @@
-//! References of a tool and of joints.
+//! References that tools and joints track.
 
 mod frame;
 mod hold;
@@ -40,11 +40,12 @@ pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     joint::add_classes(m)
 }
 
-/// Base class of references of a tool: a pose, with velocity and acceleration, as a function of time.
+/// Base class of references of a tool. A reference is a pose, with velocity and acceleration, as a function
+/// of time.
 ///
-/// A reference is expressed in the axes of its ``frame``. The frame is ``"world"``, ``"lvlh"`` (of the
-/// simulation's orbit), ``"base"`` (relative to the robot's base), a :class:`Target`, or a frame
-/// ``"SYSTEM/FRAME"`` of another system of the same world, with which the reference moves.
+/// The pose is relative to the reference's ``frame``, and moves with this frame: ``"world"``, ``"lvlh"`` (the
+/// local frame of the simulation's orbit), ``"base"`` (the robot's base), a :class:`Target`, or a frame
+/// ``"SYSTEM/FRAME"`` of another system of the same world.
 #[pyclass(name = "Reference", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyReference {
     path: Arc<dyn TaskPath>,
@@ -70,7 +71,7 @@ impl PyReference {
     /// Returns
     /// -------
     /// pose : (4, 4) or (T, 4, 4) array
-    ///     Homogeneous matrix, m.
+    ///     Homogeneous transform from tool axes to the axes of the frame, m.
     /// velocity, acceleration : (6,) or (T, 6) array
     ///     Linear, then angular components: m/s and rad/s, or m/s² and rad/s².
     fn sample<'py>(&self, py: Python<'py>, t: Any<'_, 'py>) -> PyResult<Arrays<'py>> {
@@ -87,12 +88,12 @@ impl PyReference {
     /// t : float or (T,) array
     ///     Time since the start of the reference, s.
     /// orbit : Orbit, optional
-    ///     Orbit, which is required for a reference in the frame ``"lvlh"``.
+    ///     Reference orbit; required for a reference in the frame ``"lvlh"``.
     ///
     /// Returns
     /// -------
     /// pose, velocity, acceleration
-    ///     As for :meth:`sample`.
+    ///     Arrays as for :meth:`sample`, but in W and its axes.
     ///
     /// Raises
     /// ------
@@ -127,7 +128,7 @@ impl PyReference {
 }
 
 impl PyReference {
-    /// Creates the base object of a reference of any kind, which `constructor_call` reconstructs.
+    /// Creates the base object of a reference; `constructor_call` is used to pickle it.
     fn new<P: TaskPath + 'static>(
         py: Python<'_>,
         path: Result<P, ReferenceError>,
@@ -144,7 +145,8 @@ impl PyReference {
     }
 }
 
-/// Base class of references of joints: positions, rates and accelerations as functions of time.
+/// Base class of references of joints. A reference consists of joint positions, rates and accelerations as
+/// functions of time.
 #[pyclass(name = "JointReference", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyJointReference {
     path: Arc<dyn JointPath>,
@@ -159,7 +161,7 @@ impl PyJointReference {
         self.path.duration()
     }
 
-    /// Return positions, rates and accelerations.
+    /// Return positions, rates and accelerations of the joints.
     ///
     /// Parameters
     /// ----------
@@ -199,8 +201,8 @@ fn table<'py>(
     Ok((poses, v, a))
 }
 
-/// Returns the reference of a tool contained in a Python object; a reference in the frame `"lvlh"` uses the
-/// orbit in `around`.
+/// Returns the reference of a tool for a Python object of the class `Reference`. Its frame is resolved in
+/// `around`; any other object is an error.
 pub(crate) fn extract(value: Any<'_, '_>, around: &Around<'_>) -> PyResult<TaskReference> {
     match value.cast::<PyReference>() {
         Ok(reference) => reference.get().bind(value.py(), around),
@@ -208,7 +210,8 @@ pub(crate) fn extract(value: Any<'_, '_>, around: &Around<'_>) -> PyResult<TaskR
     }
 }
 
-/// Returns the reference of joints contained in a Python object.
+/// Returns the reference of joints for a Python object of the class `JointReference`; any other object is an
+/// error.
 pub(crate) fn extract_joints(value: Any<'_, '_>) -> PyResult<JointReference> {
     match value.cast::<PyJointReference>() {
         Ok(reference) => Ok(Arc::clone(&reference.get().path)),
@@ -229,14 +232,14 @@ fn vector(value: Any<'_, '_>, name: &str) -> PyResult<Vector3<f64>> {
     Ok(fixed::<3>(value, name, &[3])?.into())
 }
 
-/// Reads a (4, 4) pose.
+/// Reads the argument `pose`, a (4, 4) homogeneous transform, m.
 fn pose(value: Any<'_, '_>) -> PyResult<Hold> {
     let rows = fixed::<16>(value, "pose", &[4, 4])?;
     let mut poses = Hold::from_rows(&[rows]).map_err(|error| error.into_python(value.py()))?;
     Ok(poses.remove(0))
 }
 
-/// Reads (K, 4, 4) poses.
+/// Reads the argument `poses`, (K, 4, 4) homogeneous transforms, m.
 fn poses(value: Any<'_, '_>) -> PyResult<Vec<Hold>> {
     let input = Input::new(value, "poses")?;
     let [_, 4, 4] = input.shape() else {

@@ -13,13 +13,13 @@ use pyo3::prelude::*;
 /// poses : (K, 4, 4) array
 ///     Poses of the tool in ``frame``, m.
 /// times : (K,) array, optional
-///     Times of the poses, s. By default the limits determine the times: with stops, each piece takes the
-///     shortest time within the limits; with ``stops=False``, these times are multiplied by a common factor
-///     with which a limit is just reached at one point of the path.
+///     Times of the poses since the start of the reference, s. By default, the limits determine the times.
+///     With stops, each piece takes the shortest time within the limits. With ``stops=False``, these times
+///     are multiplied by the common factor with which the motion just reaches one of the limits.
 /// speed, acceleration, angular_speed, angular_acceleration : float, optional
 ///     Limits as for :class:`Line`. Specify either limits or ``times``.
 /// stops : bool
-///     If False, the path passes through the poses without stopping.
+///     If True, the tool stops at every pose; if False, the path passes through the poses without stopping.
 /// frame : {"world", "lvlh", "base"} or Target, optional
 ///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
 ///
@@ -69,17 +69,19 @@ impl PyWaypoints {
     }
 }
 
-/// C² spline through poses at given times. Before the first time, the first pose is held; after the last
-/// time, the last pose is held.
+/// Twice continuously differentiable spline through poses at given times.
+///
+/// Before the first time, the first pose is held; after the last time, the last pose is held.
 ///
 /// Parameters
 /// ----------
 /// times : (K,) array
-///     Times, s.
+///     Times since the start of the reference, s.
 /// poses : (K, 4, 4) array
 ///     Poses of the tool in ``frame``, m.
 /// velocities : (K, 6) array, optional
-///     Velocities, axes of ``frame``, linear first, m/s and rad/s.
+///     Velocities, axes of ``frame``, linear first, m/s and rad/s; default: those of the spline through the
+///     poses.
 /// frame : {"world", "lvlh", "base"} or Target, optional
 ///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
 ///

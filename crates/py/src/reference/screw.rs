@@ -1,4 +1,4 @@
-//! Rotation about a line, with or without translation along it.
+//! References that rotate about a line, with or without translation along it.
 
 use super::{Any, PyReference, pose, timing, vector};
 use crate::pickling::call_of;
@@ -12,18 +12,18 @@ use pyo3::prelude::*;
 /// start_pose : (4, 4) array
 ///     Initial pose of the tool in ``frame``, m.
 /// center : (3,) array
-///     Point of the line in ``frame``, m.
+///     Any point of the line, in ``frame``, m.
 /// axis : (3,) array
-///     Direction of the line, axes of ``frame``.
+///     Direction of the line, axes of ``frame``, of any length except zero.
 /// angle : float
-///     Angle of rotation, rad.
+///     Angle of rotation about ``axis``, right-handed, rad.
 /// turns : bool
 ///     If True, the attitude rotates with the position; otherwise it is constant.
 /// ramp : float, optional
 ///     If given, the rate is constant between two ramps, each of which takes this fraction of the duration;
 ///     otherwise the angle is a quintic of time.
 /// duration, speed, acceleration, angular_speed, angular_acceleration : float, optional
-///     As for :class:`Line`.
+///     Duration or limits, as for :class:`Line`.
 /// frame : {"world", "lvlh", "base"} or Target, optional
 ///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
 ///
@@ -84,13 +84,13 @@ impl PyCircle {
 /// Parameters
 /// ----------
 /// start_pose, center, axis, angle
-///     As for :class:`Circle`.
+///     Initial pose, line and angle of rotation, as for :class:`Circle`.
 /// advance : float
-///     Translation along the axis, m.
+///     Translation along ``axis`` during the whole motion, m.
 /// turns, ramp
-///     As for :class:`Circle`.
+///     Options, as for :class:`Circle`.
 /// duration, speed, acceleration, angular_speed, angular_acceleration : float, optional
-///     As for :class:`Line`.
+///     Duration or limits, as for :class:`Line`.
 /// frame : {"world", "lvlh", "base"} or Target, optional
 ///     Frame of the reference, or ``"SYSTEM/FRAME"`` (see :class:`Reference`); default: W.
 ///
@@ -147,7 +147,7 @@ impl PyScrew {
     }
 }
 
-/// Returns the path of a circle or a screw.
+/// Returns the path of a circle or, with an `advance`, m, that is not zero, of a screw.
 fn screw(
     py: Python<'_>,
     start_pose: Any<'_, '_>,

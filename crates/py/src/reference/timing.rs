@@ -7,7 +7,8 @@ use crate::errors::{IntoPython, plain};
 use onorbit_core::reference::{RateLimit, ReferenceError, TaskLimits, Timing};
 use pyo3::prelude::*;
 
-/// Reads the duration or times, or the limits of a frame's motion. Giving both or neither is an error.
+/// Reads either a duration or times, or the limits of a tool's motion: speed, acceleration, angular speed and
+/// angular acceleration. Giving both or neither is an error.
 pub(super) fn of_task<T>(
     py: Python<'_>,
     given: Option<T>,
@@ -27,7 +28,8 @@ pub(super) fn of_task<T>(
     }
 }
 
-/// Reads the times, s, or limits for each of `count` joints. Giving both or neither is an error.
+/// Reads either times, s, or limits of the rates and accelerations of `count` joints. Giving both or neither
+/// is an error.
 pub(super) fn of_joints(
     py: Python<'_>,
     count: usize,
@@ -65,5 +67,5 @@ fn per_joint(value: Any<'_, '_>, name: &str, count: usize) -> PyResult<Vec<f64>>
 
 /// Returns the error for a reference with both times and limits.
 fn both(py: Python<'_>) -> PyErr {
-    plain(py, "ControlError", "times (or a duration) and limits are both given; give only one of them")
+    plain(py, "ControlError", "times (or a duration) and limits are both given; omit one of the two")
 }

@@ -10,11 +10,12 @@ use onorbit_core::world::{Brake, BrakeIndex};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Brake of a joint, one of the actuators of a system.
+/// Brake of a joint. It is one of the actuators of a system.
 ///
-/// While it is engaged, a brake with a finite slip torque adds Coulomb friction of this torque to the joint: it
-/// holds the joint at rest up to the slip torque and opposes its motion with the slip torque. A brake with an
-/// infinite slip torque holds the joint rigidly and stops a moving joint by an impulse, which changes no momentum.
+/// While it is engaged, a brake with a finite slip torque adds Coulomb friction to the joint: it holds a
+/// joint at rest against torques up to the slip torque, and opposes the motion of a moving joint with the
+/// slip torque. A brake with an infinite slip torque holds the joint rigidly. It stops a moving joint by an
+/// impulse, which does not change the momentum of the system.
 ///
 /// Parameters
 /// ----------
@@ -23,7 +24,7 @@ use pyo3::types::PyDict;
 /// joint : str
 ///     Name of the joint.
 /// slip_torque : float
-///     Largest torque that the brake holds, N m (N for a prismatic joint).
+///     Largest torque that the brake holds, N m (N for a prismatic joint); positive, and may be infinite.
 /// engaged : bool
 ///     If True, the brake is engaged at the start of the run.
 #[pyclass(name = "Brake", frozen, module = "onorbit_rs")]
@@ -83,14 +84,14 @@ impl PyBrake {
     }
 }
 
-/// Returns the brakes among the actuators of a robot.
+/// Returns the brakes given as the actuators of a robot.
 pub(super) fn brakes_of(py: Python<'_>, actuators: &Bound<'_, PyAny>, model: &Model) -> PyResult<Vec<Brake>> {
     let brakes = list_of::<PyBrake>(actuators, "actuators", "actuators, such as [oo.Brake(…)]")?;
     let read = |brake: &Bound<'_, PyBrake>| {
         let PyBrake { name, joint, slip_torque, engaged } = brake.get();
         let wrong = |problem: String| {
             let message = format!(
-                "the brake '{name}' requires a joint that moves (revolute, continuous or prismatic): {problem}"
+                "the brake '{name}' has no joint that moves (revolute, continuous or prismatic): {problem}"
             );
             raise(py, "WorldError", &message, &fields!(py, "name": name, "got": joint))
         };
@@ -100,8 +101,8 @@ pub(super) fn brakes_of(py: Python<'_>, actuators: &Bound<'_, PyAny>, model: &Mo
     brakes.iter().map(read).collect()
 }
 
-/// Returns the brake with the path ``SYSTEM/BRAKE``, to which the event `event` refers. `systems` are the names
-/// and brakes of the systems.
+/// Returns the brake with the path `SYSTEM/BRAKE`, to which the event `event` refers. `systems` are the names
+/// of the systems, each with the names of its brakes.
 pub(super) fn brake_at(
     py: Python<'_>,
     event: &str,
@@ -113,7 +114,7 @@ pub(super) fn brake_at(
         raise(py, "WorldError", &message, &fields!(py, "name": event, "got": path))
     };
     let Some((name, brake)) = path.split_once('/') else {
-        return Err(wrong("give the name of the system and that of the brake, as in 'chaser/elbow_brake'"));
+        return Err(wrong("it must be written SYSTEM/BRAKE, as in 'chaser/elbow_brake'"));
     };
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
@@ -125,16 +126,19 @@ pub(super) fn brake_at(
         None if known.is_empty() => {
             Err(wrong(&format!("the system '{name}' has no brakes; add the brake to its actuators")))
         }
-        None => Err(wrong(&format!("the brakes of the system '{name}' are: {}", known.join(", ")))),
+        None => Err(wrong(&format!(
+            "there is no brake '{brake}'; the brakes of the system '{name}' are: {}",
+            known.join(", ")
+        ))),
     }
 }
 
-/// Reads the path of a brake.
+/// Reads the path `SYSTEM/BRAKE` of a brake.
 fn brake_path(value: &Bound<'_, PyAny>) -> PyResult<String> {
     text(value, "brake", "a brake as SYSTEM/BRAKE (str), such as 'chaser/elbow_brake'")
 }
 
-/// Declares an event that engages or disengages a brake.
+/// Declares the Python class of an event that engages or disengages a brake.
 macro_rules! brake_event {
     ($(#[$doc:meta])* $type:ident, $name:literal, $verb:literal) => {
         $(#[$doc])*
@@ -143,7 +147,7 @@ macro_rules! brake_event {
             /// Name of the event.
             #[pyo3(get)]
             pub(super) name: String,
-            /// Brake, ``SYSTEM/BRAKE``.
+            /// Path of the brake, ``SYSTEM/BRAKE``.
             #[pyo3(get)]
             pub(super) brake: String,
             pub(super) condition: Condition,
@@ -182,11 +186,11 @@ macro_rules! brake_event {
 }
 
 brake_event! {
-    /// Event that engages a brake. A brake that is engaged already stays engaged.
+    /// Event that engages a brake. A brake that is already engaged stays engaged.
     ///
-    /// Exactly one of ``at``, ``after`` and ``on_command`` specifies when the event happens. A brake with a finite
-    /// slip torque then slows its joint down by its friction; one with an infinite slip torque stops the joint by
-    /// an impulse, and the energy lost is that of the impulse.
+    /// Exactly one of ``at``, ``after`` and ``on_command`` specifies when the event happens. From then on, a
+    /// brake with a finite slip torque slows its joint down by friction. A brake with an infinite slip torque
+    /// stops the joint at once by an impulse, which dissipates the kinetic energy of the relative motion.
     ///
     /// Parameters
     /// ----------
@@ -206,7 +210,8 @@ brake_event! {
 }
 
 brake_event! {
-    /// Event that disengages a brake, whose joint is then free. A brake that is not engaged stays disengaged.
+    /// Event that disengages a brake, whose joint can then move. A brake that is not engaged stays
+    /// disengaged.
     ///
     /// Exactly one of ``at``, ``after`` and ``on_command`` specifies when the event happens.
     ///

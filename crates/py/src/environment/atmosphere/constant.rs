@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::atmosphere::ConstantAtmosphere;
 use pyo3::prelude::*;
 
-/// Atmosphere with constant density.
+/// Atmosphere with the same density everywhere and at all times.
 ///
 /// Parameters
 /// ----------

@@ -7,8 +7,8 @@ use pyo3::prelude::*;
 
 /// Atmosphere whose density decreases exponentially with altitude.
 ///
-/// Without arguments, the atmosphere has the 28 layers of Vallado's table 8-4 (2013), from 0 to 1000 km and
-/// above, for moderate solar activity.
+/// Without arguments, the atmosphere has the 28 layers of Vallado's table 8-4 (2013) for moderate solar
+/// activity; the lowest begins at 0 km, and the highest at 1000 km has no upper bound.
 ///
 /// Parameters
 /// ----------
@@ -22,7 +22,7 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// EffectError
-///     If only some of the arguments are given, or one is outside its range.
+///     If only some of the arguments are given, or an argument is outside its range.
 #[pyclass(name = "ExponentialAtmosphere", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
 pub(super) struct PyExponentialAtmosphere;
 
@@ -42,8 +42,8 @@ impl PyExponentialAtmosphere {
                 ExponentialAtmosphere::new(vec![Layer { base, density, scale_height }])
             }
             _ => {
-                let message = "only some of density, altitude and scale_height are given; give all of them, or none for \
-                               the table of layers";
+                let message = "only some of density, altitude and scale_height are given; give all three, or \
+                               none of them to use the table of layers";
                 return Err(raise(
                     py,
                     "EffectError",

@@ -21,7 +21,7 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// EffectError
-///     If ``exponent`` is not between 2 and 6, or ``lag`` not between -π and π.
+///     If ``exponent`` is not between 2 and 6, or ``lag`` is not between -π and π.
 #[pyclass(name = "HarrisPriester", extends = PyAtmosphere, frozen, module = "onorbit_rs")]
 pub(super) struct PyHarrisPriester;
 

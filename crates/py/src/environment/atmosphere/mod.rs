@@ -26,7 +26,7 @@ pub(super) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<nrlmsise00::PyNrlmsise00>()
 }
 
-/// Base class of atmosphere models.
+/// Base class of atmosphere models, which compute the density for :class:`Drag`.
 #[pyclass(name = "Atmosphere", subclass, frozen, module = "onorbit_rs")]
 pub(crate) struct PyAtmosphere {
     pub(super) atmosphere: Arc<dyn Atmosphere>,
@@ -45,14 +45,15 @@ impl PyAtmosphere {
     }
 }
 
-/// Returns the given Earth, or an Earth without rotation for models that do not use the rotation.
+/// Returns the given Earth or, if none is given, an Earth at rest, which suffices for models that depend
+/// neither on the Sun nor on the date.
 fn earth_or_fixed(earth: Option<&Bound<'_, PyEarth>>) -> Arc<Earth> {
     earth.map_or_else(|| Arc::new(Earth::about_z(0.0, 0.0)), |earth| Arc::clone(&earth.get().earth))
 }
 
 #[pymethods]
 impl PyAtmosphere {
-    /// Return the density at geodetic coordinates. The arguments are broadcast against each other.
+    /// Return the density at geodetic coordinates. Array arguments are broadcast to a common shape.
     ///
     /// Parameters
     /// ----------
@@ -158,7 +159,7 @@ impl PyAtmosphere {
     }
 }
 
-/// Broadcasts arrays to a common shape.
+/// Broadcasts arrays to a common shape, and returns them flattened together with that shape.
 fn broadcast<'py, const N: usize>(
     names: [&str; N],
     values: [Any<'_, 'py>; N],

@@ -1,4 +1,4 @@
-//! NRLMSISE-00 atmosphere and its space weather.
+//! NRLMSISE-00 atmosphere, and the space weather on which it depends.
 
 use super::{Any, PyAtmosphere};
 use crate::arrays::fixed;
@@ -13,8 +13,9 @@ use std::path::{Path, PathBuf};
 
 /// NRLMSISE-00 atmosphere, whose density includes anomalous oxygen.
 ///
-/// The model requires an ``earth`` with an epoch, and space weather given either as constants or as a table.
-/// A missing value or day raises ``EffectError``.
+/// The model requires an ``earth`` with an epoch, and space weather: either the constants ``f107``, ``f107a``
+/// and ``ap``, or a table. A value or day that is missing in the table raises ``EffectError`` when it is
+/// needed.
 ///
 /// Parameters
 /// ----------
@@ -29,7 +30,7 @@ use std::path::{Path, PathBuf};
 ///     CSV file with one row per day and the columns ``DATE, AP_AVG, F10.7_OBS, F10.7_OBS_CENTER81``, and
 ///     ``AP1`` to ``AP8`` for the three-hourly history (``SW-All.csv`` of CelesTrak).
 /// three_hourly : bool
-///     If False, only the daily mean of ``ap`` in the table is used.
+///     If False, only the daily mean of the geomagnetic index in the table is used.
 ///
 /// Raises
 /// ------
@@ -70,11 +71,12 @@ impl PyNrlmsise00 {
                     missing.iter().filter(|(_, missing)| *missing).map(|(name, _)| *name).collect();
                 let message = match table {
                     Some(_) => {
-                        "space weather is given both as numbers and as a table; give only one of the two"
+                        "space weather is given both as numbers and as a table; omit either f107, f107a and \
+                         ap, or table"
                             .to_owned()
                     }
                     None => format!(
-                        "the space weather lacks {}; give f107, f107a and ap, or a table",
+                        "the space weather lacks {}; give f107, f107a and ap, or a table of space weather",
                         missing.join(", ")
                     ),
                 };
@@ -94,7 +96,7 @@ fn activity(ap: Any<'_, '_>) -> PyResult<MagneticActivity> {
     fixed::<7>(ap, "ap", &[7]).map(MagneticActivity::History)
 }
 
-/// Reads a CSV file of space weather.
+/// Reads a CSV file of space weather; without `three_hourly`, only the daily means of the geomagnetic index.
 fn read_table(py: Python<'_>, path: &Path, three_hourly: bool) -> PyResult<SpaceWeatherTable> {
     let text = read_text(path, LARGEST_TABLE)
         .map_err(|error| unreadable(py, path, "space weather table", &error))?;

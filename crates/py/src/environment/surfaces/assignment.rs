@@ -25,8 +25,8 @@ impl SurfaceAssignment {
             Err(_) => {
                 let got = type_name(value);
                 let message = format!(
-                    "surfaces holds a value of type {got}; expected Faces, Plates or Cannonball, or a dict of them by \
-                     body"
+                    "surfaces holds a value of type {got}; expected Faces, Plates or Cannonball, or a dict \
+                     from names of bodies to these"
                 );
                 Err(raise(
                     value.py(),
@@ -49,8 +49,8 @@ impl SurfaceAssignment {
         }
     }
 
-    /// Returns the surfaces on the given systems. Bodies without visual geometry that have no faces for this
-    /// reason cause a warning; a single system without any surface is an error.
+    /// Returns the surfaces on the given systems. If bodies have no faces because they have no visual
+    /// geometry, a warning lists them. A single system without any surface is an error.
     pub(crate) fn on_with_warning(
         &self,
         py: Python<'_>,
@@ -87,7 +87,7 @@ impl SurfaceAssignment {
         Ok(surfaces)
     }
 
-    /// Returns the surfaces on one of the systems, paired with true if they are the faces of all of its
+    /// Returns the surfaces on the system with this index, and true if they are the faces of all of its
     /// bodies.
     fn on_system(
         &self,
@@ -119,8 +119,8 @@ impl SurfaceAssignment {
             }
             Self::All(kind) if targets.len() > 1 && !kind.is_faces() => {
                 let message = format!(
-                    "surfaces is the surface of a single body, but the world has {} systems; assign it to a system \
-                     by name, such as surfaces={{'{}': …}}",
+                    "surfaces is the surface of a single body, but the world has {} systems; name the system \
+                     that has this surface, such as surfaces={{'{}': …}}",
                     targets.len(),
                     targets[0].name
                 );
@@ -130,8 +130,8 @@ impl SurfaceAssignment {
         }
     }
 
-    /// Returns the surfaces on one of the systems, whose links are named without the system. The surfaces are
-    /// paired with true if they are the faces of all bodies of the system.
+    /// Returns the surfaces on the system with this index, and true if they are the faces of all of its
+    /// bodies. The keys of a dict are names of links, without the name of the system.
     pub(crate) fn on_robot(
         &self,
         py: Python<'_>,
@@ -165,7 +165,7 @@ impl SurfaceKind {
         matches!(self, Self::Faces { .. })
     }
 
-    /// Returns this surface on all bodies of a system, paired with true if it consists of their faces. Any
+    /// Returns this surface on all bodies of a system, and true if the surface consists of their faces. Any
     /// other surface requires a robot with a single body.
     fn on_all(
         &self,
@@ -186,15 +186,15 @@ impl SurfaceKind {
         let robot =
             if targets.len() == 1 { "the robot".to_owned() } else { format!("system '{}'", target.name) };
         let message = format!(
-            "{robot} has {count} bodies; name the one with this surface, such as surfaces={{'{0}': …}} (in YAML bodies: \
-             {{{0}: …}})",
+            "surfaces is the surface of a single body, but {robot} has {count} bodies; name the one with this \
+             surface, such as surfaces={{'{0}': …}} (in YAML bodies: {{{0}: …}})",
             path_of(targets, target, base)
         );
         Err(raise(py, "EffectError", &message, &fields!(py, "name": "surfaces")))
     }
 }
 
-/// Returns the path of a body, or only its name if there is a single system.
+/// Returns the path `SYSTEM/BODY` of a body, or only its name if there is a single system.
 fn path_of(targets: &[Target<'_>], target: &Target<'_>, body: &str) -> String {
     if targets.len() == 1 { body.to_owned() } else { format!("{}/{body}", target.name) }
 }

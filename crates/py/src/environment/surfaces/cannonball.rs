@@ -1,12 +1,12 @@
-//! Surfaces with the same area in all directions.
+//! Surfaces with the same cross-section in all directions.
 
 use super::{PySurface, SurfaceKind};
 use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::surfaces::Surface;
 use pyo3::prelude::*;
 
-/// Surface with the same area in all directions. Forces act at the body's centre of mass, so there is no
-/// torque.
+/// Surface with the same cross-section in all directions. Forces act at the body's centre of mass, so there
+/// is no torque.
 ///
 /// Parameters
 /// ----------

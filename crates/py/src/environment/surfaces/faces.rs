@@ -5,7 +5,7 @@ use crate::errors::{IntoPython, fields};
 use onorbit_core::environment::surfaces::Surface;
 use pyo3::prelude::*;
 
-/// Faces of a body's visual geometry, which is that of a link and of all links fixed to it.
+/// Faces of a body's visual geometry. A body consists of a link and all links that are fixed to it.
 ///
 /// Boxes, cylinders and spheres are represented exactly, capsules with an error of 2 %; for meshes, the
 /// construction of the simulation raises ``EffectError``.

@@ -1,4 +1,4 @@
-//! Surfaces of links for drag and radiation pressure, which are assigned to a robot when the simulation is
+//! Surfaces of bodies for drag and radiation pressure. They are assigned to a robot when the simulation is
 //! constructed.
 
 mod assignment;
@@ -26,7 +26,7 @@ pub(super) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<plates::PyPlates>()
 }
 
-/// Base class of the surfaces of links for ``Drag`` and ``RadiationPressure``.
+/// Base class of the surfaces of bodies for ``Drag`` and ``RadiationPressure``.
 #[pyclass(name = "Surface", subclass, frozen, module = "onorbit_rs")]
 struct PySurface {
     kind: SurfaceKind,
@@ -74,7 +74,8 @@ pub(crate) enum SurfaceKind {
 }
 
 impl SurfaceKind {
-    /// Returns the surface on the body to which `frame` of the system with number `system` is fixed.
+    /// Returns the surface on the body to which a frame is fixed. `frame` is the index of the frame in
+    /// `model`, and `system` the index of the system.
     fn on(&self, py: Python<'_>, (system, model): (usize, &Model), frame: usize) -> PyResult<Covering> {
         let frame = &model.frames()[frame];
         let surface = match self {
@@ -93,7 +94,7 @@ impl SurfaceKind {
     }
 }
 
-/// Creates optical coefficients from fractions of reflected light, after a check.
+/// Checks the fractions of specularly and diffusely reflected light, and returns the optical coefficients.
 fn optics(py: Python<'_>, specular: f64, diffuse: f64) -> PyResult<Optics> {
     Optics::new(specular, diffuse).map_err(|error| error.into_python(py))
 }

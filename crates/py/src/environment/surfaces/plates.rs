@@ -1,4 +1,4 @@
-//! Flat plates.
+//! Surfaces that consist of flat plates.
 
 use super::{Any, PySurface, SurfaceKind, optics};
 use crate::arrays::{Input, wrong_shape};
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 /// centroids : (N, 3) array
 ///     Centroids relative to the origin of the link or frame, in its axes, m.
 /// drag_coefficient, specular, diffuse : float
-///     As for ``Faces``.
+///     Drag coefficient C_D and fractions of reflected light, as for ``Faces``.
 ///
 /// Raises
 /// ------

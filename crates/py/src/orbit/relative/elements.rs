@@ -6,7 +6,13 @@ use crate::interrupt::in_pieces;
 use onorbit_core::orbit::relative;
 use pyo3::prelude::*;
 
-/// Return the relative orbital elements of a deputy with respect to a chief (D'Amico).
+/// Return the relative orbital elements of a deputy with respect to a chief.
+///
+/// ``δa = (a_d - a)/a``, ``δλ = u_d - u + (Ω_d - Ω) cos i``, ``δe = e_d (cos ω_d, sin ω_d) - e (cos ω, sin
+/// ω)`` and ``δi = (i_d - i, (Ω_d - Ω) sin i)``, with the semi-major axis ``a``, the mean argument of
+/// latitude ``u``, the eccentricity ``e``, the argument of periapsis ``ω``, the inclination ``i`` and the
+/// right ascension ``Ω`` of the node; the index ``d`` denotes the deputy. Source: D'Amico and Montenbruck, J.
+/// Guidance, Control and Dynamics 29(3), 2006.
 ///
 /// Parameters
 /// ----------
@@ -20,8 +26,8 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// (6,) or (B, 6) array
-///     Relative elements ``(δa, δλ, δex, δey, δix, δiy)``, dimensionless and rad; multiplied by the chief's
-///     semi-major axis they are lengths.
+///     Relative elements ``(δa, δλ, δex, δey, δix, δiy)``: ``δa`` and ``δe`` are dimensionless, ``δλ`` and
+///     ``δi`` are in rad. Multiplied by the chief's semi-major axis, they are lengths.
 ///
 /// Raises
 /// ------
@@ -62,7 +68,7 @@ pub(super) fn relative_elements<'py>(
 /// r, v : (3,) or (B, 3) array
 ///     State of the chief, inertial axes, m and m/s.
 /// elements : (6,) or (B, 6) array
-///     Relative orbital elements, dimensionless and rad.
+///     Relative orbital elements in the order and units of :func:`relative_elements`.
 /// mu : float
 ///     Gravitational parameter, m³/s²; default: that of the Earth.
 ///
@@ -98,7 +104,8 @@ pub(super) fn deputy_state<'py>(
     Ok((to_r.into_any(), to_v.into_any()))
 }
 
-/// Reads positions, (3,) or (B, 3), and returns them with their shape without the last axis.
+/// Reads the positions `r` of the chief, (3,) or (B, 3), and returns them with their shape without the last
+/// axis.
 fn chief_positions<'py>(r: Any<'_, 'py>) -> PyResult<(Input<'py>, Vec<usize>)> {
     let input = Input::new(r, "r")?;
     let batch = match input.shape() {

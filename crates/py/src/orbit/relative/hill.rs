@@ -24,8 +24,8 @@ use pyo3::prelude::*;
 /// Returns
 /// -------
 /// (6, 6) or (T, 6, 6) array
-///     Transition matrix of ``(x, y, z, ẋ, ẏ, ż)`` in Hill's axes (x radial outward, y along track, z
-///     normal), m and m/s.
+///     Matrix that maps the initial to the final relative state ``(x, y, z, ẋ, ẏ, ż)``, m and m/s, in Hill's
+///     axes (x radial outward, y along track, z normal to the orbit).
 ///
 /// Raises
 /// ------
@@ -47,16 +47,17 @@ pub(super) fn hill_transition<'py>(
     Ok(out.into_any())
 }
 
-/// Return the velocity with which a satellite reaches the origin in a given time. The change to this velocity
-/// is the first impulse of a two-impulse rendezvous.
+/// Return the velocity with which a satellite near a circular orbit reaches the origin in a given time.
+///
+/// The origin moves on the circular orbit. The change of the satellite's velocity to the returned velocity is
+/// the first impulse of a two-impulse rendezvous.
 ///
 /// Parameters
 /// ----------
 /// mean_motion : float
 ///     Mean motion of the circular orbit, rad/s.
 /// r : (3,) array
-///     Position relative to the origin, which moves on the circular orbit, in Hill's axes (see
-///     :func:`hill_transition`), m.
+///     Position relative to the origin, in Hill's axes (see :func:`hill_transition`), m.
 /// t : float
 ///     Time after which the satellite reaches the origin, s.
 ///

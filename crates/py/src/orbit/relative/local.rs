@@ -22,8 +22,8 @@ use pyo3::prelude::*;
 /// v : (3,) or (T, 3) array
 ///     Velocity, inertial axes, m/s.
 /// frame : {"lvlh", "nadir"}
-///     Axes of the frame: ``lvlh`` has x radial outward and z along the angular momentum, ``nadir`` has x along
-///     track and z towards the planet.
+///     Axes of the frame: ``lvlh`` has x radial outward and z along the angular momentum; ``nadir`` has x
+///     along track and z towards the planet.
 ///
 /// Returns
 /// -------
@@ -66,7 +66,7 @@ pub(super) fn to_lvlh<'py>(
 /// v : (3,) or (T, 3) array
 ///     Rate of change of the relative position in the rotating frame, m/s.
 /// frame : {"lvlh", "nadir"}
-///     As for :func:`to_lvlh`.
+///     Axes of the frame, as for :func:`to_lvlh`.
 ///
 /// Returns
 /// -------
@@ -92,7 +92,7 @@ pub(super) fn from_lvlh<'py>(
     convert_states(py, orbit, t, (r, v), frame, relative::from_local_rows)
 }
 
-/// Function of the core that converts states in one direction.
+/// Function of the core that converts states to or from the local frame.
 type Convert = fn(&dyn Orbit, LocalFrame, &[f64], [&[f64]; 2], [&mut [f64]; 2]) -> Result<(), OrbitError>;
 
 /// Converts the states at one time or at an array of times.

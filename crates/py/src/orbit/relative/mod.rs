@@ -1,4 +1,4 @@
-//! Relative motion.
+//! Motion of one orbit relative to another.
 
 mod elements;
 mod hill;

@@ -12,8 +12,8 @@ use pyo3::prelude::*;
 /// Return position and velocity of an orbit in the frame W of a reference orbit.
 ///
 /// ``t`` is the simulation time of the reference; an orbit with an epoch (``Sgp4``) is evaluated at the same
-/// instant. The velocity is the time derivative of the position. With the attitude ``rot_wb`` of the base, a
-/// robot starts on the orbit with ``q[:3] = r`` and ``v[:3] = rot_wb.T @ v_w``.
+/// instant. The velocity is the time derivative of the position. A robot whose base has the rotation
+/// ``rot_wb`` from base axes to W starts on ``orbit`` with ``q[:3] = r`` and ``v[:3] = rot_wb.T @ v_w``.
 ///
 /// Parameters
 /// ----------
@@ -24,8 +24,8 @@ use pyo3::prelude::*;
 /// t : float
 ///     Simulation time, s.
 /// earth : Earth, optional
-///     Earth that defines the epoch of time zero and the orientation of the axes. Required if only ``orbit``
-///     has an epoch, and if the axes of the two orbits differ (``GCRF`` and ``TEME``).
+///     Earth that defines the epoch of time zero and the orientation of the axes. It is required if only
+///     ``orbit`` has an epoch, and if the axes of the two orbits differ (``GCRF`` and ``TEME``).
 ///
 /// Returns
 /// -------
@@ -37,8 +37,8 @@ use pyo3::prelude::*;
 /// Raises
 /// ------
 /// OrbitError
-///     If an orbit has no state at this time, if the orbits are around different planets, or if an ``earth``
-///     is required.
+///     If an orbit has no state at this time, if the orbits are around different planets, or if a required
+///     ``earth`` is missing.
 #[pyfunction]
 #[pyo3(signature = (reference, orbit, t=0.0, *, earth=None))]
 pub(super) fn to_world<'py>(
