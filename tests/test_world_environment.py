@@ -223,7 +223,7 @@ INVALID: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "one surface for all": (
         lambda: oo.Drag(AIR, surfaces=BALL),
         EffectError,
-        "2 systems; assign it to a system by name",
+        "2 systems; name the system that has this surface",
     ),
     "one surface for many bodies": (
         lambda: oo.Drag(AIR, surfaces={"chaser": BALL}),

@@ -1,4 +1,4 @@
-//! Checkpoints of runs, as a Python class.
+//! The class `Checkpoint`: the state of a run, with its rows.
 
 use crate::arrays::{Input, array_of, first_row};
 use crate::errors::{IntoPython, SimulationErrorExt, fields, plain, raise};
@@ -15,23 +15,23 @@ use std::time::{Duration, Instant};
 
 /// State of a run from which :meth:`Simulation.run` and :meth:`Simulation.start` resume with identical bits.
 ///
-/// The callback of a run receives checkpoints with the rows since the last one that it accepted. To resume a
-/// run, all rows are needed.
+/// The checkpoint callback of a run receives checkpoints with the rows since the last checkpoint that it
+/// accepted. A run can be resumed only from a checkpoint with all rows.
 ///
 /// Parameters
 /// ----------
 /// state : str
-///     State of the run, as JSON, apart from its rows.
+///     State of the run without its rows, as JSON.
 /// columns : dict of array
-///     Rows (k, width) of each column of the trace, by the name of the column and in its unit. In a world of
-///     several systems, the names are paths such as ``chaser/q``.
+///     Array (rows, width) of each column of the trace, by the name of the column and in its unit. In a world
+///     of several systems, the names are paths such as ``chaser/q``.
 /// wall_s : float
 ///     Wall-clock time of the run so far, s.
 #[pyclass(name = "Checkpoint", frozen, get_all, module = "onorbit_rs")]
 pub(crate) struct PyCheckpoint {
-    /// State of the run, as JSON, apart from its rows.
+    /// State of the run without its rows, as JSON.
     state: String,
-    /// Rows (k, width) of each column of the trace, by the name of the column and in its unit.
+    /// Array (rows, width) of each column of the trace, by the name of the column and in its unit.
     columns: Py<PyDict>,
     /// Wall-clock time of the simulation loop so far, s.
     pub(crate) wall_s: f64,
@@ -73,7 +73,7 @@ impl PyCheckpoint {
         Ok((checkpoint, rows.collect::<PyResult<_>>()?))
     }
 
-    /// Returns the rows in the columns whose names begin with `prefix`.
+    /// Returns the rows of one system, in the columns whose names begin with `prefix`.
     fn rows_of(&self, py: Python<'_>, prefix: &str) -> PyResult<Trace> {
         let (mut rows, columns) = (Trace::default(), self.columns.bind(py));
         for (name, values) in columns {
@@ -101,7 +101,8 @@ impl PyCheckpoint {
     }
 }
 
-/// Returns the prefix of the column names of a system in a run of `count` systems.
+/// Returns the prefix of the column names of a system in a run of `count` systems; it is empty for a single
+/// system.
 pub(crate) fn prefix(system: &str, count: usize) -> String {
     if count == 1 { String::new() } else { format!("{system}/") }
 }
@@ -167,7 +168,8 @@ pub(crate) fn columns_since<'py>(
     Ok(columns)
 }
 
-/// Adds the rows of a trace from row `since` on to a dict of columns, with `prefix` before their names.
+/// Adds the rows of a trace, beginning with row `since`, to a dict of columns, with `prefix` before their
+/// names.
 pub(crate) fn add_columns(
     py: Python<'_>,
     columns: &Bound<'_, PyDict>,
@@ -184,8 +186,8 @@ pub(crate) fn add_columns(
     Ok(())
 }
 
-/// Creates a checkpoint of a run with its rows; `since` contains the index of the first row of each system.
-/// Fails if a controller cannot be saved.
+/// Creates a checkpoint of a run with its rows; `since` contains the index of the first row of each system. A
+/// controller that cannot be saved is an error.
 pub(crate) fn checkpoint_of(
     py: Python<'_>,
     stepper: &Stepper<'_>,
@@ -225,13 +227,13 @@ impl CheckpointCallback {
         Self { to: Some(to), names, every, last: Instant::now(), rows }
     }
 
-    /// Passes a checkpoint to the callback if one is due.
+    /// Passes a checkpoint to the callback if the interval since the last one has passed.
     pub(crate) fn save_if_due(&mut self, py: Python<'_>, stepper: &Stepper<'_>, wall_s: f64) -> PyResult<()> {
         if self.last.elapsed() < self.every { Ok(()) } else { self.save(py, stepper, wall_s) }
     }
 
-    /// Passes a checkpoint to the callback. A run whose controller cannot be saved continues without
-    /// checkpoints.
+    /// Passes a checkpoint to the callback. If a controller cannot be saved, a warning is issued and the run
+    /// continues without checkpoints.
     pub(crate) fn save(&mut self, py: Python<'_>, stepper: &Stepper<'_>, wall_s: f64) -> PyResult<()> {
         let Some(to) = &self.to else { return Ok(()) };
         let checkpoint = match checkpoint_of(py, stepper, &self.names, &self.rows, wall_s) {

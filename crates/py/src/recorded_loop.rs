@@ -5,12 +5,12 @@ use onorbit_core::number_text::count;
 use onorbit_core::simulation::LOOPS;
 use pyo3::prelude::*;
 
-/// Recorded forces of a closed loop, with one row per time of the trace.
+/// Recorded forces of a closed loop, with one row for each of the ``T`` rows of the trace.
 ///
 /// While a loop that a capture closes is not closed, its rows are zero.
 #[pyclass(name = "LoopTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyLoopTrace {
-    /// Array (T, 11) with all quantities in the order of ``onorbit_rs.COLUMNS``.
+    /// Array (T, 11) with all quantities, in the order of ``onorbit_rs.COLUMNS["loops"].parts``.
     #[pyo3(get)]
     values: Py<PyAny>,
 }
@@ -35,13 +35,13 @@ impl PyLoopTrace {
         part_of(&LOOPS, self.values.bind(py), "moment")
     }
 
-    /// Point of the loop in its second frame, (T, 3), m, in W.
+    /// Origin of the loop's joint on its second frame, (T, 3), m, in W.
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&LOOPS, self.values.bind(py), "point")
     }
 
-    /// Distance, m, and angle, rad, by which the loop is open, (T, 2).
+    /// Constraint error of the loop: the distance, m, and the angle, rad, by which it is open, (T, 2).
     #[getter]
     fn opening<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&LOOPS, self.values.bind(py), "opening")

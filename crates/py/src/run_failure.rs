@@ -7,9 +7,10 @@ use onorbit_core::simulation::SimulationError;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
-/// Returns the exception for a run that ended with an error. A Ctrl-C in a Python controller or in an
-/// external engine, or one that is pending while the run fails, becomes `RunInterrupted` with the error as
-/// its context.
+/// Returns the exception for a run that ended with an error. `last` is the time of the last row, s.
+///
+/// If a Ctrl-C was raised in a Python controller or in an external engine, or is pending while the run fails,
+/// the exception is `RunInterrupted` with the error as its context.
 pub(crate) fn run_failure(
     py: Python<'_>,
     error: SimulationError,
@@ -44,7 +45,7 @@ pub(crate) fn interrupted(py: Python<'_>, error: PyErr, time: f64, trace: Option
     }
 }
 
-/// Returns `RunInterrupted` with the signal as its cause.
+/// Returns `RunInterrupted` at simulation time `time`, s, with the signal as its cause.
 fn run_interrupted(py: Python<'_>, signal: PyErr, time: f64, trace: Option<Py<PyAny>>) -> PyErr {
     let message = format!("the run was interrupted at t = {} s", short(time));
     let fields = fields!(py, "time": time, "trace": trace);

@@ -1,4 +1,4 @@
-//! Simulation together with the run that borrows it, shared by `Simulation` and its steppers.
+//! Simulation and the run that borrows it, shared by `Simulation` and its steppers.
 
 use crate::errors::{SimulationErrorExt, plain};
 use onorbit_core::simulation::{AttachedControl, Checkpoint, Simulation, SingularLoop, Stepper, Trace};
@@ -17,7 +17,7 @@ self_cell!(
     }
 );
 
-/// State of the owner: the simulation, or its current run.
+/// Simulation without a run, or together with its current run.
 enum Slot {
     Idle(Box<Simulation>),
     Running(Box<Running>),
@@ -25,7 +25,7 @@ enum Slot {
     Empty,
 }
 
-/// Simulation with its current run and the number of runs started so far.
+/// Simulation with its current run. `number` counts the runs started so far and identifies the current run.
 pub(crate) struct Runs {
     slot: Slot,
     number: u64,
@@ -60,7 +60,7 @@ impl SharedRun {
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => {
                 let message = "this simulation is already being advanced, by another thread or by an \
-                enclosing call; use a second Simulation";
+                               enclosing call; use a second Simulation";
                 Err(plain(py, "SimulationError", message))
             }
         }
@@ -80,7 +80,7 @@ impl SharedRun {
             return Err(plain(
                 py,
                 "SimulationError",
-                "this simulation is unusable after an internal error (panic); create a new one",
+                "this simulation is unusable after an internal error (panic); create a new Simulation",
             ));
         };
         let running = Running::try_new_or_recover(MutBorrow::new(*simulation), |simulation| {
@@ -123,17 +123,17 @@ impl Runs {
         }
     }
 
-    /// Issues warnings about controls of run `number` that follow a frame to which a capture has rigidly
-    /// connected their own frame.
+    /// Issues a warning for each control of run `number` that follows a frame to which a capture has rigidly
+    /// connected the control's own frame, and for each singular loop.
     pub(crate) fn warn(&mut self, py: Python<'_>, number: u64) -> PyResult<()> {
         let all = self.with(number, |stepper| stepper.attached_controls()).unwrap_or_default();
         for new in all.into_iter().filter(|attached| !self.warned.contains(attached)).collect::<Vec<_>>() {
             let AttachedControl { control, frame, followed, capture } = &new;
             let message = format!(
-                "the control '{control}' moves '{frame}' and follows '{followed}', but the capture '{capture}' has \
-                 rigidly connected these two frames. The control can no longer reduce its error, and its torques may \
-                 diverge. End the control at the capture, for example with another control of the same joints that has \
-                 after='{capture}'"
+                "the control '{control}' moves '{frame}' and follows '{followed}', but the capture \
+                 '{capture}' has rigidly connected these two frames, so the control can no longer reduce its \
+                 error and its torques may diverge; end the control at the capture, for example with another \
+                 control of the same joints that has after='{capture}'"
             );
             self.warned.push(new);
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
@@ -141,15 +141,17 @@ impl Runs {
         self.warn_of_singular_loops(py, number)
     }
 
-    /// Issues warnings about closed loops of run `number` that have been in a singular configuration.
+    /// Issues a warning for each closed loop and mimic joint of run `number` whose constraints became
+    /// dependent.
     fn warn_of_singular_loops(&mut self, py: Python<'_>, number: u64) -> PyResult<()> {
         let all = self.with(number, |stepper| stepper.singular_loops()).unwrap_or_default();
         for new in all.into_iter().filter(|one| !self.singular.contains(one)).collect::<Vec<_>>() {
             let SingularLoop { system, name, time } = &new;
             let message = format!(
                 "the constraints of the loop or mimic joint '{name}' of '{system}' became dependent near t = \
-                 {time:.6} s (singular configuration): the motion may continue on another branch, which can depend on \
-                 rounding errors; to avoid this configuration, limit the joints (enforce_limits) or change the reference"
+                 {time:.6} s (singular configuration), so the motion may continue on another branch, and \
+                 rounding errors may decide on which branch; to avoid this configuration, limit the joints \
+                 (enforce_limits) or change the reference"
             );
             self.singular.push(new);
             PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
@@ -157,8 +159,7 @@ impl Runs {
         Ok(())
     }
 
-    /// Calls `work` with run `number`. Returns `None` if that run was ended or another run has been started
-    /// since.
+    /// Calls `work` with run `number`. Returns `None` if this run has ended or another run has been started.
     pub(crate) fn with<R>(&mut self, number: u64, work: impl FnOnce(&mut Stepper<'_>) -> R) -> Option<R> {
         match &mut self.slot {
             Slot::Running(running) if self.number == number => {

@@ -1,4 +1,4 @@
-//! Runs that the caller advances.
+//! The class `Stepper`: a run that the caller advances.
 
 use crate::arrays::constant;
 use crate::checkpoint::{PyCheckpoint, Since, add_columns, checkpoint_of, columns_since, prefix};
@@ -17,9 +17,10 @@ type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Run that the caller advances, as returned by :meth:`Simulation.start`.
 ///
-/// ``advance`` and ``advance_to`` do not change the motion: the steps are those of :meth:`Simulation.run`. If
-/// the current time is within a step, the state is computed by dense output (adaptive steps) or by a shorter
-/// trial step. The whole step is computed later. After the end, methods raise ``SimulationError``.
+/// The times of ``advance`` and ``advance_to`` do not influence the motion: the steps are those of
+/// :meth:`Simulation.run`. If the current time is within a step, the state is computed by dense output
+/// (adaptive steps) or by a shorter trial step, and the whole step is computed later. After the run has
+/// ended, the methods raise ``SimulationError``.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
     pub(crate) run: SharedRun,
@@ -60,17 +61,17 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// dt : float
-    ///     Simulated time, s; must be positive.
+    ///     Simulated time by which the run advances, s; positive.
     ///
     /// Raises
     /// ------
     /// InputError
     ///     If ``dt`` is not positive and finite, or extends beyond the planned end; the run is unchanged.
     /// RunInterrupted
-    ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
-    ///     be advanced further.
+    ///     At Ctrl-C, before the requested time; its attribute ``trace`` contains the rows so far, and the
+    ///     run can be advanced further.
     /// SimulationError
-    ///     If the run diverges; ``trace`` holds the rows so far, and the run has ended.
+    ///     If the run diverges; its attribute ``trace`` contains the rows so far, and the run has ended.
     fn advance(&self, py: Python<'_>, dt: f64) -> PyResult<()> {
         let mut runs = self.run.lock(py)?;
         let after = runs.with(self.number, |stepper| stepper.time_after(dt)).ok_or_else(|| ended(py))?;
@@ -85,17 +86,18 @@ impl PyStepper {
     /// t : float
     ///     Simulation time, s, not before the current time.
     /// wall_s : float, optional
-    ///     Wall-clock time after which the call returns early, at the end of a step, s. Default: no limit.
+    ///     Wall-clock time, s, after which the call returns at the end of the current step, even before ``t``
+    ///     is reached. Default: no limit.
     ///
     /// Raises
     /// ------
     /// InputError
     ///     If ``t`` is not finite, before the current time, or after the planned end; the run is unchanged.
     /// RunInterrupted
-    ///     At Ctrl-C, at a step before the requested time; ``trace`` holds the rows so far, and the run can
-    ///     be advanced further.
+    ///     At Ctrl-C, before the requested time; its attribute ``trace`` contains the rows so far, and the
+    ///     run can be advanced further.
     /// SimulationError
-    ///     If the run diverges; ``trace`` holds the rows so far, and the run has ended.
+    ///     If the run diverges; its attribute ``trace`` contains the rows so far, and the run has ended.
     #[pyo3(signature = (t, *, wall_s=None))]
     fn advance_to(&self, py: Python<'_>, t: f64, wall_s: Option<f64>) -> PyResult<()> {
         let limit = wall_s.map(|seconds| period(py, "wall_s", seconds)).transpose()?;
@@ -105,8 +107,9 @@ impl PyStepper {
 
     /// Set the joint torques, which are held from the current time until the next command.
     ///
-    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose controller
-    /// returns these torques at these times, except that the steps of an adaptive integrator may differ.
+    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose
+    /// controller returns these torques at these times, except that the steps of an adaptive integrator may
+    /// differ.
     ///
     /// Parameters
     /// ----------
@@ -128,28 +131,30 @@ impl PyStepper {
 
     /// Send a command to the joints of an :class:`External` controller.
     ///
-    /// The command takes effect at the next update of the controllers, or now if one is due, and is held.
+    /// The command takes effect at the next update of the controllers, which may be at the current time, and
+    /// is held until the next command.
     ///
     /// Parameters
     /// ----------
     /// control : str
     ///     Name of the control, a key of :attr:`external`; ``control`` for a single controller of all joints.
     /// position : (k,) array, optional
-    ///     Positions of the joints of the control, rad or m; without ``velocity``, they are held at rest.
+    ///     Positions of the ``k`` joints of the control, rad or m. Without ``velocity``, the joints rest
+    ///     there.
     /// velocity : (k,) array, optional
-    ///     Velocities, rad/s or m/s; without ``position``, there is no position error.
+    ///     Velocities, rad/s or m/s. Without ``position``, there is no position error.
     /// effort : (k,) array, optional
     ///     Torques, N m (N for a prismatic joint), which are added to those of position and velocity.
     /// acceleration : (k,) array, optional
     ///     Accelerations, rad/s² or m/s², which are added to those computed from position and velocity.
     /// check_only : bool
-    ///     If True, the command is checked and not sent.
+    ///     If True, the command is checked but not sent.
     ///
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     If there is no such :class:`External` control or it has ended, if a required gain is zero, or if an
-    ///     array is missing, has the wrong length or is not finite; the run is unchanged.
+    ///     If there is no such :class:`External` control or the control has ended, if a required gain is
+    ///     zero, or if an array is missing, has the wrong length or is not finite; the run is unchanged.
     #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None, check_only=false))]
     fn send(
         &self,
@@ -167,19 +172,19 @@ impl PyStepper {
 
     /// Send a motion through points to the joints of an :class:`External` controller.
     ///
-    /// Between the points, the motion is interpolated as by ROS's joint_trajectory_controller: linearly, by
-    /// cubic polynomials if velocities are given, and by quintic polynomials if accelerations are given as
-    /// well. The motion begins when the trajectory takes effect, with the desired state or, if there is none,
-    /// the actual state. After the last point, its positions are held.
+    /// The motion between the points is interpolated as in the joint_trajectory_controller of ROS: linearly,
+    /// by cubic polynomials if velocities are given, and by quintic polynomials if accelerations are given as
+    /// well. It begins when the trajectory takes effect, with the state desired at that time or, if there is
+    /// none, with the actual state. After the last point, its positions are held.
     ///
     /// Parameters
     /// ----------
     /// control : str
-    ///     Name of the control.
+    ///     Name of the control, as for :meth:`send`.
     /// times : (K,) array
-    ///     Times of the points after ``start``, s; increasing, at least 0.
+    ///     Times of the ``K`` points after ``start``, s; increasing, at least 0.
     /// positions : (K, k) array
-    ///     Positions of the joints of the control, rad or m.
+    ///     Positions of the ``k`` joints of the control, rad or m.
     /// velocities : (K, k) array, optional
     ///     Velocities, rad/s or m/s.
     /// accelerations : (K, k) array, optional
@@ -191,7 +196,8 @@ impl PyStepper {
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     As for :meth:`send`; also if ``times`` do not increase, or the trajectory has already ended.
+    ///     If the control or an array is invalid, as for :meth:`send`, if ``times`` do not increase, or if
+    ///     the last point is before the current time.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -215,13 +221,13 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// body : str
-    ///     Link or frame. As for :class:`BodyWrench`, the force acts at its origin.
+    ///     Name of a link or frame. The force acts at its origin, as for :class:`BodyWrench`.
     /// force : (3,) array, optional
     ///     Force, N; default: 0.
     /// torque : (3,) array, optional
     ///     Torque, N m; default: 0.
     /// frame : {"world", "body"}
-    ///     Axes in which force and torque are constant: W axes, or the axes of the body.
+    ///     Axes in which force and torque are given and remain constant: the axes of W, or those of ``body``.
     ///
     /// Raises
     /// ------
@@ -246,7 +252,8 @@ impl PyStepper {
         self.external_of(py, self.only("external")?)
     }
 
-    /// Quantity that each :class:`External` controller tracks, by its name; ``effort`` if it has no gains.
+    /// Quantity that the gains of each :class:`External` controller track, by the name of the control:
+    /// ``position``, ``velocity`` or, without gains, ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         self.interfaces_of(py, self.only("interfaces")?)
@@ -264,18 +271,19 @@ impl PyStepper {
     /// Raises
     /// ------
     /// WorldError
-    ///     If there is no such event, or it has happened or is not ``on_command``; the run is unchanged.
+    ///     If there is no such event, or if the event has already happened or is not ``on_command``; the run
+    ///     is unchanged.
     fn trigger(&self, py: Python<'_>, name: &str) -> PyResult<()> {
         self.try_with(py, |stepper| stepper.trigger(name))
     }
 
-    /// Names of the systems of the run; ``stepper[name]`` is the view of one.
+    /// Names of the systems of the run; ``stepper[name]`` is the view of the system ``name``.
     #[getter]
     fn systems(&self) -> Vec<String> {
         self.systems.names.clone()
     }
 
-    /// Events of the world in the completed steps, in order of time.
+    /// Events of the world that happened in the completed steps, in order of time.
     #[getter]
     fn events(&self, py: Python<'_>) -> PyResult<Vec<PyEventRecord>> {
         self.with(py, |stepper| self.systems.events(stepper))
@@ -310,6 +318,7 @@ impl PyStepper {
     /// Returns
     /// -------
     /// Trace or WorldTrace
+    ///     Result of the run; a WorldTrace for a world of several systems.
     fn finish(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let is_complete =
             self.with(py, |stepper| stepper.duration().is_none_or(|end| stepper.time() == end))?;
@@ -321,13 +330,14 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     First row to return, at most the number of rows (default: 0); in a world, also a dict by system.
+    ///     Index of the first row to return, at most the number of rows; default: 0. In a world, also a dict
+    ///     from names of systems to such indices.
     ///
     /// Returns
     /// -------
     /// dict of array
-    ///     Rows (k, width) of each column of the trace, by the name of the column and in its unit. In a world
-    ///     of several systems, the names are paths such as ``chaser/q``.
+    ///     Array (rows, width) of each column of the trace, by the name of the column and in its unit. In a
+    ///     world of several systems, the names are paths such as ``chaser/q``.
     #[pyo3(signature = (since=Since::Every(0)), text_signature = "($self, since=0)")]
     fn columns(&self, py: Python<'_>, since: Since) -> PyResult<Py<PyDict>> {
         let since = since.rows(py, &self.systems)?;
@@ -355,15 +365,16 @@ impl PyStepper {
         Ok(columns.unbind())
     }
 
-    /// Drop the recorded rows except the first row and the last rows, which limits the memory of a long run.
+    /// Delete the recorded rows except the first row and the last rows, which limits the memory of a long
+    /// run.
     ///
-    /// The motion does not change. Later checkpoints cannot be resumed, because rows are missing. If every step
-    /// is recorded, the certificate omits the checks that compare successive steps.
+    /// The motion does not change. Later checkpoints cannot be resumed, because rows are missing. If every
+    /// step is recorded, the certificate omits the checks that compare successive steps.
     ///
     /// Parameters
     /// ----------
     /// keep : int
-    ///     Number of last rows of each system to keep.
+    ///     Number of last rows of each system that are kept.
     fn drop_rows(&self, py: Python<'_>, keep: usize) -> PyResult<()> {
         self.with(py, |stepper| stepper.drop_rows(keep))
     }
@@ -373,7 +384,8 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     First row, as for :meth:`columns`. A run can be resumed only from a checkpoint with all rows.
+    ///     Index of the first row, as for :meth:`columns`. A run can be resumed only from a checkpoint with
+    ///     all rows.
     ///
     /// Returns
     /// -------

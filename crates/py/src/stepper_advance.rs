@@ -1,4 +1,4 @@
-//! Advance and end of the run of a stepper.
+//! Functions that advance and end the run of a stepper.
 
 use crate::checkpoint::row_counts;
 use crate::errors::{SimulationErrorExt, plain};
@@ -13,7 +13,8 @@ use std::ops::ControlFlow;
 use std::sync::{Arc, MutexGuard};
 use std::time::{Duration, Instant};
 
-/// Callback at regular intervals of wall-clock time. It receives the run and its wall-clock time so far, s.
+/// Callback that a run calls at regular intervals of wall-clock time. It receives the run and its wall-clock
+/// time so far, s.
 pub(crate) type Pause<'a> = &'a mut dyn FnMut(Python<'_>, &mut Stepper<'_>, f64) -> PyResult<()>;
 
 impl PyStepper {
@@ -21,7 +22,7 @@ impl PyStepper {
         Self { run, number, systems }
     }
 
-    /// Returns the number of the only system, or an error in which `what` names the requested attribute.
+    /// Returns the index of the only system, or an error in which `what` names the requested attribute.
     pub(crate) fn only(&self, what: &str) -> PyResult<usize> {
         self.systems.only("stepper", what).map(|()| 0)
     }
@@ -30,7 +31,7 @@ impl PyStepper {
         self.run.lock(py)?.with(self.number, work).ok_or_else(|| ended(py))
     }
 
-    /// Calls `work`, in which a Python controller may run, and converts its error.
+    /// Calls `work` with the run, and converts its error. `work` may call Python controllers.
     pub(crate) fn try_with<R>(
         &self,
         py: Python<'_>,
@@ -44,8 +45,8 @@ impl PyStepper {
         result.ok_or_else(|| ended(py))?
     }
 
-    /// Runs to the end and returns the whole trace; `pause` is called at regular intervals. An error ends the
-    /// run.
+    /// Advances the run to `duration`, s, ends it, and returns the whole trace. `pause` is called at regular
+    /// intervals of wall-clock time. An error ends the run.
     pub(crate) fn run_to_end(&self, py: Python<'_>, duration: f64, pause: Pause<'_>) -> PyResult<Py<PyAny>> {
         let mut runs = self.run.lock(py)?;
         if let Err(error) = self.advance_locked(py, &mut runs, duration, None, pause) {
@@ -55,7 +56,7 @@ impl PyStepper {
         self.end(py, &mut runs, true)
     }
 
-    /// Ends the run and returns its trace.
+    /// Ends the run and returns its trace. `is_complete` states whether the run reached its end.
     pub(crate) fn end(
         &self,
         py: Python<'_>,
@@ -71,8 +72,8 @@ impl PyStepper {
         }
     }
 
-    /// Advances the run to simulation time `t`, s, or until the wall-clock time `limit` has passed, without
-    /// the GIL. Calls `pause` at regular intervals; an error of `pause` stops the run.
+    /// Advances the run without the GIL to simulation time `t`, s, or until the wall-clock time `limit` has
+    /// passed. Calls `pause` at regular intervals of wall-clock time; an error of `pause` stops the advance.
     pub(crate) fn advance_locked(
         &self,
         py: Python<'_>,
@@ -111,8 +112,8 @@ impl PyStepper {
         }
     }
 
-    /// Returns the exception for an error of the core. If the error ended the run, the exception has its
-    /// rows.
+    /// Returns the exception for an error of the core. If the error ended the run, the trace so far is
+    /// attached to the exception.
     pub(crate) fn failed(
         &self,
         py: Python<'_>,
@@ -127,7 +128,7 @@ impl PyStepper {
         self.ended_early(py, error, recording, wall_s)
     }
 
-    /// Returns the exception for an error that ended the run, with the recorded rows.
+    /// Returns the exception for an error that ended the run, with the trace of the recorded rows.
     pub(crate) fn ended_early(
         &self,
         py: Python<'_>,
@@ -139,7 +140,7 @@ impl PyStepper {
         run_failure(py, error, last, self.systems.wrap(py, recording, false, wall_s).ok())
     }
 
-    /// Returns the exception for a signal or an error of a callback between two steps.
+    /// Returns the exception for a signal, or for an error of a callback, between two steps.
     pub(crate) fn stopped(
         &self,
         py: Python<'_>,
@@ -161,7 +162,8 @@ impl PyStepper {
         self.with(py, |stepper| row_counts(stepper, self.systems.names.len()))
     }
 
-    /// Returns the configuration and the velocity of a system at the current time.
+    /// Returns the configuration (m and rad) and the velocity (m/s and rad/s) of a system at the current
+    /// time.
     pub(crate) fn state(&self, py: Python<'_>, system: usize) -> PyResult<(Vec<f64>, Vec<f64>)> {
         let model = &self.systems.models[system];
         let (mut q, mut v) = (vec![0.0; model.nq()], vec![0.0; model.nv()]);
@@ -172,6 +174,6 @@ impl PyStepper {
 
 /// Returns the error of a stepper whose run has ended.
 pub(crate) fn ended(py: Python<'_>) -> PyErr {
-    let message = "the run has ended; start a new one (a simulation has one run at a time)";
+    let message = "the run has ended, or another run of the same simulation was started; start a new run";
     plain(py, "SimulationError", message)
 }

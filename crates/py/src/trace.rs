@@ -1,4 +1,4 @@
-//! Columns of a trace as read-only views.
+//! The class `Trace`, whose columns are read-only views.
 
 use crate::contact::PyContactTrace;
 use crate::interrupt::abandonable;
@@ -12,10 +12,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// Result of a run with one row per recorded step. The first row is the initial state, and the last row is
+/// Result of a run, with one row per recorded step. The first row is the initial state, and the last row is
 /// the final state.
 ///
-/// The columns are read-only views in SI units; columns that do not apply to the run have the value None.
+/// The columns are read-only views in SI units; a column that does not apply to the run is None.
 /// ``onorbit_rs.COLUMNS`` describes the shape, unit, frame and meaning of each column.
 #[pyclass(name = "Trace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyTrace {
@@ -29,12 +29,14 @@ pub(crate) struct PyTrace {
     pub(crate) wall_s: f64,
 }
 
-/// Number of rows above which computing the certificate of a trace takes more than a tenth of a second.
+/// Number of rows from which the certificate is computed on a separate thread, because it takes more than a
+/// tenth of a second.
 const LONG_TRACE: usize = 1 << 14;
 
 type Column<'py> = Option<Bound<'py, PyArrayDyn<f64>>>;
 
-/// Returns a view of a column, owned by the trace; None if the run did not record the column.
+/// Returns a read-only view of a column with the shape `row` of each row; `None` if the run did not record
+/// the column.
 fn view<'py>(this: &Bound<'py, PyTrace>, data: &[f64], row: &[usize]) -> PyResult<Column<'py>> {
     let shape: Vec<usize> = std::iter::once(this.get().trace.rows()).chain(row.iter().copied()).collect();
     let Ok(array) = ArrayView::from_shape(IxDyn(&shape), data) else { return Ok(None) };
@@ -44,7 +46,7 @@ fn view<'py>(this: &Bound<'py, PyTrace>, data: &[f64], row: &[usize]) -> PyResul
     Ok(Some(view.readwrite().make_nonwriteable().as_any().cast::<PyArrayDyn<f64>>()?.clone()))
 }
 
-/// Returns the view of the column that the table describes under this name.
+/// Returns the view of the column `name` of the table; `None` if the run did not record the column.
 fn described<'py>(this: &Bound<'py, PyTrace>, name: &str, data: &[f64]) -> PyResult<Column<'py>> {
     let column = COLUMNS.iter().find(|column| column.name == name).expect("every field is in the table");
     let row = column.row_shape(&this.get().model);
@@ -53,7 +55,7 @@ fn described<'py>(this: &Bound<'py, PyTrace>, name: &str, data: &[f64]) -> PyRes
     if is_recorded { view(this, data, &row) } else { Ok(None) }
 }
 
-/// Declares the class, with a getter for each row of the table of columns.
+/// Declares the methods of the class, among them a getter for each row of the table of columns.
 macro_rules! getters {
     ($($name:ident ($($axis:tt),+), $unit:literal, $frame:literal, $condition:ident, $parts:ident,
         $meaning:literal;)+) => {
@@ -67,8 +69,8 @@ macro_rules! getters {
                 }
             )+
 
-            /// Return the names of the columns that the run recorded, except ``tracking``, ``wrenches`` and
-            /// ``contacts``.
+            /// Return the names of the columns that the run recorded, except ``tracking``, ``wrenches``,
+            /// ``contacts`` and ``loops``.
             ///
             /// Returns
             /// -------
@@ -92,8 +94,8 @@ macro_rules! getters {
             /// -------
             /// list of tuple
             ///     ``(name, value, gate, passed)`` for each check that applies to the run; ``gate`` is the
-            ///     largest accepted value. Values are relative to nonzero scales, except angles in rad, whose
-            ///     names end in ``_rad``.
+            ///     largest accepted value. Values are relative to nonzero scales and dimensionless, except
+            ///     angles in rad, whose names end in ``_rad``.
             fn certificate(this: &Bound<'_, Self>) -> PyResult<Vec<(&'static str, f64, f64, bool)>> {
                 let of = |this: &PyTrace| certify(&this.model, &this.trace).checks();
                 let (own, shared) = (this.get(), this.clone().unbind());
@@ -115,9 +117,9 @@ macro_rules! getters {
                 self.trace.limits_exceeded(&self.model)
             }
 
-            /// Tracking errors, desired minus actual, by the name of the control: (T, 6) for a task, m and
-            /// rad, or (T, k) for k joints, in the unit of the commanded quantity; zero while the control is
-            /// inactive.
+            /// Tracking errors (desired minus actual) by the name of the control: (T, 6) for a tool, m and
+            /// rad, or (T, k) for k joints, in the unit of the commanded quantity. They are zero while the
+            /// control is inactive.
             #[getter]
             fn tracking<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let all = PyDict::new(this.py());
@@ -127,9 +129,9 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Wrenches by the name of the effect, (T, bodies, 6), W axes: the force, N, through the centre
-            /// of mass of each body of ``model.body_names``, and the torque about it, N m. Recorded with
-            /// ``record_wrenches=True``.
+            /// Wrenches by the name of the effect, (T, bodies, 6), W axes: the force on each body, N, which
+            /// acts at its centre of mass, and the torque about its centre of mass, N m. Bodies are in the
+            /// order of ``model.body_names``. Empty unless ``record_wrenches=True``.
             #[getter]
             fn wrenches<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let (all, row) = (PyDict::new(this.py()), WRENCHES.row_shape(&this.get().model));
@@ -139,8 +141,8 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Distances and forces of the contacts of which the system is the first side, by the name of the
-            /// contact.
+            /// Distances and forces of the contacts whose first side is this system, :class:`ContactTrace` by
+            /// the name of the contact.
             #[getter]
             fn contacts<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let (all, row) = (PyDict::new(this.py()), CONTACTS.row_shape(&this.get().model));
@@ -151,8 +153,8 @@ macro_rules! getters {
                 Ok(all)
             }
 
-            /// Forces of the closed loops whose first frame belongs to the system, by the name of the loop or of the
-            /// capture that closes it.
+            /// Forces of the closed loops whose first frame belongs to the system, :class:`LoopTrace` by the
+            /// name of the loop or of the capture that closes it.
             #[getter]
             fn loops<'py>(this: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
                 let (all, row) = (PyDict::new(this.py()), LOOPS.row_shape(&this.get().model));
@@ -164,17 +166,19 @@ macro_rules! getters {
             }
 
             /// Times at which integration continued about a new reference orbit, because the robot had
-            /// drifted too far from the previous one: (K,), s.
+            /// drifted too far from the previous reference orbit: (K,), s.
             #[getter]
             fn rereferenced<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
                 PyArray1::from_slice(py, &self.trace.rereferenced)
             }
 
-            /// Outcomes of the goals, as dicts: ``name`` (of the control), ``outcome`` (``succeeded``,
-            /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``), ``time`` of the
-            /// decision, s (None if unfinished), ``component``, the joint (or ``position`` or ``attitude``)
-            /// whose error was too large, and ``error``, that error, m or rad, per second for rates (both
-            /// None unless a tolerance was violated).
+            /// Outcomes of the goals, one dict for each.
+            ///
+            /// ``name`` is the name of the control, and ``outcome`` is ``succeeded``,
+            /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``. ``time`` is the
+            /// simulation time of the decision, s (None if unfinished). ``component`` is the joint,
+            /// ``position`` or ``attitude`` whose error was too large, and ``error`` is this error, m or rad
+            /// (m/s or rad/s if rates are commanded); both are None unless a tolerance was violated.
             #[getter]
             fn results<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
                 let all = self.trace.results.iter().map(|result| {

@@ -21,14 +21,14 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// Parameters
 /// ----------
 /// orbits : list of Orbit
-///     N orbits.
+///     Orbits, ``N`` in total.
 /// times : (T,) or (N, T) array
 ///     Simulation times, s: common to all orbits, or one row per orbit.
 /// threads : int, optional
 ///     Number of threads; default: all cores.
 /// out : tuple of two (N, T, 3) arrays, optional
-///     Arrays in which the results are stored and which are returned. They must not be accessed during the
-///     call.
+///     Arrays in which the results are stored and which are returned. Other threads must not access them
+///     during the call.
 ///
 /// Returns
 /// -------
@@ -40,8 +40,8 @@ type Out<'a, 'py> = Option<Any<'a, 'py>>;
 /// Raises
 /// ------
 /// OrbitError
-///     If a state cannot be computed; ``index`` is the index of the orbit. ``Sgp4Error`` and ``PathError``
-///     are subclasses. Errors of an orbit's gravity or Earth have the same attribute.
+///     If a state cannot be computed; the attribute ``index`` is the index of the orbit. ``Sgp4Error`` and
+///     ``PathError`` are subclasses. Errors of an orbit's gravity or Earth have the same attribute.
 /// ShapeError, InputError, DtypeError
 ///     If an array has the wrong shape, ``threads`` is less than 1, or an argument has the wrong type.
 #[pyfunction]
@@ -75,7 +75,8 @@ pub(super) fn propagate<'py>(
     written(py, &shape, out, std::slice::from_ref(&input), run)
 }
 
-/// Calls `write` with two arrays of this shape, which are those in `out` or new ones, and returns the arrays.
+/// Calls `write` with two arrays of this shape, and returns the arrays. They are those in `out`, or new
+/// arrays.
 fn written<'py>(
     py: Python<'py>,
     shape: &[usize],
@@ -89,8 +90,8 @@ fn written<'py>(
     Ok((r.into_array().into_any(), v.into_array().into_any()))
 }
 
-/// Returns positions, m, and velocities, m/s, of many elliptic orbits, each (N, 3). Each of the six elements,
-/// and the time, is a number or an (N,) array; `mu` is in m³/s².
+/// Returns positions, m, and velocities, m/s, of many elliptic orbits, each (N, 3). `given` are the six
+/// elements, m and rad, and the time, s, each a number or an (N,) array; `mu` is in m³/s².
 pub(crate) fn kepler_states<'py>(
     py: Python<'py>,
     given: [(&str, Any<'_, 'py>); 7],

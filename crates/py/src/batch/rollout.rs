@@ -1,4 +1,4 @@
-//! Integration of many states.
+//! Integration of many states of a robot at once.
 
 use crate::arrays::{self, Input, Threads, shape_text, steps, type_name, wrong_shape};
 use crate::control::PyComputedTorque;
@@ -15,33 +15,34 @@ use std::sync::atomic::AtomicBool;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Integrate many states without an environment, with free joints, given torques, or a computed-torque
-/// controller.
+/// Integrate many states of a robot without an environment.
 ///
-/// The bits of the results do not depend on ``threads``.
+/// The joints are free, have given torques, or are moved by a computed-torque controller. The bits of the
+/// results do not depend on ``threads``.
 ///
 /// Parameters
 /// ----------
 /// model : Model
-///     Robot.
+///     Model of the robot.
 /// q0 : (B, nq) array
-///     Initial configurations.
+///     Initial configurations, m and rad.
 /// v0 : (B, nv) array
-///     Initial velocities.
+///     Initial velocities, m/s and rad/s.
 /// steps : int
 ///     Number of steps.
 /// time_step : float
-///     Step length, s.
+///     Length of each step, s.
 /// tau : (B, steps, n) array, optional
-///     Joint efforts, each held for one step, N m or N.
+///     Joint torques, each held for one step, N m or N.
 /// controller : ComputedTorque, optional
 ///     Controller that tracks ``reference``.
 /// reference : Reference, optional
-///     Path that the tool of the controller tracks.
+///     Reference that the tool of the controller tracks.
 /// integrator : {"rk4", "semi_implicit_euler"}
 ///     Integration method.
 /// record_every : int, optional
-///     If given, the initial state and every ``record_every``-th state are returned.
+///     If given, the initial state and the state after every ``record_every`` steps are returned. Default:
+///     only the final state is returned.
 /// threads : int, optional
 ///     Number of threads; default: all cores.
 /// out : tuple of two arrays, optional
@@ -50,13 +51,14 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Returns
 /// -------
 /// q, v : (B, nq) and (B, nv) array
-///     Final states. With ``record_every``, the shapes are (B, K, nq) and (B, K, nv), where
-///     ``K = steps // record_every + 1``; the first of the K rows is the initial state.
+///     Final configurations, m and rad, and velocities, m/s and rad/s. With ``record_every``, the shapes are
+///     (B, K, nq) and (B, K, nv), where ``K = steps // record_every + 1``; the first of the K rows is the
+///     initial state.
 ///
 /// Raises
 /// ------
 /// SimulationError
-///     If a state diverges.
+///     If the motion diverges.
 /// ControlError
 ///     If only one of ``controller`` and ``reference`` is given, if ``tau`` is given as well, if the
 ///     controller is of another kind or for another robot, or if the reference is in the frame ``"lvlh"``.
@@ -133,7 +135,7 @@ pub(super) fn rollout<'py>(
             return Err(plain(
                 py,
                 "ControlError",
-                "both tau and a controller are given; give only one of them",
+                "both tau and a controller are given; omit one of the two",
             ));
         }
     };
@@ -159,8 +161,8 @@ fn law_of<'a, 'py>(controller: Any<'a, 'py>) -> PyResult<&'a Bound<'py, PyComput
         let py = controller.py();
         let got = type_name(controller);
         let message = format!(
-            "controller is of type {got}, but a rollout supports only ComputedTorque, or torques given as tau; use a \
-             Simulation for other controllers"
+            "controller is of type {got}, but a rollout supports only ComputedTorque, or torques given as \
+             tau; use a Simulation for other controllers"
         );
         let fields = fields!(py, "name": "controller", "got": got, "expected": "ComputedTorque");
         raise(py, "ControlError", &message, &fields)

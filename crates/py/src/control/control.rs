@@ -95,7 +95,7 @@ impl PyGoal {
 ///     If True, the reference is shifted so that it begins at the current pose or joint positions.
 /// load : str, optional
 ///     Frame of a captured system, ``SYSTEM/FRAME``, to which the reference applies instead of the tool. The
-///     robot must hold the body of this frame while the control is active, and the ``knows`` of the robot's
+///     tool must hold the body of this frame while the control is active, and the ``knows`` of the robot's
 ///     :class:`System` must contain the captured system.
 /// internal_forces : list of InternalForce
 ///     Forces that closed loops transmit while the control is active. They require a law that commands

@@ -21,7 +21,7 @@ pub(crate) struct PyFreeFloating {
     /// to the base and to the joints.
     external: Py<PyAny>,
     /// Generalized Jacobian ``Jg`` of the frame, (6, n) or (B, 6, n), at the frame's origin in W axes, linear
-    /// rows first; m, rad or dimensionless.
+    /// rows first; dimensionless, m and 1/m.
     jacobian: Py<PyAny>,
     /// Drift ``d``, the acceleration of the frame for ``q̈ = 0``, (6,) or (B, 6), m/s² and rad/s², W axes.
     drift: Py<PyAny>,

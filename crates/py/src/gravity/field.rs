@@ -116,8 +116,8 @@ impl PyGravityField {
                 return Err(plain(
                     py,
                     "GravityError",
-                    "the arguments do not determine the zonal field; give only degree (for the Earth), or j, \
-                     mu and radius",
+                    "the arguments do not determine the zonal field; give only degree (for the Earth), or all \
+                     of j, mu and radius",
                 ));
             }
         };

@@ -28,7 +28,7 @@ pub(crate) struct PyConstrainedFreeFloating {
     /// Generalized external forces ``Q = Gᵀ Q*``, (f,), N m or N.
     external: Py<PyAny>,
     /// Generalized Jacobian ``J = Jg G`` of the frame, (6, f), at the frame's origin in W axes, linear rows
-    /// first; m, rad or dimensionless.
+    /// first; dimensionless, m and 1/m.
     jacobian: Py<PyAny>,
     /// Drift ``d``, the acceleration of the frame for ``ÿ = 0``, (6,), m/s² and rad/s², W axes.
     drift: Py<PyAny>,

@@ -131,8 +131,8 @@ impl PyModel {
     /// Returns
     /// -------
     /// (6, nv) or (B, 6, nv) array
-    ///     Jacobian with rows in W axes, linear rows first, and columns in the order of ``v``; dimensionless,
-    ///     m or rad per unit of the joint.
+    ///     Jacobian with rows in W axes, linear rows first, and columns in the order of ``v``; dimensionless
+    ///     and m.
     #[pyo3(signature = (q, frame, *, threads=None, out=None))]
     fn frame_jacobian<'py>(
         &self,

@@ -17,12 +17,13 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Creates the simulation of a world with default settings of the integration. `given` states which arguments
-/// that belong to a robot have been given; any of them is an error.
+/// Creates the simulation of a world with the default integrator settings. `given` states for each argument
+/// that applies only to a robot whether it was given; such an argument is an error.
 pub(super) fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> PyResult<Simulation> {
     if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
         return Err(PyTypeError::new_err(format!(
-            "{name} belongs to the world or to its systems; give it to World or to System, not to Simulation"
+            "{name} is given to Simulation with a World, but it belongs to the world or to its systems; give \
+             {name} to World or to System"
         )));
     }
     world.get().simulation(world.py())
@@ -32,7 +33,7 @@ pub(super) fn of_world(world: &Bound<'_, PyWorld>, given: &[(&str, bool)]) -> Py
 type Surroundings<'a, 'py> =
     (Option<&'a Bound<'py, PyOrbit>>, Option<&'a Bound<'py, PyEarth>>, &'a str, Option<Any<'a, 'py>>);
 
-/// Creates the simulation of a robot with default settings of the integration.
+/// Creates the simulation of a robot with the default integrator settings.
 pub(super) fn of_robot(
     model: Any<'_, '_>,
     (q, v): (Option<Any<'_, '_>>, Option<Any<'_, '_>>),
@@ -45,7 +46,9 @@ pub(super) fn of_robot(
         return Err(PyTypeError::new_err(format!("model is of type {got}; expected a Model or a World")));
     };
     let (Some(q), Some(v)) = (q, v) else {
-        return Err(PyTypeError::new_err("a Simulation of a Model requires its initial state; give q and v"));
+        return Err(PyTypeError::new_err(
+            "q or v, the initial state of the Model, is missing; give both q and v",
+        ));
     };
     let model = model.get();
     let (q, v) = initial_state(py, &model.model, q, v)?;
@@ -60,8 +63,8 @@ pub(super) fn of_robot(
     Ok(simulation)
 }
 
-/// Sets the effects and the gravity field. Orbit and Earth must be set before. `surfaces` are the surfaces
-/// declared with each system.
+/// Sets the effects and the gravity of a simulation whose orbit and Earth have been set. `surfaces` are the
+/// surfaces declared with each system.
 pub(crate) fn set_environment(
     py: Python<'_>,
     simulation: &mut Simulation,

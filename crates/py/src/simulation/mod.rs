@@ -1,4 +1,4 @@
-//! Simulations of one robot or of a world.
+//! The class `Simulation`: the simulation of one robot or of a world.
 
 mod build;
 
@@ -29,8 +29,8 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// ----------
 /// model : Model or World
 ///     Robot, or a world of systems. Because a world has its own initial states, environment and controllers,
-///     only ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be given
-///     with it.
+///     only ``time_step``, ``integrator``, ``tolerance``, ``record_every`` and ``record_wrenches`` may be
+///     given with it.
 /// q : (nq,) array, optional
 ///     Initial configuration, m and rad; required for a robot.
 /// v : (nv,) array, optional
@@ -41,11 +41,11 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     Epoch and orientation of the Earth.
 /// gravity_mode : {"true", "carried"}
 ///     Behaviour for a reference orbit that is not in free fall. ``true``: the robot falls in the modelled
-///     gravity and so moves away from the reference. ``carried``: the robot moves along with the reference.
-///     Only tidal gravity then acts, and drag and radiation pressure act without their common acceleration.
-///     ``trace.reference_residual`` is the gravitational acceleration that is omitted.
+///     gravity and therefore moves away from the reference. ``carried``: the robot moves along with the
+///     reference; only tidal gravity acts, and drag and radiation pressure act without their common
+///     acceleration. ``trace.reference_residual`` is the gravitational acceleration that is omitted.
 /// environment : list of Effect, optional
-///     Effects on the bodies.
+///     Effects on the bodies, such as ``GravityGradient()`` and ``Drag``.
 /// controller : control law, object or list of Control, optional
 ///     Control law for all joints, such as ``ComputedTorque``; an object with ``update(t, state)`` that
 ///     returns joint torques (n,), N m or N; or several controls.
@@ -64,8 +64,9 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// reference_start_tolerance : (float, float), optional
 ///     Permitted initial deviation of the tool from its reference, m and rad; default: (0.05, 0.1).
 /// tolerance : float
-///     Permitted error per step of ``dormand_prince``, relative to one radian, to the robot's size, and to
-///     the rates.
+///     Permitted error per step of ``dormand_prince``, dimensionless: relative to 1 rad for angles, to the
+///     robot's size or its distance from the origin of W for lengths, and to the magnitude of the rates for
+///     rates.
 /// enforce_limits : bool
 ///     If True, position limits of joints are rigid stops.
 /// restitution : float
@@ -74,10 +75,10 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 ///     If True, ``trace.wrenches`` contains the wrench of every effect on every body.
 /// rereference_beyond : float
 ///     Distance of the base from the reference orbit, m, beyond which integration continues about a new,
-///     freely falling reference orbit, unless a controller tracks a pose in W. ``trace.rereferenced`` holds
-///     the times; recorded quantities still refer to W.
+///     freely falling reference orbit, unless a controller tracks a pose in W. ``trace.rereferenced``
+///     contains the times of these changes; recorded quantities still refer to W.
 /// actuators : list of Brake, optional
-///     Brakes of joints. Events of a :class:`World` engage and disengage them.
+///     Brakes of joints. Only events of a :class:`World` engage and disengage them during a run.
 /// engine : object, optional
 ///     External physics engine that replaces the native engine, such as ``onorbit_rs.engines.Mujoco``. It is
 ///     an object with a method ``step`` (see Notes).
@@ -90,16 +91,19 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// InputError, ShapeError
 ///     If a number is out of range, or an array has the wrong shape.
 /// OrbitError, EarthError, GravityError, EffectError, ControlError, EngineError
-///     If the orbit, the Earth, the environment, the controllers and the engine do not fit together.
+///     If the orbit, the Earth, the environment, a controller or the engine is invalid, or lacks something
+///     that another argument requires.
 ///
 /// Notes
 /// -----
-/// ``engine.step(start, end, q, v, tau, wrenches)`` returns a tuple: ``q`` and ``v`` at ``end``, the
-/// acceleration at ``start`` (nv,), the integral of the external forces and of their moments about the centre
-/// of mass (6,), N s and N m s, the work done on the robot less the energy lost in its joints, J, and the
-/// energy lost in its joints, J. ``wrenches(t, q, v)`` returns the wrenches of the environment, (bodies, 6),
-/// W axes: the force, N, through the centre of mass of each body, and the torque about the centre of mass, N
-/// m. The object must not keep state between calls. ``integrator``, ``enforce_limits``, ``restitution`` and
+/// ``engine.step(start, end, q, v, tau, wrenches)`` simulates one step from ``start`` to ``end``, s, with the
+/// state ``q``, ``v`` at ``start`` and constant joint torques ``tau`` (n,), N m or N. It returns a tuple:
+/// ``q`` and ``v`` at ``end``; the acceleration at ``start`` (nv,), m/s² and rad/s²; the time integrals of
+/// the external forces and of their moments about the centre of mass (6,), W axes, N s and N m s; the work
+/// done on the robot minus the energy dissipated in its joints, J; and the energy dissipated in its joints,
+/// J. ``wrenches(t, q, v)`` returns the wrenches of the environment, (bodies, 6), W axes: the force on each
+/// body, N, which acts at its centre of mass, and the torque about the centre of mass, N m. The object must
+/// not keep state between calls. ``integrator``, ``enforce_limits``, ``restitution`` and
 /// ``rereference_beyond`` apply only to the native engine.
 ///
 /// A world of several systems needs ``engine.step_world(start, end, q, v, tau, wrenches, welds)``. Its
@@ -109,20 +113,22 @@ type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// the rotation from axes of the second body to axes of the first, (3, 3). The method returns a tuple: ``q``,
 /// ``v`` and the acceleration; for each system the impulse (systems, 6), the work (systems,) and the loss
 /// (systems,) as above; the impulse (systems, 6) and the work (systems,) of the connections on each system;
-/// and the integral of the moments of the external forces about the common centre of mass, with each force
-/// acting at the centre of mass of its system, (3,), N m s. With such an engine, captures cause no impact:
-/// the engine removes the relative velocity during the next steps.
+/// and the time integral of the moments of the external forces about the common centre of mass, with each
+/// force acting at the centre of mass of its system, (3,), W axes, N m s. With such an engine, captures cause
+/// no impact: the engine removes the relative velocity during the next steps.
 ///
-/// An engine that computes the forces of contacts has their names in the attribute ``contacts``. It includes
-/// their impulse and work in those of the connections, and ``step_world`` returns a tenth entry, (contacts,
-/// 14): at ``start`` the force on the second side, N, its moment about the origin of W, N m, and the power taken
-/// from the motion, W; then the integrals of these seven over the step. Steps are shortened while bodies touch.
+/// The attribute ``contacts`` of an engine lists the names of the contacts whose forces the engine computes.
+/// It includes their impulse and work in those of the connections, and ``step_world`` returns a tenth entry,
+/// (contacts, 14): at ``start`` the force on the second side, N, its moment about the origin of W, N m, and
+/// the power that the contact removes from the motion, W; then the time integrals of these seven numbers over
+/// the step. Steps are shortened while bodies touch.
 ///
-/// An engine that satisfies the constraints of closed loops and mimic joints has their names in the attribute
-/// ``loops``, as ``SYSTEM/NAME``, or ``NAME`` for a single robot. Other engines refuse robots that have them.
-/// An engine whose attribute ``supports_brakes`` is True receives the keyword argument ``brakes`` in both methods:
-/// the brakes that are engaged during the step, a list of ``(system, joint, slip_torque)`` with the indices of
-/// the system and of its joint, and N m or N. Other engines refuse robots with brakes.
+/// The attribute ``loops`` of an engine lists the closed loops and mimic joints whose constraints the engine
+/// satisfies, as ``SYSTEM/NAME``, or ``NAME`` for a single robot. A robot with any other loop or mimic joint
+/// is an error. If the attribute ``supports_brakes`` is True, both methods receive the keyword argument
+/// ``brakes`` with the brakes that are engaged during the step: a list of ``(system, joint, slip_torque)``
+/// with the indices of the system and of its joint, and the slip torque, N m or N. Otherwise, a robot with
+/// brakes is an error.
 #[pyclass(name = "Simulation", frozen, module = "onorbit_rs")]
 pub(crate) struct PySimulation {
     run: SharedRun,
@@ -227,7 +233,7 @@ impl PySimulation {
         Ok(Self { run, systems, orbit: own_orbit, time_step, record_every, integrator })
     }
 
-    /// Robots by the name of the system. The name of a single robot is that of its model.
+    /// Models of the robots, by the name of the system. A single robot has the name of its model.
     #[getter]
     fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -246,29 +252,31 @@ impl PySimulation {
     /// duration : float
     ///     Simulated time, s.
     /// progress : callable, optional
-    ///     Function ``progress(t, duration)``, called at regular intervals of wall-clock time.
+    ///     Function ``progress(t, duration)``, called at regular intervals of wall-clock time with the
+    ///     simulation time and the duration, s.
     /// checkpoint : callable, optional
-    ///     Function ``checkpoint(c)``, called with a :class:`Checkpoint`. If it returns False, the next
-    ///     checkpoint contains the same rows again.
+    ///     Function ``checkpoint(c)``, called with a :class:`Checkpoint` that contains the rows since the
+    ///     last one. If it returns False, the next checkpoint contains the same rows again.
     /// checkpoint_every : float, optional
-    ///     Wall-clock time between checkpoints, s (at most twenty per second); Ctrl-C causes a checkpoint as
-    ///     well.
+    ///     Wall-clock time between checkpoints, s; there are at most twenty checkpoints per second. Ctrl-C
+    ///     causes a checkpoint as well.
     /// resume : Checkpoint, optional
     ///     Checkpoint from which the run resumes with identical bits.
     ///
     /// Returns
     /// -------
     /// Trace or WorldTrace
-    ///     WorldTrace for a world of several systems.
+    ///     Result of the run; a WorldTrace for a world of several systems.
     ///
     /// Raises
     /// ------
     /// RunInterrupted
-    ///     At Ctrl-C; ``trace`` holds the rows so far.
+    ///     At Ctrl-C; its attribute ``trace`` contains the rows so far.
     /// SimulationError
-    ///     If the run diverges; ``trace`` holds the rows so far.
+    ///     If the run diverges; its attribute ``trace`` contains the rows so far.
     /// InputError, CheckpointError
-    ///     If a duration is invalid, or ``resume`` belongs to a different simulation.
+    ///     If ``duration`` or ``checkpoint_every`` is invalid, or ``resume`` belongs to a different
+    ///     simulation.
     #[pyo3(signature = (duration, *, progress=None, checkpoint=None, checkpoint_every=30.0, resume=None))]
     fn run(
         &self,
@@ -302,17 +310,16 @@ impl PySimulation {
 
     /// Start a run that is advanced step by step.
     ///
-    /// The steps are those of :meth:`run`, whatever the times to which the stepper is advanced. A simulation
-    /// has one run at a time: starting another run ends the current run.
+    /// The steps are those of :meth:`run` for any times to which the stepper is advanced. A simulation has
+    /// one run at a time: starting another run ends the current run.
     ///
     /// Parameters
     /// ----------
     /// duration : float, optional
-    ///     Planned end of the run, s. The last step ends at this time, for which the adaptive integrator and
-    ///     the certificate measure errors. Default: no planned end.
+    ///     Planned end of the run, s. The last step ends at this time. Default: the planned end of ``resume``
+    ///     or, without it, no planned end.
     /// resume : Checkpoint, optional
-    ///     Checkpoint from which the run resumes with identical bits; the default of ``duration`` is that of
-    ///     the checkpoint.
+    ///     Checkpoint from which the run resumes with identical bits.
     ///
     /// Returns
     /// -------

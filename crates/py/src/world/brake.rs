@@ -190,7 +190,8 @@ brake_event! {
     ///
     /// Exactly one of ``at``, ``after`` and ``on_command`` specifies when the event happens. From then on, a
     /// brake with a finite slip torque slows its joint down by friction. A brake with an infinite slip torque
-    /// stops the joint at once by an impulse, which dissipates the kinetic energy of the relative motion.
+    /// stops the joint at once by an impulse; ``energy_lost`` of the event's record is the kinetic energy
+    /// lost.
     ///
     /// Parameters
     /// ----------

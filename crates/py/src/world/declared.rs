@@ -1,4 +1,4 @@
-//! Worlds of several systems.
+//! The class `World`.
 
 use super::event::{events_in, events_of, names_of};
 use super::loops::close_systems;
@@ -35,7 +35,7 @@ use std::sync::Arc;
 /// earth : Earth, optional
 ///     Epoch and orientation of the Earth.
 /// gravity_mode : {"true", "carried"}
-///     As for ``Simulation``.
+///     Behaviour for a reference orbit that is not in free fall, as for ``Simulation``.
 /// environment : list of Effect, optional
 ///     Effects on the bodies of all systems; links are named ``SYSTEM/LINK``.
 /// contacts : list of Contact, optional
@@ -44,7 +44,7 @@ use std::sync::Arc;
 ///     Events that connect and separate systems, or engage and disengage brakes.
 /// rereference_beyond : float
 ///     Distance of a system from the reference orbit, m, beyond which integration continues about a new
-///     reference orbit. Systems that events may connect or that may touch keep their reference orbit.
+///     reference orbit. Systems that events may connect, or that may touch, keep their reference orbit.
 /// loops : list of Loop, optional
 ///     Closed loops of the robots; both frames of a loop are ``SYSTEM/FRAME`` of the same system.
 ///
@@ -53,7 +53,7 @@ use std::sync::Arc;
 /// WorldError
 ///     If a system, a contact, an event or a loop is invalid.
 /// InputError, OrbitError, EarthError, GravityError, EffectError, ControlError
-///     As for ``Simulation``.
+///     If a number, the orbit, the Earth, the environment or a controller is invalid, as for ``Simulation``.
 #[pyclass(name = "World", frozen, module = "onorbit_rs")]
 pub(crate) struct PyWorld {
     systems: Vec<Py<PySystem>>,
@@ -132,7 +132,7 @@ impl PyWorld {
 }
 
 impl PyWorld {
-    /// Returns the reference orbit, if the world has one.
+    /// Returns the reference orbit, or `None` if the world has no reference orbit.
     pub(crate) fn orbit(&self, py: Python<'_>) -> Option<Py<PyOrbit>> {
         self.orbit.as_ref().map(|orbit| orbit.clone_ref(py))
     }
@@ -147,7 +147,7 @@ impl PyWorld {
         })
     }
 
-    /// Creates a simulation of the world with default settings of the integration.
+    /// Creates a simulation of the world with the default integrator settings.
     pub(crate) fn simulation(&self, py: Python<'_>) -> PyResult<Simulation> {
         let orbit = self.orbit.as_ref().map(|orbit| Arc::clone(&orbit.get().orbit));
         let names = names_of(py, &self.events)?;
@@ -181,7 +181,7 @@ impl PyWorld {
     }
 }
 
-/// Returns the numbers of the systems whose models a system knows; `names` are the names of all systems.
+/// Returns the indices of the systems whose models a system knows; `names` are the names of all systems.
 fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResult<Vec<usize>> {
     let number = |known: &String| {
         let others = || names.iter().filter(|name| **name != system.name).map(String::as_str);
@@ -202,7 +202,7 @@ fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResul
     system.knows.iter().map(number).collect()
 }
 
-/// Issues warnings about systems that other systems know without effect.
+/// Issues a warning for each system whose model another system knows without effect.
 fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     let name = |system: usize| &simulation.systems[system].name;
     for idle in idle_knowledge(&simulation.systems, &simulation.events) {
@@ -211,13 +211,13 @@ fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
         let through = through.join(" and ");
         let message = if through.is_empty() {
             format!(
-                "system '{system}' knows '{known}' without effect, because no capture connects them; add a capture, or \
-                 remove '{known}' from knows"
+                "system '{system}' knows '{known}' without effect, because no capture connects them; add a \
+                 capture, or remove '{known}' from knows"
             )
         } else {
             format!(
-                "system '{system}' knows '{known}' without effect, because captures connect them only through {through}; \
-                 add {through} to knows"
+                "system '{system}' knows '{known}' without effect, because captures connect them only \
+                 through {through}; add {through} to knows"
             )
         };
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)?;
@@ -225,10 +225,11 @@ fn warn_of_knowledge(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     Ok(())
 }
 
-/// Largest number of pairs of convex pieces in a world without a warning.
+/// Number of pairs of convex pieces in a world above which a warning is issued.
 const MANY_PAIRS: usize = 2000;
 
-/// Issues a warning about the contact with the most pairs of convex pieces if there are very many pairs.
+/// Issues a warning about the contact with the most pairs of convex pieces if there are more than
+/// [`MANY_PAIRS`] pairs in total.
 fn warn_of_pairs(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     let pairs = |contact: &Contact| contact.sides.iter().map(Vec::len).product::<usize>();
     let total: usize = simulation.contacts.iter().map(pairs).sum();
@@ -238,22 +239,26 @@ fn warn_of_pairs(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     };
     let [a, b] = [0, 1].map(|side| most.sides[side].len());
     let message = format!(
-        "the contacts have {total} pairs of convex pieces, most of them in '{}' ({a} pieces with {b}); each pair needs \
-         about 3 kB, and pairs near each other are evaluated in every step; narrow the patterns to the links that can \
-         touch, such as SYSTEM/gripper* instead of SYSTEM/*",
+        "the contacts have {total} pairs of convex pieces, most of them in '{}' ({a} pieces with {b}); each \
+         pair needs about 3 kB of memory, and pairs near each other are evaluated in every step; narrow the \
+         patterns to the links that can touch, such as SYSTEM/gripper* instead of SYSTEM/*",
         most.name
     );
     PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(message)?, 1)
 }
 
-/// Issues warnings about systems that start so far from the reference orbit that their positions lose digits.
+/// Issues a warning for each system that starts so far from the reference orbit that its position loses
+/// precision.
 fn warn_of_distance(py: Python<'_>, simulation: &Simulation) -> PyResult<()> {
     for far in simulation.far_systems() {
-        let reason =
-            if far.keeps_reference { "; systems that events may connect keep this orbit" } else { "" };
+        let reason = if far.keeps_reference {
+            "; systems that events may connect keep this reference orbit"
+        } else {
+            ""
+        };
         let message = format!(
-            "system '{}' starts {} m from the reference orbit, where positions are resolved to {} m{reason}; use an \
-             orbit near the systems",
+            "system '{}' starts {} m from the reference orbit, where positions are resolved to {} m{reason}; \
+             use a reference orbit near the systems",
             simulation.systems[far.system].name,
             short(far.distance),
             short(far.resolution)

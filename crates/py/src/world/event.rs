@@ -1,4 +1,4 @@
-//! Events of a world: captures, releases, and the reading of all kinds of events.
+//! Captures and releases, and the conversion of all kinds of events to those of the core.
 
 use super::brake::{PyDisengage, PyEngage, brake_at};
 use crate::arrays::{fixed, list_of, text, wrong_entry};
@@ -21,7 +21,8 @@ pub(super) struct Condition {
 }
 
 impl Condition {
-    /// Creates the condition. Exactly one of `at`, `after`, `on_command` and `latch` must be given.
+    /// Creates the condition of the event `name`. Exactly one of `at`, `after`, `on_command` and `latch` must
+    /// be given, otherwise the result is an error.
     pub(super) fn new(
         py: Python<'_>,
         name: &str,
@@ -33,7 +34,7 @@ impl Condition {
             .filter(|given| **given)
             .count();
         let problem = if count != 1 {
-            "has none or several of at, after, on_command and (for a capture) within; give exactly one of them"
+            "has none or more than one of at, after, on_command and (for a capture) within; give exactly one"
         } else if delay != 0.0 && after.is_none() {
             "has a delay without after; add after, or omit delay"
         } else {
@@ -43,7 +44,7 @@ impl Condition {
         Err(raise(py, "WorldError", &message, &fields!(py, "name": name)))
     }
 
-    /// Writes the condition as keyword arguments of the event.
+    /// Stores the condition in `keywords`, the keyword arguments of the event's constructor.
     pub(super) fn write_to(&self, keywords: &Bound<'_, PyDict>) -> PyResult<()> {
         keywords.set_item("at", self.at)?;
         keywords.set_item("after", &self.after)?;
@@ -59,7 +60,7 @@ impl Condition {
         Ok(())
     }
 
-    /// Returns the condition as used by the core; `names` are the names of all events.
+    /// Returns the condition of the core for the event `name`; `names` are the names of all events.
     pub(super) fn when(&self, py: Python<'_>, name: &str, names: &[String]) -> PyResult<When> {
         if let Some(envelope) = self.latch {
             return Ok(When::Latch(envelope));
@@ -74,7 +75,7 @@ impl Condition {
     }
 }
 
-/// Returns the number of the event `other`, to which the event `name` refers.
+/// Returns the index of the event `other`, to which the event `name` refers, in the `names` of all events.
 fn event_named(py: Python<'_>, name: &str, other: &str, names: &[String]) -> PyResult<usize> {
     names.iter().position(|known| known == other).ok_or_else(|| {
         let message = format!(
@@ -85,7 +86,7 @@ fn event_named(py: Python<'_>, name: &str, other: &str, names: &[String]) -> PyR
     })
 }
 
-/// Returns the frame with the path ``SYSTEM/FRAME``.
+/// Returns the frame with the path `SYSTEM/FRAME`, to which the event `event` refers.
 fn frame_at(
     py: Python<'_>,
     event: &str,
@@ -97,7 +98,7 @@ fn frame_at(
         raise(py, "WorldError", &message, &fields!(py, "name": event, "got": path))
     };
     let Some((name, frame)) = path.split_once('/') else {
-        return Err(wrong("give the name of the system and that of the frame, as in 'chaser/tool'"));
+        return Err(wrong("it must be written SYSTEM/FRAME, as in 'chaser/tool'"));
     };
     let Some(system) = systems.iter().position(|(known, _)| known == name) else {
         let known: Vec<&str> = systems.iter().map(|(name, _)| name.as_str()).collect();
@@ -107,7 +108,7 @@ fn frame_at(
     Ok(FrameIndex { system, frame })
 }
 
-/// Capture: connects two frames of different systems rigidly, with the relative pose that they have at that
+/// Event that rigidly connects two frames of different systems, with the relative pose that they have at that
 /// instant.
 ///
 /// Exactly one of ``at``, ``after``, ``on_command`` and ``within`` specifies when the capture happens.
@@ -117,35 +118,36 @@ fn frame_at(
 /// name : str
 ///     Name of the event.
 /// frame_a : str
-///     Capturing frame as ``SYSTEM/FRAME``.
+///     Path of the capturing frame, ``SYSTEM/FRAME``.
 /// frame_b : str
-///     Captured frame as ``SYSTEM/FRAME``.
+///     Path of the captured frame, ``SYSTEM/FRAME``.
 /// at : float, optional
 ///     Simulation time of the capture, s.
 /// after : str, optional
 ///     Name of another event, after which the capture happens.
 /// delay : float
-///     Time after the other event, s.
+///     Time from the other event to the capture, s; only with ``after``.
 /// on_command : bool
 ///     If True, the capture happens when ``Stepper.trigger`` is called.
 /// within : (float, float), optional
-///     Latch: the capture happens once the frames are within this distance, m, and angle, rad, of each other.
+///     Distance, m, and angle, rad, of a latch. The capture happens once the frames are within both.
 /// slower_than : (float, float), optional
 ///     Largest speed of the captured frame's origin as observed in the capturing frame, m/s, and largest
-///     relative angular speed, rad/s, at which the latch closes; default: no limit.
+///     relative angular speed, rad/s, at which the latch closes; only with ``within``. Default: no limit.
 /// held_for : float
-///     Time for which the conditions of the latch must hold, s.
+///     Time for which the conditions of the latch must hold before the capture, s; only with ``within``.
 /// seat : float, optional
 ///     Time, s, during which the captured frame moves to ``pose`` after the capture, as with latches and
-///     grapple fixtures. The motion starts and ends at rest. By default the pose at the capture is kept.
+///     grapple fixtures. The motion starts and ends at rest. Default: the relative pose at the capture is
+///     kept.
 /// pose : (4, 4) array, optional
-///     Nominal pose of the captured frame in the capturing frame, m; the distance may be at most 1000 m. By
-///     default the two frames coincide.
+///     Final pose of the captured frame in the capturing frame, m, at a distance of at most 1000 m; only with
+///     ``seat``. Default: the two frames coincide.
 ///
 /// Raises
 /// ------
 /// WorldError
-///     If not exactly one condition is given, or an argument is given without the one that it belongs to.
+///     If not exactly one condition is given, or an argument is given without the argument that it requires.
 /// InputError, ShapeError, DtypeError, ModelError
 ///     If a number is not finite, an array has the wrong shape, a name is not text, or ``pose`` is not a
 ///     rigid transform.
@@ -154,15 +156,15 @@ pub(crate) struct PyCapture {
     /// Name of the event.
     #[pyo3(get)]
     pub(super) name: String,
-    /// Capturing frame, ``SYSTEM/FRAME``.
+    /// Path of the capturing frame, ``SYSTEM/FRAME``.
     #[pyo3(get)]
     frame_a: String,
-    /// Captured frame, ``SYSTEM/FRAME``.
+    /// Path of the captured frame, ``SYSTEM/FRAME``.
     #[pyo3(get)]
     frame_b: String,
     condition: Condition,
     seat: Option<Seat>,
-    /// Nominal pose as given in Python.
+    /// Final pose of the seating motion as given in Python.
     pose: Option<Py<PyAny>>,
 }
 
@@ -195,7 +197,7 @@ impl PyCapture {
         let slower = slower_than.map(|slower| fixed(slower, "slower_than", &[2])).transpose()?;
         if within.is_none() && (slower.is_some() || held_for != 0.0) {
             let message = format!(
-                "the event '{name}' has slower_than or held_for, which require within; add within or omit them"
+                "the event '{name}' has slower_than or held_for without within; add within, or omit both"
             );
             return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
         }
@@ -203,7 +205,7 @@ impl PyCapture {
         let latch = within.map(|within| Envelope { within, slower_than, held_for });
         if seat.is_none() && pose.is_some() {
             let message = format!(
-                "the event '{name}' has a pose, which requires seat; add seat, the duration of the motion in s"
+                "the event '{name}' has a pose without seat; add seat, the duration of the motion in s"
             );
             return Err(raise(py, "WorldError", &message, &fields!(py, "name": name)));
         }
@@ -227,10 +229,10 @@ impl PyCapture {
     }
 }
 
-/// Release: removes the connection that a capture established.
+/// Event that removes the connection that a capture established.
 ///
-/// Exactly one of ``at``, ``after`` and ``on_command`` specifies when the release happens. Releasing frames
-/// that are not connected has no effect.
+/// Exactly one of ``at``, ``after`` and ``on_command`` specifies when the release happens. If the frames are
+/// not connected, the release has no effect.
 ///
 /// Parameters
 /// ----------
@@ -243,12 +245,12 @@ impl PyCapture {
 /// after : str, optional
 ///     Name of another event, after which the release happens.
 /// delay : float
-///     Time after the other event, s.
+///     Time from the other event to the release, s; only with ``after``.
 /// on_command : bool
 ///     If True, the release happens when ``Stepper.trigger`` is called.
 /// impulse : (6,) array, optional
-///     Impulse of a spring on the captured system: N s, then N m s, at the origin and in the axes of the
-///     capturing frame; default: zero. The opposite impulse acts on the other system.
+///     Impulse of a spring on the captured system: linear, N s, then angular, N m s, in the axes of the
+///     capturing frame at its origin. The opposite impulse acts on the other system. Default: zero.
 ///
 /// Raises
 /// ------
@@ -301,7 +303,7 @@ impl PyRelease {
     }
 }
 
-/// Reads the name of an event.
+/// Reads the argument `argument`, the name of an event.
 pub(crate) fn event_name(value: &Bound<'_, PyAny>, argument: &str) -> PyResult<String> {
     text(value, argument, "the name of an event (str), such as 'grasp'")
 }
@@ -324,7 +326,7 @@ pub(super) fn events_in(value: &Bound<'_, PyAny>) -> PyResult<Vec<Py<PyAny>>> {
     }
 }
 
-/// Returns the names of events.
+/// Returns the names of the given events.
 pub(super) fn names_of(py: Python<'_>, events: &[Py<PyAny>]) -> PyResult<Vec<String>> {
     events.iter().map(|event| event.bind(py).getattr("name")?.extract()).collect()
 }

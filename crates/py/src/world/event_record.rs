@@ -10,31 +10,34 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Event that happened, with its audit. ``trace.events`` of a world contains these records.
+/// Record of an event that happened, with a check of momentum and energy. ``trace.events`` of a world
+/// contains these records.
 ///
 /// Parameters
 /// ----------
 /// name : str
-///     Name of the event, or of the contact.
+///     Name of the event or of the contact.
 /// kind : {"capture", "release", "touch_down", "lift_off", "engage", "disengage"}
 ///     Kind of the event. A contact touches down when the first pieces of its links touch, and lifts off when
 ///     the last ones separate.
 /// time : float
 ///     Simulation time, s.
 /// systems : (str, str)
-///     Names of the two systems, beginning with the capturing system; for a contact, those of the links that
-///     touched first, in the order of its sides; for a brake, twice the name of its system.
+///     Names of the two systems, beginning with the capturing system. For a contact, the systems of the links
+///     that touched first, in the order of its sides; for a brake, twice the name of its system.
 /// impulse : (6,) array
-///     Impulse on the second system and the systems connected to it: N s, then N m s about ``point``, axes of
-///     W. For a lift-off, the impulse of the contact since its touch-down; for a touch-down, zero.
+///     Impulse on the second system and the systems connected to it: linear, N s, then angular about
+///     ``point``, N m s, axes of W. For a lift-off, the impulse of the contact since its touch-down; for a
+///     touch-down, zero.
 /// point : (3,) array
 ///     Point at which the impulse acts, in W, m; for a contact, the point of contact.
 /// energy_lost : float
 ///     Kinetic energy lost, J; negative if a spring added energy. For a lift-off, the energy dissipated since
 ///     the touch-down.
 /// momentum_error : (2,) array
-///     Changes of the linear and of the angular momentum of the group, relative to the sums of the magnitudes
-///     of the momenta of its bodies; zero for a contact, whose forces on both sides act at one point.
+///     Changes of the linear and of the angular momentum of the systems that may interact, relative to the
+///     sums of the magnitudes of the momenta of their bodies. Zero for a contact, whose forces on both sides
+///     act at one point.
 /// peak_force : float, optional
 ///     Largest normal force since the touch-down, N; None unless the event is a lift-off. It is the largest
 ///     force at the end of a step, or the maximum of the parabola through three such forces.
@@ -53,7 +56,8 @@ pub(crate) struct PyEventRecord {
     /// Simulation time, s.
     #[pyo3(get)]
     time: f64,
-    /// Names of the two systems, beginning with the capturing system; for a brake, twice the name of its system.
+    /// Names of the two systems, beginning with the capturing system; for a brake, twice the name of its
+    /// system.
     #[pyo3(get)]
     systems: (String, String),
     impulse: [f64; 6],
@@ -68,7 +72,7 @@ pub(crate) struct PyEventRecord {
 }
 
 impl PyEventRecord {
-    /// Creates the record of an event of systems with these names.
+    /// Creates the record of an event; `names` are the names of all systems.
     pub(crate) fn of(record: &EventRecord, names: &[String]) -> Self {
         let EventRecord { name, kind, time, systems, impulse, point, energy_lost, .. } = record;
         let [by, of] = systems.map(|system| names[system].clone());
@@ -112,14 +116,15 @@ impl PyEventRecord {
         Ok(Self { name, kind, time, systems, impulse, point, energy_lost, momentum_error, peak_force })
     }
 
-    /// Kind of the event: ``capture``, ``release``, ``touch_down``, ``lift_off``, ``engage`` or ``disengage``.
+    /// Kind of the event: ``capture``, ``release``, ``touch_down``, ``lift_off``, ``engage`` or
+    /// ``disengage``.
     #[getter]
     fn kind(&self) -> &'static str {
         self.kind.name()
     }
 
-    /// Impulse on the second system and the systems connected to it, (6,): N s, then N m s about ``point``,
-    /// axes of W.
+    /// Impulse on the second system and the systems connected to it, (6,): linear, N s, then angular about
+    /// ``point``, N m s, axes of W.
     #[getter]
     fn impulse<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         array_of(py, &[6], &self.impulse)
@@ -131,8 +136,8 @@ impl PyEventRecord {
         array_of(py, &[3], &self.point)
     }
 
-    /// Changes of the linear and of the angular momentum of the group, (2,), relative to the sums of the
-    /// magnitudes of the momenta of its bodies.
+    /// Changes of the linear and of the angular momentum of the systems that may interact, (2,), relative to
+    /// the sums of the magnitudes of the momenta of their bodies.
     #[getter]
     fn momentum_error<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         array_of(py, &[2], &self.momentum_error)
@@ -175,7 +180,7 @@ impl PyEventRecord {
     }
 }
 
-/// Reads the entries of a vector, which may be non-finite if the run diverged.
+/// Reads a vector of `N` numbers, which need not be finite, because the run may have diverged.
 fn entries<const N: usize>(value: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; N]> {
     let input = Input::new(value, name)?;
     match <[f64; N]>::try_from(input.data()) {

@@ -1,12 +1,12 @@
-//! Closed loops of the systems of a world.
+//! Assignment of a world's closed loops to its systems.
 
 use super::system::PySystem;
 use crate::errors::{fields, raise};
 use onorbit_core::model::Loop;
 use pyo3::prelude::*;
 
-/// Returns the systems with the loops, whose frames are given as ``SYSTEM/FRAME``, added to their robots. A
-/// loop whose frames are not on one of the systems is an error.
+/// Returns the systems after each loop has been added to the robot of its system. The frames of the loops are
+/// given as `SYSTEM/FRAME`; a loop whose frames are not both on one of the systems is an error.
 pub(super) fn close_systems(
     py: Python<'_>,
     systems: &[Bound<'_, PySystem>],
@@ -25,8 +25,8 @@ pub(super) fn close_systems(
     systems.iter().zip(closing).map(close).collect()
 }
 
-/// Returns the number of the system to which both frames of a loop belong, and the loop with the names that the
-/// frames have in its robot.
+/// Returns the index of the system to which both frames of a loop belong, and the loop with frame names that
+/// do not include the name of the system.
 fn of_one_system(py: Python<'_>, given: &Loop, names: &[&str]) -> PyResult<(usize, Loop)> {
     let refuse = |problem: &str| {
         let message = format!("loop '{}' {problem}", given.name);
@@ -36,7 +36,7 @@ fn of_one_system(py: Python<'_>, given: &Loop, names: &[&str]) -> PyResult<(usiz
         let example = names.first().copied().unwrap_or("chaser");
         let Some((system, frame)) = path.split_once('/') else {
             return Err(refuse(&format!(
-                "refers to the frame '{path}'; give the name of the system and that of the frame, as in \
+                "refers to the frame '{path}' without a system; it must be written SYSTEM/FRAME, as in \
                  '{example}/FRAME'"
             )));
         };
@@ -52,8 +52,8 @@ fn of_one_system(py: Python<'_>, given: &Loop, names: &[&str]) -> PyResult<(usiz
     if a.0 != b.0 {
         let Loop { name, frames: [first, second], .. } = given;
         return Err(refuse(&format!(
-            "connects frames of two systems, '{}' and '{}'; give frames of one system, or connect the systems by a \
-             capture at t = 0: oo.Capture('{name}', '{first}', '{second}', at=0.0)",
+            "connects frames of two systems, '{}' and '{}'; give frames of one system, or connect the \
+             systems with a capture at t = 0 s: oo.Capture('{name}', '{first}', '{second}', at=0.0)",
             names[a.0], names[b.0]
         )));
     }

@@ -1,4 +1,4 @@
-//! Worlds of several systems.
+//! Worlds: their systems, events, steppers and traces.
 
 mod brake;
 mod declared;
@@ -17,7 +17,7 @@ pub(crate) use systems::{PySystemStepper, Systems};
 
 use pyo3::prelude::*;
 
-/// Adds the classes to the module.
+/// Adds the classes of worlds to the module.
 pub(crate) fn add_classes(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_class::<system::PySystem>()?;
     m.add_class::<event::PyCapture>()?;

@@ -1,4 +1,4 @@
-//! Settings of one robot: its controls, reference, tool, stops, actuators and initial state.
+//! Settings of one robot: its controls, reference, tool, stops and actuators, and its initial state.
 
 use super::brake::brakes_of;
 use crate::arrays::{Input, fixed, wrong_shape};
@@ -12,7 +12,7 @@ use pyo3::types::PyDict;
 
 type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// Settings of one robot, as given in Python.
+/// Settings of one robot, as given to `Simulation` or `System` in Python.
 pub(crate) struct RobotSettings {
     pub(crate) controller: Option<Py<PyAny>>,
     pub(crate) reference: Option<Py<PyAny>>,
@@ -25,7 +25,8 @@ pub(crate) struct RobotSettings {
 }
 
 impl RobotSettings {
-    /// Sets controls, reference, tool, stops and actuators of a system.
+    /// Sets controls, reference, tool, stops and actuators of `system`. References and controls may refer to
+    /// the objects in `around`.
     pub(crate) fn apply(
         &self,
         py: Python<'_>,
@@ -54,7 +55,7 @@ impl RobotSettings {
         Ok(())
     }
 
-    /// Writes the settings as keyword arguments of the system.
+    /// Stores the settings in `keywords`, the keyword arguments of the constructor of `System`.
     pub(super) fn write_to(&self, keywords: &Bound<'_, PyDict>) -> PyResult<()> {
         keywords.set_item("controller", &self.controller)?;
         keywords.set_item("reference", &self.reference)?;
@@ -67,7 +68,8 @@ impl RobotSettings {
     }
 }
 
-/// Reads an initial configuration and velocity, each a vector; their lengths are not checked here.
+/// Reads an initial configuration (m and rad) and velocity (m/s and rad/s), each a vector, without a check of
+/// their lengths.
 pub(crate) fn initial_state(
     py: Python<'_>,
     model: &Model,

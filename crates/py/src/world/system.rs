@@ -1,4 +1,4 @@
-//! System of a world.
+//! The class `System`: one spacecraft of a world.
 
 use super::robot_settings::{RobotSettings, initial_state};
 use crate::arrays::names_in;
@@ -20,18 +20,19 @@ use std::sync::Arc;
 /// name : str
 ///     Name, unique in the world: a letter, followed by letters, digits, ``_`` and ``-``.
 /// model : Model
-///     Robot.
+///     Model of the robot.
 /// q : (nq,) array
 ///     Initial configuration, m and rad.
 /// v : (nv,) array
 ///     Initial velocity, m/s and rad/s.
 /// controller : control law, object or list of Control, optional
-///     Control law for all joints, an object with ``update(t, state)``, or several controls. After a capture,
-///     control laws still use the model of this system alone, unless it ``knows`` the other system.
+///     Control law for all joints, an object with ``update(t, state)`` that returns joint torques (n,), N m
+///     or N, or several controls. After a capture, control laws still use the model of this system alone,
+///     unless it ``knows`` the other system.
 /// reference : Reference or JointReference, optional
 ///     Reference of the controller.
 /// tool : str, optional
-///     Frame of the reference; default: that of the controller.
+///     Frame that tracks the reference; default: the tool of the controller.
 /// control_period : float, optional
 ///     Time between calls of the controller, s; default: every step.
 /// enforce_limits : bool
@@ -43,8 +44,8 @@ use std::sync::Arc;
 /// actuators : list of Brake, optional
 ///     Brakes of joints.
 /// surfaces : Surface or dict of str to Surface, optional
-///     Surfaces of the links, used by ``Drag`` and ``RadiationPressure`` effects that have no ``surfaces``;
-///     the form is as for ``Drag``. Default: ``Faces()``.
+///     Surfaces of the bodies, used by ``Drag`` and ``RadiationPressure`` effects that have no ``surfaces``,
+///     in the form described for ``Drag``; the keys of a dict are names of links. Default: ``Faces()``.
 /// knows : list of str, optional
 ///     Names of other systems whose models the controllers know. While such a system is connected to this
 ///     one, laws that use a model use the model of the connected tree, in which the joints of the other
@@ -133,7 +134,7 @@ impl PySystem {
 }
 
 impl PySystem {
-    /// Returns the arguments of the constructor other than the first four.
+    /// Returns the keyword arguments of the constructor.
     fn keywords<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let keywords = PyDict::new(py);
         self.settings.write_to(&keywords)?;
@@ -142,7 +143,7 @@ impl PySystem {
         Ok(keywords)
     }
 
-    /// Returns the same system with further loops of its robot.
+    /// Returns a copy of the system whose robot has additional closed loops.
     pub(super) fn with_loops(&self, py: Python<'_>, loops: Vec<Loop>) -> PyResult<Py<Self>> {
         let model = Py::new(py, with_loops(self.model.bind(py), loops)?)?;
         let arguments = (&self.name, model, &self.q, &self.v);
@@ -150,7 +151,7 @@ impl PySystem {
         Ok(system.cast_into::<Self>()?.unbind())
     }
 
-    /// Returns the system of the core, whose references and controls may refer to the objects in `around`.
+    /// Returns the system of the core. Its references and controls may refer to the objects in `around`.
     pub(super) fn system(&self, py: Python<'_>, around: &Around<'_>) -> PyResult<System> {
         let model = self.model.get();
         let mut system = System::new(&self.name, Arc::clone(&model.model), self.q.clone(), self.v.clone());

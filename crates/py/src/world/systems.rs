@@ -1,4 +1,4 @@
-//! Names and models of the systems of a run, and views of one of them.
+//! Names and models of the systems of a run, and the view of a single system.
 
 use super::event_record::PyEventRecord;
 use super::trace::PyWorldTrace;
@@ -22,12 +22,13 @@ pub(super) fn find(py: Python<'_>, names: &[String], name: &str) -> PyResult<usi
     })
 }
 
-/// Returns the error for an attribute that exists once per system, in a world of several systems.
+/// Returns the error for an attribute that each system has, but not the `owner`, the stepper or trace of a
+/// world of several systems.
 pub(super) fn attribute_of_systems(names: &[String], owner: &str, attribute: &str) -> PyErr {
     let examples: Vec<String> = names.iter().map(|name| format!("{owner}[\"{name}\"].{attribute}")).collect();
     PyAttributeError::new_err(format!(
-        "the world has several systems, each with its own {attribute}: {}",
-        examples.join(", ")
+        "the {owner} has no attribute '{attribute}', because the world has several systems; use {}",
+        examples.join(" or ")
     ))
 }
 
@@ -59,8 +60,8 @@ impl Systems {
         stepper.events().into_iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
     }
 
-    /// Returns an error if there are several systems, because `attribute` of `owner` then belongs to each of
-    /// them.
+    /// Returns an error if there are several systems, because each of them then has the `attribute` instead
+    /// of `owner`, the stepper or trace.
     pub(crate) fn only(&self, owner: &str, attribute: &str) -> PyResult<()> {
         if self.names.len() == 1 {
             return Ok(());
@@ -69,6 +70,7 @@ impl Systems {
     }
 
     /// Converts a recording to the trace of the only system or, for several systems, to the trace of a world.
+    /// `wall_s` is the wall-clock time of the run, s.
     pub(crate) fn wrap(
         &self,
         py: Python<'_>,
@@ -90,7 +92,7 @@ impl Systems {
     }
 }
 
-/// View of one system of a run, as returned by ``stepper[name]``.
+/// View of one system of a run in a world, as returned by ``stepper[name]``.
 #[pyclass(name = "SystemStepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PySystemStepper {
     pub(crate) stepper: Py<PyStepper>,
@@ -139,9 +141,9 @@ impl PySystemStepper {
     /// Parameters
     /// ----------
     /// control : str
-    ///     Name of the control.
+    ///     Name of the control, a key of :attr:`external`.
     /// position : (k,) array, optional
-    ///     Positions of the joints of the control, rad or m.
+    ///     Positions of the ``k`` joints of the control, rad or m.
     /// velocity : (k,) array, optional
     ///     Velocities, rad/s or m/s.
     /// effort : (k,) array, optional
@@ -149,12 +151,12 @@ impl PySystemStepper {
     /// acceleration : (k,) array, optional
     ///     Accelerations, rad/s² or m/s².
     /// check_only : bool
-    ///     If True, the command is checked and not sent.
+    ///     If True, the command is checked but not sent.
     ///
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     As for :meth:`Stepper.send`.
+    ///     If the control or the command is invalid, as for :meth:`Stepper.send`.
     #[pyo3(signature = (control, *, position=None, velocity=None, effort=None, acceleration=None, check_only=false))]
     fn send(
         &self,
@@ -176,11 +178,11 @@ impl PySystemStepper {
     /// Parameters
     /// ----------
     /// control : str
-    ///     Name of the control.
+    ///     Name of the control, a key of :attr:`external`.
     /// times : (K,) array
-    ///     Times of the points after ``start``, s.
+    ///     Times of the ``K`` points after ``start``, s.
     /// positions : (K, k) array
-    ///     Positions of the joints of the control, rad or m.
+    ///     Positions of the ``k`` joints of the control, rad or m.
     /// velocities : (K, k) array, optional
     ///     Velocities, rad/s or m/s.
     /// accelerations : (K, k) array, optional
@@ -191,7 +193,7 @@ impl PySystemStepper {
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     As for :meth:`Stepper.send_trajectory`.
+    ///     If the control or the trajectory is invalid, as for :meth:`Stepper.send_trajectory`.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -212,18 +214,18 @@ impl PySystemStepper {
     /// Parameters
     /// ----------
     /// body : str
-    ///     Link or frame, at whose origin the force acts.
+    ///     Name of a link or frame, at whose origin the force acts.
     /// force : (3,) array, optional
     ///     Force, N; default: 0.
     /// torque : (3,) array, optional
     ///     Torque, N m; default: 0.
     /// frame : {"world", "body"}
-    ///     Axes in which force and torque are constant: W axes, or the axes of the body.
+    ///     Axes in which force and torque are given and remain constant: the axes of W, or those of ``body``.
     ///
     /// Raises
     /// ------
     /// FrameError, InputError, ShapeError, EngineError
-    ///     As for :meth:`Stepper.wrench`.
+    ///     If the body or the wrench is invalid, as for :meth:`Stepper.wrench`.
     #[pyo3(signature = (body, force=None, torque=None, frame="world"))]
     fn wrench(
         &self,

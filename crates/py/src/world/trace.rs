@@ -1,4 +1,4 @@
-//! Result of a run of a world.
+//! The class `WorldTrace`: the result of a run of several systems.
 
 use super::event_record::PyEventRecord;
 use super::systems::{attribute_of_systems, find};
@@ -15,17 +15,17 @@ use std::sync::OnceLock;
 /// Result of a run of a world: the traces of its systems, its events, and its momentum and energy.
 ///
 /// ``trace["chaser"]`` is the :class:`Trace` of a system, with all of its rows. The columns of the world have
-/// only the rows at times that all systems recorded. Systems that events may connect form a group and have the
-/// same rows. Systems of different groups share the multiples of ``record_every`` steps and the end of the run, but the
-/// rows at events, impacts and control ticks are those of one group. If only some systems have a row both
-/// before and after an event, the row of the world is the one after the event.
+/// only the rows at times that all systems recorded. Systems that events may connect form a group and have
+/// the same rows. Systems of different groups share the multiples of ``record_every`` steps and the end of
+/// the run, but the rows at events, impacts and control ticks are those of one group. If only some systems
+/// have a row both before and after an event, the row of the world is the one after the event.
 #[pyclass(name = "WorldTrace", frozen, module = "onorbit_rs")]
 pub(crate) struct PyWorldTrace {
     names: Vec<String>,
     traces: Vec<Py<PyTrace>>,
     records: Vec<EventRecord>,
     groups: Vec<GroupBalance>,
-    /// Columns of the world, computed when they are first used.
+    /// Columns of the world, which are computed on first use.
     rows: OnceLock<WorldRows>,
     /// True if the run reached its end.
     #[pyo3(get)]
@@ -45,7 +45,7 @@ impl PyWorldTrace {
         Self { names, traces, records, groups, rows: OnceLock::new(), is_complete, wall_s }
     }
 
-    /// Returns the columns of the world.
+    /// Returns the columns of the world, which the first call computes.
     fn rows(&self) -> &WorldRows {
         self.rows.get_or_init(|| {
             let pairs = self.traces.iter().map(|trace| (&trace.get().trace, &*trace.get().model));
@@ -95,8 +95,8 @@ impl PyWorldTrace {
         self.records.iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
     }
 
-    /// Distances and forces of the contacts, by the name of the contact; their rows are those of the trace of
-    /// the system of the first link.
+    /// Distances and forces of the contacts, :class:`ContactTrace` by the name of the contact. Their rows are
+    /// those of the trace of the system that is the first side of the contact.
     #[getter]
     fn contacts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -126,15 +126,15 @@ impl PyWorldTrace {
         self.column(py, &self.rows().kinetic_energy, 1)
     }
 
-    /// Return the certificate of the groups of systems that may interact: checks of momentum and energy, and
-    /// the audits of the events.
+    /// Return the certificate of the world: checks of the momentum and energy of each group of systems that
+    /// may interact, and checks of each event.
     ///
     /// Returns
     /// -------
     /// list of tuple
-    ///     ``(name, value, gate, passed)``, where ``gate`` is the largest accepted value. The names begin with
-    ///     the names of the systems of the group, or with the name of the event. The certificate of one system
-    ///     is ``trace[name].certificate()``.
+    ///     ``(name, value, gate, passed)`` for each check, where ``gate`` is the largest accepted value. The
+    ///     name of a check begins with the names of the systems of the group, or with the name of the event.
+    ///     The certificate of one system is ``trace[name].certificate()``.
     fn certificate(&self) -> Vec<(String, f64, f64, bool)> {
         let mut all = Vec::new();
         let mut add =
