@@ -178,7 +178,8 @@ macro_rules! getters {
             /// ``path_tolerance_violated``, ``goal_tolerance_violated`` or ``unfinished``. ``time`` is the
             /// simulation time of the decision, s (None if unfinished). ``component`` is the joint,
             /// ``position`` or ``attitude`` whose error was too large, and ``error`` is this error, m or rad
-            /// (m/s or rad/s if rates are commanded); both are None unless a tolerance was violated.
+            /// (m/s or rad/s if rates are commanded). Both have the value None unless a tolerance was
+            /// violated.
             #[getter]
             fn results<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
                 let all = self.trace.results.iter().map(|result| {

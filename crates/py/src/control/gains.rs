@@ -33,7 +33,7 @@ pub(super) fn per_joint(value: Option<Any<'_, '_>>, name: &str, default: f64) ->
     }
 }
 
-/// Returns the common length of those gains that have more than one entry; 1 if there are none. Different
+/// Returns the common length of those gains that have more than one entry; 1 if all are numbers. Different
 /// lengths are an error.
 pub(super) fn one_count(py: Python<'_>, gains: &[&(PerJoint, usize)]) -> PyResult<usize> {
     let mut counts: Vec<usize> = gains.iter().map(|gain| gain.1).filter(|n| *n > 1).collect();
