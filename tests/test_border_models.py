@@ -56,7 +56,7 @@ BAD: dict[str, Bad] = {
     "massless leaf": Bad(
         massless_leaf, "ModelError", ("arm", "hinge", "add an inertial"), {"link": "arm", "joint": "hinge"}
     ),
-    "inertia without mass": Bad(lambda: link(mass=None), "ModelError", ("require a mass",)),
+    "inertia without mass": Bad(lambda: link(mass=None), "ModelError", ("given without mass",)),
     # joints and names
     "no such frame": Bad(
         lambda: MODEL.frame_pose(Q, "tol"),

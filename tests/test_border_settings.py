@@ -218,7 +218,7 @@ BAD: dict[str, Bad] = {
             reference=oo.Hold(np.eye(4)),
         ),
         "ControlError",
-        ("only one of them",),
+        ("omit one of the two",),
     ),
     "rollout with more rows than memory": Bad(
         lambda: oo.rollout(MODEL, Q[None], V[None], steps=10**15, record_every=1),

@@ -294,7 +294,7 @@ def test_only_external_controls_that_have_not_ended_take_commands() -> None:
     stepper.advance_to(0.6)
     with pytest.raises(Errors.ControlError, match="has ended"):
         stepper.send("arm", position=q[7:11])
-    with pytest.raises(Errors.ControlError, match="no reference"):
+    with pytest.raises(Errors.ControlError, match="a reference is given to an External controller"):
         oo.Simulation(model, q, v, controller=oo.External(), reference=oo.JointHold(q[7:]))
     with pytest.raises(Errors.ControlError, match="neither a goal"):
         oo.Simulation(model, q, v, controller=[oo.Control(oo.External(), goal=oo.Goal(tolerance=1))])

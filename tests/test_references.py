@@ -106,7 +106,7 @@ def test_joints_follow_waypoints_samples_and_one_another() -> None:
 
 BAD: dict[str, tuple[Callable[[], Any], type[Exception], str]] = {
     "no time": (lambda: oo.Line(START, END), exceptions.ControlError, "limit"),
-    "both": (lambda: oo.Line(START, END, duration=1.0, speed=1.0), exceptions.ControlError, "give only one"),
+    "both": (lambda: oo.Line(START, END, duration=1.0, speed=1.0), exceptions.ControlError, "omit one"),
     "zero duration": (lambda: oo.Line(START, END, duration=0.0), exceptions.ControlError, "at least"),
     "a negative limit": (lambda: oo.Line(START, END, speed=-1.0), exceptions.ControlError, "-1"),
     "nan": (lambda: oo.Hold(START * np.nan), exceptions.InputError, "finite"),

@@ -220,5 +220,7 @@ def test_only_systems_that_lose_digits_give_a_warning() -> None:
         far(*silent)
     with pytest.raises(UserWarning, match=r"'far' starts 4600000 m .* resolved to 1.0\d*e-9 m; use"):
         far(4.6e6)
-    with pytest.raises(UserWarning, match=r"'far' starts 200000 m .* events may connect keep this reference orbit"):
+    with pytest.raises(
+        UserWarning, match=r"'far' starts 200000 m .* events may connect keep this reference orbit"
+    ):
         far(2e5, grasp)

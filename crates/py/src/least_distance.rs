@@ -54,7 +54,8 @@ pub(crate) fn least_distances<'py>(
 ) -> PyResult<(Array<'py>, Array<'py>, Array<'py>, Array<'py>, Array<'py>)> {
     let (a, b) = (shape_set(&shapes_a)?, shape_set(&shapes_b)?);
     if !permitted.iter().flatten().any(|permitted| *permitted) {
-        let message = "no pair of shapes is permitted, so there is no distance; give two different links";
+        let message =
+            "no pair of links can be compared, because all pairs are excluded; give two different links";
         return Err(raise(py, "InputError", message, &fields!(py,)));
     }
     let (rows_a, rows_b) = (poses_of(&poses_a)?, poses_of(&poses_b)?);

@@ -17,10 +17,9 @@ type Optional<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 /// Run that the caller advances, as returned by :meth:`Simulation.start`.
 ///
-/// The times of ``advance`` and ``advance_to`` do not influence the motion: the steps are those of
-/// :meth:`Simulation.run`. If the current time is within a step, the state is computed by dense output
-/// (adaptive steps) or by a shorter trial step, and the whole step is computed later. After the run has
-/// ended, the methods raise ``SimulationError``.
+/// The times to which a run is advanced do not influence its motion: the steps are those of
+/// :meth:`Simulation.run`. A state within a step is computed by dense output (adaptive steps) or by a shorter
+/// trial step. After the run has ended, the methods raise ``SimulationError``.
 #[pyclass(name = "Stepper", frozen, module = "onorbit_rs")]
 pub(crate) struct PyStepper {
     pub(crate) run: SharedRun,
@@ -86,8 +85,7 @@ impl PyStepper {
     /// t : float
     ///     Simulation time, s, not before the current time.
     /// wall_s : float, optional
-    ///     Wall-clock time, s, after which the call returns at the end of the current step, even before ``t``
-    ///     is reached. Default: no limit.
+    ///     Wall-clock time, s, after which the call returns early, at the end of a step. Default: no limit.
     ///
     /// Raises
     /// ------
@@ -107,9 +105,8 @@ impl PyStepper {
 
     /// Set the joint torques, which are held from the current time until the next command.
     ///
-    /// The current time becomes the end of a step. The trace is bit-identical to that of a run whose
-    /// controller returns these torques at these times, except that the steps of an adaptive integrator may
-    /// differ.
+    /// The current time becomes the end of a step. The trace is bit-identical to that of a controller that
+    /// returns these torques at these times, except that the steps of an adaptive integrator may differ.
     ///
     /// Parameters
     /// ----------
@@ -131,16 +128,14 @@ impl PyStepper {
 
     /// Send a command to the joints of an :class:`External` controller.
     ///
-    /// The command takes effect at the next update of the controllers, which may be at the current time, and
-    /// is held until the next command.
+    /// The command takes effect at the next update of the controllers, or now if one is due, and is held.
     ///
     /// Parameters
     /// ----------
     /// control : str
     ///     Name of the control, a key of :attr:`external`; ``control`` for a single controller of all joints.
     /// position : (k,) array, optional
-    ///     Positions of the ``k`` joints of the control, rad or m. Without ``velocity``, the joints rest
-    ///     there.
+    ///     Positions of the ``k`` joints, rad or m. Without ``velocity``, the joints rest at these positions.
     /// velocity : (k,) array, optional
     ///     Velocities, rad/s or m/s. Without ``position``, there is no position error.
     /// effort : (k,) array, optional
@@ -196,8 +191,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// ControlError, ShapeError, InputError
-    ///     If the control or an array is invalid, as for :meth:`send`, if ``times`` do not increase, or if
-    ///     the last point is before the current time.
+    ///     As for :meth:`send`; also if ``times`` do not increase, or the last point is in the past.
     #[pyo3(signature = (control, times, positions, *, velocities=None, accelerations=None, start=None))]
     fn send_trajectory(
         &self,
@@ -252,8 +246,7 @@ impl PyStepper {
         self.external_of(py, self.only("external")?)
     }
 
-    /// Quantity that the gains of each :class:`External` controller track, by the name of the control:
-    /// ``position``, ``velocity`` or, without gains, ``effort``.
+    /// Quantity that each :class:`External` control tracks, by its name: ``position``, ``velocity`` or ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         self.interfaces_of(py, self.only("interfaces")?)
@@ -271,8 +264,7 @@ impl PyStepper {
     /// Raises
     /// ------
     /// WorldError
-    ///     If there is no such event, or if the event has already happened or is not ``on_command``; the run
-    ///     is unchanged.
+    ///     If the event does not exist, has already happened or is not ``on_command``; the run is unchanged.
     fn trigger(&self, py: Python<'_>, name: &str) -> PyResult<()> {
         self.try_with(py, |stepper| stepper.trigger(name))
     }
@@ -330,8 +322,7 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     Index of the first row to return, at most the number of rows; default: 0. In a world, also a dict
-    ///     from names of systems to such indices.
+    ///     Index of the first row, at most the number of rows; default: 0. In a world, also a dict by system.
     ///
     /// Returns
     /// -------
@@ -348,9 +339,8 @@ impl PyStepper {
         Ok(columns.unbind())
     }
 
-    /// Return the row at the current time as columns, as if the run ended now.
-    ///
-    /// The cost does not depend on the number of rows of the run.
+    /// Return the row at the current time as columns, as if the run ended now. The cost does not depend on
+    /// the number of rows of the run.
     ///
     /// Returns
     /// -------
@@ -365,8 +355,7 @@ impl PyStepper {
         Ok(columns.unbind())
     }
 
-    /// Delete the recorded rows except the first row and the last rows, which limits the memory of a long
-    /// run.
+    /// Delete all recorded rows but the first and the last ones, which limits the memory of a long run.
     ///
     /// The motion does not change. Later checkpoints cannot be resumed, because rows are missing. If every
     /// step is recorded, the certificate omits the checks that compare successive steps.
@@ -384,8 +373,7 @@ impl PyStepper {
     /// Parameters
     /// ----------
     /// since : int or dict of int, optional
-    ///     Index of the first row, as for :meth:`columns`. A run can be resumed only from a checkpoint with
-    ///     all rows.
+    ///     Index of the first row, as for :meth:`columns`. Only a checkpoint with all rows can be resumed.
     ///
     /// Returns
     /// -------

@@ -32,7 +32,7 @@ impl PyThirdBody {
     #[new]
     fn new(py: Python<'_>, body: &str) -> PyResult<PyClassInitializer<Self>> {
         let Some(body) = Luminary::ALL.into_iter().find(|known| known.name() == body) else {
-            let message = format!("third body is '{body}'; the choices are 'sun' and 'moon'");
+            let message = format!("body is '{body}'; the choices are 'sun' and 'moon'");
             return Err(raise(py, "EffectError", &message, &fields!(py, "name": "body", "got": body)));
         };
         let keywords = fields!(py, "body": body.name());

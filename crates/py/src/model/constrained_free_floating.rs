@@ -121,13 +121,13 @@ impl PyModel {
         let missing = names(&mut independent.iter().filter(|joint| !chosen.contains(joint)));
         let problem = match (dependent.is_empty(), missing.is_empty()) {
             (true, true) => return Ok(()),
-            (false, _) => format!("{} depends on the others in this configuration", dependent.join(", ")),
+            (false, _) => {
+                format!("the other joints determine {} in this configuration", dependent.join(", "))
+            }
             (true, false) => format!("they do not determine the motion of {}", missing.join(", ")),
         };
         let message = format!(
-            "the joints in 'independent' are not a set of independent joints: {problem}; give {} independent \
-             joints, such as {}",
-            independent.len(),
+            "the joints in 'independent' are not a set of independent joints: {problem}; a valid choice is {}",
             names(&mut independent.iter()).join(", ")
         );
         Err(raise(py, "ModelError", &message, &fields!(py, "name": "independent")))

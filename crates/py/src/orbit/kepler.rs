@@ -66,7 +66,7 @@ fn flattening(
     radius: Option<f64>,
 ) -> PyResult<Flattening> {
     if !secular_j2 && (j2.is_some() || radius.is_some()) {
-        let message = "j2 and radius have no effect without secular_j2=True; set secular_j2, or omit both";
+        let message = "j2 or radius is given without secular_j2=True; set secular_j2, or omit both";
         return Err(raise(py, "OrbitError", message, &fields!(py, "name": "j2, radius")));
     }
     Ok(secular_j2.then_some((j2.unwrap_or(1.08262617e-3), radius.unwrap_or(6_378_136.3))))

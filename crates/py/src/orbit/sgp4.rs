@@ -194,7 +194,7 @@ impl PySgp4 {
         for item in entries.call_method0("items").and_then(|items| items.try_iter()).map_err(|_| {
             let got = type_name(message);
             let text =
-                format!("message is of type {got}; expected an OMM, as a mapping of its keywords or as text");
+                format!("message is of type {got}; expected an OMM as text, or as a mapping of its keywords");
             plain(py, "ElementSetError", &text)
         })? {
             let (key, value): (String, Bound<'_, PyAny>) = item?.extract()?;

@@ -188,7 +188,7 @@ fn known_systems(py: Python<'_>, system: &PySystem, names: &[String]) -> PyResul
         names.iter().position(|name| name == known && *name != system.name).ok_or_else(|| {
             let others = others().collect::<Vec<_>>().join(", ");
             let hint = if others.is_empty() {
-                "it has no other system".to_owned()
+                "there is no other system".to_owned()
             } else {
                 format!("the others are: {others}")
             };
