@@ -109,7 +109,7 @@ impl PythonEngine {
         Ok(Self { object: engine.clone().unbind(), wrenches, contacts, loops, is_world, supports_brakes })
     }
 
-    /// Calls the engine and copies its results to `output`.
+    /// Calls the engine for one step, and copies its results to `output`.
     fn call(&self, py: Python<'_>, input: &StepInput<'_>, output: &mut StepOutput) -> PyResult<()> {
         let array = |values: &[f64]| array_of(py, &[values.len()], values);
         let (start, end) = input.interval;

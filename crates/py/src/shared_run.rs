@@ -9,7 +9,7 @@ use std::ffi::CString;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 self_cell!(
-    /// Run, together with the simulation that it borrows.
+    /// Simulation, and the run that borrows it.
     struct Running {
         owner: MutBorrow<Simulation>,
         #[not_covariant]

@@ -246,7 +246,7 @@ impl PyStepper {
         self.external_of(py, self.only("external")?)
     }
 
-    /// Quantity that each :class:`External` control tracks, by its name: ``position``, ``velocity`` or ``effort``.
+    /// Quantity that each control in :attr:`external` tracks: ``position``, ``velocity`` or ``effort``.
     #[getter]
     fn interfaces(&self, py: Python<'_>) -> PyResult<Py<PyDict>> {
         self.interfaces_of(py, self.only("interfaces")?)

@@ -49,7 +49,7 @@ impl PyEffect {
     }
 }
 
-/// Parameters of an effect that is not yet assigned to systems.
+/// Parameters of an effect, with names of bodies that are not yet resolved in the systems of a simulation.
 pub(crate) enum Kind {
     GravityGradient,
     /// Field of the planet, which [`crate::gravity::gravity_of`] adds to the gravity of the run.

@@ -56,8 +56,8 @@ pub(crate) struct PyEventRecord {
     /// Simulation time, s.
     #[pyo3(get)]
     time: f64,
-    /// Names of the two systems, beginning with the capturing system; for a brake, twice the name of its
-    /// system.
+    /// Names of the two systems, beginning with the capturing system; for a contact, in the order of its
+    /// sides; for a brake, twice the name of its system.
     #[pyo3(get)]
     systems: (String, String),
     impulse: [f64; 6],

@@ -113,8 +113,8 @@ impl PyWorldTrace {
         self.column(py, &self.rows().time, 1)
     }
 
-    /// Linear momentum of all systems, N s, and their angular momentum about the common centre of mass, N m
-    /// s, axes of W, (T, 6).
+    /// Linear momentum of all systems, N s, and their angular momentum about the common centre of mass,
+    /// N m s, axes of W, (T, 6).
     #[getter]
     fn momentum<'py>(&self, py: Python<'py>) -> Bound<'py, PyArrayDyn<f64>> {
         self.column(py, &self.rows().momentum, 6)

@@ -21,7 +21,7 @@ pub(super) fn add_functions(m: &Bound<'_, PyModule>) -> PyResult<()> {
     m.add_function(wrap_pyfunction!(elements::deputy_state, m)?)
 }
 
-/// Reads an array of exactly this shape.
+/// Reads the argument `name`, an array of exactly this shape.
 fn with_shape<'py>(value: Any<'_, 'py>, name: &str, shape: &[usize]) -> PyResult<Input<'py>> {
     let input = Input::new(value, name)?;
     if input.shape() == shape {
