@@ -229,9 +229,9 @@ def test_fixes_are_suggested_in_the_callers_terms(tmp_path: Path) -> None:
     [
         (b"", "empty"),
         (b"\xff\xfe<\x00r\x00", "UTF-8"),
-        (b"hello", "not XML"),
+        (b"hello", "not valid XML"),
         (b"<robot><xacro:foo/></robot>", "xmlns:xacro"),
-        (b"<robot", "not XML"),
+        (b"<robot", "not valid XML"),
     ],
 )
 def test_files_that_are_not_xacro(content: bytes, word: str, tmp_path: Path) -> None:

@@ -178,7 +178,7 @@ def test_invalid_requests_are_refused(arm: oo.Run, tmp_path: Path) -> None:
     assert "no output file is given" in refusal("export", tmp_path)
     assert "must end in .mcap" in refusal("export", tmp_path, "--mcap", tmp_path / "run.bag")
     assert "no run in this folder" in refusal("export", tmp_path, "--mcap", tmp_path / "run.mcap")
-    with pytest.raises(InputError, match="models must be a Model"):
+    with pytest.raises(InputError, match="a trace does not contain its robots, so give a Model"):
         oo.ros2.export_mcap(arm.trace, tmp_path / "run.mcap")
     with pytest.raises(InputError, match="omit models"):
         oo.ros2.export_mcap(arm, tmp_path / "run.mcap", models=arm.model)

@@ -154,7 +154,8 @@ def test_check_and_run_print_the_warning_in_one_line(tmp_path: Any) -> None:
     (line,) = [line for line in done.stderr.splitlines() if "kd" in line]
     assert line.endswith(
         "controller.kd corrects errors at a rate of 2 1/s; with a control period of 5 s, the product of "
-        "both is 10, and errors grow if it exceeds 2; use a control_period below 1 s, or a smaller gain"
+        "both is 10, and errors grow if this product exceeds 2; use a control_period below 1 s, "
+        "or a smaller gain"
     )
 
 

@@ -158,7 +158,7 @@ def returning() -> tuple[float]:
     trace = pressed(resting(block()), FRICTION, weight(), pulse, lasts=0.5)
     moved = trace["sphere"].q[:, 0]
     if moved.max() < 1e-7:
-        raise ValueError(f"the force moved the body by {moved.max():.1e} m only")
+        raise ValueError(f"the force moved the body by only {moved.max():.1e} m")
     return (abs(float(moved[-1])),)
 
 
