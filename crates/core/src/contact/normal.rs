@@ -74,6 +74,9 @@ impl NormalLaw {
     /// Returns the derivative of the elastic force at the depth `x`, m: `n k xⁿ⁻¹`, N/m. At negative depths
     /// it is 0, or `k` if the law is linear.
     pub fn tangent_stiffness(&self, x: f64) -> f64 {
+        if self.exponent() == 1.0 {
+            return self.stiffness();
+        }
         self.exponent() * self.stiffness() * x.max(0.0).powf(self.exponent() - 1.0)
     }
 

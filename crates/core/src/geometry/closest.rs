@@ -66,7 +66,7 @@ pub(super) fn nearest_pieces<'a>(
                 keep(nearest_pieces(a, pose_a, piece, &pose_b.compose(pose))?);
             }
         }
-        _ => keep((single(a, pose_a, b, pose_b)?, [(a, *pose_a), (b, *pose_b)])),
+        _ => return Ok((single(a, pose_a, b, pose_b)?, [(a, *pose_a), (b, *pose_b)])),
     }
     best.ok_or(GeometryError::EmptyCompound)
 }

@@ -52,6 +52,8 @@ impl Touching {
         }
         let [bristle, twist] = self.next_bristles(phase, &before, rounding);
         let mobility = if phase == Phase::Apart { [0.0; 3] } else { self.mode.mobility };
+        // without friction, the force depends on nothing but the phase
+        let is_same = phase == self.mode.phase && self.law.is_none_or(|law| law.friction.is_none());
         self.mode = Mode {
             phase,
             bristle,
@@ -65,7 +67,7 @@ impl Touching {
             slack: [0.0; 3],
             since: t,
         };
-        let loading = self.loading(phase, &geometry, motions, state);
+        let loading = if is_same { before } else { self.loading(phase, &geometry, motions, state) };
         let slack = |margin: f64| if margin > 0.0 { 0.0 } else { f64::MIN_POSITIVE - 2.0 * margin };
         self.mode.slack = self.margins(&loading).map(slack);
         Ok(Some(loading))
@@ -101,7 +103,7 @@ impl Touching {
         let Loading { depth, rate, .. } = *loading;
         let Some(law) = &self.law else { return Phase::Apart };
         let gap = if self.mode.since == Mode::REPEATED { TOUCHING * rounding } else { rounding };
-        let is_apart = depth < -gap || (depth < rounding && rate <= 0.0);
+        let is_apart = depth < -gap || (depth < gap && rate <= 0.0);
         let pressing = law.normal.pressing(depth, rate);
         let least = REACHED * law.normal.pressing(depth.abs(), 0.0).abs();
         let is_pressed = match self.mode.phase {

@@ -219,7 +219,9 @@ impl Contacts {
                 continue;
             }
             if !is_begun || touching.last.is_none() {
-                touching.last = Some(touching.evaluate(&touching.motions(frames, trees, state), own)?);
+                let motions = touching.motions(frames, trees, state);
+                let geometry = touching.geometry(&motions)?;
+                touching.last = Some(touching.loading(touching.mode.phase, &geometry, &motions, own));
             }
             let Some(loading) = &touching.last else { continue };
             if loading.force.norm() > 0.0 || loading.moment.norm() > 0.0 {
