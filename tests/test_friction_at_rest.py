@@ -98,7 +98,7 @@ def test_static_friction_is_read_from_a_urdf() -> None:
 
 def test_a_static_friction_below_the_kinetic_one_is_rejected() -> None:
     with pytest.raises(
-        oo.exceptions.ModelError, match=r"static friction 0\.1 N m \(N\) is below its kinetic friction 0\.2"
+        oo.exceptions.ModelError, match=r"static friction, 0\.1 N m, is below the kinetic friction, 0\.2 N m"
     ) as error:
         hinge(friction=0.2, static_friction=0.1)
     assert error.value.joint == "joint"

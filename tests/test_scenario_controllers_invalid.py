@@ -80,7 +80,7 @@ REFUSED: dict[str, tuple[dict[str, Any], type[OnOrbitError], tuple[str, ...]]] =
     "gains of another number": (
         one(controller=JOINT | {"kp": [1, 2]}),
         ShapeError,
-        ("kp has 2 numbers",),
+        ("'kp' has 2 numbers",),
     ),
     "unit of another kind": (
         one(controller=JOINT | {"kp": "3 N"}),

@@ -249,7 +249,7 @@ fn invalid_controls_are_refused_by_name() {
     let mut pid = JointPid::new(Interface::Position, 1.0, 0.0, 0.0);
     pid.p = PerJoint::new(vec![1.0, 2.0]);
     let gains = refused(vec![Control::new("a", vec![0], Law::Pid(pid, hold(0.0)))]);
-    assert!(gains.contains("p has 2 numbers; expected 1"), "{gains}");
+    assert!(gains.contains("'p' has 2 numbers; expected 1"), "{gains}");
     let two = Arc::new(JointHold::new(vec![0.0; 2]).unwrap());
     let law = Law::JointComputedTorque(JointComputedTorque::new(1.0, 1.0), two);
     assert!(refused(vec![Control::new("a", vec![0], law)]).contains("has 2 joints, but its group has 1"));

@@ -208,7 +208,7 @@ fn invalid_points_of_a_path_are_refused() {
         ("at least 2", |p| {
             *p = PathPoints { times: vec![0.0], positions: vec![Vector3::zeros()], ..PathPoints::default() }
         }),
-        ("positions has 4 rows; expected 5", |p| p.positions.truncate(4)),
+        ("the array 'positions' has 4 rows; expected 5", |p| p.positions.truncate(4)),
         ("velocities[2] holds NaN", |p| p.velocities.as_mut().expect("given")[2].y = f64::NAN),
         ("times must increase", |p| p.times[3] = p.times[2]),
         ("sort the rows", |p| p.times.swap(1, 2)),

@@ -43,10 +43,10 @@ def info(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Print a robot's tree, masses, joints, frames and warnings.
+    """Print a robot's tree, masses, joints, loops, frames and warnings.
 
-    For a scenario with several systems, print the systems, the events, and the trees of connected systems
-    after each event.
+    For a scenario with several systems, print the systems, the contacts, the events, and the trees of
+    connected systems after each event.
     """
     from onorbit_rs import robots
     from onorbit_rs.cli.console import new_console, print_json

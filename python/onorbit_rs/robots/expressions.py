@@ -225,8 +225,8 @@ class _Evaluation(Evaluator):
             function = self._functions.get(name)
             if not callable(function):
                 raise NameError(
-                    f"function {name!r} is not available in xacro expressions; use arithmetic, or a function "
-                    "of Python's math"
+                    f"function {name!r} is not available in xacro expressions; use arithmetic, or an "
+                    "available function, such as sqrt, sin, atan2, radians, min or max"
                 )
             return function
         if not isinstance(node, ast.Attribute):

@@ -32,6 +32,7 @@ _KINDS: dict[str, tuple[str, ...]] = {
     "body": ("system", "body", "force", "torque", "frame"),
     "trigger": ("trigger",),
 }
+_TRAJECTORY_KINDS = {"start": "a finite number of seconds", "times": "a list of finite numbers"}
 _LARGEST = sys.float_info.max
 _MOST = 1 << 30
 """Largest size of a file of commands, bytes."""
@@ -95,7 +96,7 @@ def _check_trajectory(command: Command) -> None:
             raise invalid(where, f"{key!r} is not a key of 'trajectory'{did_you_mean(key, TRAJECTORY)}")
         fits = _is_number(value) if key == "start" else _is_array(value)
         if not fits:
-            kind = "a number of seconds" if key == "start" else "a list of finite numbers"
+            kind = _TRAJECTORY_KINDS.get(key, "a list with one row of finite numbers per time")
             raise invalid(where, f"'{key}' of the trajectory must be {kind}, not {value!r:.60}")
 
 

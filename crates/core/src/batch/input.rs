@@ -11,11 +11,11 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum InputError {
-    #[error("{name} has {got} per state; expected {expected} for this robot", got = count(*got, "number"))]
+    #[error("the array '{name}' has {got} per state; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got}, but the first argument has {expected}; give the same number of states", got = count(*got, "state"))]
+    #[error("the array '{name}' has {got}, but the first argument has {expected}; give the same number of states", got = count(*got, "state"))]
     WrongBatch { name: &'static str, expected: usize, got: usize },
-    #[error("{name} has {got}; expected a multiple of {width}, which is the length of a row", got = count(*got, "number"))]
+    #[error("the array '{name}' has {got}; expected a multiple of {width}, which is the length of a row", got = count(*got, "number"))]
     Ragged { name: &'static str, width: usize, got: usize },
     #[error("the number of {what} is {got}; this function requires {expected}")]
     WrongCount { what: &'static str, expected: usize, got: usize },

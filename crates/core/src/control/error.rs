@@ -9,7 +9,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ControlError {
-    #[error("{name} has {got}; expected {expected}", got = count(*got, "number"))]
+    #[error("the list '{name}' has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: String, got: usize },
     #[error(
         "{name} holds {value}; give finite numbers (only limits and tolerances may be infinite)",

@@ -139,7 +139,7 @@ pub enum EarthError {
         per_interval: usize,
     },
     /// An array has the wrong length.
-    #[error("{name} holds {got}; expected {expected}", got = count(*got, "number"))]
+    #[error("the array '{name}' has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength {
         /// Name of the array.
         name: &'static str,

@@ -32,7 +32,7 @@ pub enum GravityError {
         known = known.join(", ")
     )]
     UnknownModel { name: String, known: Vec<&'static str> },
-    #[error("{name} has {got}; expected {expected}", got = count(*got, "number"))]
+    #[error("the array '{name}' has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
         "the coefficients of {model} are not fully normalised ({found}); multiply each by \

@@ -12,7 +12,7 @@ pub(crate) struct FieldPoint {
     pub(crate) time: f64,
     /// Position of the reference from the planet's centre, axes of `I`, m.
     pub(crate) r_ref: Vec3<f64>,
-    /// Centre of mass of the robot relative to the reference, m.
+    /// Position of the robot's centre of mass relative to the reference, axes of `I`, m.
     pub(crate) com: Vec3<f64>,
     /// Distance that the robot travels through the field during the step being integrated, m.
     pub(crate) travel: f64,

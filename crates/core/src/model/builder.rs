@@ -269,13 +269,15 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
             }
         }
     }
+    let is_prismatic = matches!(joint.kind, JointKind::Prismatic(_));
+    let unit_of = |angular: &'static str, linear: &'static str| if is_prismatic { linear } else { angular };
     let amounts = [
-        ("the damping", joint.damping, "N m s/rad (N s/m)"),
-        ("the friction", joint.friction, "N m (N)"),
-        ("the static friction", joint.static_friction.unwrap_or(0.0), "N m (N)"),
-        ("the rotor inertia", joint.rotor_inertia, "kg m2 (kg)"),
-        ("the velocity limit", joint.limits.velocity.unwrap_or(0.0), "rad/s (m/s)"),
-        ("the effort limit", joint.limits.effort.unwrap_or(0.0), "N m (N)"),
+        ("the damping", joint.damping, unit_of("N m s/rad", "N s/m")),
+        ("the friction", joint.friction, unit_of("N m", "N")),
+        ("the static friction", joint.static_friction.unwrap_or(0.0), unit_of("N m", "N")),
+        ("the rotor inertia", joint.rotor_inertia, unit_of("kg m2", "kg")),
+        ("the velocity limit", joint.limits.velocity.unwrap_or(0.0), unit_of("rad/s", "m/s")),
+        ("the effort limit", joint.limits.effort.unwrap_or(0.0), unit_of("N m", "N")),
     ];
     for (what, value, unit) in amounts {
         if value.is_nan() {
@@ -290,15 +292,15 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         }
     }
     if let Some(at_rest) = joint.static_friction.filter(|at_rest| *at_rest < joint.friction) {
-        let moving = joint.friction;
-        return Err(ModelError::StaticBelowKinetic { joint: name(), at_rest, moving });
+        let (moving, unit) = (joint.friction, unit_of("N m", "N"));
+        return Err(ModelError::StaticBelowKinetic { joint: name(), at_rest, moving, unit });
     }
     match joint.limits.position {
         Some((lower, upper)) if lower.is_nan() || upper.is_nan() => {
             Err(ModelError::NotFinite { what: "a position limit", name: name() })
         }
         Some((lower, upper)) if lower > upper => {
-            Err(ModelError::LimitsReversed { joint: name(), lower, upper })
+            Err(ModelError::LimitsReversed { joint: name(), lower, upper, unit: unit_of("rad", "m") })
         }
         _ => Ok(()),
     }

@@ -74,17 +74,17 @@ pub enum ModelError {
     #[error("joint '{joint}': {what} is {value} {unit}; it must not be negative", value = short(*value))]
     Negative { joint: String, what: &'static str, value: f64, unit: &'static str },
     #[error(
-        "joint '{joint}': its static friction {at_rest} N m (N) is below its kinetic friction {moving} N m \
-         (N); give at least {moving}, or omit it",
+        "joint '{joint}': the static friction, {at_rest} {unit}, is below the kinetic friction, {moving} {unit}; give a \
+         static friction of at least {moving} {unit}, or omit the static friction",
         at_rest = unlike(*at_rest, &[*moving]), moving = short(*moving)
     )]
-    StaticBelowKinetic { joint: String, at_rest: f64, moving: f64 },
+    StaticBelowKinetic { joint: String, at_rest: f64, moving: f64, unit: &'static str },
     #[error(
-        "joint '{joint}': the lower limit {lower} rad (m) is above the upper limit {upper} rad (m); exchange the \
-         two limits",
+        "joint '{joint}': the lower limit, {lower} {unit}, is above the upper limit, {upper} {unit}; exchange the two \
+         limits",
         lower = unlike(*lower, &[*upper]), upper = short(*upper)
     )]
-    LimitsReversed { joint: String, lower: f64, upper: f64 },
+    LimitsReversed { joint: String, lower: f64, upper: f64, unit: &'static str },
 }
 
 /// Problem of a model that does not prevent a simulation.

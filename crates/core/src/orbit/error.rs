@@ -216,7 +216,7 @@ pub enum OrbitError {
         limit: f64,
     },
     /// An array has the wrong length.
-    #[error("{name} holds {got}; expected {expected}", got = count(*got, "number"))]
+    #[error("the array '{name}' has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength {
         /// Name of the array.
         name: &'static str,

@@ -10,7 +10,7 @@ use crate::spatial::SplineError;
 pub enum PathError {
     #[error("the path has {got}; give at least 2 points", got = count(*got, "point"))]
     TooFewPoints { got: usize },
-    #[error("{name} has {got}; expected {expected}, one per time", got = count(*got, "row"))]
+    #[error("the array '{name}' has {got}; expected {expected}, one per time", got = count(*got, "row"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
         "{name}[{index}] holds {value}; expected finite numbers between -1e60 and 1e60 (SI units)",

@@ -9,19 +9,19 @@ use crate::spatial::SplineError;
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum ReferenceError {
     #[error(
-        "{name} of the reference holds {value}; expected finite numbers between -1e60 and 1e60 (SI units)",
+        "'{name}' of the reference contains {value}; expected finite numbers between -1e60 and 1e60 (SI units)",
         value = short(*value)
     )]
     NotFinite { name: &'static str, value: f64 },
-    #[error("{name} of the reference has {got}; expected {expected}", got = count(*got, "number"))]
+    #[error("the array '{name}' of the reference has {got}; expected {expected}", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error(
-        "duration of the reference is {value} s; it must be finite and at least 1e-12 s",
+        "the duration of the reference is {value} s; it must be finite and at least 1e-12 s",
         value = short(*value)
     )]
     DurationNotPositive { value: f64 },
     #[error(
-        "ramp of the reference is {value}; it must be above 0 and at most 0.5, as a fraction of the duration",
+        "the ramp of the reference is {value}; it must be above 0 and at most 0.5, as a fraction of the duration",
         value = short(*value)
     )]
     Ramp { value: f64 },

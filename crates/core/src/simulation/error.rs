@@ -37,7 +37,7 @@ pub enum SimulationError {
          loops, or start closer to a configuration that closes them"
     )]
     CannotClose { loops: String },
-    #[error("{name} has {got}; expected {expected} for this robot", got = count(*got, "number"))]
+    #[error("the array '{name}' has {got}; expected {expected} for this robot", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("system '{system}': {source}")]
     OfSystem { system: String, source: Box<SimulationError> },

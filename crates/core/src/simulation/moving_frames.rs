@@ -1,4 +1,4 @@
-//! Motion of the frames of a system in which references of other systems are given.
+//! Motion of the frames that are fixed in one system and in which references of another system are given.
 
 use super::error::SimulationError;
 use super::run_state::RunState;

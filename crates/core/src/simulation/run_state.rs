@@ -43,8 +43,9 @@ pub(super) struct RunState<'a, S> {
     /// Controllers, recorder and brakes of each system.
     pub(super) systems: Vec<RunSystem<'a, S>>,
     pub(super) connections: Connections,
-    /// Frames of a system in which references of other systems are given, with systems specified by their
-    /// index in the group.
+    /// Frames that are fixed in one system and in which references of another system are given. The first
+    /// entry of a pair identifies the frame by the index of its system in the group; the second is the frame
+    /// as the reference holds it, to which the simulation writes the motion of the frame.
     pub(super) moving_frames: Vec<(FrameIndex, MovingFrame)>,
     pub(super) events: Events,
     pub(super) ledger: Ledger,

@@ -328,8 +328,8 @@ fn lift<S: Scalar>(x: &[f64]) -> Vec<S> {
     x.iter().map(|x| S::of(*x)).collect()
 }
 
-/// Returns the frames in which references of a group are given, with systems specified by their index in the
-/// group.
+/// Returns the frames of systems of the group in which references of the group are given, see
+/// [`RunState::moving_frames`].
 fn moving_frames_of(numbers: &[usize], systems: &[&mut System]) -> Vec<(FrameIndex, MovingFrame)> {
     let moving = systems.iter().flat_map(|system| system.moving_frames());
     let place = |moving: &MovingFrame| {

@@ -9,11 +9,11 @@ use thiserror::Error;
 #[allow(missing_docs)] // the fields are what the messages say
 pub enum SplineError {
     #[error(
-        "{name} holds {value} at point {point}; it must be finite and within ±1e60 (SI units)",
+        "'{name}' contains {value} at point {point}; it must be finite and within ±1e60 (SI units)",
         value = short(*value)
     )]
     NotFinite { name: &'static str, point: usize, value: f64 },
-    #[error("{name} holds {got}; expected {expected} (one row per time)", got = count(*got, "number"))]
+    #[error("the array '{name}' has {got}; expected {expected} (one row per time)", got = count(*got, "number"))]
     WrongLength { name: &'static str, expected: usize, got: usize },
     #[error("the curve has {got}; give at least {least}", got = count(*got, "point"))]
     TooFew { got: usize, least: usize },

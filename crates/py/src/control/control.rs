@@ -207,7 +207,8 @@ pub(crate) fn controls_of(
                        give each Control its own 'reference'";
         return Err(plain(py, "ControlError", message));
     }
-    let items = items.map(|item| one_control(item?)).collect::<PyResult<Vec<_>>>()?;
+    let items =
+        items.enumerate().map(|(index, item)| one_control(index, item?)).collect::<PyResult<Vec<_>>>()?;
     let names: Vec<String> = items
         .iter()
         .enumerate()
@@ -216,12 +217,12 @@ pub(crate) fn controls_of(
     items.iter().zip(&names).map(|(item, name)| item.get().bind(py, name, &names, robot)).collect()
 }
 
-/// Returns an entry of a list of controls. An entry that is not a `Control` is an error.
-fn one_control(item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
+/// Returns the entry with index `index` of a list of controls. An entry that is not a `Control` is an error.
+fn one_control(index: usize, item: Bound<'_, PyAny>) -> PyResult<Bound<'_, PyControl>> {
     item.cast_into::<PyControl>().map_err(|error| {
         let item = error.into_inner();
         let message = format!(
-            "an entry of the list of controls is of type {}; each entry must be a Control, such as \
+            "entry {index} of the list of controls is of type {}; each entry must be a Control, such as \
              oo.Control(oo.JointPid(), reference=…)",
             type_name(&item)
         );

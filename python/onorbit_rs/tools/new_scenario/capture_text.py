@@ -62,10 +62,13 @@ def capture_text(plan: CapturePlan, command: str) -> str:
 def _head(plan: CapturePlan, command: str) -> str:
     return f"""
 # Written by: {one_line(command)}
-# A chaser captures a target that approaches its tool, holds it, and releases it with a spring.
+# A target approaches the tool of a chaser; the chaser captures the target, holds it, and releases it
+# with a spring.
 # Numbers without a unit are in SI (m, kg, s, rad); with a unit: 400 km, 51.6 deg, 2 ms.
 name: {flow(plan.name)}
-description: A chaser captures a target that approaches its tool, holds it, and releases it with a spring.
+description: >-
+  A target approaches the tool of a chaser; the chaser captures the target, holds it, and releases it with a
+  spring.
 """
 
 

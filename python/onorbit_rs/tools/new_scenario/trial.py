@@ -120,7 +120,7 @@ class Trials:
             return None
         except OnOrbitError as error:
             # the message contains a time, which differs from run to run
-            failed = ["the integration diverged" if isinstance(error, SimulationError) else str(error)]
+            failed = [_stopped(error) if isinstance(error, SimulationError) else str(error)]
         else:
             failed = [name for name, *_, passed in trace.certificate() if not passed]
             if not failed:
@@ -168,6 +168,11 @@ def clock(ends: float) -> Callable[[float, float], None]:
             raise OverTimeError
 
     return check
+
+
+def _stopped(error: SimulationError) -> str:
+    """Return in words why a run stopped before its end; only a divergence has a last state ``q``."""
+    return "the run diverged" if error.q is not None else "the simulation failed before the end of the run"
 
 
 def _rotation(trace: Trace) -> float:

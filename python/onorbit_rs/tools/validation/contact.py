@@ -190,7 +190,7 @@ def _momentum(model: oo.Model, trace: oo.Trace, row: int) -> Array:
 CASES = (
     Case(
         "contact", "restitution for d v0 from 0.01 to 10", "d v0 (1 + e) = ln[(1 + d v0)/(1 - e d v0)]",
-        (Gate("restitution, n = 1", 1e-6), Gate("restitution, n = 1.5", 1e-6)), restitution,
+        (Gate("restitution, exponent n = 1", 1e-6), Gate("restitution, exponent n = 1.5", 1e-6)), restitution,
     ),
     Case(
         "contact", "balls of unequal masses", "conservation of momentum, restitution 0.7",
@@ -203,7 +203,7 @@ CASES = (
     ),
     Case(
         "contact", "elastic impact of two balls", "conservation of energy",
-        (Gate("restitution, n = 1", 1e-8), Gate("restitution, n = 1.5", 1e-8)), elastic,
+        (Gate("restitution, exponent n = 1", 1e-8), Gate("restitution, exponent n = 1.5", 1e-8)), elastic,
     ),
     Case(
         "contact", "Hertz's impact of two balls", "Hertz 1882: (5 m v0^2/4 k)^(2/5), 2.9432 x/v0",

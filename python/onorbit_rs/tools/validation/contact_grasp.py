@@ -73,10 +73,16 @@ def shaken() -> list[float]:
 CASES = (
     Case(
         "contact", "a capsule held by two pads", "Coulomb: rest inside the friction cone",
-        (Gate("drift, 12 N", 1e-9, "m/s"), Gate("drift, 60 N", 1e-9, "m/s")), steady,
+        (
+            Gate("drift, pads press with 12 N", 1e-9, "m/s"),
+            Gate("drift, pads press with 60 N", 1e-9, "m/s"),
+        ), steady,
     ),
     Case(
         "contact", "a held capsule under oscillating loads", "Coulomb: rest inside the friction cone",
-        (Gate("drift, 0.2 N at 10 Hz", 1e-9, "m/s"), Gate("drift, 8 N at 10 Hz", 1e-9, "m/s")), shaken,
+        (
+            Gate("drift, load oscillates by 0.2 N at 10 Hz", 1e-9, "m/s"),
+            Gate("drift, load oscillates by 8 N at 10 Hz", 1e-9, "m/s"),
+        ), shaken,
     ),
 )  # fmt: skip

@@ -128,7 +128,9 @@ CASES = (
     ),
     Case(
         "loops", "a tumbling four-bar linkage, step halved twice", "order 4",
-        (Gate("order in the configuration, too low by", 0.3), Gate("order in the energy, too low by", 0.3)),
-        orders,
+        (
+            Gate("shortfall of the convergence order, configuration", 0.3),
+            Gate("shortfall of the convergence order, energy", 0.3),
+        ), orders,
     ),
 )  # fmt: skip

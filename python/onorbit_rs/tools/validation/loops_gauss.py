@@ -231,7 +231,7 @@ CASES = (
         "loops", "12 grippers whose open loops are closed", GAUSS + "; the mass centre moves by O(φ²)",
         (
             Gate("velocity", 1e-12), Gate("momentum", 1e-14),
-            Gate("order of the shift of the mass centre, too low by", 0.2),
+            Gate("shortfall of the convergence order, shift of the mass centre", 0.2),
         ), closing,
     ),
 )  # fmt: skip

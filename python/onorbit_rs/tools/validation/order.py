@@ -94,7 +94,7 @@ CASES = (
         Case(
             "order", f"{NAMES[integrator]}, step halved",
             f"order {EXPECTED[integrator]:g}",
-            tuple(Gate(f"order in {what}", limit) for what in ("position", "attitude", "joints")),
+            tuple(Gate(f"convergence order, {what}", limit) for what in ("position", "attitude", "joints")),
             partial(orders, integrator),
         )
         for integrator, limit in (("rk4", 0.4), ("semi_implicit_euler", 0.15))
@@ -106,7 +106,7 @@ CASES = (
     *(
         Case(
             "order", f"a path through {given}, spacing halved", f"order {expected:g}",
-            (Gate("order", 0.6),), partial(path, given),
+            (Gate("convergence order", 0.6),), partial(path, given),
         )
         for given, expected in PATHS.items()
     ),

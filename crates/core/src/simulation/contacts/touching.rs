@@ -1,4 +1,5 @@
-//! Forces and margins of a pair of pieces, one of each side of a contact.
+//! Forces of a pair of pieces, one of each side of a contact, and their margins to the next changes of the
+//! contact mode.
 
 use super::mode::{Mode, Phase};
 use super::pressure::Pressure;
