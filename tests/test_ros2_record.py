@@ -54,7 +54,9 @@ def test_commands_and_answers_are_recorded_and_a_reset_is_refused(tmp_path: Path
         assert say("/step", "std_msgs/msg/Float64", {"data": 0.1}) == "advanced to t = 0.1 s"
         refused = "refused: the run is recorded, and times in a bag do not go back"
         assert say("/reset", "std_msgs/msg/Empty", {}) == refused
-        assert say("/arm/commands", FLOATS, {"data": [1.0]}).startswith("refused: data has length 1; ")
+        assert say("/arm/commands", FLOATS, {"data": [1.0]}).startswith(
+            "refused: the array 'data' has length 1; "
+        )
         peer.say("/arm/commands", FLOATS, {"data": [0.1] * 7})
         end = time.monotonic() + 5.0
         while not node.commands:

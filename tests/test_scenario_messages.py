@@ -245,14 +245,14 @@ WRONG: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "times of points": (
         LAW + "reference: {kind: waypoints, times: [1, 2], points: [{displacement: [0, 0, 0]}]}\n",
         "5: reference",
-        ("times has 2 entries for 1 point;",),
+        ("'times' has 2 entries for 1 point;",),
     ),
     "times of moves": (
         JOINTS
         + "controller: joint_computed_torque\nreference:\n  kind: joint_ramps\n  times: [1, 2]\n"
         + "  moves: [{joint: arm_joint_1, to: 1}]\n",
         "4: reference",
-        ("times has 2 entries for 1 move;",),
+        ("'times' has 2 entries for 1 move;",),
     ),
     "one entry": (
         JOINTS + "initial: {position: [1]}\n",

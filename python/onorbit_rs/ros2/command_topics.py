@@ -58,8 +58,8 @@ def _finite(what: str, values: Any, joints: list[str]) -> list[float]:
     numbers = np.asarray(values, dtype=np.float64)
     if len(numbers) != len(joints):
         raise RefusedError(
-            f"{what} has length {len(numbers)}; the required length is {len(joints)}, one number for each of "
-            f"{', '.join(joints)}"
+            f"the array '{what}' has length {len(numbers)}; the required length is {len(joints)}, one number "
+            f"for each of {', '.join(joints)}"
         )
     if not np.isfinite(numbers).all():
         bad = int(np.flatnonzero(~np.isfinite(numbers))[0])

@@ -18,7 +18,9 @@ def check_times(times: list[float] | None, what: str, points: int) -> None:
     if times is not None and len(times) != points:
         entries = count(len(times), "entry", "entries")
         wanted = count(points, what, f"{what}s")
-        raise invalid(f"times has {entries} for {wanted}; give one time for each (the start is at time zero)")
+        raise invalid(
+            f"'times' has {entries} for {wanted}; give one time for each (the start is at time zero)"
+        )
 
 
 def with_start(times: list[float] | None) -> NDArray[np.float64] | None:
