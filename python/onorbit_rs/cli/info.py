@@ -43,7 +43,7 @@ def info(
     force: Annotated[bool, typer.Option("--force", help="Replace an existing picture.")] = False,
     as_json: JsonOption = False,
 ) -> None:
-    """Print a robot's tree, masses, joints, loops, frames and warnings.
+    """Print a robot's tree, masses, joints, loops and frames.
 
     For a scenario with several systems, print the systems, the contacts, the events, and the trees of
     connected systems after each event.

@@ -27,7 +27,11 @@ FolderArgument = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of a
 OutOption = Annotated[Path | None, typer.Option("--out", "-o", metavar="DIR", help="Folder for results.")]
 ForceOption = Annotated[bool, typer.Option("--force", help="Replace an existing run in DIR.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print JSON only.")]
-QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress bar and no summary.")]
+QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="Print no progress and no summary.")]
+FiguresOption = Annotated[bool, typer.Option("--figures/--no-figures", help="Draw the figures in DIR.")]
+RecordingOption = Annotated[
+    bool, typer.Option("--recording/--no-recording", help="Write the recording for the viewer in DIR.")
+]
 ViewOption = Annotated[bool, typer.Option("--view", help="Show the run in the viewer while it is computed.")]
 CommandsOption = Annotated[
     Path | None,

@@ -8,11 +8,13 @@ from onorbit_rs.cli.exit_codes import fail, ignore_closed_pipe
 from onorbit_rs.cli.options import (
     CheckpointOption,
     CommandsOption,
+    FiguresOption,
     FolderArgument,
     ForceOption,
     JsonOption,
     OutOption,
     QuietOption,
+    RecordingOption,
     ScenarioArgument,
     ViewOption,
 )
@@ -33,6 +35,8 @@ def run(
     view: ViewOption = False,
     checkpoint_every: CheckpointOption = None,
     commands: CommandsOption = None,
+    figures: FiguresOption = True,
+    recording: RecordingOption = True,
 ) -> None:
     """Run a scenario and certify its momentum and energy.
 
@@ -49,7 +53,15 @@ def run(
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
         lambda: run_scenario(
-            scenario, out, force=force, quiet=quiet, view=view, checkpoint_every=every, commands=commands
+            scenario,
+            out,
+            force=force,
+            quiet=quiet,
+            view=view,
+            checkpoint_every=every,
+            commands=commands,
+            figures=figures,
+            recording=recording,
         ),
         quiet=quiet,
         as_json=as_json,
@@ -62,6 +74,8 @@ def resume(
     as_json: JsonOption = False,
     view: ViewOption = False,
     checkpoint_every: CheckpointOption = None,
+    figures: FiguresOption = True,
+    recording: RecordingOption = True,
 ) -> None:
     """Resume an interrupted run, with bit-identical results.
 
@@ -72,7 +86,9 @@ def resume(
 
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     _report(
-        lambda: resume_run(folder, quiet=quiet, view=view, checkpoint_every=every),
+        lambda: resume_run(
+            folder, quiet=quiet, view=view, checkpoint_every=every, figures=figures, recording=recording
+        ),
         quiet=quiet,
         as_json=as_json,
     )

@@ -1,4 +1,7 @@
-"""Progress display on a terminal: simulated time and real-time factor, then the current task."""
+"""Progress display on stderr: simulated time and real-time factor, then the current task.
+
+A terminal shows a bar; anything else receives lines, see :mod:`onorbit_rs.common.progress_lines`.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.common.printable import printable
+from onorbit_rs.common.progress_lines import ProgressLines
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
@@ -31,11 +35,15 @@ class Progress:
 
 @contextmanager
 def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progress]:
-    """Show a progress bar during the block, if stderr is a terminal and not ``quiet``; yield its
+    """Show progress during the block unless ``quiet``: a bar on a terminal, otherwise lines; yield its
     :class:`Progress`.
     """
-    if quiet or not _is_watched():
+    if quiet or sys.stderr is None:
         yield Progress()
+        return
+    if not _is_watched():
+        lines = ProgressLines(name)
+        yield Progress(_LineMover(lines), lines.begin)
         return
     with _drawn(_bar()) as bar:
         task = bar.add_task(printable(name), total=duration_s, doing="starting", start=False)
@@ -45,8 +53,12 @@ def progress_bar(name: str, duration_s: float, *, quiet: bool) -> Iterator[Progr
 @contextmanager
 def parts_bar(name: str, *, quiet: bool) -> Iterator[Callable[[str, float], None]]:
     """Show a progress bar during the block; yields a function that sets task name and completed fraction."""
-    if quiet or not _is_watched():
+    if quiet or sys.stderr is None:
         yield lambda part, done: None
+        return
+    if not _is_watched():
+        lines = ProgressLines(name)
+        yield lambda part, done: lines.update(f"{part} ({100.0 * done:.0f} %)")
         return
     with _drawn(_bar()) as bar:
         task = bar.add_task(printable(name), total=1.0, doing="starting")
@@ -85,14 +97,31 @@ def _bar() -> Bar:
 @contextmanager
 def doing(name: str, *, quiet: bool) -> Iterator[Callable[[str], None]]:
     """Show a status line during the block; yields a function that sets the name of the current task."""
-    if quiet or not _is_watched():
+    if quiet or sys.stderr is None:
         yield lambda part: None
+        return
+    if not _is_watched():
+        yield ProgressLines(name).update
         return
     from rich.console import Console
     from rich.markup import escape
 
     with Console(stderr=True).status(escape(printable(name))) as status:
         yield lambda part: status.update(escape(printable(f"{name}: {part}")))
+
+
+class _LineMover:
+    """Prints lines about the simulated time; the speed of a resumed run does not include earlier time."""
+
+    def __init__(self, lines: ProgressLines) -> None:
+        self._lines = lines
+        self._first: tuple[float, float] | None = None
+
+    def __call__(self, reached_s: float, total_s: float) -> None:
+        now = time.perf_counter()
+        self._first = self._first or (now, reached_s)
+        factor = real_time_factor(*self._first, now, reached_s)
+        self._lines.update(progress_text(reached_s, total_s, factor))
 
 
 class _Mover:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import yaml
@@ -13,6 +14,7 @@ import yaml
 from onorbit_rs import _core
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, RECORDING, SCENARIO, SUMMARY, TRACE
+from onorbit_rs.output.painters import Album, painters
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.replacement import Replacement
 from onorbit_rs.output.world import world_arrays
@@ -21,11 +23,21 @@ from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.scenario.connections import connections, touching
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Mapping
 
     from onorbit_rs._core import Trace, WorldTrace
     from onorbit_rs.figures import Drawing
     from onorbit_rs.scenario import Scenario, WorldScenario
+
+
+class Pictures(NamedTuple):
+    """Pictures that a run writes."""
+
+    figures: bool = True
+    recording: bool = True
+
+
+ALL = Pictures()
 
 
 def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> None:
@@ -68,73 +80,85 @@ def write_pictures(
     trace: Trace | WorldTrace,
     summary: dict[str, Any],
     built: Built | BuiltWorld,
+    wanted: Pictures = ALL,
     *,
     tell: Callable[[str], None] = lambda doing: None,
 ) -> None:
     """Write the figures, if the trace has several rows, and the recording; ``tell`` is called with each task.
 
+    The figures are drawn by several processes, see :mod:`onorbit_rs.output.painters`.
+
     For a world, the file names of a system's figures begin with the name of the system.
     """
-    if isinstance(trace, _core.WorldTrace):
-        assert isinstance(built, BuiltWorld)
-        _write_pictures_of_world(folder, trace, summary, built, tell)
+    albums = _albums(trace, summary, built) if wanted.figures else []
+    if not albums:
+        if wanted.recording:
+            _write_recording(folder, trace, summary, built, tell)
         return
-    assert isinstance(built, Built)
-    _write_figures(folder, trace, built, "", tell)
-    from onorbit_rs import viewer  # imported here because rerun takes a second to import
+    from onorbit_rs.figures.painter import drawings_of
 
-    tell("writing the recording")
-    with folder.writing(RECORDING) as path:
-        setting = viewer.Setting.of(built)
-        viewer.write_recording(path, trace, setting, notes=viewer.notes(summary, built.scenario))
+    found = list(drawings_of(albums))
+    draw = [partial(_png, drawing) for _, drawing in found]
+    with painters(albums, draw) as helpers, folder.replacing() as files:
+        if wanted.recording:  # here, because the recording is the largest task
+            _write_recording(folder, trace, summary, built, tell)
+        tell(f"drawing {len(found)} figures")
+        for number, content in helpers.contents():
+            name = found[number][0]
+            tell(f"drawing {name}")
+            with files.writing(f"{FIGURES}/{name}.png") as path:
+                path.write_bytes(content)
 
 
-def _write_pictures_of_world(
-    folder: OutputFolder,
-    trace: WorldTrace,
-    summary: dict[str, Any],
-    built: BuiltWorld,
-    tell: Callable[[str], None],
-) -> None:
-    """Write the figures of all systems together, those of each system, and the recording."""
+def _png(drawing: Drawing) -> bytes:
     from onorbit_rs import figures
 
-    if len(trace.time) > 1:
-        models = {name: alone.model for name, alone in built.systems.items()}
-        events, found = figures.marks_of(summary), connections(built.scenario)
-        subject = figures.WorldSubject(trace, models, events, found, touching(built.scenario, models))
-        _draw(folder, figures.world_drawings(subject), "", tell)
-    for name, alone in built.systems.items():
-        _write_figures(folder, trace[name], alone, f"{name}_", tell)
-    from onorbit_rs import viewer
-
-    tell("writing the recording")
-    with folder.writing(RECORDING) as path:
-        text = viewer.world_notes(summary, built.scenario)
-        viewer.write_world_recording(path, trace, viewer.WorldSetting.of(built), notes=text)
+    return figures.as_bytes(drawing.draw(), "png")
 
 
-def _write_figures(
-    folder: OutputFolder, trace: Trace, built: Built, prefix: str, tell: Callable[[str], None]
-) -> None:
+def _albums(trace: Trace | WorldTrace, summary: dict[str, Any], built: Built | BuiltWorld) -> list[Album]:
+    """Return the subjects of the figures: those of all systems together, and of each; none for one row."""
     from onorbit_rs import figures  # imported here because matplotlib takes a second to import
 
+    def alone(prefix: str, own: Trace, one: Built) -> list[Album]:
+        if len(own.time) < 2:
+            return []
+        return [Album(prefix, figures.subject_of(own, one.scenario, one.model, one.orbit, one.earth))]
+
+    if not isinstance(trace, _core.WorldTrace):
+        assert isinstance(built, Built)
+        return alone("", trace, built)
+    assert isinstance(built, BuiltWorld)
+    albums = []
     if len(trace.time) > 1:
-        subject = figures.subject_of(trace, built.scenario, built.model, built.orbit, built.earth)
-        _draw(folder, figures.drawings(subject), prefix, tell)
+        models = {name: one.model for name, one in built.systems.items()}
+        events, found = figures.marks_of(summary), connections(built.scenario)
+        shared = figures.WorldSubject(trace, models, events, found, touching(built.scenario, models))
+        albums.append(Album("", shared))
+    for name, one in built.systems.items():
+        albums += alone(f"{name}_", trace[name], one)
+    return albums
 
 
-def _draw(
-    folder: OutputFolder, drawings: Iterable[Drawing], prefix: str, tell: Callable[[str], None]
+def _write_recording(
+    folder: OutputFolder,
+    trace: Trace | WorldTrace,
+    summary: dict[str, Any],
+    built: Built | BuiltWorld,
+    tell: Callable[[str], None],
 ) -> None:
-    """Write figures as PNG."""
-    from onorbit_rs import figures
+    tell("writing the recording")
+    from onorbit_rs import viewer  # imported here because rerun takes a second to import
 
-    with folder.replacing() as files:
-        for drawing in drawings:
-            tell(f"drawing {prefix}{drawing.name}")
-            with files.writing(f"{FIGURES}/{prefix}{drawing.name}.png") as path:
-                path.write_bytes(figures.as_bytes(drawing.draw(), "png"))
+    with folder.writing(RECORDING) as path:
+        if isinstance(trace, _core.WorldTrace):
+            assert isinstance(built, BuiltWorld)
+            text = viewer.world_notes(summary, built.scenario)
+            viewer.write_world_recording(path, trace, viewer.WorldSetting.of(built), notes=text)
+        else:
+            assert isinstance(built, Built)
+            text = viewer.notes(summary, built.scenario)
+            viewer.write_recording(path, trace, viewer.Setting.of(built), notes=text)
 
 
 def with_absolute_paths(scenario: Scenario | WorldScenario) -> dict[str, Any]:

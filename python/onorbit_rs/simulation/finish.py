@@ -20,6 +20,7 @@ from onorbit_rs.output import (
     write_trace,
 )
 from onorbit_rs.output.clearance import add_clearances, clearance_arrays, found_clearances
+from onorbit_rs.output.write import ALL, Pictures
 from onorbit_rs.scenario.build import Built
 from onorbit_rs.scenario.build_world import BuiltWorld
 from onorbit_rs.scenario.divergence import divergence
@@ -36,6 +37,7 @@ def finished(
     built: Built | BuiltWorld,
     folder: OutputFolder | None,
     tell: Callable[[str], None],
+    pictures: Pictures = ALL,
 ) -> dict[str, Any]:
     """Return the summary of a completed run with its certificate; write the results to ``folder``, if given.
     ``tell`` receives the name of each stage of the work.
@@ -54,7 +56,7 @@ def finished(
             write_trace(files, trace, clearance_arrays(found))
             write_summary(files, summary)
     with _noting(lambda: f"trace and summary in {folder.path} are complete; {_not_drawn(folder)}"):
-        write_pictures(folder, trace, summary, built, tell=tell)
+        write_pictures(folder, trace, summary, built, pictures, tell=tell)
     folder.discard_checkpoint()
     return summary
 
@@ -118,6 +120,7 @@ def keep_stopped(
     built: Built | BuiltWorld,
     folder: OutputFolder | None,
     tell: Callable[[str], None],
+    pictures: Pictures = ALL,
 ) -> None:
     """Write the rows of a run that stopped early to ``folder``, if given; state the reason and the folder in
     the message of ``stop``.
@@ -131,7 +134,7 @@ def keep_stopped(
     if folder is None:
         return
     try:
-        _keep_rows(stop, built, folder, tell)
+        _keep_rows(stop, built, folder, tell, pictures)
     except KeyboardInterrupt:  # again
         stop.message += f"; stopped again before all results were written to {folder.path}"
     except Exception as full:  # the end of the run is what the error reports
@@ -143,6 +146,7 @@ def _keep_rows(
     built: Built | BuiltWorld,
     folder: OutputFolder,
     tell: Callable[[str], None],
+    pictures: Pictures,
 ) -> None:
     """Write the results of a run that stopped early to its folder."""
     if stop.trace is None or len(stop.trace) == 0:
@@ -157,7 +161,7 @@ def _keep_rows(
     if has_checkpoint(folder.path):
         stop.message += f"; continue with: onorbit resume {shell_word(folder.path)}"
     try:
-        write_pictures(folder, stop.trace, summary, built, tell=tell)
+        write_pictures(folder, stop.trace, summary, built, pictures, tell=tell)
     except KeyboardInterrupt:  # a second Ctrl-C: the run is already stopped
         word = shell_word(folder.path)
         stop.message += f"; some figures were not drawn; draw them with: onorbit report {word}"

@@ -31,6 +31,7 @@ from onorbit_rs.output import (
 )
 from onorbit_rs.output.read import check_folder
 from onorbit_rs.output.robot import CHANGED, was_changed
+from onorbit_rs.output.write import ALL, Pictures
 from onorbit_rs.scenario import Scenario, WorldScenario, load
 from onorbit_rs.scenario.build import Built, build
 from onorbit_rs.scenario.build_world import BuiltWorld, build_world
@@ -136,6 +137,8 @@ def run(
     view: bool = False,
     checkpoint_every: float = CHECKPOINT_EVERY,
     commands: str | os.PathLike[str] | Iterable[Mapping[str, Any]] | None = None,
+    figures: bool = True,
+    recording: bool = True,
 ) -> Run:
     """Run a scenario and, with ``out``, write its output folder.
 
@@ -148,7 +151,7 @@ def run(
     force : bool
         Replace the files of an earlier run in ``out``.
     quiet : bool
-        Show no progress bar, even on a terminal.
+        Show no progress: no bar on a terminal, and no lines on another stderr.
     view : bool
         Show the run in the viewer while it is simulated; without a display, a warning is issued.
     checkpoint_every : float
@@ -156,6 +159,10 @@ def run(
     commands : str, path or iterable of mapping, optional
         Commands to joints and bodies, and triggers of events, at given times: a file of
         :class:`CommandLog`, or its entries. They are checked before the run, and stored in ``out``.
+    figures : bool
+        Draw the figures in ``out``; ``onorbit report`` draws them later.
+    recording : bool
+        Write the recording for the viewer in ``out``.
 
     Returns
     -------
@@ -185,8 +192,9 @@ def run(
             write_commands(folder, given)
         writer = CheckpointWriter(folder, _digest(checked))
         return _simulate(
-            built, folder, quiet=quiet, view=view, commands=given, checkpoint=writer, checkpoint_every=every
-        )
+            built, folder, Pictures(figures, recording), quiet=quiet, view=view, commands=given,
+            checkpoint=writer, checkpoint_every=every,
+        )  # fmt: skip
 
 
 def resume(
@@ -195,6 +203,8 @@ def resume(
     quiet: bool = False,
     view: bool = False,
     checkpoint_every: float = CHECKPOINT_EVERY,
+    figures: bool = True,
+    recording: bool = True,
 ) -> Run:
     """Resume an interrupted run with bit-identical results.
 
@@ -203,11 +213,13 @@ def resume(
     out : str or path
         Output folder with ``scenario.yaml`` and the last checkpoint.
     quiet : bool
-        Show no progress bar, even on a terminal.
+        Show no progress: no bar on a terminal, and no lines on another stderr.
     view : bool
         Show the run in the viewer, from its beginning.
     checkpoint_every : float
         Wall-clock time between two checkpoints, s.
+    figures, recording : bool
+        As for :func:`run`.
 
     Returns
     -------
@@ -237,8 +249,8 @@ def resume(
         writer = CheckpointWriter(folder, digest, after=saved)
         given = saved_commands(folder)
         return _simulate(
-            _with_warnings(_built(scenario), given), folder, quiet=quiet, view=view, commands=given,
-            checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
+            _with_warnings(_built(scenario), given), folder, Pictures(figures, recording), quiet=quiet,
+            view=view, commands=given, checkpoint=writer, checkpoint_every=every, resume=saved.checkpoint,
         )  # fmt: skip
 
 
@@ -288,6 +300,7 @@ def _digest(scenario: Scenario | WorldScenario) -> str:
 def _simulate(
     built: Built | BuiltWorld,
     folder: OutputFolder | None,
+    pictures: Pictures = ALL,
     *,
     quiet: bool,
     view: bool = False,
@@ -303,11 +316,11 @@ def _simulate(
                 trace = watched(built, progress.move, **checkpoints, view=view, commands=commands)
             else:
                 trace = built.simulation.run(duration, progress=progress.move, **checkpoints)
-            summary = finished(trace, built, folder, progress.tell)
+            summary = finished(trace, built, folder, progress.tell, pictures)
             return Run(trace, summary, scenario, folder.path if folder else None, _models(built))
     except (SimulationError, RunInterrupted) as stop:
         with doing("stopped; writing the results so far", quiet=quiet) as tell:
-            keep_stopped(stop, built, folder, tell)
+            keep_stopped(stop, built, folder, tell, pictures)
         raise
     except (
         Exception

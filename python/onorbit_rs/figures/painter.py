@@ -1,0 +1,44 @@
+"""Program of a helper process that draws figures for :mod:`onorbit_rs.output.painters`."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING
+
+from onorbit_rs.figures.drawings import Drawing, drawings
+from onorbit_rs.figures.save import as_bytes
+from onorbit_rs.figures.subject import Subject
+from onorbit_rs.figures.world_drawings import world_drawings
+
+if TYPE_CHECKING:
+    from onorbit_rs.output.painters import Album
+
+
+def drawings_of(albums: Iterable[Album]) -> Iterator[tuple[str, Drawing]]:
+    """Yield the stem of the file name and the drawing of each figure of the albums."""
+    for prefix, subject in albums:
+        found = drawings(subject) if isinstance(subject, Subject) else world_drawings(subject)
+        for drawing in found:
+            yield f"{prefix}{drawing.name}", drawing
+
+
+def main() -> None:
+    """Read albums, then numbers of figures, from stdin; write each figure as PNG, preceded by its length.
+
+    The parent process is the only writer of stdin, so unpickling it is safe. The process ends at the end of
+    stdin, also if the parent was killed.
+    """
+    albums = pickle.load(sys.stdin.buffer)
+    found = [drawing for _, drawing in drawings_of(albums)]
+    out = sys.stdout.buffer
+    while True:
+        try:
+            number = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        content = as_bytes(found[number].draw(), "png")
+        out.write(len(content).to_bytes(8, "little"))
+        out.write(content)
+        out.flush()
