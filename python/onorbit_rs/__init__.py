@@ -107,6 +107,7 @@ from onorbit_rs.simulation.controller import Controller
 
 if TYPE_CHECKING:
     from onorbit_rs import engines, layouts, ros2
+    from onorbit_rs.campaigns.run import campaign, campaign_case
     from onorbit_rs.clearance import Clearance, KeepOut, MinimumDistance, Violation, clearances
     from onorbit_rs.scenario import Scenario, WorldScenario
     from onorbit_rs.simulation.batch import run_batch
@@ -205,6 +206,8 @@ __all__ = [
     "WorldTrace",
     "attach",
     "build_info",
+    "campaign",
+    "campaign_case",
     "clearances",
     "compare",
     "distance",
@@ -230,7 +233,7 @@ _LAZY = {
     "Clearance": "clearance", "KeepOut": "clearance", "MinimumDistance": "clearance",
     "Violation": "clearance", "clearances": "clearance", "Comparison": "tools.comparison",
     "compare": "tools.comparison", "Scenario": "scenario", "WorldScenario": "scenario",
-    "CommandLog": "simulation.commands",
+    "CommandLog": "simulation.commands", "campaign": "campaigns.run", "campaign_case": "campaigns.run",
     "read_commands": "simulation.command_format", "replay_commands": "simulation.replay",
     "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
     "run_batch": "simulation.batch",

@@ -13,6 +13,13 @@ def scenario_names(incomplete: str) -> list[str]:
     return [*_fitting(scenarios.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
 
 
+def campaign_names(incomplete: str) -> list[str]:
+    """Return the bundled campaigns and the YAML files whose names begin with ``incomplete``."""
+    from onorbit_rs.campaigns import bundled
+
+    return [*_fitting(bundled.names(), incomplete), *_files(incomplete, (".yaml", ".yml"))]
+
+
 def robot_names(incomplete: str) -> list[str]:
     """Return the bundled robots and the URDF and xacro files whose names begin with ``incomplete``."""
     from onorbit_rs import robots

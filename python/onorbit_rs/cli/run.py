@@ -51,7 +51,7 @@ def run(
             name="checkpoint_every", got=checkpoint_every,
         )  # fmt: skip
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
-    _report(
+    report_run(
         lambda: run_scenario(
             scenario,
             out,
@@ -85,7 +85,7 @@ def resume(
     from onorbit_rs.simulation.run import resume as resume_run
 
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
-    _report(
+    report_run(
         lambda: resume_run(
             folder, quiet=quiet, view=view, checkpoint_every=every, figures=figures, recording=recording
         ),
@@ -94,7 +94,7 @@ def resume(
     )
 
 
-def _report(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
+def report_run(job: Callable[[], Run], *, quiet: bool, as_json: bool) -> None:
     """Run the simulation and print its summary; exit with code 1 if the certificate failed."""
     from onorbit_rs.cli.console import print_json
     from onorbit_rs.cli.summary import print_summary

@@ -128,6 +128,27 @@ def parse_quantity(value: object, *allowed: Dimension) -> float:
     return number
 
 
+def split_quantity(value: object) -> tuple[float, str]:
+    """Return the value of a quantity of any dimension in SI, and its unit as written, empty without a unit.
+
+    Raises
+    ------
+    QuantityError
+        If the value is neither a finite number nor text with a number and a known unit.
+    """
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if match is None or not match[2]:
+        if isinstance(value, str) and match is None:
+            raise QuantityError(
+                f"{shortened(value)} is not a number with a unit; write it as 0.5 or '0.5 deg'",
+                text=value, expected="a number",
+            )  # fmt: skip
+        return parse_quantity(value, NUMBER), ""
+    unit = match[2]
+    factor, _ = _parse_unit(unit, str(value), ())
+    return float(match[1].replace("_", "")) * factor, unit
+
+
 def _from_text(text: str, allowed: tuple[Dimension, ...]) -> float:
     match = _QUANTITY.fullmatch(text)
     if match is None:

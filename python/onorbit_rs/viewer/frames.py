@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pyarrow as pa  # type: ignore[import-untyped]  # ships no types
+import pyarrow as pa
 import rerun as rr
 
 from onorbit_rs.common.coordinates import JOINTS_Q, POSITION, QUATERNION

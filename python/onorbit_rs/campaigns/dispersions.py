@@ -1,0 +1,159 @@
+"""Dispersed values: what a draw changes in the data of a scenario."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from onorbit_rs.campaigns.distributions import Distribution
+from onorbit_rs.common.rotations import product
+from onorbit_rs.scenario.yaml_lines import Location
+
+How = Literal["set", "add", "scale"]
+
+
+@dataclass(frozen=True)
+class Dispersion:
+    """A dispersed entry; ``names`` are the names of its values in the results.
+
+    ``draws`` is the number of independent random numbers per case.
+    """
+
+    at: Location
+    names: tuple[str, ...]
+    distribution: Distribution
+
+    @property
+    def draws(self) -> int:
+        """Number of independent random numbers per case."""
+        return 1
+
+    @property
+    def draw_names(self) -> tuple[str, ...]:
+        """Names of the random numbers, from which they are derived."""
+        return self.names
+
+    def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
+        """Change the data of a case; return the dispersed values, in the order of ``names``."""
+        raise NotImplementedError
+
+
+def changed(how: How, nominal: float, drawn: float) -> float:
+    """Return the value after a change."""
+    return drawn if how == "set" else nominal + drawn if how == "add" else nominal * drawn
+
+
+def put(data: Any, at: Location, value: Any) -> None:
+    """Set one entry of plain data; mappings that do not exist are created."""
+    for step in at[:-1]:
+        data = data[step] if isinstance(step, int) else data.setdefault(step, {})
+    data[at[-1]] = value
+
+
+@dataclass(frozen=True)
+class NumberDispersion(Dispersion):
+    """A number, or one component of a vector."""
+
+    how: How
+    nominal: float
+
+    def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
+        """Change the number."""
+        choice = self.distribution.choice
+        drawn = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
+        value = changed(self.how, self.nominal, drawn)
+        put(data, self.at, value)
+        return (value,)
+
+
+@dataclass(frozen=True)
+class ChoiceDispersion(Dispersion):
+    """An entry that is replaced by one of several values of any kind."""
+
+    def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
+        """Replace the entry."""
+        value = self.distribution.pick(us[0])
+        put(data, self.at, value)
+        return (value,)
+
+
+@dataclass(frozen=True)
+class FactorDispersion(Dispersion):
+    """One factor of a vector, which keeps its direction, or of an inertia.
+
+    A positive factor of an inertia keeps the triangle inequality of its principal moments and the principal
+    axes; mass and centre of mass do not change.
+    """
+
+    nominal: Any
+
+    def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
+        """Scale the entry; the dispersed value is the factor."""
+        choice = self.distribution.choice
+        factor = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
+        put(data, self.at, (np.array(self.nominal, dtype=np.float64) * factor).tolist())
+        return (factor,)
+
+
+@dataclass(frozen=True)
+class DirectionDispersion(Dispersion):
+    """A vector of drawn magnitude and of a direction with uniform distribution on the sphere."""
+
+    how: How
+    nominal: tuple[float, ...]
+
+    @property
+    def draws(self) -> int:
+        """Magnitude, height and longitude."""
+        return 3
+
+    @property
+    def draw_names(self) -> tuple[str, ...]:
+        """Names of magnitude, height and longitude."""
+        base = self.names[0].removesuffix("[0]")
+        return (f"{base}/magnitude", f"{base}/height", f"{base}/longitude")
+
+    def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
+        """Set the vector, or add to it; `z = 2 u − 1` has uniform distribution on the sphere (Archimedes)."""
+        choice = self.distribution.choice
+        size = self.distribution.value(us[0]) if choice is None else float(self.distribution.pick(us[0]))
+        z, longitude = 2.0 * us[1] - 1.0, 2.0 * math.pi * us[2]
+        flat = math.sqrt(max(0.0, 1.0 - z * z))
+        drawn = (size * flat * math.cos(longitude), size * flat * math.sin(longitude), size * z)
+        values = tuple(changed(self.how, old, new) for old, new in zip(self.nominal, drawn, strict=True))
+        put(data, self.at, list(values))
+        return values
+
+
+@dataclass(frozen=True)
+class RotationDispersion(Dispersion):
+    """An attitude that is turned by a rotation vector in body axes."""
+
+    nominal: tuple[float, ...]
+    """Unit quaternion xyzw."""
+    is_direction: bool
+
+    @property
+    def draws(self) -> int:
+        """Components of the rotation vector, or angle, height and longitude of the axis."""
+        return 3
+
+    def apply(self, data: dict[str, Any], us: Sequence[float]) -> tuple[Any, ...]:
+        """Turn the attitude, `q = q₀ exp(δ/2)`; the dispersed values are the components of `δ`, rad."""
+        if self.is_direction:
+            inner: dict[str, Any] = {}
+            zero = (0.0, 0.0, 0.0)
+            delta = DirectionDispersion(("x",), ("x",) * 3, self.distribution, "set", zero).apply(inner, us)
+        else:
+            delta = tuple(self.distribution.value(u) for u in us)
+        angle = math.sqrt(sum(part * part for part in delta))
+        factor = 0.5 if angle == 0.0 else math.sin(0.5 * angle) / angle
+        turn = np.array([*(factor * part for part in delta), math.cos(0.5 * angle)])
+        quat = product(np.array(self.nominal), turn)
+        quat /= np.linalg.norm(quat)
+        put(data, self.at, {"quaternion_xyzw": quat.tolist()})
+        return tuple(delta)

@@ -1,0 +1,195 @@
+"""Distributions of dispersed values, and the change that a draw makes to an entry of the scenario."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from statistics import NormalDist
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import Field, PlainSerializer, PlainValidator, model_validator
+
+from onorbit_rs.scenario.errors import invalid
+from onorbit_rs.scenario.part import Part
+from onorbit_rs.scenario.units import split_quantity
+
+_STANDARD = NormalDist()
+LEAST_PROBABILITY = 1e-9
+"""Smallest probability of the interval ``within`` of a normal distribution."""
+
+
+def _cdf(z: float) -> float:
+    """Return the probability of values below ``z``, accurate also where it is small."""
+    return 0.5 * math.erfc(-z / math.sqrt(2.0))
+
+
+class Amount(float):
+    """Number in SI; ``unit`` is the unit in which it was written, empty if it had none."""
+
+    unit: str = ""
+
+
+def amount(value: Any) -> Amount:
+    """Return a number, or text with a unit of any dimension, in SI; raises QuantityError."""
+    if isinstance(value, Amount):
+        return value
+    number, unit = split_quantity(value)
+    found = Amount(number)
+    found.unit = unit
+    return found
+
+
+Quantity = Annotated[Amount, PlainValidator(amount), PlainSerializer(float)]
+"""Number in SI, or text with a unit of any dimension."""
+
+Pair = Annotated[list[Quantity], Field(min_length=2, max_length=2)]
+
+
+class Distribution(Part):
+    """Distribution of one value: exactly one of ``uniform``, ``normal`` and ``choice``."""
+
+    synonyms: ClassVar = {
+        "gaussian": "normal", "gauss": "normal", "range": "uniform", "choices": "choice", "values": "choice",
+        "bounds": "within", "truncated": "within", "clip": "within",
+    }  # fmt: skip
+
+    uniform: Pair | None = None
+    """Least and largest value."""
+    normal: Pair | None = None
+    """Mean and standard deviation."""
+    within: Pair | None = None
+    """Least and largest value of ``normal``: the distribution is truncated, not clipped."""
+    choice: Annotated[list[Any], Field(min_length=1)] | None = None
+    """Values of equal probability; also text, lists and mappings."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _is_mapping(cls, value: Any) -> Any:
+        if not isinstance(value, dict) and not isinstance(value, Part):
+            raise invalid(
+                "must be a distribution: {uniform: [a, b]}, {normal: [mean, sigma]} or {choice: [...]}"
+            )
+        return value
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        given = [name for name in ("uniform", "normal", "choice") if getattr(self, name) is not None]
+        if len(given) != 1:
+            listed = ", ".join(given) or "none"
+            raise invalid(f"give exactly one of 'uniform', 'normal' and 'choice'; given: {listed}")
+        if self.within is not None and self.normal is None:
+            raise invalid("'within' applies only to 'normal'; omit it")
+        for name in ("uniform", "within"):
+            pair = getattr(self, name)
+            if pair is not None and not pair[0] < pair[1]:
+                low, high = map(float, pair)
+                raise invalid(f"the bounds of '{name}' are [{low:g}, {high:g}]; the first must be smaller")
+        if self.normal is not None and self.normal[1] <= 0.0:
+            raise invalid(f"the standard deviation is {self.normal[1]:g}; it must be above zero")
+        if self.within is not None and self._probability < LEAST_PROBABILITY:
+            raise invalid(
+                f"the bounds of 'within' have a probability of {self._probability:.1e}, below "
+                f"{LEAST_PROBABILITY:g}; give bounds near the mean"
+            )
+        return self
+
+    @cached_property
+    def _standard_bounds(self) -> tuple[float, float, bool]:
+        """Bounds of ``within`` as probabilities of the standard normal distribution; the sign of the values
+        is inverted (True) if the bounds are above the mean, where probabilities are close to one.
+        """
+        assert self.normal is not None
+        assert self.within is not None
+        mean, sigma = self.normal
+        low, high = ((bound - mean) / sigma for bound in self.within)
+        is_inverted = low > 0.0
+        if is_inverted:
+            low, high = -high, -low
+        return _cdf(low), _cdf(high), is_inverted
+
+    @property
+    def _probability(self) -> float:
+        low, high, _ = self._standard_bounds
+        return high - low
+
+    @property
+    def amounts(self) -> list[Amount]:
+        """The numbers that define the distribution, except the values of ``choice``."""
+        return [*(self.uniform or ()), *(self.normal or ()), *(self.within or ())]
+
+    @property
+    def bounds(self) -> Pair | None:
+        """Least and largest value; None without bounds."""
+        return self.uniform or self.within
+
+    def value(self, u: float) -> float:
+        """Return the value whose cumulative probability is ``u``, in SI.
+
+        `x = a + u (b − a)` for a uniform distribution and `x = µ + σ Φ⁻¹(u)` for a normal one. With bounds
+        `a` and `b`, `u` is first mapped to `Φ(α) + u [Φ(β) − Φ(α)]`, where `α = (a − µ)/σ` and `β` alike.
+        """
+        if self.uniform is not None:
+            first, last = map(float, self.uniform)
+            return min(first + u * (last - first), last)
+        assert self.normal is not None
+        mean, sigma = map(float, self.normal)
+        if self.within is None:
+            return mean + sigma * _STANDARD.inv_cdf(u)
+        low, high, is_inverted = self._standard_bounds
+        p = low + (1.0 - u if is_inverted else u) * (high - low)
+        z = _STANDARD.inv_cdf(min(max(p, 5e-324), 1.0 - 2.0**-53))
+        drawn = mean + sigma * (-z if is_inverted else z)
+        return min(max(drawn, float(self.within[0])), float(self.within[1]))
+
+    def pick(self, u: float) -> Any:
+        """Return the value of ``choice`` for ``u``, in (0, 1)."""
+        assert self.choice is not None
+        return self.choice[min(int(u * len(self.choice)), len(self.choice) - 1)]
+
+
+class Change(Part):
+    """Change of an entry of the scenario: exactly one of ``set``, ``add`` and ``scale``."""
+
+    synonyms: ClassVar = {"multiply": "scale", "factor": "scale", "offset": "add", "value": "set"}
+
+    set: Distribution | None = None
+    """Replaces the value."""
+    add: Distribution | None = None
+    """Is added to the value."""
+    scale: Distribution | None = None
+    """Factor of the value."""
+    vector: Literal["components", "direction"] = "components"
+    """For a vector: ``components`` draws every component, in the axes of the entry; ``direction`` draws a
+    magnitude for ``set`` and ``add``, with a direction of uniform distribution on the sphere, and one factor
+    of the whole vector for ``scale``."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _is_mapping(cls, value: Any) -> Any:
+        if not isinstance(value, dict) and not isinstance(value, Part):
+            raise invalid("must be a mapping with 'set', 'add' or 'scale', such as {add: {normal: [0, 0.1]}}")
+        for name in ("uniform", "normal", "choice"):
+            if isinstance(value, dict) and name in value:
+                raise invalid(f"'{name}' belongs into 'set', 'add' or 'scale': {{add: {{{name}: [...]}}}}")
+        return value
+
+    @model_validator(mode="after")
+    def _is_one(self) -> Self:
+        given = [name for name in ("set", "add", "scale") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise invalid(
+                f"give exactly one of 'set', 'add' and 'scale'; given: {', '.join(given) or 'none'}"
+            )
+        return self
+
+    @property
+    def how(self) -> Literal["set", "add", "scale"]:
+        """Kind of the change."""
+        return "set" if self.set is not None else "add" if self.add is not None else "scale"
+
+    @property
+    def distribution(self) -> Distribution:
+        """Distribution of the change."""
+        found = self.set or self.add or self.scale
+        assert found is not None
+        return found

@@ -1,0 +1,121 @@
+"""Random numbers of a campaign: a function of seed, case and path, independent of workers and order."""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from onorbit_rs.exceptions import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Sampling = Literal["random", "latin_hypercube", "sobol"]
+
+_BITS = 52
+_LAST = 1.0 - 2.0**-53
+"""Largest number below 1."""
+
+
+def unit_random(seed: int, case: int, path: str) -> float:
+    """Return a number in (0, 1) of uniform distribution: 52 bits of BLAKE2b of ``seed/case/path``."""
+    digest = hashlib.blake2b(f"{seed}/{case}/{path}".encode(), digest_size=8).digest()
+    return float(((int.from_bytes(digest, "little") >> (64 - _BITS)) + 0.5) * 2.0**-_BITS)
+
+
+def unit_draw(sampling: Sampling, seed: int, cases: int, case: int, path: str, dimension: int) -> float:
+    """Return the number in (0, 1) of a case for one dispersed value.
+
+    Parameters
+    ----------
+    sampling : str
+        ``random``: independent numbers. ``latin_hypercube``: each of ``cases`` equal intervals contains the
+        number of one case, at a random place; the order of the intervals is random. ``sobol``: coordinate
+        ``dimension`` of the Sobol sequence, with a random digital shift.
+    seed : int
+        Seed of the campaign.
+    cases : int
+        Number of cases.
+    case : int
+        Number of the case, from 0.
+    path : str
+        Name of the dispersed value.
+    dimension : int
+        Position of the dispersed value in the campaign; used by ``sobol`` only.
+
+    Returns
+    -------
+    float
+    """
+    if sampling == "random":
+        return unit_random(seed, case, path)
+    if sampling == "latin_hypercube":
+        inside = unit_random(seed, case, f"{path}/interval")
+        return min(float((int(_order(seed, cases, path)[case]) + inside) / cases), _LAST)
+    bits = int(_sobol(cases, dimension + 1)[case, dimension]) ^ _shift(seed, path)
+    return min((bits + unit_random(seed, case, f"{path}/cell")) * 2.0**-_SOBOL_BITS, _LAST)
+
+
+@lru_cache(maxsize=512)
+def _order(seed: int, cases: int, path: str) -> NDArray[np.intp]:
+    """Return a random permutation of the cases: the order of Philox numbers keyed by seed and path."""
+    key = int.from_bytes(hashlib.blake2b(f"{seed}/order/{path}".encode(), digest_size=16).digest(), "little")
+    return np.argsort(np.random.Philox(key=key).random_raw(cases), kind="stable")
+
+
+_SOBOL_BITS = 32
+
+
+def _shift(seed: int, path: str) -> int:
+    """Return the digital shift of a coordinate."""
+    digest = hashlib.blake2b(f"{seed}/shift/{path}".encode(), digest_size=4).digest()
+    return int.from_bytes(digest, "little")
+
+
+_tables: dict[int, NDArray[np.uint32]] = {}
+
+
+def _sobol(cases: int, dimensions: int) -> NDArray[np.uint32]:
+    """Return the first points of the Sobol sequence without scrambling, (cases, n) with n >= dimensions."""
+    table = _tables.get(cases)
+    if table is None or table.shape[1] < dimensions:
+        table = _tables[cases] = _sobol_points(
+            cases, max(dimensions, 32 if table is None else 2 * dimensions)
+        )
+    return table
+
+
+def _sobol_points(cases: int, dimensions: int) -> NDArray[np.uint32]:
+    qmc = _qmc()
+    dimensions = min(dimensions, qmc.Sobol.MAXDIM)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about a number of cases that is not a power of two
+        points = qmc.Sobol(dimensions, scramble=False, bits=_SOBOL_BITS).random(cases)
+    table: NDArray[np.uint32] = (points * 2.0**_SOBOL_BITS).astype(np.uint32)
+    return table
+
+
+def check_sampling(sampling: Sampling, dimensions: int) -> None:
+    """Raise InputError if SciPy is missing for ``sobol``, or has no sequence of so many dimensions."""
+    if sampling == "sobol" and dimensions > (most := int(_qmc().Sobol.MAXDIM)):
+        raise InputError(
+            f"{dimensions} values are dispersed, but Sobol sequences have at most {most} dimensions; "
+            "disperse fewer values, or use latin_hypercube",
+            name="sampling", got=dimensions, expected=f"<= {most}",
+        )  # fmt: skip
+
+
+def _qmc() -> Any:
+    """Return SciPy's module of quasi-random sequences; raises InputError if SciPy is not installed."""
+    try:
+        from scipy.stats import qmc
+    except ImportError:
+        raise InputError(
+            "sampling 'sobol' requires SciPy; install it with: pip install 'onorbit-rs[campaign]'",
+            name="sampling", got="sobol",
+        ) from None  # fmt: skip
+    return qmc

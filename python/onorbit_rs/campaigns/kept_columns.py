@@ -1,0 +1,63 @@
+"""Columns of the trace that a campaign keeps, at a lower rate than they were recorded."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs._core import WorldTrace
+from onorbit_rs.output.pickling import arrays_of
+from onorbit_rs.output.world import world_arrays
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from onorbit_rs.campaigns.document import Keep
+
+    Floats = NDArray[np.float64]
+
+
+def columns_of(trace: Any) -> dict[str, Floats]:
+    """Return the columns of a trace that have a row for every time, as named in ``trace.npz``."""
+    arrays = world_arrays(trace) if isinstance(trace, WorldTrace) else arrays_of(trace)
+    rows = len(arrays["time"])
+    return {
+        name: np.asarray(values, dtype=np.float64)
+        for name, values in arrays.items()
+        if len(values) == rows and np.asarray(values).dtype.kind in "fiub" and not name.startswith("events/")
+    }
+
+
+def kept_columns(trace: Any, keep: Keep) -> dict[str, Floats]:
+    """Return the kept columns, flat: ``time`` and one column per component, such as ``q[0]``."""
+    if not keep.columns:
+        return {}
+    arrays = columns_of(trace)
+    chosen = rows_every(arrays["time"], keep.every)
+    found = {"time": arrays["time"][chosen]}
+    for name in keep.columns:
+        values = arrays[name][chosen]
+        flat = values.reshape(len(values), -1)
+        if values.ndim == 1:
+            found[name] = values
+            continue
+        indices = np.ndindex(values.shape[1:])
+        found |= {
+            f"{name}[{','.join(map(str, index))}]": np.ascontiguousarray(flat[:, column])
+            for column, index in enumerate(indices)
+        }
+    return found
+
+
+def rows_every(time: Floats, every: float | None) -> NDArray[np.intp]:
+    """Return the indices of the first and the last row, and of the first row at or after each multiple of
+    ``every``, s.
+    """
+    if every is None:
+        return np.arange(len(time))
+    count = int(np.floor((time[-1] - time[0]) / every * (1.0 + 1e-12)))
+    wanted = time[0] + every * np.arange(count + 1)
+    found = np.searchsorted(time, wanted - 1e-9 * every)
+    rows: NDArray[np.intp] = np.unique([*found[found < len(time)], len(time) - 1])
+    return rows

@@ -1,0 +1,91 @@
+"""Reads a campaign from a bundled name, a file or a mapping."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from onorbit_rs.campaigns import bundled
+from onorbit_rs.campaigns.document import CampaignDocument
+from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.exceptions import DtypeError, NotFoundError
+from onorbit_rs.scenario.load import AnyScenario, check, locate
+from onorbit_rs.scenario.locations import scenario_error
+from onorbit_rs.scenario.yaml_lines import Lines, read_yaml
+
+
+class LoadedCampaign(NamedTuple):
+    """A campaign and its nominal scenario."""
+
+    document: CampaignDocument
+    scenario: AnyScenario
+
+
+def load_campaign(
+    source: str | os.PathLike[str] | Mapping[str, Any], *, cases: int | None = None
+) -> LoadedCampaign:
+    """Return the validated campaign of a bundled name, a file or a mapping, and its scenario.
+
+    Raises
+    ------
+    NotFoundError
+        If ``source`` is neither a bundled name nor a file.
+    DtypeError
+        If ``source`` has another type.
+    ScenarioError
+        If the campaign or its scenario is invalid; has the attributes ``file``, ``path`` and ``line``.
+    """
+    if isinstance(source, Mapping):
+        return _checked(dict(source), None, {}, cases)
+    if not isinstance(source, (str, os.PathLike)):
+        kind = type(source).__name__
+        raise DtypeError(
+            f"{source!s:.60} ({kind}) is not a campaign; give a bundled name, a YAML file or a mapping",
+            name="campaign", got=kind, expected="str, path or mapping",
+        )  # fmt: skip
+    file = _located(source)
+    data, lines = read_yaml(file)
+    return _checked(data, file, lines, cases)
+
+
+def _located(source: str | os.PathLike[str]) -> Path:
+    path = Path(source)
+    if path.exists() and os.fspath(source):
+        return path
+    name = os.fspath(source)
+    if name in bundled.names():
+        return bundled.path(name)
+    hint = did_you_mean(path.stem, bundled.names())
+    raise NotFoundError(
+        f"no such campaign: {name!r} is neither a file nor a bundled name{hint}", path=name, kind="campaign"
+    )
+
+
+def _checked(data: Any, file: Path | None, lines: Lines, cases: int | None) -> LoadedCampaign:
+    if not isinstance(data, dict) or "campaign" not in data:
+        is_scenario = isinstance(data, dict) and "simulation" in data
+        hint = "; onorbit run runs a scenario" if is_scenario else ""
+        message = f"'campaign' is missing; give {{campaign: {{scenario: ..., cases: ..., vary: ...}}}}{hint}"
+        raise scenario_error(message, file, None)
+    if cases is not None and isinstance(data["campaign"], dict):
+        data = data | {"campaign": data["campaign"] | {"cases": cases}}
+    document = CampaignDocument.checked(data, file, lines)
+    return LoadedCampaign(document, _scenario(document))
+
+
+def _scenario(document: CampaignDocument) -> AnyScenario:
+    """Return the scenario of a campaign; a relative path starts at the folder of the campaign's file."""
+    source, file = document.campaign.scenario, document.file
+    if isinstance(source, dict):
+        inner = {at[2:]: line for at, line in document.lines.items() if at[:2] == ("campaign", "scenario")}
+        return check(source if "name" in source else source | {"name": document.name}, file, inner)
+    relative = (file.parent if file is not None else Path()) / source
+    try:
+        found = relative if relative.is_file() else locate(source)
+    except NotFoundError as error:
+        at = ("campaign", "scenario")
+        raise scenario_error(str(error), file, document.lines.get(at), "campaign.scenario") from None
+    inner_data, inner_lines = read_yaml(found)
+    return check(inner_data, found, inner_lines)

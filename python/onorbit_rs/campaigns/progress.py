@@ -1,0 +1,49 @@
+"""Progress of a campaign: the number of cases, of errors, and the time left."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from onorbit_rs.common.counting import count
+from onorbit_rs.common.progress import parts_bar
+
+
+class CampaignProgress:
+    """Counts cases; :meth:`add` is called after every case."""
+
+    def __init__(self, cases: int, done: int, show: Callable[[str, float], None]) -> None:
+        """Store the number of cases and of those that an earlier process has run."""
+        self._cases, self._done, self._show = cases, done, show
+        self._first, self._began, self._errors = done, time.monotonic(), 0
+
+    def add(self, *, has_error: bool) -> None:
+        """Count a case."""
+        self._done += 1
+        self._errors += has_error
+        self._show(self.text(time.monotonic()), self._done / self._cases)
+
+    def text(self, now: float) -> str:
+        """Return the state, such as ``12 of 100 cases, 1 error, 35 s left``."""
+        errors = f", {count(self._errors, 'error', 'errors')}" if self._errors else ""
+        return f"{self._done} of {self._cases} cases{errors}, {_duration(self._left_s(now))} left"
+
+    def _left_s(self, now: float) -> float:
+        ran = self._done - self._first
+        return (now - self._began) / ran * (self._cases - self._done) if ran else 0.0
+
+
+@contextmanager
+def campaign_progress(name: str, cases: int, done: int, *, quiet: bool) -> Iterator[CampaignProgress]:
+    """Show the progress of a campaign on stderr during the block, unless ``quiet``."""
+    with parts_bar(name, quiet=quiet) as show:
+        yield CampaignProgress(cases, done, show)
+
+
+def _duration(seconds: float) -> str:
+    """Return a duration in its natural unit, such as ``35 s`` or ``2 h 5 min``."""
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 90 else f"{minutes // 60} h {minutes % 60} min"
