@@ -83,7 +83,8 @@ class CampaignFolder:
             if not force:
                 raise OutputNotEmptyError(
                     f"{self.path} contains another campaign ({found.get('name')}, with another scenario, "
-                    "seed, variation or version); choose another folder, or replace it with --force (force=True)",
+                    "seed, variation or version); choose another folder, or replace it with --force "
+                    "(force=True)",
                     path=str(self.path),
                 )
             self._remove_campaign()
