@@ -29,8 +29,8 @@ pub(crate) struct PyTrace {
     pub(crate) wall_s: f64,
 }
 
-/// Number of rows from which the certificate is computed on a separate thread, because it takes more than a
-/// tenth of a second.
+/// Smallest number of rows for which the certificate is computed on a separate thread; from this size on,
+/// the computation takes more than a tenth of a second.
 const LONG_TRACE: usize = 1 << 14;
 
 type Column<'py> = Option<Bound<'py, PyArrayDyn<f64>>>;

@@ -46,7 +46,7 @@ class Flight:
 
 @contextmanager
 def about_controllers(scenario: Scenario) -> Iterator[None]:
-    """Locate errors of the combined controllers at their key."""
+    """Add file, line and key of the controllers to control and shape errors raised in the block."""
     try:
         yield
     except (ControlError, ShapeError):
@@ -56,8 +56,10 @@ def about_controllers(scenario: Scenario) -> Iterator[None]:
 
 @contextmanager
 def about_start(scenario: Scenario) -> Iterator[None]:
-    """Locate errors about ``q`` and ``v`` at ``initial``, those about a brake or a loop at its entry, and
-    others at ``simulation``.
+    """Add file, line and key to errors raised in the block.
+
+    The key is ``initial`` for errors about ``q`` and ``v``, the entry of a brake or loop for errors about it,
+    and ``simulation`` for all others.
     """
     try:
         yield

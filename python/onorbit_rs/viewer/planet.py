@@ -79,7 +79,12 @@ def log_planet(recording: rr.RecordingStream, rows: TraceRows, setting: Setting)
 
 
 def to_eye(rows: TraceRows, setting: Setting) -> Floats:
-    """Return the unit vector towards the camera: above the start of the run, half of the planet lit."""
+    """Return the unit vector from the centre of the planet to the camera.
+
+    The camera is above the side of the planet on which the run starts. If the direction to the Sun is known,
+    most of the component in that direction is removed, so that about half of the visible disc is lit. A
+    camera near a pole is moved to 60° latitude, because north could not be up on the screen.
+    """
     start = rows["position_eci"][0] / np.linalg.norm(rows["position_eci"][0])
     towards: Floats = start + [0.0, 0.0, 0.5] + 0.6 * np.cross([0.0, 0.0, 1.0], start)
     if setting.earth is not None and has_sun(setting.earth):

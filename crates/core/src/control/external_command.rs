@@ -11,7 +11,7 @@ const LARGEST: f64 = 1e60;
 /// Command to the joints of an [`External`](super::External) law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ExternalCommand {
-    /// Values that are held until the next command.
+    /// Values that are held until the next command or the timeout.
     Setpoint(Setpoint),
     /// Motion through points at given times.
     Trajectory(JointTrajectory),

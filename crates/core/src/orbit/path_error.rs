@@ -32,7 +32,7 @@ pub enum PathError {
     QuaternionNorm { index: usize, norm: f64 },
     #[error(
         "the attitude rotates by {angle} rad from point {before} to point {index}; it must rotate by at most 2 rad, \
-         because larger rotations are ambiguous in direction; give points that are closer in time",
+         so that the direction of the rotation is clear; give points that are closer in time",
         before = index - 1,
         angle = short(*angle)
     )]

@@ -54,7 +54,7 @@ pub(super) fn of_mesh(
             py,
             format!(
                 "the {} convex pieces of {filename} have {:.0} % more volume than the mesh, so they fill part \
-                 of its notches; for a closer shape, increase pieces from {count} to a larger number",
+                 of its concavities; for a closer approximation, increase pieces, which is {count}",
                 hulls.len(),
                 100.0 * excess
             ),

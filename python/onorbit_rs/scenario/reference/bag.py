@@ -79,8 +79,8 @@ class BagReference(Part):
         if not found:
             group, names = ", ".join(at.group), ", ".join(wanted.values()) or "none"
             raise _BadRecordingError(
-                f"none of its joints ({names}) is among the controlled joints ({group}); map its joints to "
-                "those of the robot with 'joints'"
+                f"the joints that would follow the messages ({names}) are not among the controlled joints "
+                f"({group}); use 'joints' to map joints of the bag to controlled joints"
             )
         return found
 

@@ -1,4 +1,4 @@
-"""Compares accelerations and poses of articulated bodies with the tests of other libraries."""
+"""Compares accelerations and poses of articulated bodies with values from the tests of other libraries."""
 
 from __future__ import annotations
 

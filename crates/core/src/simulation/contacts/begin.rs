@@ -7,9 +7,9 @@ use crate::contact::{Bristle, BristleDamping, ContactError, Friction, FrictionFo
 use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
-/// Pieces count as far apart if the distance of their bounding spheres exceeds this fraction of the smaller
-/// reach plus the distance that they may travel within the step. The reach of a piece is the radius of its
-/// bounding sphere about the origin of its frame.
+/// Two pieces count as far apart if the gap between their bounding spheres exceeds the sum of this fraction
+/// of the smaller reach and the distance by which they may approach each other within the step. The reach
+/// of a piece is the radius of its bounding sphere about the origin of its frame.
 pub(super) const FAR: f64 = 0.1;
 /// Safety factor for the distance that pieces travel within the step at their present velocities.
 pub(super) const TRAVEL: f64 = 3.0;

@@ -352,10 +352,11 @@ impl JointModes {
     /// Sets the friction compensation for an external engine, which has a different friction model and holds
     /// torques constant during its steps.
     ///
-    /// In such an engine joints creep instead of sticking, and the sign of a small rate is arbitrary. Within
-    /// ±[`TURN`] the compensation therefore changes continuously from one direction to the other. The
-    /// transition is shifted in the direction of the requested acceleration, with full effect for
-    /// accelerations of [`START`] and more.
+    /// In such an engine joints creep instead of sticking, and the sign of a small rate is arbitrary. The
+    /// compensation therefore changes linearly from one direction to the other over an interval of rates of
+    /// width [`TURN`], which is centred at zero if no acceleration is requested. A requested acceleration
+    /// shifts this interval against its own direction, by half the width for accelerations of [`START`] and
+    /// more, so that a joint at rest is then fully compensated in the direction of the acceleration.
     pub(in crate::simulation) fn compensate_by_rate<S: Real>(&mut self, v: &[S]) {
         for (j, requested) in self.requested.iter().enumerate() {
             let start = requested.map_or(0.0, |a| (a / START).clamp(-1.0, 1.0));
