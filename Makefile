@@ -9,7 +9,7 @@ MATURIN := VIRTUAL_ENV=$(CURDIR)/$(VENV) $(BIN)/maturin develop --release --quie
 
 RUST := $(shell find crates -name '*.rs' -o -name Cargo.toml) Cargo.toml Cargo.lock
 
-.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign fuzz soak test-ros2 test-peers notices clean
+.PHONY: help demo test test-rust test-python lint docs bench bench-quick bench-rust bench-orbits bench-everything bench-spart bench-against certificate-campaign contact-campaign capture-campaign fuzz soak test-ros2 test-peers notices clean
 
 help: ## prints this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
@@ -90,6 +90,9 @@ certificate-campaign: $(VENV)/.built $(VENV)/.tested ## evaluates the certificat
 
 contact-campaign: ## checks momentum and energy of random trees through 1000 contacts; CONTACTS= sets their number
 	CONTACTS=$(or $(CONTACTS),1000) cargo test --release -p onorbit-core --test contact_campaign -- --ignored --nocapture
+
+capture-campaign: $(VENV)/.built ## measures many captures of 30 s on threads and repeats drawn cases; CASES= sets their number
+	$(BIN)/python benches/capture_campaign.py $(if $(CASES),--cases $(CASES))
 
 # SECONDS= per parser; COUNT= total number of inputs; SEED=; ONLY= selects parsers by name
 fuzz: $(VENV)/.built $(VENV)/.tested ## fuzzes every parser, guided by coverage; fails on findings (docs/reliability.md)

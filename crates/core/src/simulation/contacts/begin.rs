@@ -7,10 +7,12 @@ use crate::contact::{Bristle, BristleDamping, ContactError, Friction, FrictionFo
 use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
-/// Two pieces count as far apart if the gap between their bounding spheres exceeds the sum of this fraction
-/// of the smaller reach and the distance by which they may approach each other within the step. The reach
-/// of a piece is the radius of its bounding sphere about the origin of its frame.
+/// Two pieces count as far apart if the gap between their bounding spheres exceeds the sum of this fraction of
+/// the smaller reach and the distance by which they may approach each other within the step. The reach of a
+/// piece is the radius of its bounding sphere about the origin of its frame.
 pub(super) const FAR: f64 = 0.1;
+/// The same fraction for the gap between the pieces themselves.
+const CLEAR: f64 = 0.01;
 /// Safety factor for the distance that pieces travel within the step at their present velocities.
 pub(super) const TRAVEL: f64 = 3.0;
 /// Sticking bristles without deflection.
@@ -33,12 +35,20 @@ impl Touching {
         mobility: impl Fn(&[Side; 2], &Loading) -> [f64; 3],
     ) -> Result<Option<Loading>, ContactError> {
         let is_known = self.mode.since == t;
-        let is_far = if is_known { self.mode.phase == Phase::Far } else { self.is_far(motions, end - t) };
+        let travel = TRAVEL * (end - t) * self.fastest([&motions[0], &motions[1]]);
+        let is_far = if is_known { self.mode.phase == Phase::Far } else { self.stays_apart(motions, travel) };
         if is_far {
             (self.mode.phase, self.mode.since) = (Phase::Far, t);
             return Ok(None);
         }
         let geometry = self.geometry(motions)?;
+        if !is_known && !self.mode.phase.has_touched() {
+            self.clearance = geometry.0.distance - CLEAR * self.smaller_reach();
+            if self.takes_clearance(travel) {
+                (self.mode.phase, self.mode.since) = (Phase::Far, t);
+                return Ok(None);
+            }
+        }
         let rounding = self.rounding(motions);
         let mut before = self.loading(self.mode.phase, &geometry, motions, state);
         let phase = if is_known { self.mode.phase } else { self.next_phase(&before, rounding) };
@@ -83,12 +93,34 @@ impl Touching {
         self.sides.iter().map(|side| side.reach).fold(f64::MAX, f64::min)
     }
 
-    /// Returns true if bounding spheres show that the pieces will not touch within `h`, s, unless they
-    /// accelerate strongly.
-    pub(super) fn is_far(&self, [a, b]: &[SideMotion; 2], h: f64) -> bool {
+    /// Returns true if the pieces will not touch while they travel the distance `travel`, m, unless they
+    /// accelerate strongly. It suffices that their bounding spheres show this, or the gap that was computed in
+    /// an earlier step. The result is the same as with the present gap.
+    fn stays_apart(&mut self, motions: &[SideMotion; 2], travel: f64) -> bool {
+        if self.mode.phase.has_touched() {
+            return false;
+        }
+        if self.is_far(motions, travel) {
+            self.clearance = 0.0;
+            return true;
+        }
+        self.takes_clearance(travel)
+    }
+
+    /// Subtracts `travel`, m, from the clearance and returns true if the clearance is larger; otherwise sets
+    /// the clearance to zero.
+    fn takes_clearance(&mut self, travel: f64) -> bool {
+        let is_clear = self.clearance > travel;
+        self.clearance = if is_clear { self.clearance - travel } else { 0.0 };
+        is_clear
+    }
+
+    /// Returns true if bounding spheres show that the pieces will not touch while they travel the distance
+    /// `travel`, m.
+    pub(super) fn is_far(&self, [a, b]: &[SideMotion; 2], travel: f64) -> bool {
         let [reach_a, reach_b] = [&self.sides[0], &self.sides[1]].map(|side| side.reach);
         let gap = (b.frame.pos - a.frame.pos).norm() - reach_a - reach_b;
-        gap > FAR * reach_a.min(reach_b) + TRAVEL * h * self.fastest([a, b])
+        gap > FAR * reach_a.min(reach_b) + travel
     }
 
     /// Returns an upper bound on the present speed at which points of the pieces approach each other, m/s.

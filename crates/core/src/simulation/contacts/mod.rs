@@ -119,6 +119,7 @@ impl Contacts {
                         may_start_overlapping,
                         is_conservative: steps.is_conservative,
                         mode,
+                        clearance: 0.0,
                         is_held,
                         last,
                     });
@@ -214,8 +215,8 @@ impl Contacts {
         }
         for (&number, own) in near.iter().zip(&state.contacts) {
             let touching = &mut list[number];
-            if touching.mode.phase == Phase::Far {
-                touching.last = None;
+            if !touching.mode.phase.has_touched() {
+                touching.last = touching.last.take().filter(|_| is_begun);
                 continue;
             }
             if !is_begun || touching.last.is_none() {
@@ -240,7 +241,8 @@ impl Contacts {
         rates.extend(self.near.iter().map(|&number| {
             let touching = &self.list[number];
             let center = self.touches[touching.contact].center;
-            touching.last.as_ref().map_or(ContactState::ZERO, |loading| loading.rates(center))
+            let loading = touching.last.as_ref().filter(|_| touching.mode.phase.has_touched());
+            loading.map_or(ContactState::ZERO, |loading| loading.rates(center))
         }));
     }
 

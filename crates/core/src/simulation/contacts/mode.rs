@@ -17,6 +17,13 @@ pub(super) enum Phase {
     Separating,
 }
 
+impl Phase {
+    /// Returns true if the bodies overlap.
+    pub(super) fn has_touched(self) -> bool {
+        matches!(self, Self::Pressing | Self::Separating)
+    }
+}
+
 /// Mode of a contact during a step, with the friction at the start of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(in crate::simulation) struct Mode {

@@ -37,7 +37,9 @@ impl Contacts {
     /// state must contain the states of all pairs.
     pub(in crate::simulation) fn restore(&mut self, (modes, touches): (Vec<Mode>, Vec<Touch>)) {
         self.begun.clear();
-        self.list.iter_mut().zip(modes).for_each(|(touching, mode)| touching.mode = mode);
+        self.list.iter_mut().zip(modes).for_each(|(touching, mode)| {
+            (touching.mode, touching.clearance) = (mode, 0.0);
+        });
         self.touches = touches;
         self.near = (0..self.list.len()).collect();
         self.begun_at = f64::NAN;

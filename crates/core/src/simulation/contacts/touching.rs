@@ -24,6 +24,9 @@ pub(super) struct Touching {
     /// True if the forces at several points are the gradient of their elastic energy.
     pub(super) is_conservative: bool,
     pub(super) mode: Mode,
+    /// Distance by which the pieces may approach each other, m, before the gap must be computed again: the gap
+    /// computed last, less a margin and the distances that the pieces may have travelled since.
+    pub(super) clearance: f64,
     /// True if a connection of an external engine holds both links.
     pub(super) is_held: bool,
     /// Result of the last evaluation; `None` while the pieces are far apart.
