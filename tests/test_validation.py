@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import _thread
+import functools
 import json
 import resource
 import subprocess
@@ -49,6 +50,7 @@ from onorbit_rs.tools.validation import (
     secular,
     select,
     sgp4,
+    springs,
     worlds,
 )  # fmt: skip
 
@@ -133,6 +135,16 @@ def with_long_steps(name: str, run: Callable[..., Any] = oo.run, **settings: Any
     return run(data, **settings)
 
 
+def without_damping(time: Any) -> Any:
+    return springs.AMPLITUDE * np.cos(np.sqrt(springs.STIFFNESS / springs.REDUCED) * time)
+
+
+def at_first_turn() -> tuple[float, float]:
+    """Returns where and when the wheel would stick if the spring were ignored."""
+    swing = np.pi * np.sqrt(springs.REDUCED / springs.STIFFNESS)
+    return -springs.AMPLITUDE + 2.0 * springs.FRICTION / springs.STIFFNESS, swing
+
+
 CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("kepler", "a low orbit, one day", kepler, "FLIGHTS", of_wgs84("a low orbit, one day")),
     ("kepler", "a hyperbola by its elements", kepler, "HYPERBOLA_MU", oo.MU_EARTH),
@@ -171,6 +183,12 @@ CONTROLS: list[tuple[str, str, Any, str, Any]] = [
     ("brakes", "a brake that slips stops a wheel", brakes, "TORQUE", 0.900001),
     ("brakes", "12 random trees, a brake engaged in motion", brakes, "rows", without_first),
     ("brakes", "12 random pairs of trees, captured with engaged brakes", brakes, "rows", without_first),
+    ("joints", "oscillation of a joint with a spring on a free base", springs, "REDUCED", springs.WHEEL),
+    ("joints", "oscillation of a joint with a spring on a free base", springs, "flapping",
+     functools.partial(springs.flapping, is_free=False)),
+    ("joints", "period of a joint with a cubic spring", springs, "complete_elliptic", lambda _: np.pi / 2.0),
+    ("joints", "damped oscillation of a joint with a spring", springs, "damped_position", without_damping),
+    ("joints", "a joint with a spring and friction comes to rest", springs, "rubbing_end", at_first_turn),
     *loop_alternatives.CONTROLS,
     ("capture", "a captured body is pulled by 1 m", seating, "SEAT", 3.001),
     ("capture", "a captured body is turned by 1.2 rad", seating, "TURNED", 2.001),

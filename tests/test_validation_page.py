@@ -26,6 +26,7 @@ TITLES = {
     "conservation": "Conservation",
     "capture": "Capture and release",
     "brakes": "Brakes",
+    "joints": "Springs at joints",
     "loops": "Closed loops and mimic joints",
     "contact": "Contact",
     "world": "Worlds of several craft",

@@ -41,6 +41,9 @@ def print_info(model: Model, console: Console) -> None:
         if any(joint.damping or joint.static_friction or joint.rotor_inertia for joint in model.joints):
             console.print("\n[bold]losses and rotors[/bold]: N m s/rad, N m, kg m² (N s/m, N, kg)")
             console.print(_losses(model))
+        if any(joint.stiffness or joint.cubic_stiffness for joint in model.joints):
+            console.print("\n[bold]springs[/bold]: N m/rad, N m/rad³, rad (N/m, N/m³, m)")
+            console.print(_springs(model))
         for joint in model.joints:
             if joint.mimic is not None:
                 console.print(text(_mimic(joint.name, *joint.mimic)))
@@ -95,6 +98,15 @@ def _losses(model: Model) -> Table:
     for joint in model.joints:
         amounts = (joint.damping, joint.friction, joint.static_friction, joint.rotor_inertia)
         table.add_row(text(joint.name), *(f"{amount:.5g}" for amount in amounts))
+    return table
+
+
+def _springs(model: Model) -> Table:
+    table = _table("name", "stiffness", "cubic stiffness", "rest position")
+    for joint in model.joints:
+        if joint.stiffness or joint.cubic_stiffness:
+            amounts = (joint.stiffness, joint.cubic_stiffness, joint.rest_position)
+            table.add_row(text(joint.name), *(f"{amount:.5g}" for amount in amounts))
     return table
 
 

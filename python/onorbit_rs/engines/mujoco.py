@@ -176,7 +176,7 @@ class Mujoco:
             Integral of the environment's force and of its torque about the robot's centre of mass, axes of
             W, N s and N m s.
         work : float
-            Work of motors and environment minus the energy dissipated in the joints, J.
+            Work of motors, springs and environment minus the energy dissipated in the joints, J.
         loss : float
             Energy dissipated in the joints by damping, friction and stops, J.
 
@@ -225,7 +225,7 @@ class Mujoco:
         impulse : (systems, 6) array
             Impulse of the environment on each system, as in :meth:`step`.
         work, loss : (systems,) arrays
-            Work of motors and environment minus the energy dissipated in the joints; dissipated energy; J.
+            Work of motors, springs and environment minus the dissipated energy; dissipated energy; J.
         weld_impulse : (systems, 6) array
             Linear and angular impulse of welds and contacts on each system, N s and N m s.
         weld_work : (systems,) array
@@ -354,7 +354,7 @@ class Mujoco:
             outer[:, 3:] + arm[:, [1, 2, 0]] * force[:, [2, 0, 1]] - arm[:, [2, 0, 1]] * force[:, [1, 2, 0]]
         )
         power = (data.qfrc_smooth + data.qfrc_bias + data.qfrc_constraint) @ qvel
-        loss = -(data.qfrc_passive + data.qfrc_constraint) @ qvel
+        loss = -(data.qfrc_damper + data.qfrc_constraint) @ qvel
         return np.concatenate([qvel, data.qacc, force.sum(axis=0), moment.sum(axis=0), [power, loss]])
 
     def _to_mujoco(self, q: Floats, v: Floats) -> tuple[Floats, Floats]:

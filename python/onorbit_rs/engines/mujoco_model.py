@@ -201,6 +201,9 @@ def _attach(mujoco: ModuleType, body: Any, joint: Joint, *, time_step: float, en
         )
     moving.armature, moving.frictionloss = joint.rotor_inertia, joint.friction
     moving.damping = np.array([joint.damping, 0.0, 0.0])
+    # MuJoCo's torque is −(k d + k₂ d |d| + k₃ d³) with the deflection d from `springref`
+    moving.stiffness = np.array([joint.stiffness, 0.0, joint.cubic_stiffness])
+    moving.springref = joint.rest_position
     moving.solref_friction = np.array([2.0 * time_step, 1.0])
     moving.solref_limit = np.array([2.0 * time_step, DAMPING_RATIO])
     moving.solimp_friction = moving.solimp_limit = np.array(HARDEST)

@@ -93,11 +93,11 @@ def exchanged(
 ) -> Floats:
     """Return the wrenches and powers on each system, and the environment's moment on all systems.
 
-    For each system: the environment's force and its torque about the centre of mass, the power of motors and
-    environment minus the power dissipated in the joints, the dissipated power, and the force, torque and
-    power of its connections and contacts; closed loops and mimic joints count as joints. Then the moment of
-    the environment's forces, acting at the centres of mass of the systems, about the common centre of mass.
-    Axes of W; N, N m and W.
+    For each system: the environment's force and its torque about the centre of mass, the power of motors,
+    springs and environment minus the power dissipated in the joints, the dissipated power, and the force,
+    torque and power of its connections and contacts; closed loops and mimic joints count as joints. Then the
+    moment of the environment's forces, acting at the centres of mass of the systems, about the common centre
+    of mass. Axes of W; N, N m and W.
     """
     weld = np.zeros(model.nv)
     if data.eq_active[:connections].any() or data.ncon:
@@ -108,7 +108,7 @@ def exchanged(
         is_weld |= (data.efc_type == int(kinds.mjCNSTR_EQUALITY)) & (data.efc_id < connections)
         mujoco.mj_mulJacTVec(model, data, weld, np.where(is_weld, data.efc_force, 0.0))
     inner = data.qfrc_constraint - weld
-    motors, joints = data.qfrc_smooth + data.qfrc_bias + inner, data.qfrc_passive + inner
+    motors, joints = data.qfrc_smooth + data.qfrc_bias + inner, data.qfrc_damper + inner
     found, forces, centers, masses = [], [], [], []
     for part in parts:
         base, velocity = part.bodies[0], data.qvel[part.velocities]

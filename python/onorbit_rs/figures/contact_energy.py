@@ -80,11 +80,11 @@ def ledger_of(
 ) -> tuple[Floats, dict[str, Floats]]:
     """Return the times common to the systems, (T,) s, and by name the energies of the group, (T,) J.
 
-    The recorded work of a system is that of motors, environment and contacts, less the losses in joints. The
-    energy that contacts absorb is stored as elastic energy or dissipated, so the work without contacts is
-    `W - W_0 + Σ (U + D) - Σ (U_0 + D_0)`, with the recorded work `W`, the elastic energy `U` and the
-    dissipated energy `D` of each contact; `0` denotes the first row. The last entry is the sum of the
-    energies, minus the work without contacts.
+    The recorded work of a system is that of motors, springs at joints, environment and contacts, less the
+    losses in joints. The energy that contacts absorb is stored as elastic energy or dissipated, so the work
+    without contacts and springs is `W - W_0 + Σ (U + D) - Σ (U_0 + D_0)`, with the recorded work `W`, the
+    elastic energy `U` and the dissipated energy `D` of each contact and spring (`D = 0`); `0` denotes the
+    first row. The last entry is the sum of the energies, minus the work without contacts and springs.
     """
     times = [np.asarray(trace[name].time) for name in systems]
     rows = shared_rows(times)
@@ -99,6 +99,9 @@ def ledger_of(
         own = rows[list(systems).index(owner)]
         elastic += np.asarray(trace.contacts[name].elastic)[own]
         dissipated += np.asarray(trace.contacts[name].dissipated)[own]
+    for name, own in zip(systems, rows, strict=True):
+        if (stored := trace[name].spring_energy) is not None:
+            elastic += np.asarray(stored)[own]
     taken = elastic + dissipated
     work = recorded - recorded[0] + taken - taken[0]
     lines = {"kinetic": kinetic, "elastic": elastic, "dissipated": dissipated}

@@ -39,8 +39,8 @@ def ledger(trace: Trace) -> Figure:
 
     In W, `P - ∫ΣF dt`, `L_com - ∫ΣT dt` and `K - W` are constant: linear momentum and angular momentum about
     the centre of mass less the impulses of the external forces and torques, and kinetic energy less work. The
-    work `W` on the robot is the work of motors and external wrenches minus the energy dissipated in damping,
-    friction and stops.
+    work `W` on the robot is the work of motors, springs and external wrenches minus the energy dissipated in
+    damping, friction and stops.
     """
     time, label = clock(trace)
     momentum, impulse = np.asarray(trace.momentum), np.asarray(trace.impulse)
@@ -55,6 +55,8 @@ def ledger(trace: Trace) -> Figure:
         for part, (entries, unit) in COLUMNS["momentum"].parts.items()
     ]
     energies = {"kinetic": kinetic, "work on the robot": work} | ({"dissipated": lost} if lost.any() else {})
+    if trace.spring_energy is not None:
+        energies["in springs"] = np.asarray(trace.spring_energy)
     columns, balance = np.column_stack(list(energies.values())), (kinetic - work)[:, None]
     quantities.append(("energy", COLUMNS["kinetic_energy"].unit, columns, list(energies), balance))
     for row, (what, unit, columns, names, unexplained) in enumerate(quantities):

@@ -40,6 +40,8 @@ def describe(model: Model) -> dict[str, Any]:
                 "velocity": joint.velocity, "effort": joint.effort, "damping": joint.damping,
                 "friction": joint.friction, "static_friction": joint.static_friction,
                 "rotor_inertia": joint.rotor_inertia,
+                "stiffness": joint.stiffness, "cubic_stiffness": joint.cubic_stiffness,
+                "rest_position": joint.rest_position,
                 "mimic": joint.mimic and dict(zip(("joint", "ratio", "offset"), joint.mimic, strict=True)),
             }
             for joint in model.joints

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Loop, Model
+    from onorbit_rs._core import Joint, Loop, Model
 
 DIGITS = 9
 """Decimal places of lengths, m, and rotation matrices, so that rounding does not change the fingerprint.
@@ -36,6 +36,7 @@ def fingerprint(model: Model) -> str:
                            joint.friction, joint.rotor_inertia)),
              *([_exact(joint.static_friction)] if joint.static_friction != joint.friction else []),
              *([_rounded(joint.anchor)] if any(joint.anchor) else []),
+             *(_spring(joint) if joint.stiffness or joint.cubic_stiffness else []),
              *([_mimic(*joint.mimic)] if joint.mimic is not None else []))
             for joint in model.joints
         ],
@@ -57,6 +58,10 @@ def has_changed(model: Model, recorded: Any) -> bool:
 
 def _mimic(leader: str, ratio: float, offset: float) -> list[Any]:
     return [leader, _exact(ratio), _exact(offset)]
+
+
+def _spring(joint: Joint) -> list[Any]:
+    return [_exact(joint.stiffness), _exact(joint.cubic_stiffness), _exact(joint.rest_position)]
 
 
 def _loop(closing: Loop) -> list[Any]:

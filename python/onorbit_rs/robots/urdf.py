@@ -22,7 +22,8 @@ def urdf_text(model: Model, names: Mapping[str, str] | None = None) -> str:
     """Return a robot as URDF, with shapes, limits and losses; named frames become links without mass.
 
     Lengths and angles are written in full precision. Paths of meshes are absolute. Half-spaces and convex
-    pieces of meshes, static friction and rotor inertia, which URDF does not have, are omitted.
+    pieces of meshes, static friction and rotor inertia, which URDF does not have, are omitted. The spring of
+    a joint is written as the element ``<spring>``, an extension that other readers of URDF ignore.
 
     Parameters
     ----------
@@ -133,6 +134,9 @@ def _add_joint(robot: xml.Element, named: Mapping[str, str], joint: Joint) -> No
         unlimited = {name: "1e+300" for name in ("velocity", "effort") if name not in given}
         xml.SubElement(element, "limit", given | unlimited)
     xml.SubElement(element, "dynamics", damping=repr(joint.damping), friction=repr(joint.friction))
+    if joint.stiffness or joint.cubic_stiffness:
+        names = "stiffness", "cubic_stiffness", "rest_position"
+        xml.SubElement(element, "spring", {name: repr(float(getattr(joint, name))) for name in names})
 
 
 def _add_fixed(robot: xml.Element, named: Mapping[str, str], frame: Frame) -> None:

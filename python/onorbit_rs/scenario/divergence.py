@@ -36,6 +36,8 @@ def divergence(stop: SimulationError, scenario: Scenario, model: Model) -> str:
     fixes += ["lower initial rates"] if turned > 1.0 else []
     is_damped = any(joint.damping > 0.0 for joint in model.joints)
     fixes += ["less joint damping"] if is_damped and not is_adaptive else []
+    has_springs = any(joint.stiffness or joint.cubic_stiffness for joint in model.joints)
+    fixes += ["softer springs at joints"] if has_springs and not is_adaptive else []
     return (
         f"the run diverged at t = {stop.time:.6g} s{step}: the state is not finite; the largest rate "
         f"in the last finite state is that of {name}, {rates[worst]:.3g} {unit}; try {', or '.join(fixes)}"

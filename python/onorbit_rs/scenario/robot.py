@@ -18,6 +18,7 @@ from onorbit_rs import _core, robots
 from onorbit_rs.robots.wording import Wording, worded
 from onorbit_rs.scenario.errors import invalid, shortened
 from onorbit_rs.scenario.fields import FilePath, Inertia, Length3, Mass, Positive
+from onorbit_rs.scenario.joint_properties import JointProperties
 from onorbit_rs.scenario.locations import dotted, located
 from onorbit_rs.scenario.loops import add_loops
 from onorbit_rs.scenario.part import Part
@@ -186,6 +187,8 @@ class Robot(PlainRobot):
     bus: PlainRobot | None = None
     """Robot to which ``arms`` are attached; its base is the base of the combined robot."""
     arms: Annotated[list[Arm], Field(min_length=1)] | None = None
+    joints: dict[str, JointProperties] = Field(default_factory=dict)
+    """Damping, friction, rotor inertia and springs that replace those of the file, by the joint's name."""
 
     sources: ClassVar[tuple[str, ...]] = ("bundled", "urdf", "rigid_body", "bus")
 
@@ -212,6 +215,9 @@ class Robot(PlainRobot):
             A subclass for the kind of error; its message starts with file, line and key.
         """
         model = self._build_tree(scenario)
+        for name, properties in self.joints.items():
+            with located(scenario, "robot", "joints", name):
+                model = properties.apply(model, name)
         for index, extra in enumerate(scenario.collision):
             with located(scenario, "collision", index):
                 model = extra.add_to(model, scenario.folder)

@@ -11,6 +11,7 @@ from onorbit_rs import _core
 from onorbit_rs.exceptions import OnOrbitError
 from onorbit_rs.scenario.control.gain_warnings import gain_warnings
 from onorbit_rs.scenario.orbit import CustomPathOrbit, Sgp4Orbit
+from onorbit_rs.scenario.spring_warnings import spring_warnings
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -37,6 +38,7 @@ def warnings_of(scenario: Scenario, flight: Flight, effects: Sequence[_core.Effe
     """Yield warnings about a scenario, each one line with a suggested fix."""
     yield from _drift_from_reference(scenario, flight, effects)
     yield from gain_warnings(scenario, flight.model, flight.q)
+    yield from spring_warnings(scenario, flight.model, flight.q)
 
 
 def _drift_from_reference(

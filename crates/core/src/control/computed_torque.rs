@@ -9,19 +9,20 @@ use super::error::ControlError;
 use super::gains::{check_matrix, check_numbers};
 use super::pseudo_inverse::PseudoInverse;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_recursion};
-use crate::model::{BASE_NV, Frame, Model};
+use crate::model::{BASE_NQ, BASE_NV, Frame, Model};
 use crate::reference::TaskSample;
 use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
 /// Task-space computed torque with its gains and options:
 ///
-/// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + f`,
+/// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + s + f`,
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
 ///
 /// with the reduced model `M*`, `c*`, `Jg`, the exact drift `d` and the joint torques `Q*` of the external
 /// wrenches ([`FreeFloating`]), the joint rates `q̇`, the actual pose `p` of the frame and the desired pose
 /// `pd`. Poses and their derivatives are in W axes, or in base axes if the reference is relative to the base;
-/// the attitude error is the logarithm on SO(3). If friction is compensated, `f = b q̇` with the damping
+/// the attitude error is the logarithm on SO(3). `−s` are the torques of the springs at the joints
+/// ([`JointSpring`](crate::model::JointSpring)). If friction is compensated, `f = b q̇` with the damping
 /// coefficients `b` of the joints; otherwise `f = 0`.
 ///
 /// `Jg⁺` is the damped and `J₀⁺` the undamped pseudo-inverse of `Jg`; `N = 1 − J₀⁺ Jg` projects onto the null
@@ -250,7 +251,7 @@ pub fn computed_torque<S: Real>(
     }
     S::enter(
         #[inline(always)]
-        || kernel(law, model, v, desired, work, tau),
+        || kernel(law, model, (q, v), desired, work, tau),
     );
 }
 
@@ -258,7 +259,7 @@ pub fn computed_torque<S: Real>(
 fn kernel<S: Real>(
     law: &ComputedTorque,
     model: &Model,
-    v: &[S],
+    (q, v): (&[S], &[S]),
     desired: &TaskSample<S>,
     work: &mut ComputedTorqueWork<S>,
     tau: &mut [S],
@@ -290,13 +291,16 @@ fn kernel<S: Real>(
         }
     }
 
-    // τ = M* q̈ + c* − Q* + f
+    // τ = M* q̈ + c* − Q* + f + s
     for (i, tau) in tau.iter_mut().enumerate() {
         let inertial = dot(&reduced.inertia[i * n..(i + 1) * n], &work.acceleration);
         *tau = inertial + reduced.bias[i] - reduced.external[i];
         if law.compensate_friction {
             *tau += v[BASE_NV + i] * S::of(model.joints()[i].damping);
         }
+    }
+    for (joint, spring) in model.springs() {
+        tau[joint] -= spring.torque(q[BASE_NQ + joint]);
     }
 }
 

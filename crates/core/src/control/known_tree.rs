@@ -7,7 +7,7 @@
 use super::looped_dynamics::Looped;
 use super::pseudo_inverse::ROWS;
 use crate::dynamics::{Data, FreeFloating, free_floating_frame, free_floating_recursion, kinematics};
-use crate::model::Model;
+use crate::model::{BASE_NQ, Model};
 use crate::spatial::{Motion, Scalar, cholesky_factor, cholesky_solve, dot};
 
 /// Tree of a robot and those robots connected to it whose models its controllers know, rooted at the robot's
@@ -82,12 +82,15 @@ impl KnownTree {
     /// Writes the inertia, bias and external forces of the reduced model of the robot's own joints `O` to
     /// `out`. The other joints `P` have no motor torques, so that their accelerations are
     /// `q̈_P = M_PP⁻¹ (Q_P − c_P − M_PO q̈_O)`. `M`, `c` and `Q` denote `M*`, `c*` and `Q*` of the tree
-    /// ([`FreeFloating`]).
+    /// ([`FreeFloating`]); `Q_P` includes the torques of springs. The springs of the joints `O` are not included.
     ///
     /// `M' = M_OO − M_OP M_PP⁻¹ M_PO`,  `c' = c_O − M_OP M_PP⁻¹ c_P`,  `Q' = Q_O − M_OP M_PP⁻¹ Q_P`
     pub(super) fn reduce<S: Scalar>(&mut self, out: &mut FreeFloating<S>) {
         let Self { model, data, q, v, full, own, others, factor, gain, bias, external, looped, .. } = self;
         free_floating_recursion(model, data, q, v, 0, full);
+        for (j, spring) in model.springs().filter(|(j, _)| others.contains(j)) {
+            full.external[j] += spring.torque(q[BASE_NQ + j]);
+        }
         if let Some(looped) = looped {
             looped.update(model, data, full);
         }

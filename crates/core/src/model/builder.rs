@@ -52,14 +52,15 @@ impl ModelBuilder {
     ///
     /// # Errors
     /// [`ModelError`] for an unknown parent, a name that is empty or used twice, too many moving joints, an
-    /// axis of length zero, another invalid parameter of the joint (such as negative damping or reversed
-    /// limits), or an invalid inertia of the child.
+    /// axis of length zero, another invalid parameter of the joint (such as negative damping, reversed limits
+    /// or a spring at a fixed joint), or an invalid inertia of the child.
     pub fn add(&mut self, parent: &str, joint: Joint, child: Link) -> Result<&mut Self, ModelError> {
         let parent = self.link(parent)?;
         if self.has_joint(&joint.name) {
             return Err(ModelError::DuplicateName { what: "joint", name: joint.name });
         }
         check_joint(&joint)?;
+        self.warnings.extend(spring_warning(&joint));
         let count = self.moving_joints + usize::from(joint.kind != JointKind::Fixed);
         if count > MOST_JOINTS {
             return Err(ModelError::TooManyJoints { most: MOST_JOINTS });
@@ -295,6 +296,7 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         let (moving, unit) = (joint.friction, unit_of("N m", "N"));
         return Err(ModelError::StaticBelowKinetic { joint: name(), at_rest, moving, unit });
     }
+    check_spring(joint)?;
     match joint.limits.position {
         Some((lower, upper)) if lower.is_nan() || upper.is_nan() => {
             Err(ModelError::NotFinite { what: "a position limit", name: name() })
@@ -304,4 +306,19 @@ fn check_joint(joint: &Joint) -> Result<(), ModelError> {
         }
         _ => Ok(()),
     }
+}
+
+fn check_spring(joint: &Joint) -> Result<(), ModelError> {
+    match (&joint.spring, &joint.kind) {
+        (Some(_), JointKind::Fixed) => {
+            Err(ModelError::FixedJoint { joint: joint.name.clone(), what: "a spring" })
+        }
+        (Some(spring), kind) => spring.check(&joint.name, matches!(kind, JointKind::Prismatic(_))),
+        (None, _) => Ok(()),
+    }
+}
+
+fn spring_warning(joint: &Joint) -> Option<ModelWarning> {
+    let is_prismatic = matches!(joint.kind, JointKind::Prismatic(_));
+    joint.spring.as_ref()?.warning(&joint.name, is_prismatic, joint.limits.position)
 }

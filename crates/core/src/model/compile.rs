@@ -151,6 +151,7 @@ fn place_link(model: &mut Model, parent: &Placed, joint: &Joint) -> Placed {
         friction: joint.friction,
         static_friction: joint.static_friction.unwrap_or(joint.friction),
         limits: joint.limits,
+        spring: joint.spring,
         axis: (joint.child_pose.rotation.inverse() * axis.normalize()).into(),
         anchor: joint.child_pose.inverse().translation.vector.into(),
     });

@@ -1,6 +1,7 @@
 //! Description of a robot by links, joints, frames and shapes.
 
 use super::closed_loop::{Loop, Mimic};
+use super::joint_spring::JointSpring;
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use std::sync::Arc;
 
@@ -172,12 +173,14 @@ pub struct Joint {
     pub static_friction: Option<f64>,
     /// Rotor inertia reflected to the joint (multiplied by the gear ratio squared), kg m² (kg).
     pub rotor_inertia: f64,
+    /// Spring between the two links; `None` without a spring.
+    pub spring: Option<JointSpring>,
     /// Coupling to another joint; `None` for a joint without such a coupling.
     pub mimic: Option<Mimic>,
 }
 
 impl Joint {
-    /// Creates a joint without friction, rotor or limits.
+    /// Creates a joint without friction, rotor, spring or limits.
     pub fn new(name: &str, kind: JointKind, origin: Isometry3<f64>) -> Self {
         Self {
             name: name.to_owned(),
@@ -189,6 +192,7 @@ impl Joint {
             friction: 0.0,
             static_friction: None,
             rotor_inertia: 0.0,
+            spring: None,
             mimic: None,
         }
     }

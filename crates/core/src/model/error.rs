@@ -74,6 +74,22 @@ pub enum ModelError {
     #[error("joint '{joint}': {what} is {value} {unit}; it must not be negative", value = short(*value))]
     Negative { joint: String, what: &'static str, value: f64, unit: &'static str },
     #[error(
+        "joint '{joint}' is fixed and cannot have {what}; make the joint revolute, continuous or prismatic"
+    )]
+    FixedJoint { joint: String, what: &'static str },
+    #[error(
+        "joint '{joint}' has a rest position of its spring but no stiffness; give a stiffness, or omit the rest \
+         position"
+    )]
+    NoStiffness { joint: String },
+    #[error(
+        "joint '{joint}': the cubic stiffness of the spring is {cubic_stiffness} {unit} without a stiffness, so the \
+         spring pushes the joint away from its rest position; give a positive stiffness, or a cubic stiffness of at \
+         least 0",
+        cubic_stiffness = short(*cubic_stiffness)
+    )]
+    RepellingSpring { joint: String, cubic_stiffness: f64, unit: &'static str },
+    #[error(
         "joint '{joint}': the static friction, {at_rest} {unit}, is below the kinetic friction, {moving} {unit}; give a \
          static friction of at least {moving} {unit}, or omit the static friction",
         at_rest = unlike(*at_rest, &[*moving]), moving = short(*moving)
@@ -117,6 +133,16 @@ pub enum ModelWarning {
         /// Name of the link.
         link: String,
     },
+    /// The tangent stiffness of a spring is negative beyond a deflection that the position limits of its joint
+    /// permit.
+    SofteningSpring {
+        /// Name of the joint.
+        joint: String,
+        /// Deflection from the rest position, rad (m).
+        deflection: f64,
+        /// Unit of the deflection.
+        unit: &'static str,
+    },
     /// Text about another problem, which was found while reading a file.
     Note(String),
 }
@@ -149,6 +175,13 @@ impl fmt::Display for ModelWarning {
                 f,
                 "link '{link}' has no mass but a rotational inertia, which is added to that of the body to which the link \
                  belongs; give the link a mass if it should have one"
+            ),
+            Self::SofteningSpring { joint, deflection, unit } => write!(
+                f,
+                "joint '{joint}': the tangent stiffness of its spring is negative at deflections above {} {unit}, \
+                 where the spring may snap through; give the joint position limits within this deflection, or a \
+                 larger cubic stiffness",
+                short(*deflection)
             ),
             Self::Note(text) => f.write_str(text),
         }

@@ -15,6 +15,8 @@ mod description;
 mod error;
 mod frame;
 mod inertia_check;
+mod joint_change;
+mod joint_spring;
 mod link_change;
 mod load_ratio;
 mod lookup;
@@ -35,5 +37,7 @@ pub use description::{Description, Geometry, Inertial, Joint, JointKind, Limits,
 pub(crate) use error::nearest;
 pub use error::{ModelError, ModelWarning};
 pub use frame::Frame;
+pub use joint_change::JointChange;
+pub use joint_spring::JointSpring;
 pub use link_change::LinkChange;
 pub use tree::{Axis, JointProperties, Model, Node};

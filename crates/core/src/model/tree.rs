@@ -4,6 +4,7 @@ use super::closure::Closure;
 use super::description::{Description, Limits, Visual};
 use super::error::ModelWarning;
 use super::frame::Frame;
+use super::joint_spring::JointSpring;
 use crate::spatial::{Mat3, Sym3, Vec3};
 use std::sync::Arc;
 
@@ -58,6 +59,8 @@ pub struct JointProperties {
     pub static_friction: f64,
     /// Position, velocity and effort limits, which are enforced only on request.
     pub limits: Limits,
+    /// Spring between the two links; `None` without a spring.
+    pub spring: Option<JointSpring>,
     /// Unit axis in the child link's axes.
     pub axis: Vec3<f64>,
     /// Point on the axis in the child link's axes, m. It is the origin of the link, unless the joint is
@@ -122,6 +125,11 @@ impl Model {
     /// Returns true if a joint has Coulomb friction.
     pub fn has_friction(&self) -> bool {
         self.joints.iter().any(|joint| joint.static_friction > 0.0)
+    }
+
+    /// Returns the indices of the joints with springs, in the order of `v`, each with its spring.
+    pub fn springs(&self) -> impl Iterator<Item = (usize, &JointSpring)> {
+        self.joints.iter().enumerate().filter_map(|(j, joint)| Some((j, joint.spring.as_ref()?)))
     }
 
     /// Returns the joints in the order of `v`.

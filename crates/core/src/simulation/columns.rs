@@ -62,6 +62,8 @@ impl fmt::Display for Length {
 pub enum Condition {
     /// The quantity is recorded in every run.
     Always,
+    /// A joint of the system has a spring.
+    Springs,
     /// A controller compensates Coulomb friction, and the native engine is used.
     FrictionCompensation,
     /// The system has a tool.
@@ -87,6 +89,7 @@ impl Condition {
     pub fn text(self) -> &'static str {
         match self {
             Self::Always => "always",
+            Self::Springs => "with springs at joints",
             Self::FrictionCompensation => "with a controller that compensates friction",
             Self::Tool => "with a tool",
             Self::Reference => "with a tool that follows a reference",
@@ -272,9 +275,11 @@ macro_rules! trace_columns {
                 "Time integral, since the start, of the external forces and of their moments about the centre of mass.";
             kinetic_energy (T), "J", "W", Always, WHOLE, "Kinetic energy of the system in W.";
             work (T), "J", "W", Always, WHOLE,
-                "Work done on the robot by motors and external wrenches, less the energy dissipated in the joints.";
+                "Work done on the robot by motors, springs and external wrenches, less the energy dissipated in the joints.";
             dissipated (T), "J", "", Always, WHOLE,
                 "Energy dissipated by the damping, friction and stops of the joints.";
+            spring_energy (T), "J", "", Springs, WHOLE,
+                "Elastic energy of the springs at the joints, a function of their positions.";
             center_of_mass (T, 3), "m", "W", Always, WHOLE, "Position of the centre of mass of the system.";
             tool_pose (T, 4, 4), "m", "W", Tool, WHOLE, "Pose of the tool as a homogeneous matrix.";
             reference_pose (T, 4, 4), "m", "W", Reference, WHOLE,

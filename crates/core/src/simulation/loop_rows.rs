@@ -20,7 +20,7 @@ impl<S: Real> Tree<'_, S> {
         if let Some(clock) = state.clock {
             self.modes.accelerate_given(clock.lane(0));
         }
-        self.update_joint_forces(&state.v);
+        self.update_joint_forces(&state.q, &state.v);
         let mut a = std::mem::take(&mut self.scratch);
         self.accelerate(&state.v, &mut a);
         self.scratch = a;

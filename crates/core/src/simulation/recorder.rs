@@ -47,6 +47,7 @@ impl RecordOptions {
     fn width(&self, column: &Column, model: &Model) -> usize {
         let is_recorded = match column.condition {
             Condition::Always => true,
+            Condition::Springs => model.springs().next().is_some(),
             Condition::FrictionCompensation => self.compensates_friction,
             Condition::Tool => self.tool.is_some(),
             Condition::Reference => self.has_reference,
@@ -247,6 +248,7 @@ impl Recorder {
         trace.kinetic_energy.push(energy.value());
         trace.work.push(state.work.value());
         trace.dissipated.push(state.dissipated.value());
+        trace.spring_energy.extend(system.spring_energy(q).map(|energy| energy.value()));
         push_vector(&mut trace.center_of_mass, com);
         if let Some(tool) = self.options.tool {
             let pose = frame_pose(&system.model, data, q, tool);

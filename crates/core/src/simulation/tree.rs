@@ -9,7 +9,7 @@ use crate::dynamics::{
     ClosedLoops, Data, Momentum, base_rotation, center_of_mass, center_of_mass_b, constrained_recursion,
     kinematics, kinetic_energy, momentum, project_configuration, project_velocity, projected_base_twist,
 };
-use crate::model::{BASE_NV, Model};
+use crate::model::{BASE_NQ, BASE_NV, JointSpring, Model};
 use crate::spatial::{Force, Motion, Real, Vec3};
 use crate::world::Brake;
 use std::borrow::Cow;
@@ -20,7 +20,8 @@ pub(crate) struct Tree<'a, S> {
     pub(crate) data: Data<S>,
     /// Commanded joint torques, `(n,)`, N m or N, without the compensation of Coulomb friction.
     pub(crate) command: Vec<S>,
-    /// Generalized forces of a stage, `(nv,)`, N m or N: command, damping and friction; zero at the base.
+    /// Generalized forces of a stage, `(nv,)`, N m or N: command, springs, damping and friction; zero at the
+    /// base.
     pub(super) forces: Vec<S>,
     /// Buffer for accelerations or changes of velocity, `(nv,)`.
     pub(super) scratch: Vec<S>,
@@ -35,6 +36,8 @@ pub(crate) struct Tree<'a, S> {
     pub(super) singularities: SingularityWatch,
     /// True if any joint has damping or friction.
     is_lossy: bool,
+    /// Indices of the joints with springs, each with its spring.
+    springs: Vec<(usize, JointSpring)>,
     /// Indices of the joints of each member; empty if the tree has a single member.
     pub(super) shares: Vec<Vec<usize>>,
 }
@@ -60,6 +63,7 @@ impl<'a, S: Real> Tree<'a, S> {
             loops: ClosedLoops::new(&model, model.closures()),
             singularities: SingularityWatch::default(),
             shares: Vec::new(),
+            springs: model.springs().map(|(joint, spring)| (joint, *spring)).collect(),
             is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0)
                 || modes.has_brakes(),
             modes,
@@ -236,7 +240,7 @@ impl<'a, S: Real> Tree<'a, S> {
         if let Some(clock) = state.clock {
             self.modes.accelerate_given(clock.lane(0));
         }
-        self.update_joint_forces(v);
+        self.update_joint_forces(q, v);
         self.accelerate(v, &mut rate.a);
         let Self { model, data, forces, modes, frame_velocity, is_lossy, shares, mass, .. } = self;
         let loaded = if is_loaded { model.nodes().len() } else { 0 };
@@ -268,12 +272,23 @@ impl<'a, S: Real> Tree<'a, S> {
         joints.map(|(command, torque)| torque.map_or(*command, |torque| *command + S::of(torque)))
     }
 
-    /// Computes the generalized forces at the joints, N m or N, `τ − b q̇ − f s`, with the commanded torque
-    /// `τ`, the damping `b`, the Coulomb friction `f` and the direction of slip `s`, and writes them to
-    /// `forces`. The friction `f s` is omitted for joints whose motors compensate it.
-    pub(super) fn update_joint_forces(&mut self, v: &[S]) {
-        let Self { model, modes, command, forces, is_lossy, .. } = self;
+    /// Returns the elastic energy of the springs at the configuration `q`, `(nq,)`, J; `None` if no joint has
+    /// a spring.
+    pub(crate) fn spring_energy(&self, q: &[S]) -> Option<S> {
+        let energies = self.springs.iter().map(|(joint, spring)| spring.energy(q[BASE_NQ + joint]));
+        energies.reduce(|sum, energy| sum + energy)
+    }
+
+    /// Computes the generalized forces at the joints, N m or N, `τ − k d − k₃ d³ − b q̇ − f s`, with the
+    /// commanded torque `τ`, the stiffnesses `k` and `k₃` and the deflection `d` of the spring, the damping `b`,
+    /// the Coulomb friction `f` and the direction of slip `s`, and writes them to `forces`. The friction `f s`
+    /// is omitted for joints whose motors compensate it.
+    pub(super) fn update_joint_forces(&mut self, q: &[S], v: &[S]) {
+        let Self { model, modes, command, forces, is_lossy, springs, .. } = self;
         forces[BASE_NV..].copy_from_slice(command);
+        for (joint, spring) in springs {
+            forces[BASE_NV + *joint] += spring.torque(q[BASE_NQ + *joint]);
+        }
         if !*is_lossy {
             return;
         }

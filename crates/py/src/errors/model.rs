@@ -29,6 +29,9 @@ impl IntoPython for ModelError {
             }
             Self::ZeroAxis { joint }
             | Self::Negative { joint, .. }
+            | Self::FixedJoint { joint, .. }
+            | Self::NoStiffness { joint }
+            | Self::RepellingSpring { joint, .. }
             | Self::StaticBelowKinetic { joint, .. }
             | Self::LimitsReversed { joint, .. } => {
                 raise(py, "ModelError", &message, &fields!(py, "joint": joint))

@@ -6,7 +6,7 @@ use crate::arrays::fixed;
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::ConstructorCall;
 use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
-use onorbit_core::model::{Inertial, Joint, JointKind, Limits, Link, Model, ModelBuilder};
+use onorbit_core::model::{Inertial, Joint, JointKind, JointSpring, Limits, Link, Model, ModelBuilder};
 use pyo3::prelude::*;
 
 /// Builder that constructs a robot link by link. The first link is the free-floating base.
@@ -95,6 +95,13 @@ impl PyModelBuilder {
     ///     Name of the leading joint, or a tuple of this name, a ratio and an offset (rad or m). The position
     ///     of the joint is constrained to the ratio times the position of its leader, plus the offset.
     ///     Default ratio and offset: 1 and 0.
+    /// stiffness : float
+    ///     Stiffness ``k`` of a spring at the joint, N m/rad or N/m: with the cubic stiffness ``k3`` and the
+    ///     deflection ``d`` from the rest position, its torque or force is ``-k d - k3 d**3``.
+    /// cubic_stiffness : float
+    ///     Cubic stiffness ``k3`` of the spring, N m/rad³ or N/m³; negative for a spring that softens.
+    /// rest_position : float
+    ///     Joint position at which the spring exerts no torque or force, rad or m.
     ///
     /// Raises
     /// ------
@@ -105,7 +112,7 @@ impl PyModelBuilder {
     #[pyo3(signature = (
         name, *, parent, joint, kind="revolute", axis=None, xyz=None, rpy=None, mass=None, com=None, inertia=None,
         damping=0.0, friction=0.0, rotor_inertia=0.0, lower=None, upper=None, velocity=None, effort=None,
-        static_friction=None, mimic=None,
+        static_friction=None, mimic=None, stiffness=0.0, cubic_stiffness=0.0, rest_position=0.0,
     ))]
     fn add_link(
         &mut self,
@@ -129,6 +136,9 @@ impl PyModelBuilder {
         effort: Option<f64>,
         static_friction: Option<f64>,
         mimic: Option<Any<'_, '_>>,
+        stiffness: f64,
+        cubic_stiffness: f64,
+        rest_position: f64,
     ) -> PyResult<()> {
         let axis = vector(axis, "axis", [0.0, 0.0, 1.0])?;
         let kind = match kind {
@@ -149,7 +159,9 @@ impl PyModelBuilder {
         let limits = Limits { position, velocity, effort };
         let mimic = mimic.map(mimic_in).transpose()?;
         let plain = Joint::new(joint, kind, pose(xyz, rpy)?);
-        let joint = Joint { limits, damping, friction, static_friction, rotor_inertia, mimic, ..plain };
+        let spring = JointSpring::new(stiffness, cubic_stiffness, rest_position);
+        let joint =
+            Joint { limits, damping, friction, static_friction, rotor_inertia, spring, mimic, ..plain };
         let link = Link::new(name, inertial(py, mass, com, inertia)?);
         self.builder.add(parent, joint, link).map_err(|error| error.into_python(py))?;
         Ok(())

@@ -2,8 +2,9 @@
 
 use super::collision::{with_collision, with_convex_pieces};
 use super::file::{self, read_file};
-use super::{Any, Array, PyModel, PyShape, builder, link_change, reroot};
+use super::{Any, Array, PyModel, PyShape, builder, joint_change, link_change, reroot};
 use crate::pickling::{ConstructorCall, Reduced};
+use onorbit_core::model::JointChange;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -145,6 +146,69 @@ impl PyModel {
         inertia: Option<Any<'_, '_>>,
     ) -> PyResult<Self> {
         link_change::with_link(slf, name, mass, com, inertia)
+    }
+
+    /// Return a copy of the robot with the damping, friction, rotor inertia or spring of one joint replaced.
+    ///
+    /// Properties that are omitted do not change. Without stiffness and cubic stiffness, the joint has no
+    /// spring.
+    ///
+    /// Parameters
+    /// ----------
+    /// name : str
+    ///     Name of the joint, which must not be fixed.
+    /// damping : float, optional
+    ///     Coefficient of viscous friction, N m s/rad or N s/m.
+    /// friction : float, optional
+    ///     Kinetic Coulomb friction, N m or N.
+    /// static_friction : float, optional
+    ///     Largest torque or force that static friction can hold, N m or N; at least ``friction``.
+    /// rotor_inertia : float, optional
+    ///     Rotor inertia reflected to the joint, kg m² or kg.
+    /// stiffness : float, optional
+    ///     Stiffness ``k`` of the spring, N m/rad or N/m: with the cubic stiffness ``k3`` and the deflection
+    ///     ``d`` from the rest position, its torque or force is ``-k d - k3 d**3``.
+    /// cubic_stiffness : float, optional
+    ///     Cubic stiffness ``k3`` of the spring, N m/rad³ or N/m³; negative for a spring that softens.
+    /// rest_position : float, optional
+    ///     Joint position at which the spring exerts no torque or force, rad or m.
+    ///
+    /// Returns
+    /// -------
+    /// Model
+    ///
+    /// Raises
+    /// ------
+    /// FrameError
+    ///     If no joint has this name.
+    /// ModelError
+    ///     If the joint is fixed, or a value is invalid.
+    #[pyo3(signature = (
+        name, *, damping=None, friction=None, static_friction=None, rotor_inertia=None, stiffness=None,
+        cubic_stiffness=None, rest_position=None,
+    ))]
+    fn with_joint(
+        slf: &Bound<'_, Self>,
+        name: String,
+        damping: Option<f64>,
+        friction: Option<f64>,
+        static_friction: Option<f64>,
+        rotor_inertia: Option<f64>,
+        stiffness: Option<f64>,
+        cubic_stiffness: Option<f64>,
+        rest_position: Option<f64>,
+    ) -> PyResult<Self> {
+        let change = JointChange {
+            joint: name,
+            damping,
+            friction,
+            static_friction,
+            rotor_inertia,
+            stiffness,
+            cubic_stiffness,
+            rest_position,
+        };
+        joint_change::with_joint(slf, &change)
     }
 
     /// Return a copy of the robot with an additional collision shape on a link.

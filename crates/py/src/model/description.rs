@@ -1,6 +1,6 @@
 //! Descriptions of joints, bodies, frames and shapes of a robot.
 
-use onorbit_core::model::{Axis, Constraint, Frame, Geometry, Model, Visual};
+use onorbit_core::model::{Axis, Constraint, Frame, Geometry, JointSpring, Model, Visual};
 use onorbit_core::spatial::{Mat3, Vec3};
 use pyo3::prelude::*;
 
@@ -42,6 +42,12 @@ pub(super) struct PyJoint {
     static_friction: f64,
     /// Rotor inertia reflected to the joint, kg m² or kg.
     rotor_inertia: f64,
+    /// Stiffness of the spring at its rest position, N m/rad or N/m; 0 without a spring.
+    stiffness: f64,
+    /// Cubic stiffness of the spring, N m/rad³ or N/m³; 0 for a linear spring and without a spring.
+    cubic_stiffness: f64,
+    /// Joint position at which the spring exerts no torque or force, rad or m; 0 without a spring.
+    rest_position: f64,
     /// Leading joint, ratio and offset (rad or m) of a mimic joint; None for other joints. The position of a
     /// mimic joint is the ratio times the position of its leader, plus the offset.
     mimic: Option<(String, f64, f64)>,
@@ -146,6 +152,7 @@ pub(super) fn joints(model: &Model) -> Vec<PyJoint> {
         };
         let (rot, pos) = model.pose_in_link(&at_zero);
         let limits = &joint.limits;
+        let of_spring = |get: fn(&JointSpring) -> f64| joint.spring.as_ref().map_or(0.0, get);
         PyJoint {
             name: joint.name.clone(),
             kind,
@@ -162,6 +169,9 @@ pub(super) fn joints(model: &Model) -> Vec<PyJoint> {
             friction: joint.friction,
             static_friction: joint.static_friction,
             rotor_inertia: node.rotor_inertia,
+            stiffness: of_spring(|spring| spring.stiffness),
+            cubic_stiffness: of_spring(|spring| spring.cubic_stiffness),
+            rest_position: of_spring(|spring| spring.rest_position),
             mimic: mimic(model, j),
         }
     };

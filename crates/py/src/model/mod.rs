@@ -12,6 +12,7 @@ mod description;
 mod dynamics;
 mod file;
 mod free_floating;
+mod joint_change;
 mod kinematics;
 mod link_change;
 mod loop_dynamics;

@@ -40,6 +40,7 @@ from onorbit_rs.tools.validation import (
     seating,
     secular,
     sgp4,
+    springs,
     worlds,
 )
 from onorbit_rs.tools.validation.case import Case, Check, Gate, Verdict
@@ -50,7 +51,7 @@ CASES: tuple[Case, ...] = tuple(
     case
     for module in (
         kepler, sgp4, nasa, rotation, earth, gravity, secular, air_and_light, relative, bodies, robots,
-        conservation, capture, seating, brakes, loops, loops_gauss,
+        conservation, capture, seating, brakes, springs, loops, loops_gauss,
         loops_drift, against_pinocchio_loops, contact, contact_boxes,
         contact_friction, contact_grasp, worlds, order, against_pinocchio, against_mujoco,
         against_sgp4, against_spart,

@@ -9,7 +9,7 @@ use crate::control::known_tree::KnownTree;
 use crate::control::observation::Observation;
 use crate::control::pseudo_inverse::ROWS;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_frame};
-use crate::model::{BASE_NV, Model};
+use crate::model::{BASE_NQ, BASE_NV, Model};
 use crate::reference::TaskReference;
 use crate::spatial::{Motion, Scalar};
 
@@ -72,7 +72,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
     /// Computes the torques of the laws that command accelerations of joints or frames, and the desired
     /// accelerations of the joints with friction compensation.
     pub(super) fn accelerations(&mut self, model: &Model, data: &Data<S>, q: &[S], v: &[S]) {
-        self.set_up_dynamics(model);
+        self.set_up_dynamics(model, q);
         self.solve_dynamics(model, data, q, v);
         while self.release_joint(model) {
             self.solve_dynamics(model, data, q, v);
@@ -90,7 +90,7 @@ impl<S: Scalar> ControllerSet<'_, S> {
 
     /// Sets the inertia, the loads and the given accelerations of the reduced model, and the command of each
     /// joint.
-    fn set_up_dynamics(&mut self, model: &Model) {
+    fn set_up_dynamics(&mut self, model: &Model, q: &[S]) {
         let Self { dynamics, reduced, known, looped, .. } = self;
         if let Some(looped) = active_loops(known, looped) {
             looped.clear_forces();
@@ -105,6 +105,9 @@ impl<S: Scalar> ControllerSet<'_, S> {
             for (j, load) in dynamics.load.iter_mut().enumerate() {
                 *load = (reduced.bias[j] - reduced.external[j]).value();
             }
+        }
+        for (j, spring) in model.springs() {
+            dynamics.load[j] -= spring.torque(q[BASE_NQ + j].value());
         }
         let mut compensates_friction = false;
         for (control, state) in running(self.controls, &self.states) {

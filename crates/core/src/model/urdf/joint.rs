@@ -1,16 +1,17 @@
-//! Reader of `<joint>`: its kind, axis, limits, friction and rotor inertia, and the joint that it mimics.
+//! Reader of `<joint>`: its kind, axis, limits, friction, rotor inertia and spring, and the joint that it
+//! mimics.
 
 use super::element::Element;
 use super::error::UrdfError;
 use super::joint_element::JointElement;
 use super::multi_dof::{MultiDof, split};
 use super::pose::pose;
-use crate::model::{Joint, JointKind, Limits, Mimic, ModelWarning};
+use crate::model::{Joint, JointKind, JointSpring, Limits, Mimic, ModelWarning};
 use crate::number_text::{short, unlike};
 use nalgebra::Vector3;
 use urdf_rs::{JointLimit, JointType, Mimic as MimicOf};
 
-/// Reads the axis, limits, friction, rotor inertia and mimic of a joint. A joint with several degrees of
+/// Reads the axis, limits, friction, rotor inertia, spring and mimic of a joint. A joint with several degrees of
 /// freedom becomes a chain of joints with one degree of freedom each. `is_taken` returns true for names that
 /// already occur in the file.
 pub(super) fn read_joints(
@@ -25,7 +26,10 @@ pub(super) fn read_joints(
     let kind = match read.joint_type {
         JointType::Revolute | JointType::Continuous => JointKind::Revolute(axis),
         JointType::Prismatic => JointKind::Prismatic(axis),
-        JointType::Fixed => return Ok(vec![Joint::new(joint.name, JointKind::Fixed, origin)]),
+        JointType::Fixed => {
+            let spring = spring(element)?; // the model builder rejects it
+            return Ok(vec![Joint { spring, ..Joint::new(joint.name, JointKind::Fixed, origin) }]);
+        }
         JointType::Planar => return replaced(MultiDof::Planar(axis), warnings),
         JointType::Spherical => return replaced(MultiDof::Ball, warnings),
         JointType::Floating => return replaced(MultiDof::Floating, warnings),
@@ -46,12 +50,25 @@ pub(super) fn read_joints(
             None => dynamics.number("rotor_inertia")?.unwrap_or(0.0),
         };
     }
+    result.spring = spring(element)?;
     result.mimic = read.mimic.map(|MimicOf { joint: leader, multiplier, offset }| Mimic {
         leader,
         ratio: multiplier.unwrap_or(1.0),
         offset: offset.unwrap_or(0.0),
     });
     Ok(vec![result])
+}
+
+/// Reads the element `<spring>` of a joint, an extension of URDF with the attributes `stiffness`,
+/// `cubic_stiffness` and `rest_position`. At least one stiffness must be given; the defaults are zero.
+fn spring(joint: Element<'_>) -> Result<Option<JointSpring>, UrdfError> {
+    let Some(element) = joint.child("spring") else { return Ok(None) };
+    let [stiffness, cubic] = [element.number("stiffness")?, element.number("cubic_stiffness")?];
+    if stiffness.is_none() && cubic.is_none() {
+        return Err(element.lacks_attribute("stiffness"));
+    }
+    let rest_position = element.number("rest_position")?.unwrap_or(0.0);
+    Ok(JointSpring::new(stiffness.unwrap_or(0.0), cubic.unwrap_or(0.0), rest_position))
 }
 
 /// Returns the child elements and attributes that are ignored because they do not apply to a kind of joint.

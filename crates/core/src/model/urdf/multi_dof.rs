@@ -55,7 +55,8 @@ pub(super) fn split(
             ([prismatic, revolute].concat(), remark)
         }
     };
-    let dropped = ["limit", "dynamics", "mimic"].into_iter().filter(|tag| joint.element.child(tag).is_some());
+    let dropped =
+        ["limit", "dynamics", "spring", "mimic"].into_iter().filter(|tag| joint.element.child(tag).is_some());
     let dropped: Vec<String> = dropped.map(|tag| format!("<{tag}>")).collect();
     let suffix = match dropped.as_slice() {
         [] => String::new(),

@@ -30,7 +30,7 @@ impl<S: Real> Tree<'_, S> {
         }
         let (n, mut a) = (self.model.joint_count(), std::mem::take(&mut self.scratch));
         for pass in 0..4 * n + 8 {
-            self.update_joint_forces(v);
+            self.update_joint_forces(q, v);
             let Self { model, data, loops, modes, forces, .. } = self;
             let locked = Some((modes.is_locked_each(), modes.accelerations()));
             constrained_recursion(model, data, loops, (v, forces), locked, &mut a);
@@ -90,7 +90,7 @@ impl<S: Real> Tree<'_, S> {
     /// Returns the smallest stick margin of the locked joints, which is negative if a joint should slip.
     /// Requires the kinematics and loads of `q` and `v` in `data`.
     pub(super) fn least_stick_margin(&mut self, q: &[S], v: &[S]) -> f64 {
-        self.update_joint_forces(v);
+        self.update_joint_forces(q, v);
         let mut a = std::mem::take(&mut self.scratch);
         if self.modes.locked().is_some() {
             self.accelerate(v, &mut a);

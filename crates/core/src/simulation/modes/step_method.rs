@@ -87,7 +87,8 @@ impl<S: Real> StepMethod<S> {
         if !equations.has_modes() {
             return self.integration.advance(equations, state, interval);
         }
-        let is_balanced = equations.contacts.energy_error.is_finite() && self.integration.is_rk4();
+        let has_balance = !equations.contacts.is_empty() && equations.contacts.energy_error.is_finite();
+        let is_balanced = has_balance && self.integration.is_rk4();
         let balance = is_balanced.then(|| equations.energy_balance(state)[0]);
         self.start.copy_from(state);
         let end = self.integration.advance(equations, state, interval)?;
