@@ -15,6 +15,7 @@
 //! | weights of contact points by area `(A_{i−1} + A_i)/2A`, by tilt | `geometry/polygon.rs` | `weights` |
 //! | forward dynamics by ABA | `dynamics/aba.rs` | `kernel` |
 //! | joint traversed backwards `X_cp(q) = X₁⁻¹ R(−a, q) X₀⁻¹` | `model/reroot.rs` | `reversed` |
+//! | spring at a joint `τ = −(k + k₃ d²) d` | `model/joint_spring.rs` | `JointSpring::torque` |
 //! | velocity after a capture `M v⁺ = Σ J_kᵀ I_k V_k⁻` | `world/impulse.rs` | `connected_velocity` |
 //! | momentum projection `v_b = Mbb⁻¹ (h − Mbm q̇)` | `dynamics/momentum.rs` | `projected_base_twist` |
 //! | signed distance of two shapes, `max over n of min bᵀn − max aᵀn` | `geometry/closest.rs` | `closest` |

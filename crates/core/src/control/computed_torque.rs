@@ -15,15 +15,15 @@ use crate::spatial::{Mat3, Motion, Real, Vec3, dot, log_rotation};
 
 /// Task-space computed torque with its gains and options:
 ///
-/// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + s + f`,
+/// `τ = M* [Jg⁺ (p̈r − d) − k N q̇ − κ D q̇] + c* − Q* + f`,
 /// `p̈r = p̈d + Kd (ṗd − ṗ) + Kp (pd − p)`,
 ///
 /// with the reduced model `M*`, `c*`, `Jg`, the exact drift `d` and the joint torques `Q*` of the external
 /// wrenches ([`FreeFloating`]), the joint rates `q̇`, the actual pose `p` of the frame and the desired pose
 /// `pd`. Poses and their derivatives are in W axes, or in base axes if the reference is relative to the base;
-/// the attitude error is the logarithm on SO(3). `−s` are the torques of the springs at the joints
-/// ([`JointSpring`](crate::model::JointSpring)). If friction is compensated, `f = b q̇` with the damping
-/// coefficients `b` of the joints; otherwise `f = 0`.
+/// the attitude error is the logarithm on SO(3). `f = −τ_s` with the torques `τ_s` of the springs at the
+/// joints ([`JointSpring`](crate::model::JointSpring)). If friction is compensated, `f = b q̇ − τ_s` with the
+/// damping coefficients `b` of the joints.
 ///
 /// `Jg⁺` is the damped and `J₀⁺` the undamped pseudo-inverse of `Jg`; `N = 1 − J₀⁺ Jg` projects onto the null
 /// space. Near a singularity `Jg⁺` reproduces some directions only partly. The suppressed part of the joint
@@ -291,7 +291,7 @@ fn kernel<S: Real>(
         }
     }
 
-    // τ = M* q̈ + c* − Q* + f + s
+    // τ = M* q̈ + c* − Q* + f,  f = b q̇ − τ_s
     for (i, tau) in tau.iter_mut().enumerate() {
         let inertial = dot(&reduced.inertia[i * n..(i + 1) * n], &work.acceleration);
         *tau = inertial + reduced.bias[i] - reduced.external[i];

@@ -9,7 +9,7 @@ use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 /// the joints `E` are given.
 ///
 /// The reduced model is `M* q̈ + l = τ` with `l = c* − Q* + f`, where `f` is the sum of the damping and
-/// friction torques and of the feedforward of joint laws; the other symbols are those of
+/// friction torques and of the feedforward of joint laws, less the torques of springs; the other symbols are those of
 /// [`ComputedTorque`](super::ComputedTorque). A subscript selects the rows or columns of a set of joints. The
 /// joints `E` react like a second base, `q̈_E = y − G q̈_A` with `G = M*_EE⁻¹ M*_EA` and
 /// `y = M*_EE⁻¹ (τ_E − l_E)`, so that a task `ẍ = J q̈ + d` with the Jacobian `J` depends only on `A`:
