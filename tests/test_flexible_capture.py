@@ -15,6 +15,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.common.coordinates import ANGULAR, LINEAR
+from onorbit_rs.figures.contact_energy import SUM, ledger_of
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build_world import build_world
 
@@ -138,6 +139,14 @@ def test_the_springs_halve_the_impulse_and_the_mean_motion_is_the_same() -> None
     )  # fmt: skip
     assert dissipated[0] == 0.0
     assert 0.95 * lost[0] < lost[1] + dissipated[1] < lost[0]
+
+
+def test_the_ledger_of_the_group_contains_the_springs() -> None:
+    trace = boom(is_locked=False)
+    _, lines = ledger_of(trace, trace.names, trace.events)
+    (balance,) = (values for name, values in lines.items() if name.startswith(SUM))
+    assert lines["elastic"].max() > 0.1 * balance[0]
+    assert np.ptp(balance) < 1e-10 * balance[0]
 
 
 def test_the_page_has_the_measured_numbers() -> None:

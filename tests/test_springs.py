@@ -15,6 +15,7 @@ import onorbit_rs as oo
 from onorbit_rs.common.coordinates import BASE_NQ, BASE_NV
 from onorbit_rs.engines import Mujoco
 from onorbit_rs.exceptions import FrameError, ModelError
+from onorbit_rs.figures.ledger import ledger
 from onorbit_rs.robots.fingerprint import fingerprint
 from onorbit_rs.tools.validation import springs
 from onorbit_rs.tools.validation.springs import REDUCED, STIFFNESS, WHEEL, flapping, frequency_error, wheel
@@ -115,6 +116,16 @@ def test_the_column_exists_only_with_springs() -> None:
     assert with_spring.spring_energy.shape == with_spring.time.shape
     column = oo.COLUMNS["spring_energy"]
     assert (column.unit, column.condition) == ("J", "with springs at joints")
+
+
+def test_the_figure_of_the_ledger_has_the_energy_of_the_springs() -> None:
+    def lines(model: oo.Model) -> list[str]:
+        q = model.neutral()
+        q[7] = 0.5
+        axes = ledger(oo.Simulation(model, q, np.zeros(7)).run(0.1)).axes
+        return [str(line.get_label()) for panel in axes for line in panel.lines]
+
+    assert "in springs" in lines(wheel()) and "in springs" not in lines(wheel(stiffness=0.0))
 
 
 def test_a_spring_without_stiffness_keeps_the_bits() -> None:
