@@ -1,6 +1,6 @@
 """Captures with locked joints and with springs: closed form of a boom, and the table of the bundled scenario.
 
-``python tests/test_flexible_capture.py`` prints the table of ``docs/concepts/capture.md``.
+``python tests/test_flexible_capture.py`` prints the table of ``docs/concepts/capture.md`` and draws a picture.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import pytest
 import onorbit_rs as oo
 from onorbit_rs.common.coordinates import ANGULAR, LINEAR
 from onorbit_rs.figures.contact_energy import SUM, ledger_of
+from onorbit_rs.figures.style import COLORS, COLUMN, LINE, SMALL, new_figure, tidy
 from onorbit_rs.scenario import load
 from onorbit_rs.scenario.build_world import build_world
 
@@ -80,11 +81,16 @@ def test_the_impulse_does_not_depend_on_the_stiffness_and_the_force_does() -> No
 
 
 @cache
-def numbers() -> dict[str, tuple[float, float]]:
-    """Returns the quantities of the table, with locked joints and with springs, in its units."""
+def scenario_trace() -> Any:
     scenario: Any = load("flexible_capture")
     trace: Any = build_world(scenario).simulation.run(scenario.simulation.duration)
     assert [line for line in trace.certificate() if not line[-1]] == []
+    return trace
+
+
+def numbers() -> dict[str, tuple[float, float]]:
+    """Returns the quantities of the table, with locked joints and with springs, in its units."""
+    trace = scenario_trace()
     columns = [_of(trace, name) for name in ("rigid", "flexible")]
     return {key: (columns[0][key], columns[1][key]) for key in columns[0]}
 
@@ -155,5 +161,25 @@ def test_the_page_has_the_measured_numbers() -> None:
     )
 
 
+def picture(file: Path) -> None:
+    """Draws the rates of both bases and the energy of the springs in the first seconds."""
+    figure = new_figure(COLUMN, 2.8)
+    above, below = figure.subplots(2, 1, sharex=True)
+    for color, name in zip(COLORS, ("rigid", "flexible"), strict=False):
+        robot = scenario_trace()[name]
+        rows = np.asarray(robot.time) < 6.0
+        rates = 1e3 * np.linalg.norm(np.asarray(robot.v)[rows][:, ANGULAR], axis=1)
+        label = {"rigid": "joints locked", "flexible": "springs"}[name]
+        above.plot(np.asarray(robot.time)[rows], rates, color=color, linewidth=LINE, label=label)
+        if robot.spring_energy is not None:
+            stored = 1e3 * np.asarray(robot.spring_energy)[rows]
+            below.plot(np.asarray(robot.time)[rows], stored, color=color, linewidth=LINE)
+    tidy(above, "", "rate of the base [mrad/s]")
+    tidy(below, "time [s]", "energy of springs [mJ]")
+    above.legend(fontsize=SMALL, frameon=False)
+    figure.savefig(file)
+
+
 if __name__ == "__main__":
     print(table())
+    picture(PAGE.parents[1] / "images" / "flexible_capture.png")

@@ -39,6 +39,14 @@ def _reader(name: str, *, is_signed: bool = False) -> PlainValidator:
     return PlainValidator(read)
 
 
+JointDamping = Annotated[JointValue, _reader("damping"), PlainSerializer(float)]
+JointFriction = Annotated[JointValue, _reader("friction"), PlainSerializer(float)]
+RotorInertia = Annotated[JointValue, _reader("rotor_inertia"), PlainSerializer(float)]
+JointStiffness = Annotated[JointValue, _reader("stiffness"), PlainSerializer(float)]
+CubicStiffness = Annotated[JointValue, _reader("cubic_stiffness", is_signed=True), PlainSerializer(float)]
+RestPosition = Annotated[JointValue, _reader("rest_position", is_signed=True), PlainSerializer(float)]
+
+
 class JointProperties(Part):
     """Properties of a joint that replace those of the robot's file; each is optional.
 
@@ -52,24 +60,20 @@ class JointProperties(Part):
         "armature": "rotor_inertia", "frictionloss": "friction",
     }  # fmt: skip
 
-    damping: Annotated[JointValue, _reader("damping"), PlainSerializer(float)] | None = None
-    """Coefficient of viscous friction."""
-    friction: Annotated[JointValue, _reader("friction"), PlainSerializer(float)] | None = None
-    """Kinetic Coulomb friction, which acts while the joint moves."""
-    static_friction: Annotated[JointValue, _reader("static_friction"), PlainSerializer(float)] | None = None
-    """Largest torque or force that static friction can hold."""
-    rotor_inertia: Annotated[JointValue, _reader("rotor_inertia"), PlainSerializer(float)] | None = None
-    """Rotor inertia reflected to the joint."""
-    stiffness: Annotated[JointValue, _reader("stiffness"), PlainSerializer(float)] | None = None
-    """Stiffness of the spring at its rest position."""
-    cubic_stiffness: (
-        Annotated[JointValue, _reader("cubic_stiffness", is_signed=True), PlainSerializer(float)] | None
-    ) = None
-    """Cubic stiffness of the spring; negative for a spring that softens."""
-    rest_position: (
-        Annotated[JointValue, _reader("rest_position", is_signed=True), PlainSerializer(float)] | None
-    ) = None
-    """Joint position at which the spring exerts no torque or force. Default: zero."""
+    damping: JointDamping | None = None
+    """Coefficient of viscous friction, N m s/rad."""
+    friction: JointFriction | None = None
+    """Kinetic Coulomb friction, which acts while the joint moves, N m."""
+    static_friction: JointFriction | None = None
+    """Largest torque or force that static friction can hold, N m."""
+    rotor_inertia: RotorInertia | None = None
+    """Rotor inertia reflected to the joint, kg m²."""
+    stiffness: JointStiffness | None = None
+    """Stiffness of the spring at its rest position, N m/rad."""
+    cubic_stiffness: CubicStiffness | None = None
+    """Cubic stiffness of the spring, N m/rad³; negative for a spring that softens."""
+    rest_position: RestPosition | None = None
+    """Joint position at which the spring exerts no torque or force, rad. Default: zero."""
 
     def apply(self, model: _core.Model, name: str) -> _core.Model:
         """Return the robot with these properties of the joint ``name``.
