@@ -1,6 +1,7 @@
 """Captures with locked joints and with springs: closed form of a boom, and the table of the bundled scenario.
 
-``python tests/test_flexible_capture.py`` prints the table of ``docs/concepts/capture.md`` and draws a picture.
+``python tests/test_flexible_capture.py`` prints the table of ``docs/concepts/capture.md`` and draws the
+picture of that page.
 """
 
 from __future__ import annotations
@@ -163,7 +164,7 @@ def test_the_page_has_the_measured_numbers() -> None:
 
 def picture(file: Path) -> None:
     """Draws the rates of both bases and the energy of the springs in the first seconds."""
-    figure = new_figure(COLUMN, 2.8)
+    figure = new_figure(COLUMN, 3.0)
     above, below = figure.subplots(2, 1, sharex=True)
     for color, name in zip(COLORS, ("rigid", "flexible"), strict=False):
         robot = scenario_trace()[name]
@@ -174,8 +175,8 @@ def picture(file: Path) -> None:
         if robot.spring_energy is not None:
             stored = 1e3 * np.asarray(robot.spring_energy)[rows]
             below.plot(np.asarray(robot.time)[rows], stored, color=color, linewidth=LINE)
-    tidy(above, "", "rate of the base [mrad/s]")
-    tidy(below, "time [s]", "energy of springs [mJ]")
+    tidy(above, "", "base rate [mrad/s]")
+    tidy(below, "time [s]", "in springs [mJ]")
     above.legend(fontsize=SMALL, frameon=False)
     figure.savefig(file)
 

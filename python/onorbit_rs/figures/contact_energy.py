@@ -81,10 +81,11 @@ def ledger_of(
     """Return the times common to the systems, (T,) s, and by name the energies of the group, (T,) J.
 
     The recorded work of a system is that of motors, springs at joints, environment and contacts, less the
-    losses in joints. The energy that contacts absorb is stored as elastic energy or dissipated, so the work
-    without contacts and springs is `W - W_0 + Σ (U + D) - Σ (U_0 + D_0)`, with the recorded work `W`, the
-    elastic energy `U` and the dissipated energy `D` of each contact and spring (`D = 0`); `0` denotes the
-    first row. The last entry is the sum of the energies, minus the work without contacts and springs.
+    losses in joints and in events such as captures. The energy that contacts absorb is stored as elastic
+    energy or dissipated, so the work of motors and environment is `W - W_0 + Σ (U + D) - Σ (U_0 + D_0) + L`,
+    with the recorded work `W`, the elastic energy `U` and the dissipated energy `D` of each contact and
+    spring (`D = 0`) and the energy `L` lost in events; `0` denotes the first row. The last entry is the sum of the
+    energies, minus this work.
     """
     times = [np.asarray(trace[name].time) for name in systems]
     rows = shared_rows(times)
@@ -102,19 +103,17 @@ def ledger_of(
     for name, own in zip(systems, rows, strict=True):
         if (stored := trace[name].spring_energy) is not None:
             elastic += np.asarray(stored)[own]
-    taken = elastic + dissipated
-    work = recorded - recorded[0] + taken - taken[0]
+    taken, lost = elastic + dissipated, np.zeros(len(time))
+    jumps = [event for event in of_systems(events, systems) if event.kind not in OF_CONTACT]
+    for event in jumps:  # the second of the two rows at this time is the one after the event
+        lost[np.searchsorted(time, event.time, side="right") - 1 :] += event.energy_lost
+    work = recorded - recorded[0] + taken - taken[0] + lost
     lines = {"kinetic": kinetic, "elastic": elastic, "dissipated": dissipated}
-    balance = kinetic + taken - work
+    balance = kinetic + taken + lost - work
     if np.abs(work).max() > WORTH_SHOWING * max(float(np.abs(own).max()) for own in lines.values()):
         lines["work of motors and environment"] = work
-    jumps = [event for event in of_systems(events, systems) if event.kind not in OF_CONTACT]
     if jumps:
-        lost = np.zeros(len(time))
-        for event in jumps:  # the second of the two rows at this time is the one after the event
-            lost[np.searchsorted(time, event.time, side="right") - 1 :] += event.energy_lost
         lines["lost in events"] = lost
-        balance = balance + lost
     name = f"{SUM} less the work" if "work of motors and environment" in lines else SUM
     return time, lines | {name: balance}
 
