@@ -82,10 +82,10 @@ def ledger_of(
 
     The recorded work of a system is that of motors, springs at joints, environment and contacts, less the
     losses in joints and in events such as captures. The energy that contacts absorb is stored as elastic
-    energy or dissipated, so the work of motors and environment is `W - W_0 + Σ (U + D) - Σ (U_0 + D_0) + L`,
-    with the recorded work `W`, the elastic energy `U` and the dissipated energy `D` of each contact and
-    spring (`D = 0`) and the energy `L` lost in events; `0` denotes the first row. The last entry is the sum of the
-    energies, minus this work.
+    energy or dissipated, so the work of motors and environment is
+    `W - W_0 + Σ (U + D) - Σ (U_0 + D_0) + L`, with the recorded work `W`, the elastic energy `U` and the
+    dissipated energy `D` of each contact and spring (`D = 0`) and the energy `L` lost in events; `0` denotes
+    the first row. The last entry is the sum of the energies, minus this work.
     """
     times = [np.asarray(trace[name].time) for name in systems]
     rows = shared_rows(times)
