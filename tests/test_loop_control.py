@@ -140,7 +140,7 @@ def test_loads_and_forces_that_cannot_be_are_refused() -> None:
     model = four_bar()
     q = model.closed_configuration(start(model))
     for law, force, problem in [
-        (oo.JointPid(p=1.0), [1.0, 0.0, 0.0], "which its law does not use"),
+        (oo.JointPid(p=1.0), [1.0, 0.0, 0.0], "its law does not use them"),
         (oo.JointComputedTorque(), None, "commands a moment about z"),
     ]:
         moment = None if force else [0.0, 0.0, 1.0]
@@ -217,3 +217,49 @@ def test_rollouts_refuse_computed_torque_with_loops() -> None:
     pose = looped.frame_pose(q[0], "left_tool")
     with pytest.raises(ControlError, match="the robot has closed loops or mimic joints"):
         oo.rollout(looped, q, np.zeros((1, looped.nv)), steps=2, controller=law, reference=oo.Hold(pose))
+
+
+STIFFNESS = np.diag([40.0, 40.0, 40.0, 2.0, 2.0, 2.0])  # N/m, N m/rad
+
+
+def hands() -> tuple[oo.Model, str, list[str], Any]:
+    """Return a servicer whose hands are welded to each other, with all of its joints."""
+    robot = oo.robots.load("two_arm_servicer")
+    q = robot.neutral()
+    q[7:] = np.linspace(0.3, 1.0, robot.nq - 7)
+    pose = np.linalg.solve(robot.frame_pose(q, "left_tool"), robot.frame_pose(q, "right_tool"))
+    closed = robot.with_loops([oo.Loop("hands", "weld", "left_tool", "right_tool", pose_a=pose)])
+    return closed, "right_tool", list(robot.joint_names), q
+
+
+def crank(*joints: str) -> tuple[oo.Model, str, list[str], Any]:
+    """Return a four-bar linkage with motors on some joints; the frame belongs to the opposite crank."""
+    model = four_bar()
+    return model, "right_crank", list(joints), model.closed_configuration(start(model))
+
+
+@pytest.mark.parametrize("case", [crank("left"), crank("left", "right"), hands()])
+def test_a_spring_on_a_link_without_a_motor_conserves_the_energy(case: Any) -> None:
+    """The torques of the driven joints do the work of the spring, whichever joint moves the link."""
+    model, frame, joints, q = case
+    pose = np.array(model.frame_pose(q, frame))
+    turn = np.array([[np.cos(0.2), -np.sin(0.2), 0.0], [np.sin(0.2), np.cos(0.2), 0.0], [0.0, 0.0, 1.0]])
+    pose[:3, :3] = turn @ pose[:3, :3]
+    law = oo.Compliance(model, frame, stiffness=STIFFNESS, damping=np.zeros((6, 6)))
+    control = oo.Control(law, reference=oo.Hold(pose), joints=joints, name="spring")
+    changes = []
+    for time_step in (1e-3, 5e-4):
+        trace: Any = oo.Simulation(
+            model, q, np.zeros(model.nv), controller=[control], time_step=time_step,
+            reference_start_tolerance=[1.0, 1.0],
+        ).run(1.0)  # fmt: skip
+        error = trace.tracking["spring"]
+        spring = 0.5 * np.einsum("ti,ij,tj->t", error, STIFFNESS, error)
+        assert trace.kinetic_energy.max() > 0.1 * spring[0]
+        changes.append(np.ptp(trace.kinetic_energy + spring) / spring[0])
+    # torques are held for a step, which changes the energy in proportion to the step
+    assert changes[0] < 5e-3 and changes[0] / changes[1] == pytest.approx(2.0, abs=0.05)
+    if len(joints) == 1:
+        # the negative control: in the open tree, the motor moves this crank only by its reaction on the base
+        tree = linkage().build().free_floating(trace.q[0], trace.v[0], frame).jacobian[:, 0]
+        assert abs(tree @ STIFFNESS @ error[0] - trace.tau[0, 0]) > 0.5 * abs(trace.tau[0, 0])

@@ -68,6 +68,56 @@ def test_an_extended_prismatic_loop_is_closed_from_nearby() -> None:
     assert np.abs(model.loop_errors(q)).max() > 1e-3  # negative control
 
 
+CHAIN_ANGLES = np.array([0.4, -0.7, 0.9, 0.5, -0.3])
+
+
+def short_chain() -> tuple[oo.Model, Any]:
+    """Return a chain of five joints welded to its base, with a configuration that closes the loop.
+
+    The loop has six constraints, more than the chain has joints.
+    """
+    builder = oo.ModelBuilder("chain", base="base", mass=20.0, inertia=np.eye(3))
+    parent = "base"
+    for k, axis in enumerate(([0, 0, 1], [0, 1, 0], [1, 0, 1], [0, 1, 1], [1, 1, 0])):
+        unit = np.array(axis) / np.linalg.norm(axis)
+        xyz = [0.3, 0.05 * k, 0.1]
+        builder.add_link(
+            f"link{k}", parent=parent, joint=f"joint{k}", axis=unit, xyz=xyz, **rod(1.0 + k, 0.3)
+        )
+        parent = f"link{k}"
+    tree = builder.build()
+    q = tree.neutral()
+    q[7:] = CHAIN_ANGLES
+    pose = np.linalg.solve(tree.frame_pose(q, "base"), tree.frame_pose(q, "link4"))
+    return tree.with_loops([oo.Loop("weld", "weld", "base", "link4", pose_a=pose)]), q
+
+
+def test_loops_with_more_constraints_than_joints_are_closed_from_far_away() -> None:
+    """From most of these starts, Newton's method without damping does not converge."""
+    model, closed = short_chain()
+    rng, found = np.random.default_rng(3), 0
+    for _ in range(60):
+        q = closed.copy()
+        q[7:] += rng.uniform(-1.2, 1.2, 5)
+        try:
+            nearest = model.closed_configuration(q)
+        except ConvergenceError:
+            continue  # a local minimum of the opening
+        found += 1
+        assert np.abs(model.loop_errors(nearest)).max() < 1e-14
+        assert np.abs(np.linalg.norm(nearest[3:7]) - 1.0) < 1e-15
+    assert found >= 50
+
+
+def test_a_loop_that_cannot_be_closed_is_refused() -> None:
+    model, closed = short_chain()
+    pose = np.array(model.loops[0].pose_a)
+    pose[0, 3] += 5.0  # beyond the reach of the chain
+    far = model.with_loops([oo.Loop("far", "spherical", "base", "link4", pose_a=pose)])
+    with pytest.raises(ConvergenceError, match="'far' stays open by"):
+        far.closed_configuration(closed)
+
+
 def test_the_acceleration_keeps_the_loops_closed() -> None:
     model = looped()
     q, v = permitted(model)
@@ -204,6 +254,24 @@ def test_invalid_loops_are_refused() -> None:
         builder.build()
     with pytest.raises(DtypeError, match="ratio, offset"):
         linkage().add_link("x", parent="base", joint="x", mimic=3.0, **rod(1.0, 1.0))  # type: ignore[arg-type]
+
+
+def test_friction_on_all_joints_of_a_loop_is_not_determined() -> None:
+    def with_friction(*joints: str) -> oo.Model:
+        builder = oo.ModelBuilder("linkage", base="base", mass=4.0, inertia=np.eye(3))
+        for name, parent, xyz in (("left", "base", 0.0), ("knee", "left", 0.3), ("right", "base", 0.6)):
+            friction = 0.1 if name in joints else 0.0
+            builder.add_link(
+                name, parent=parent, joint=name, xyz=[xyz, 0.0, 0.0], friction=friction, **rod(1.0, 0.3)
+            )
+        builder.add_link("other", parent="base", joint="other", **rod(1.0, 0.3))
+        return builder.build()
+
+    pin = oo.Loop("pin", "revolute", "knee", "right")
+    with pytest.warns(UserWarning, match=r"joints of the loop 'pin' have friction \(left, knee, right\)"):
+        looped = with_friction("left", "knee", "right").with_loops([pin])
+    looped.with_loops([oo.Loop("rod", "distance", "base", "other", length=0.1)])  # no second warning
+    with_friction("left", "right", "other").with_loops([pin])  # control: no warning
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from contact_worlds import pair
+from two_arms import hold
 
 import onorbit_rs as oo
 from onorbit_rs import exceptions
@@ -34,12 +35,30 @@ def touch(seed: int) -> oo.Simulation:
     return oo.Simulation(pair(speed=0.1 + 0.01 * seed), time_step=2e-3)
 
 
+def closed_loop(seed: int) -> oo.Simulation:
+    """Returns a servicer that holds a module with one hand, and closes a loop with the other one later.
+
+    The left hand releases the module after that.
+    """
+    world, _ = hold(load=None, events=second_grasp(seed))
+    return oo.Simulation(world, time_step=0.01, record_every=10)
+
+
+def second_grasp(seed: int) -> list[oo.Capture | oo.Release]:
+    hands = [(f"servicer/{side}_tool", f"module/{side}_handle") for side in ("left", "right")]
+    return [
+        oo.Capture("left", *hands[0], at=0.0),
+        oo.Capture("right", *hands[1], at=0.1 + 0.02 * seed),
+        oo.Release("open", "left", after="right", delay=0.2),
+    ]
+
+
 def bits(trace: oo.Trace) -> list[bytes]:
     assert isinstance(trace, oo.WorldTrace)
     return [trace[name].v.tobytes() + trace[name].q.tobytes() for name in trace.names]
 
 
-@pytest.mark.parametrize("case", [capture, touch])
+@pytest.mark.parametrize("case", [capture, touch, closed_loop])
 def test_every_run_has_the_bits_of_a_run_alone_for_any_number_of_threads(case: object) -> None:
     assert callable(case)
     alone = [bits(case(seed).run(DURATION)) for seed in range(6)]

@@ -26,9 +26,11 @@ def hold(
     load: str | None = "module/berthing_ring",
     tool: str = "left_tool",
     internal_forces: Sequence[oo.InternalForce] = (),
+    events: Sequence[Any] | None = None,
 ) -> tuple[oo.World, Any]:
     """Return a world in which both hands hold and move the module from the start, and the path of its ring.
 
+    ``events`` replace the captures by both hands at the start; the second one must be named ``right``.
     Without ``load``, the path is that of the tool, moved to start at its present pose, without a turn.
     """
     robot, held = oo.robots.load("two_arm_servicer"), module()
@@ -53,11 +55,11 @@ def hold(
         oo.System("servicer", robot, q, np.zeros(robot.nv), controller=[control], knows=list(knows)),
         oo.System("module", held, other, np.zeros(6)),
     ]
-    events = [
+    captures = [
         oo.Capture(side, f"servicer/{side}_tool", f"module/{side}_handle", at=0.0)
         for side in ("left", "right")
     ]
-    return oo.World(systems, events=events), reference
+    return oo.World(systems, events=captures if events is None else list(events)), reference
 
 
 def initial() -> tuple[Any, Any]:

@@ -221,7 +221,11 @@ def _check_frames(paths: list[str], systems: list[str], refuse: Callable[..., Ex
             message = f"no system is named {system!r}{did_you_mean(system, systems)}"
             raise refuse("do", "capture", index, message=message)
     if split_path(paths[0])[0] == split_path(paths[1])[0]:
-        raise refuse("do", "capture", message="a system cannot capture itself; give frames of two systems")
+        message = (
+            "a system cannot capture itself; give frames of two systems, or close a loop within the system "
+            f"from the start with loops: [{{name: NAME, kind: weld, between: [{', '.join(paths)}]}}]"
+        )
+        raise refuse("do", "capture", message=message)
 
 
 def _check_release(event: Event, by_name: dict[str, Event], refuse: Callable[..., Exception]) -> None:

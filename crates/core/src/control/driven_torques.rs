@@ -3,7 +3,9 @@
 use crate::dynamics::{IndependentJoints, solve_semidefinite};
 use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 
-/// Distribution of efforts to the driven joints `A`, with the symbols of `LoopedDynamics`.
+/// Distribution of efforts to the driven joints `A`, with the symbols of `LoopedDynamics`. Its buffers keep
+/// their capacity between updates.
+#[derive(Debug, Default)]
 pub(super) struct DrivenTorques {
     pub(super) driven: Vec<usize>,
     /// Indices of the columns of `G` that belong to the coordinates that these joints drive.
@@ -12,22 +14,51 @@ pub(super) struct DrivenTorques {
     map: Vec<f64>,
     /// Factor of `G_Aᵀ G_A`, `(c, c)`.
     factor: Vec<f64>,
+    internal: Internal,
+}
+
+/// Buffers of [`DrivenTorques::internal`] for `s` commanded rows.
+#[derive(Debug, Default)]
+struct Internal {
+    /// `Wᵀ` and `(P W)ᵀ`, `(s, a)`.
+    shares: Vec<f64>,
+    projected: Vec<f64>,
+    /// `Wᵀ P W`, `(s, s)`.
+    matrix: Vec<f64>,
+    sizes: Vec<f64>,
+    scale: Vec<f64>,
+    mu: Vec<f64>,
+    effort: Vec<f64>,
+    /// `t`, `(a,)`.
+    torques: Vec<f64>,
 }
 
 impl DrivenTorques {
-    /// Factorizes `G_Aᵀ G_A` for the `driven` joints and the `columns` of `G` that they drive.
-    pub(super) fn new(joints: &IndependentJoints, driven: Vec<usize>, columns: Vec<usize>) -> Self {
-        let (f, k) = (joints.count(), columns.len());
-        let rows = driven.iter().flat_map(|&j| columns.iter().map(move |&c| joints.map[j * f + c]));
-        let map: Vec<f64> = rows.collect();
-        let mut factor = vec![0.0; k * k];
+    /// Sets the driven joints, and the columns of `G` that they drive: those of the independent joints that
+    /// `is_driven` selects. Factorizes `G_Aᵀ G_A`.
+    pub(super) fn set(
+        &mut self,
+        joints: &IndependentJoints,
+        driven: impl Iterator<Item = usize>,
+        is_driven: impl Fn(usize) -> bool,
+    ) {
+        let Self { driven: own, columns, map, factor, .. } = self;
+        let f = joints.count();
+        own.clear();
+        own.extend(driven);
+        columns.clear();
+        columns.extend((0..f).filter(|&c| is_driven(joints.independent[c])));
+        let k = columns.len();
+        map.clear();
+        map.extend(own.iter().flat_map(|&j| columns.iter().map(move |&c| joints.map[j * f + c])));
+        factor.clear();
+        factor.resize(k * k, 0.0);
         for row in map.chunks_exact(k.max(1)) {
             for (x, out) in row.iter().zip(factor.chunks_exact_mut(k)) {
                 out.iter_mut().zip(row).for_each(|(out, y)| *out += x * y);
             }
         }
-        cholesky_factor(&mut factor, k);
-        Self { driven, columns, map, factor }
+        cholesky_factor(factor, k);
     }
 
     /// Computes `τ_A = G_A (G_Aᵀ G_A)⁻¹ u`, N m (N), and passes each torque to `write`, after the index of
@@ -39,51 +70,58 @@ impl DrivenTorques {
     }
 
     /// Computes the projection `P x = x − G_A (G_Aᵀ G_A)⁻¹ G_Aᵀ x` of `x`, `(a,)`, onto the torques that
-    /// cause no motion, in place.
-    fn project(&self, x: &mut [f64]) {
+    /// cause no motion, in place. `u` is a buffer.
+    fn project(&self, x: &mut [f64], u: &mut Vec<f64>) {
         let k = self.columns.len();
-        let mut u = vec![0.0; k];
+        u.clear();
+        u.resize(k, 0.0);
         for (x, row) in x.iter().zip(self.map.chunks_exact(k.max(1))) {
             u.iter_mut().zip(row).for_each(|(u, g)| *u += g * x);
         }
-        self.apply(&mut u, |place, part| x[place] -= part);
+        self.apply(u, |place, part| x[place] -= part);
     }
 
-    /// Returns the smallest torques `t`, `(a,)`, with `G_Aᵀ t = 0` that change the constraint forces from
-    /// `force`, N and N m, to the `commanded` ones, as far as torques can. `commanded` has the index and the
-    /// force of each row.
+    /// Computes the smallest torques `t`, `(a,)`, with `G_Aᵀ t = 0` that change the constraint forces from
+    /// `force`, N and N m, to the `commanded` ones, as far as torques can, and passes each torque to `write`,
+    /// after its joint. `commanded` has the index and the force of each row.
     ///
     /// A torque `t` changes the commanded forces by `δλ = −Wᵀ t`, where `W` has a row per driven joint and a
     /// column per commanded row. With `(Wᵀ P W) μ = δλ`, the result is `t = −P W μ`.
     pub(super) fn internal(
-        &self,
+        &mut self,
         joints: &IndependentJoints,
         commanded: &[(usize, f64)],
         force: &[f64],
-    ) -> Vec<f64> {
-        let (a, s) = (self.driven.len(), commanded.len());
+        mut write: impl FnMut(usize, f64),
+    ) {
+        let mut work = std::mem::take(&mut self.internal);
+        let Internal { shares, projected, matrix, sizes, scale, mu, effort, torques } = &mut work;
+        let a = self.driven.len();
         let share = |j: usize, i: usize| {
             let pivot = joints.dependent.iter().find(|(joint, _)| *joint == j);
             pivot.map_or(0.0, |&(_, row)| joints.share(row, i))
         };
-        let shares: Vec<Vec<f64>> =
-            commanded.iter().map(|&(i, _)| self.driven.iter().map(|&j| share(j, i)).collect()).collect();
-        let projected: Vec<Vec<f64>> = shares
-            .iter()
-            .map(|w| {
-                let mut w = w.clone();
-                self.project(&mut w);
-                w
-            })
-            .collect();
-        let mut matrix: Vec<f64> = shares.iter().flat_map(|w| projected.iter().map(|p| dot(w, p))).collect();
-        let sizes: Vec<f64> = shares.iter().map(|w| dot(w, w)).collect();
-        let mut mu: Vec<f64> = commanded.iter().map(|&(i, value)| value - force[i]).collect();
-        solve_semidefinite(&mut matrix, &sizes, &mut vec![0.0; s], &mut mu);
-        let mut torques = vec![0.0; a];
-        for (p, mu) in projected.iter().zip(mu) {
+        shares.clear();
+        shares.extend(commanded.iter().flat_map(|&(i, _)| self.driven.iter().map(move |&j| share(j, i))));
+        projected.clone_from(shares);
+        projected.chunks_exact_mut(a.max(1)).for_each(|w| self.project(w, effort));
+        matrix.clear();
+        for w in shares.chunks_exact(a.max(1)) {
+            matrix.extend(projected.chunks_exact(a.max(1)).map(|p| dot(w, p)));
+        }
+        sizes.clear();
+        sizes.extend(shares.chunks_exact(a.max(1)).map(|w| dot(w, w)));
+        mu.clear();
+        mu.extend(commanded.iter().map(|&(i, value)| value - force[i]));
+        scale.clear();
+        scale.resize(commanded.len(), 0.0);
+        solve_semidefinite(matrix, sizes, scale, mu);
+        torques.clear();
+        torques.resize(a, 0.0);
+        for (p, mu) in projected.chunks_exact(a.max(1)).zip(&*mu) {
             torques.iter_mut().zip(p).for_each(|(t, p)| *t -= mu * p);
         }
-        torques
+        self.driven.iter().zip(&*torques).for_each(|(&j, t)| write(j, *t));
+        self.internal = work;
     }
 }

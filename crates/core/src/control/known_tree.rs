@@ -155,6 +155,15 @@ impl KnownTree {
             looped.dynamics.add_task(&self.full.jacobian, acceleration, damping);
         }
     }
+
+    /// Computes the Jacobian of the frame of the last [`KnownTree::reduce_frame`] with respect to the `driven`
+    /// joints (indices in the robot) while the loops of the tree are closed; see
+    /// [`LoopedDynamics::driven_jacobian`](super::looped_dynamics::LoopedDynamics::driven_jacobian).
+    pub(super) fn driven_jacobian(&mut self, driven: &[usize], out: &mut [f64]) {
+        if let Some(looped) = &mut self.looped {
+            looped.dynamics.driven_jacobian(&self.full.jacobian, driven, out);
+        }
+    }
 }
 
 fn lift<S: Scalar>(motion: Motion<f64>) -> Motion<S> {

@@ -74,6 +74,7 @@ pub(super) fn compile(description: Description, warnings: Vec<ModelWarning>) -> 
     model.description = Arc::new(description);
     model.is_heavy_on_light = is_heavy_on_light(&model.nodes);
     model.closures = model.compile_closures()?;
+    model.warnings.extend(model.loops_with_friction());
     Ok(model)
 }
 

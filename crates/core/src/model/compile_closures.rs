@@ -2,7 +2,7 @@
 
 use super::closed_loop::{Loop, LoopKind, Mimic, SHORTEST};
 use super::closure::{Closure, Constraint};
-use super::error::ModelError;
+use super::error::{ModelError, ModelWarning};
 use super::frame::Frame;
 use super::tree::Model;
 use crate::spatial::{Mat3, Vec3};
@@ -17,6 +17,34 @@ impl Model {
         let joints = description.joints.iter().map(|(_, joint)| joint);
         let mimics = joints.filter_map(|joint| Some((&joint.name, joint.mimic.as_ref()?)));
         loops.chain(mimics.map(|(name, mimic)| self.compile_mimic(name, mimic))).collect()
+    }
+
+    /// Returns a warning for each loop of which all joints have friction.
+    pub(super) fn loops_with_friction(&self) -> Vec<ModelWarning> {
+        let closures = self.closures.iter().filter_map(|closure| match &closure.constraint {
+            Constraint::Frames { frames: [a, b], .. } => Some((&closure.name, a.body, b.body)),
+            Constraint::Mimic { .. } => None,
+        });
+        let warning = |(name, a, b): (&String, usize, usize)| {
+            let joints = self.joints_between(a, b);
+            let all = joints.iter().all(|&joint| self.joints[joint].friction > 0.0);
+            let names = || joints.iter().map(|&joint| self.joints[joint].name.clone()).collect();
+            (all && joints.len() > 1)
+                .then(|| ModelWarning::LoopFriction { name: name.clone(), joints: names() })
+        };
+        closures.filter_map(warning).collect()
+    }
+
+    /// Returns the joints between two bodies of the tree, in ascending order.
+    fn joints_between(&self, mut a: usize, mut b: usize) -> Vec<usize> {
+        let mut joints = Vec::new();
+        while a != b {
+            let later = if a > b { &mut a } else { &mut b };
+            joints.push(*later - 1);
+            *later = self.nodes[*later].parent;
+        }
+        joints.sort_unstable();
+        joints
     }
 
     fn compile_loop(&self, closing: &Loop) -> Result<Closure, ModelError> {

@@ -143,6 +143,13 @@ pub enum ModelWarning {
         /// Unit of the deflection.
         unit: &'static str,
     },
+    /// All joints of a closed loop have friction, so that the friction torques at rest are not determined.
+    LoopFriction {
+        /// Name of the loop.
+        name: String,
+        /// Names of the joints of the tree between the two bodies of the loop.
+        joints: Vec<String>,
+    },
     /// Text about another problem, which was found while reading a file.
     Note(String),
 }
@@ -182,6 +189,13 @@ impl fmt::Display for ModelWarning {
                  where the spring may snap through; give the joint position limits within this deflection, or a \
                  larger cubic stiffness",
                 short(*deflection)
+            ),
+            Self::LoopFriction { name, joints } => write!(
+                f,
+                "all joints of the loop '{name}' have friction ({}), so that no equation determines which of them \
+                 hold the loop at rest, and friction torques and forces of the loop at rest depend on the order of \
+                 the joints; give friction to no more joints than the loop has independent ones",
+                joints.join(", ")
             ),
             Self::Note(text) => f.write_str(text),
         }

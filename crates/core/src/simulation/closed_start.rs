@@ -53,7 +53,7 @@ impl System {
         let locked = held.contains(&true).then_some((&held[..], &[][..]));
         project_configuration(model, &mut data, &mut loops, &mut q, locked);
         kinematics(model, &mut data, &q, &v);
-        project_velocity(model, &mut data, &mut loops, &mut v, locked);
+        project_velocity(model, &mut data, &mut loops, (&q, &mut v), locked);
         Ok([q, v])
     }
 }

@@ -3,19 +3,17 @@
 use super::run_state::RunState;
 use super::singularity_watch::SingularLoop;
 use super::tree::Tree;
-use super::tree_state::TreeState;
 use crate::spatial::{Real, Scalar};
 
 impl<S: Real> Tree<'_, S> {
     /// Returns the names of the loops and mimic joints whose constraints have become linearly dependent, each
-    /// with the time, s. Requires that `state` is the state at `t`, s, after its projection onto the momentum
+    /// with the time, s. Requires that the state at `t`, s, was the last one to be projected onto the momentum
     /// and the loops.
-    fn find_singular(&mut self, t: f64, state: &TreeState<S>) -> Vec<(String, f64)> {
+    fn find_singular(&mut self, t: f64) -> Vec<(String, f64)> {
         if self.loops.is_empty() {
             return Vec::new();
         }
-        let kept = self.modes.kept_at_rest(&state.q, &state.v);
-        let found = self.singularities.update(t, self.loops.pivots(), kept);
+        let found = self.singularities.update(t, self.loops.pivots(), &self.kept);
         let name = |row: usize| {
             let count = self.loops.closures().len();
             let closure = (0..count).find(|i| self.loops.range_of(*i).contains(&row))?;
@@ -33,8 +31,7 @@ impl<S: Scalar> RunState<'_, S> {
         if !has_loops || self.mover.is_external() {
             return; // an external engine solves its own constraints
         }
-        let pairs = self.equations.trees.iter_mut().zip(&self.state.trees);
-        let found: Vec<_> = pairs.map(|(tree, state)| tree.find_singular(t, state)).collect();
+        let found: Vec<_> = self.equations.trees.iter_mut().map(|tree| tree.find_singular(t)).collect();
         if found.iter().all(Vec::is_empty) {
             return;
         }

@@ -26,8 +26,8 @@ pub struct SingularLoop {
 #[derive(Clone, Debug, Default)]
 pub(super) struct SingularityWatch {
     rows: Vec<WatchedRow>,
-    /// True for joints that were kept at rest in the last update, `(n,)`; `None` if there were none.
-    kept: Option<Vec<bool>>,
+    /// True for joints that were kept at rest in the last update, `(n,)`; empty if there were none.
+    kept: Vec<bool>,
 }
 
 #[derive(Clone, Debug)]
@@ -49,10 +49,12 @@ impl SingularityWatch {
         &mut self,
         t: f64,
         pivots: impl Iterator<Item = f64>,
-        kept: Option<Vec<bool>>,
+        kept: &[bool],
     ) -> Vec<(usize, f64)> {
         if self.kept != kept {
-            (self.kept, self.rows) = (kept, Vec::new());
+            self.kept.clear();
+            self.kept.extend_from_slice(kept);
+            self.rows.clear();
         }
         let mut found = Vec::new();
         for (i, pivot) in pivots.enumerate() {
@@ -88,7 +90,7 @@ mod tests {
     fn times(pivots: &[f64]) -> Vec<f64> {
         let mut watch = SingularityWatch::default();
         let each = pivots.iter().enumerate();
-        each.flat_map(|(t, pivot)| watch.update(t as f64, [*pivot].into_iter(), None))
+        each.flat_map(|(t, pivot)| watch.update(t as f64, [*pivot].into_iter(), &[]))
             .map(|(_, time)| time)
             .collect()
     }
@@ -108,9 +110,9 @@ mod tests {
     #[test]
     fn locked_joints_start_anew() {
         let mut watch = SingularityWatch::default();
-        assert!(watch.update(0.0, [0.3].into_iter(), None).is_empty());
-        assert!(watch.update(1.0, [1e-9].into_iter(), Some(vec![true])).is_empty());
-        assert!(watch.update(2.0, [0.3].into_iter(), None).is_empty());
-        assert_eq!(watch.update(3.0, [1e-9].into_iter(), None), [(0, 3.0)]); // control
+        assert!(watch.update(0.0, [0.3].into_iter(), &[]).is_empty());
+        assert!(watch.update(1.0, [1e-9].into_iter(), &[true]).is_empty());
+        assert!(watch.update(2.0, [0.3].into_iter(), &[]).is_empty());
+        assert_eq!(watch.update(3.0, [1e-9].into_iter(), &[]), [(0, 3.0)]); // control
     }
 }

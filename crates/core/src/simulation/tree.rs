@@ -34,6 +34,9 @@ pub(crate) struct Tree<'a, S> {
     /// Constraints of the tree; empty without closed loops and mimic joints.
     pub(super) loops: ClosedLoops<S>,
     pub(super) singularities: SingularityWatch,
+    /// True for each joint, `(n,)`, that the last projection onto the loops did not move; empty if there were
+    /// no such joints.
+    pub(super) kept: Vec<bool>,
     /// True if any joint has damping or friction.
     is_lossy: bool,
     /// Indices of the joints with springs, each with its spring.
@@ -62,6 +65,7 @@ impl<'a, S: Real> Tree<'a, S> {
             mass: S::of(model.mass()),
             loops: ClosedLoops::new(&model, model.closures()),
             singularities: SingularityWatch::default(),
+            kept: Vec::new(),
             shares: Vec::new(),
             springs: model.springs().map(|(joint, spring)| (joint, *spring)).collect(),
             is_lossy: model.joints().iter().any(|joint| joint.damping > 0.0 || joint.friction > 0.0)
@@ -100,12 +104,11 @@ impl<'a, S: Real> Tree<'a, S> {
             self.project_twist(state);
         } else {
             self.move_given(state);
-            let kept = self.modes.kept_at_rest(&state.q, &state.v);
-            let Self { model, data, loops, .. } = self;
-            let locked = kept.as_deref().map(|kept| (kept, &[][..]));
-            project_configuration(model, data, loops, &mut state.q, locked);
+            let Self { model, data, loops, modes, kept, .. } = self;
+            modes.find_kept_at_rest(&state.q, &state.v, kept);
+            project_configuration(model, data, loops, &mut state.q, locked(kept));
             self.project_twist(state);
-            self.close_velocity(state, kept.as_deref());
+            self.close_velocity(state);
         }
         if let Some(center) = state.center {
             let shift = center - center_of_mass(&self.data, &state.q);
@@ -134,16 +137,15 @@ impl<'a, S: Real> Tree<'a, S> {
     }
 
     /// Projects the velocity of `state` onto the closed loops, which changes neither the momentum nor the
-    /// rates of the joints for which `kept` is true. Computes the kinematics. Requires the articulated-body
-    /// inertias of [`project_configuration`].
-    fn close_velocity(&mut self, state: &mut TreeState<S>, kept: Option<&[bool]>) {
+    /// rates of the joints in `kept`. Computes the kinematics. Requires the articulated-body inertias of
+    /// [`project_configuration`].
+    fn close_velocity(&mut self, state: &mut TreeState<S>) {
         // relative to the base's origin, as in `project_twist`
         let frame_velocity = Vec3::from_slice(&state.v);
         Vec3::zero().write(&mut state.v);
         self.update_kinematics(state);
-        let Self { model, data, loops, .. } = self;
-        let locked = kept.map(|kept| (kept, &[][..]));
-        project_velocity(model, data, loops, &mut state.v, locked);
+        let Self { model, data, loops, kept, .. } = self;
+        project_velocity(model, data, loops, (&state.q, &mut state.v), locked(kept));
         (Vec3::from_slice(&state.v) + frame_velocity).write(&mut state.v);
         self.update_kinematics(state);
     }
@@ -302,6 +304,11 @@ impl<'a, S: Real> Tree<'a, S> {
             },
         );
     }
+}
+
+/// Returns the argument of the projections for joints that must not move; `kept` is empty without such joints.
+fn locked(kept: &[bool]) -> Option<(&[bool], &'static [f64])> {
+    (!kept.is_empty()).then_some((kept, &[][..]))
 }
 
 /// Computes the velocity and acceleration of the base in W, the sum of the wrenches on the first `loaded`

@@ -20,7 +20,8 @@ pub enum WorldError {
     #[error("two events have the name '{name}'; give each event a different name")]
     EventTwice { name: String },
     #[error(
-        "both frames of the event '{event}' belong to the system '{system}'; give frames of two different systems"
+        "both frames of the event '{event}' belong to the system '{system}', but a capture connects two systems; give \
+         frames of two different systems, or close a loop within the system from the start with a loop of kind 'weld'"
     )]
     OwnSystem { event: String, system: String },
     #[error(

@@ -6,6 +6,7 @@ use crate::control::control_law::{ControlLaw, EffortInput, EffortWork, JointComm
 use crate::control::control_state::ControlState;
 use crate::control::error::ControlError;
 use crate::control::known_tree::KnownTree;
+use crate::control::looped_dynamics::Looped;
 use crate::control::observation::Observation;
 use crate::control::pseudo_inverse::ROWS;
 use crate::dynamics::{Data, FreeFloating, base_relative_frame, free_floating_frame};
@@ -46,10 +47,9 @@ impl<S: Scalar> ControllerSet<'_, S> {
                     (frame, reference),
                     &mut self.reduced,
                 );
-                for (i, row) in self.reduced.jacobian.chunks_exact(n).enumerate() {
-                    let group = self.jacobian[i * k..].iter_mut().zip(joints);
-                    group.for_each(|(to, &j)| *to = row[j].value());
-                }
+                let own = (&mut self.known, &mut self.looped);
+                let jacobian = (&self.reduced.jacobian[..], &mut self.jacobian[..]);
+                driven_jacobian(own, reference.is_relative_to_base(), joints, n, jacobian);
                 velocity_error = state.velocity_error(&self.reduced);
             }
             let desired = state.desired_pose;
@@ -241,6 +241,30 @@ fn reduce_to_frame<S: Scalar>(
         _ if reference.is_relative_to_base() => base_relative_frame(model, data, v, frame, out),
         Some(known) => known.reduce_frame(frame, out),
         None => free_floating_frame(model, data, q, v, frame, out),
+    }
+}
+
+/// Computes the Jacobian, row major `(6, k)`, of the frame of the last [`reduce_to_frame`] with respect to
+/// `joints` of the robot, `(k,)`, and writes it to the second array; the first one is the Jacobian with
+/// respect to all `n` joints. If the robot has closed loops, the motion of the joints without a motor is
+/// included.
+fn driven_jacobian<S: Scalar>(
+    (known, looped): (&mut Option<Box<KnownTree>>, &mut Option<Box<Looped<S>>>),
+    is_relative: bool,
+    joints: &[usize],
+    n: usize,
+    (all, out): (&[S], &mut [f64]),
+) {
+    let k = joints.len();
+    if let Some(known) = known.as_deref_mut().filter(|known| known.looped.is_some() && !is_relative) {
+        known.driven_jacobian(joints, &mut out[..ROWS * k]);
+    } else if let Some(looped) = active_loops(known, looped) {
+        looped.driven_jacobian(all, joints, &mut out[..ROWS * k]);
+    } else {
+        for (i, row) in all.chunks_exact(n).enumerate() {
+            let group = out[i * k..].iter_mut().zip(joints);
+            group.for_each(|(to, &j)| *to = row[j].value());
+        }
     }
 }
 

@@ -60,13 +60,14 @@ pub(crate) fn constrained_recursion<S: Real>(
         },
     );
     loops.respond(model, data, (v, tau, locked), a);
+    loops.refine(model, data, (v, tau, locked), a);
     rank
 }
 
 impl<S: Real> ClosedLoops<S> {
     /// Computes the right-hand sides `−(J a + J̇ v)` from the accelerations in `data` and `a`.
     #[inline(always)]
-    fn constraint_accelerations(&mut self, data: &Data<S>, a: &[S]) {
+    pub(super) fn constraint_accelerations(&mut self, data: &Data<S>, a: &[S]) {
         for (right, row) in self.force.iter_mut().zip(&self.rows) {
             *right = row.acceleration(data, a);
         }
@@ -86,7 +87,16 @@ impl<S: Real> ClosedLoops<S> {
     /// locked joints in `data`.
     #[inline(always)]
     pub(super) fn solve(&mut self, model: &Model, data: &Data<S>, locked: Option<&[bool]>) -> S {
-        let Self { rows, force, matrix, supported, scratch, compliance, scale, base, .. } = self;
+        self.update_matrix(model, data, locked);
+        let Self { force, matrix, compliance, scale, .. } = self;
+        constraint_force::solve(matrix, compliance, scale, force)
+    }
+
+    /// Computes the lower triangle of `A` and the compliances of the base. Has the same requirements as
+    /// [`solve`](Self::solve).
+    #[inline(always)]
+    pub(super) fn update_matrix(&mut self, model: &Model, data: &Data<S>, locked: Option<&[bool]>) {
+        let Self { rows, matrix, supported, scratch, compliance, base, .. } = self;
         if model.is_heavy_on_light() {
             dense_response::jacobian(model, data, rows, &mut scratch.dense);
             dense_response::inverse_apparent_mass(data, &scratch.dense, locked, model.nv(), matrix);
@@ -96,7 +106,6 @@ impl<S: Real> ClosedLoops<S> {
             let tree = (model.nodes(), &data.bodies[..]);
             response::inverse_apparent_mass(tree, base, (rows, supported), scratch, (matrix, compliance));
         }
-        constraint_force::solve(matrix, compliance, scale, force)
     }
 
     /// Adds the response to the constraint forces to `a` and to the accelerations in `data`. Requires the results of

@@ -1,6 +1,7 @@
 //! Independent joints of a robot with closed loops.
 
-use super::{ClosedLoops, dense_response, rows};
+use super::rows::{self, JointRows};
+use super::{ClosedLoops, dense_response};
 use crate::dynamics::data::Data;
 use crate::model::{BASE_NV, Model};
 use crate::spatial::{Scalar, dot};
@@ -33,18 +34,22 @@ impl<S: Scalar> ClosedLoops<S> {
     ) {
         let (n, nv) = (model.joint_count(), model.nv());
         self.update_rows(data);
-        let mut all = vec![S::of(0.0); self.rows.len() * nv];
-        dense_response::jacobian(model, data, &self.rows, &mut all);
+        let mut joint_rows = std::mem::take(&mut self.joint_rows);
+        let JointRows { jacobian: all, at_rest, drift } = &mut joint_rows;
+        all.resize(self.rows.len() * nv, S::of(0.0));
+        at_rest.resize(nv, S::of(0.0));
+        drift.resize(self.rows.len(), S::of(0.0));
+        dense_response::jacobian(model, data, &self.rows, all);
         for (to, from) in jacobian.chunks_exact_mut(n).zip(all.chunks_exact(nv)) {
             to.iter_mut().zip(&from[BASE_NV..]).for_each(|(to, from)| *to = from.value());
         }
-        let (at_rest, mut drift) = (vec![S::of(0.0); nv], vec![S::of(0.0); self.rows.len()]);
-        drift.iter_mut().zip(&self.rows).for_each(|(drift, row)| *drift = row.acceleration(data, &at_rest));
+        drift.iter_mut().zip(&self.rows).for_each(|(drift, row)| *drift = row.acceleration(data, at_rest));
         for closure in 0..self.closures.len() {
             let range = self.range_of(closure);
             rows::add_drift(&self.closures[closure], data, &self.rows[range.clone()], &mut drift[range]);
         }
-        right.iter_mut().zip(&drift).for_each(|(right, drift)| *right = -drift.value());
+        right.iter_mut().zip(&*drift).for_each(|(right, drift)| *right = -drift.value());
+        self.joint_rows = joint_rows;
     }
 }
 
@@ -72,6 +77,8 @@ pub struct IndependentJoints {
     pub drift: Vec<f64>,
     row_size: Vec<f64>,
     column_size: Vec<f64>,
+    /// Buffer for a row of the table, or for the product of a matrix and `G`.
+    product: Vec<f64>,
 }
 
 impl IndependentJoints {
@@ -98,8 +105,9 @@ impl IndependentJoints {
             }
         }
         let is_independent = |joint: &usize| !self.dependent.iter().any(|(dependent, _)| dependent == joint);
-        self.independent = (0..self.n).filter(is_independent).collect();
-        self.independent.sort_by_key(|&joint| class[joint]);
+        self.independent.clear();
+        self.independent.extend((0..self.n).filter(is_independent));
+        self.independent.sort_unstable_by_key(|&joint| (class[joint], joint));
         self.write_map();
     }
 
@@ -116,8 +124,10 @@ impl IndependentJoints {
         }
         let lever = lever.max(SHORTEST);
         let size = |is_length: &bool| if *is_length { lever } else { 1.0 };
-        self.row_size = rows.iter().map(size).collect();
-        self.column_size = columns.iter().map(size).collect();
+        self.row_size.clear();
+        self.row_size.extend(rows.iter().map(size));
+        self.column_size.clear();
+        self.column_size.extend(columns.iter().map(size));
     }
 
     /// Returns the row and the joint of the largest entry in rows and columns without a pivot, among the joints that
@@ -137,9 +147,10 @@ impl IndependentJoints {
     }
 
     /// Writes `Gᵀ A G`, row major `(f, f)`, for a matrix `A`, `(n, n)`, to `out`.
-    pub fn reduce_matrix(&self, a: &[f64], out: &mut Vec<f64>) {
+    pub fn reduce_matrix(&mut self, a: &[f64], out: &mut Vec<f64>) {
         let (n, f) = (self.n, self.count());
-        let mut product = vec![0.0; n * f];
+        let mut product = std::mem::take(&mut self.product);
+        product.resize(n * f, 0.0);
         self.reduce_rows(a, &mut product);
         out.clear();
         out.resize(f * f, 0.0);
@@ -148,6 +159,7 @@ impl IndependentJoints {
                 row.iter_mut().zip(product).for_each(|(out, x)| *out = g.mul_add(*x, *out));
             }
         }
+        self.product = product;
     }
 
     /// Computes `J G`, `(r, f)`, for rows `J`, `(r, n)`.
@@ -211,13 +223,15 @@ impl IndependentJoints {
     fn eliminate(&mut self, row: usize, joint: usize) {
         let width = self.width();
         let pivot = self.table[row * width + joint];
-        let scaled: Vec<f64> = self.table[row * width..(row + 1) * width].iter().map(|x| x / pivot).collect();
+        let scaled = &mut self.product;
+        scaled.clear();
+        scaled.extend(self.table[row * width..(row + 1) * width].iter().map(|x| x / pivot));
         for (i, other) in self.table.chunks_exact_mut(width).enumerate() {
             if i == row {
-                other.copy_from_slice(&scaled);
+                other.copy_from_slice(scaled);
             } else {
                 let factor = other[joint];
-                other.iter_mut().zip(&scaled).for_each(|(x, y)| *x = (-factor).mul_add(*y, *x));
+                other.iter_mut().zip(&*scaled).for_each(|(x, y)| *x = (-factor).mul_add(*y, *x));
                 other[joint] = 0.0;
             }
         }

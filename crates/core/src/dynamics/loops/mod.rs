@@ -4,20 +4,23 @@
 //! `M a + c = τ + Σ Jᵀ F + Jᵀ λ` and `J a + J̇ v = 0`. Hence `A λ = −(J a_free + J̇ v)` with `A = J M⁻¹ Jᵀ`, and `a =
 //! a_free + M⁻¹ Jᵀ λ`. Products with `M⁻¹` use the articulated-body inertias of the preceding forward dynamics.
 
+mod closing;
 mod constrained;
 mod constraint_force;
 mod dense_response;
 mod independent;
 mod projection;
 mod reduced;
+mod refinement;
 mod response;
 mod rows;
 
+pub use closing::close_loops;
 pub use constrained::constrained_forward_dynamics;
 pub(crate) use constrained::constrained_recursion;
 pub(crate) use constraint_force::solve as solve_semidefinite;
 pub use independent::IndependentJoints;
-pub use projection::{close_loops, close_velocity, closure_errors};
+pub use projection::{close_velocity, closure_errors};
 pub(crate) use projection::{project_configuration, project_velocity};
 
 pub use reduced::{ConstrainedFreeFloating, constrained_free_floating};
@@ -28,7 +31,7 @@ use crate::dynamics::kinematics::frame_offset;
 use crate::model::{Closure, Constraint, Model, Node};
 use crate::spatial::{Force, InverseArticulated, Real, Vec3};
 use response::Scratch;
-use rows::Row;
+use rows::{JointRows, Row};
 
 /// Constraints of a model with their workspace.
 #[derive(Clone, Debug)]
@@ -51,6 +54,7 @@ pub struct ClosedLoops<S> {
     /// Inverse of the articulated inertia of the whole robot.
     base: InverseArticulated<S>,
     scratch: Scratch<S>,
+    joint_rows: JointRows<S>,
 }
 
 impl<S: Real> ClosedLoops<S> {
@@ -69,6 +73,7 @@ impl<S: Real> ClosedLoops<S> {
             scale: vec![zero; m],
             base: InverseArticulated::default(),
             scratch: Scratch::new(model.nodes().len(), dense),
+            joint_rows: JointRows::default(),
             rows,
             supported,
         }

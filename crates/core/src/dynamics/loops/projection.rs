@@ -14,10 +14,6 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Largest number of Newton steps of one projection within a run, where the error is that of one step of the
 /// integrator.
 const CORRECTIONS: usize = 3;
-/// Largest number of Newton steps from a configuration given by the user.
-const ATTEMPTS: usize = 50;
-/// Largest component of a Newton step, m and rad, from a configuration given by the user.
-const LONGEST: f64 = 0.5;
 
 impl<S: Real> ClosedLoops<S> {
     /// Computes the constraint errors `φ(q)`, `(m,)`, m and rad. Requires up-to-date poses in `data`.
@@ -38,7 +34,7 @@ impl<S: Real> ClosedLoops<S> {
 
     /// Returns true for each lane in which an error exceeds the rounding errors of the poses in `data`.
     #[inline(always)]
-    fn is_open(&self, data: &Data<S>) -> S::Mask {
+    pub(super) fn is_open(&self, data: &Data<S>) -> S::Mask {
         let (mut largest, mut reach) = (S::of(0.0), S::of(0.0));
         for (error, row) in self.error.iter().zip(&self.rows) {
             largest = S::select(largest.less(error.abs()), error.abs(), largest);
@@ -54,7 +50,7 @@ impl<S: Real> ClosedLoops<S> {
     /// Computes the response `δ = −M⁻¹ Jᵀ A⁻¹ x`, `(nv,)`, to the residuals `x`, which `residual` returns for
     /// each of the `m` rows, with the inertias of the last forward dynamics in `data`. Requires up-to-date
     /// poses in `data`, and changes the accelerations in `data`.
-    fn correction(
+    pub(super) fn correction(
         &mut self,
         model: &Model,
         data: &mut Data<S>,
@@ -114,23 +110,39 @@ pub(crate) fn project_configuration<S: Real>(
 }
 
 /// Changes the velocity `v` by `−M⁻¹ Jᵀ (J M⁻¹ Jᵀ)⁻¹ J v`, so that it satisfies the constraints. The change
-/// does not affect the momentum. Requires the kinematics of `v`, and the results of [`project_configuration`]
-/// with the same locked joints, in `data`.
+/// does not affect the momentum. Where rows are nearly dependent, the change is repeated, because its rounding
+/// errors may violate the constraints. Requires the kinematics of `q` and `v`, and the results of
+/// [`project_configuration`] with the same locked joints, in `data`.
 pub(crate) fn project_velocity<S: Real>(
     model: &Model,
     data: &mut Data<S>,
     loops: &mut ClosedLoops<S>,
-    v: &mut [S],
+    (q, v): (&[S], &mut [S]),
     locked: Locked<'_>,
 ) {
     let mut change = vec![S::of(0.0); v.len()];
     let rates = loops.rates(data, v);
     loops.correction(model, data, locked, |_, i| rates[i], &mut change);
     v.iter_mut().zip(&change).for_each(|(v, change)| *v += *change);
+    let is_repeated = loops.is_nearly_dependent();
+    if S::any(is_repeated) {
+        kinematics(model, data, q, v);
+        let rates = loops.rates(data, v);
+        loops.correction(model, data, locked, |_, i| rates[i], &mut change);
+        for (v, change) in v.iter_mut().zip(&change) {
+            *v = S::select(is_repeated, *v + *change, *v);
+        }
+    }
 }
 
 /// Computes the articulated-body inertias, or the factors of `M`, at the configuration `q`, at rest.
-fn factorize<S: Real>(model: &Model, data: &mut Data<S>, q: &[S], locked: Locked<'_>, scratch: &mut [S]) {
+pub(super) fn factorize<S: Real>(
+    model: &Model,
+    data: &mut Data<S>,
+    q: &[S],
+    locked: Locked<'_>,
+    scratch: &mut [S],
+) {
     let zeros = vec![S::of(0.0); model.nv()];
     kinematics(model, data, q, &zeros);
     match locked {
@@ -146,27 +158,6 @@ pub fn closure_errors<S: Real>(model: &Model, data: &mut Data<S>, loops: &mut Cl
     loops.update_errors(data, q);
 }
 
-/// Moves the configuration `q`, `(nq,)`, to a nearby one that satisfies the constraints of `loops`, by
-/// Newton's method in the metric of the kinetic energy. [`ClosedLoops::errors`] returns the remaining errors
-/// afterwards, which are not small if there is no such configuration nearby.
-pub fn close_loops(model: &Model, data: &mut Data<f64>, loops: &mut ClosedLoops<f64>, q: &mut [f64]) {
-    let (mut delta, mut moved) = (vec![0.0; model.nv()], q.to_vec());
-    for _ in 0..ATTEMPTS {
-        factorize(model, data, q, None, &mut delta);
-        loops.update_errors(data, q);
-        if !loops.is_open(data) {
-            return;
-        }
-        loops.correction(model, data, None, |loops, i| loops.error[i], &mut delta);
-        let longest = delta.iter().fold(0.0_f64, |longest, x| longest.max(x.abs()));
-        let share = if longest > LONGEST { LONGEST / longest } else { 1.0 };
-        delta.iter_mut().for_each(|x| *x *= share);
-        integrate(q, &delta, &mut moved);
-        q.copy_from_slice(&moved);
-    }
-    closure_errors(model, data, loops, q);
-}
-
 /// Replaces the velocity `v`, `(nv,)`, by the nearest one, in the metric of the kinetic energy, that
 /// satisfies the constraints of `loops`. The configuration `q`, `(nq,)`, must close the loops. The momentum
 /// does not change.
@@ -180,5 +171,5 @@ pub fn close_velocity(
     let mut scratch = vec![0.0; model.nv()];
     factorize(model, data, q, None, &mut scratch);
     kinematics(model, data, q, v);
-    project_velocity(model, data, loops, v, None);
+    project_velocity(model, data, loops, (q, v), None);
 }

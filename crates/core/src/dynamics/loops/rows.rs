@@ -13,6 +13,17 @@ pub(super) struct Row<S> {
     pub(super) efforts: [S; 2],
 }
 
+/// Buffers of the constraints on the joints, which their first computation allocates.
+#[derive(Clone, Debug, Default)]
+pub(super) struct JointRows<S> {
+    /// `J`, row major `(m, nv)`.
+    pub(super) jacobian: Vec<S>,
+    /// Zero accelerations, `(nv,)`.
+    pub(super) at_rest: Vec<S>,
+    /// `J̇ v`, `(m,)`.
+    pub(super) drift: Vec<S>,
+}
+
 impl<S: Real> Row<S> {
     /// Returns the rows of a closure, of which [`update`] sets the forces.
     pub(super) fn of(closure: &Closure) -> Vec<Self> {

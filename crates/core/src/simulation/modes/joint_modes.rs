@@ -231,14 +231,17 @@ impl JointModes {
         self.any_locked.then_some(&self.locked[..])
     }
 
-    /// Returns an array that is true for the joints that a projection onto closed loops must not move,
-    /// `(n,)`: locked joints, and joints at rest that friction, a brake or a stop can hold. The rate of a
-    /// joint that has come to rest must remain exactly zero, because a rounding error of the rate would be
-    /// treated as motion. `None` if there are no such joints.
-    pub(in crate::simulation) fn kept_at_rest<S: Real>(&self, q: &[S], v: &[S]) -> Option<Vec<bool>> {
+    /// Writes an array to `kept` that is true for the joints that a projection onto closed loops must not
+    /// move, `(n,)`: locked joints, and joints at rest that friction, a brake or a stop can hold. The rate of
+    /// a joint that has come to rest must remain exactly zero, because a rounding error of the rate would be
+    /// treated as motion. The array is empty if there are no such joints.
+    pub(in crate::simulation) fn find_kept_at_rest<S: Real>(&self, q: &[S], v: &[S], kept: &mut Vec<bool>) {
         let is_kept = |j: usize| self.locked[j] || self.is_at_rest(j, q, v);
-        let kept: Vec<bool> = (0..self.locked.len()).map(is_kept).collect();
-        kept.contains(&true).then_some(kept)
+        kept.clear();
+        kept.extend((0..self.locked.len()).map(is_kept));
+        if !kept.contains(&true) {
+            kept.clear();
+        }
     }
 
     /// Returns true if joint `j` is at rest and friction, a brake or a stop can hold it.
