@@ -32,6 +32,20 @@ def test_nasas_correct_run_8b_passes(time_step: float) -> None:
     assert fails(trace) == []
 
 
+def test_slow_motion_with_fast_changes_under_held_torques_passes(tmp_path: Path) -> None:
+    """Links that move without the load accelerate fast within a step. It failed by 2.1 gates once."""
+    text = oo.scenarios.path("berthing_with_two_arms").read_text()
+    text = text.replace("time_step: 2 ms", "time_step: 10 ms").replace("duration: 65 s", "duration: 36 s")
+    (tmp_path / "slow.yaml").write_text(text)
+    with pytest.warns(UserWarning, match="event 'berth' did not happen"):
+        trace = oo.run(tmp_path / "slow.yaml", quiet=True).trace
+    assert isinstance(trace, oo.WorldTrace)
+    for name in trace.names:
+        (rows,) = [line for line in trace[name].certificate() if line[0] == "base_rows_residual_rel"]
+        assert fails(trace[name]) == []
+        assert 5e-6 < rows[1] < 0.5 * rows[2] and rows[2] < 1e-4
+
+
 @pytest.mark.parametrize("record_every", [1, 10])
 def test_a_correct_earth_pointing_body_passes(record_every: int) -> None:
     """After a quarter of an orbit at 1 ms the rounding approaches 0.35 of the commutator. It failed once."""

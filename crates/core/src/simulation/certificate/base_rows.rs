@@ -18,7 +18,10 @@ const ROUNDING: f64 = 40.0;
 pub(in crate::simulation) struct Residuals {
     residual: [f64; 2],
     scale: [f64; 2],
+    /// Largest relative truncation error due to rates and accelerations.
     truncation: f64,
+    /// Largest truncation errors due to the jerk, N and N m.
+    jerk: [f64; 2],
 }
 
 /// Residuals of the base rows, and the workspace to compute them.
@@ -56,25 +59,44 @@ impl BaseRows {
             v[i] = 0.5 * (before.v[i] + now.v[i]);
             a[i] = (now.v[i] - before.v[i]) / h;
         }
-        inverse_dynamics(model, &mut self.data, q, v, a, &[], &mut self.forces);
-        let found = Force::from_slice(&self.forces);
-        let about_com = found.angular - center_of_mass_b(&self.data).cross(found.linear);
+        let found = base_wrench(model, &mut self.data, [&q[..], &v[..], &a[..]], &mut self.forces);
         let rot_wb = base_rotation(q);
         let (j, j0) = (&now.impulse, &before.impulse);
         let mean = |j: Vec3<f64>, j0: Vec3<f64>| (j - j0) * (1.0 / h);
         let open = [
             (rot_wb * found.linear - mean(j.linear, j0.linear)).norm(),
-            (rot_wb * about_com - mean(j.angular, j0.angular)).norm(),
+            (rot_wb * found.angular - mean(j.angular, j0.angular)).norm(),
         ];
         let scale = self.inertial();
         let rounding = self.rounding(model, h, [before, now]);
+        let jerk = self.jerk(model, h, before, found);
         let largest = &mut self.largest;
         for i in 0..2 {
             let beyond = if open[i] <= rounding[i] { 0.0 } else { open[i] - rounding[i] };
             largest.residual[i] = worst(largest.residual[i], beyond);
             largest.scale[i] = largest.scale[i].max(scale[i]);
+            largest.jerk[i] = largest.jerk[i].max(jerk[i]);
         }
         largest.truncation = largest.truncation.max(truncation(h, before.v, before.a));
+    }
+
+    /// Returns the truncation errors due to the jerk `ȧ` in an interval of length `h`, s, of the force, N, and
+    /// of the moment, N m. They are the change of the base rows `found` if the velocity in the middle of the
+    /// interval, `(v₀ + v₁)/2 − h²/8 ȧ`, replaces the mean of the velocities at its ends. The mean of the
+    /// inertial forces over the interval differs from `found` by a third of this change.
+    ///
+    /// The jerk `ȧ = 2/h ((v₁ − v₀)/h − a₀)` of the interval includes the variation of the acceleration under
+    /// constant torques, which can be fast in a motion of light links, although the load moves slowly.
+    fn jerk(&mut self, model: &Model, h: f64, before: &TraceRow<'_>, found: Force<f64>) -> [f64; 2] {
+        if model.joints().is_empty() {
+            return [0.0; 2];
+        }
+        let [q, v, a] = &mut self.middle;
+        for i in 0..v.len() {
+            v[i] -= 0.25 * h * (a[i] - before.a[i]);
+        }
+        let moved = base_wrench(model, &mut self.data, [&q[..], &v[..], &a[..]], &mut self.forces);
+        [(moved.linear - found.linear).norm(), (moved.angular - found.angular).norm()]
     }
 
     /// Returns the scale of the inertial forces, `Σ |I a| + |v ×* I v|` over the bodies with their inertias
@@ -121,17 +143,37 @@ impl Residuals {
     /// Moments are treated as rounding errors if they are below a billionth of the moment of the forces about
     /// a lever arm of `size`, the radius of gyration of the robot, m.
     pub(super) fn residual(&self, size: f64) -> f64 {
-        let [linear, angular] = self.scale;
-        let angular = angular.max(1e-9 * size * linear);
+        let [linear, angular] = self.scale_with(size);
         worst(relative(self.residual[0], linear), relative(self.residual[1], angular))
     }
 
-    /// Returns the largest residual that passes. It is 1e-6 plus the truncation error of the differences at
-    /// the largest rates of the run, and at most 0.1, so that the check fails if a wrench as large as the
-    /// inertial forces is missing.
-    pub(super) fn gate(&self) -> f64 {
-        (1e-6 + self.truncation).min(0.1)
+    /// Returns the largest residual that passes. It is 1e-6 plus the truncation errors of the differences at
+    /// the largest rates and the largest jerk of the run, and at most 0.1, so that the check fails if a
+    /// wrench as large as the inertial forces is missing. `size` is that of [`Residuals::residual`].
+    pub(super) fn gate(&self, size: f64) -> f64 {
+        let [linear, angular] = self.scale_with(size);
+        let jerk = relative(self.jerk[0], linear).max(relative(self.jerk[1], angular));
+        (1e-6 + self.truncation + jerk).min(0.1)
     }
+
+    /// Returns the scales of forces, N, and moments, N m, of a robot with the radius of gyration `size`, m.
+    fn scale_with(&self, size: f64) -> [f64; 2] {
+        let [linear, angular] = self.scale;
+        [linear, angular.max(1e-9 * size * linear)]
+    }
+}
+
+/// Returns the base rows of inverse dynamics with configuration, velocity and acceleration `[q, v, a]`, about
+/// the centre of mass in base axes. `forces` is a buffer, `(nv,)`.
+fn base_wrench(
+    model: &Model,
+    data: &mut Data<f64>,
+    [q, v, a]: [&[f64]; 3],
+    forces: &mut [f64],
+) -> Force<f64> {
+    inverse_dynamics(model, data, q, v, a, &[], forces);
+    let found = Force::from_slice(forces);
+    Force::new(found.linear, found.angular - center_of_mass_b(data).cross(found.linear))
 }
 
 /// Returns the twist and the momentum of a body, both about the base's origin and in base axes.

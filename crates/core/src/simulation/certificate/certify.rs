@@ -41,7 +41,7 @@ pub fn certify(model: &Model, trace: &Trace) -> Certificate {
         Some(PairChecks {
             center_of_mass_error_rel: center_error,
             base_rows_residual_rel: base_rows.largest.residual(balance.size()),
-            base_rows_gate: base_rows.largest.gate(),
+            base_rows_gate: base_rows.largest.gate(balance.size()),
             attitude_consistency: attitude.consistency(ATTITUDE),
         })
     } else {

@@ -64,7 +64,7 @@ impl Stream {
         PairChecks {
             center_of_mass_error_rel: self.center.error(self.size, CENTER),
             base_rows_residual_rel: self.base_rows.largest.residual(self.size),
-            base_rows_gate: self.base_rows.largest.gate(),
+            base_rows_gate: self.base_rows.largest.gate(self.size),
             attitude_consistency: self.attitude.consistency(ATTITUDE),
         }
     }
