@@ -148,6 +148,20 @@ def test_a_brake_of_one_robot_holds_in_a_run_of_one_robot() -> None:
         assert np.all(trace.q[:, 7] == 0.0) and failed(trace) == []
 
 
+def test_the_trace_of_one_system_has_its_events() -> None:
+    chaser, target = brakes.wheel_system(SPIN, SLIP)
+    events = [oo.Engage("slow", "chaser/brake", at=0.1)]
+    alone: Any = oo.Simulation(oo.World([chaser], events=events), time_step=0.01).run(0.3)
+    (record,) = alone.events
+    assert (record.name, record.kind, record.time) == ("slow", "engage", 0.1)
+    assert record.systems == ("chaser", "chaser")
+    assert pickle.loads(pickle.dumps(alone)).events == [record]
+    # in a world of several systems, each trace has the events that concern its system
+    both: Any = oo.Simulation(oo.World([chaser, target], events=events), time_step=0.01).run(0.3)
+    assert both["chaser"].events == both.events == [record]
+    assert both["target"].events == []
+
+
 def test_an_engaged_event_that_changes_nothing_is_not_recorded() -> None:
     chaser, target = brakes.wheel_system(0.0, SLIP)
     events = [oo.Engage("again", "chaser/brake", at=0.1)]

@@ -3,11 +3,12 @@
 use crate::contact::PyContactTrace;
 use crate::interrupt::abandonable;
 use crate::recorded_loop::PyLoopTrace;
+use crate::world::PyEventRecord;
 use numpy::ndarray::ArrayView;
 use numpy::{IxDyn, PyArray, PyArray1, PyArrayDyn, PyArrayMethods};
 use onorbit_core::model::Model;
 use onorbit_core::number_text::{count, short};
-use onorbit_core::simulation::{COLUMNS, CONTACTS, Condition, LOOPS, Trace, WRENCHES, certify};
+use onorbit_core::simulation::{COLUMNS, CONTACTS, Condition, EventRecord, LOOPS, Trace, WRENCHES, certify};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -21,6 +22,9 @@ use std::sync::Arc;
 pub(crate) struct PyTrace {
     pub(crate) trace: Trace,
     pub(crate) model: Arc<Model>,
+    /// Events that concern the system, and the names of all systems.
+    pub(crate) events: Vec<EventRecord>,
+    pub(crate) names: Arc<[String]>,
     /// True if the run reached its end.
     #[pyo3(get)]
     pub(crate) is_complete: bool,
@@ -163,6 +167,13 @@ macro_rules! getters {
                     all.set_item(&column.name, PyLoopTrace::new(values.into_any()))?;
                 }
                 Ok(all)
+            }
+
+            /// Events that concern the system, in order of time: those of its brakes and contacts, and the
+            /// captures and releases in which it is one of the two systems. Empty for a run without a world.
+            #[getter]
+            fn events(&self) -> Vec<PyEventRecord> {
+                self.events.iter().map(|record| PyEventRecord::of(record, &self.names)).collect()
             }
 
             /// Times at which integration continued about a new reference orbit, because the robot had

@@ -12,7 +12,7 @@ from onorbit_rs.output.columns import path_of
 from onorbit_rs.output.saved_trace import SavedTrace
 
 if TYPE_CHECKING:
-    from onorbit_rs._core import Trace
+    from onorbit_rs._core import EventRecord, Trace
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,7 @@ class PickledTrace(SavedTrace):
     wall_s: float
     results: Sequence[Any]
     results_of_methods: Mapping[str, Any]
+    events: Sequence[EventRecord] = ()
 
     def __post_init__(self) -> None:
         """Make the columns read-only."""
@@ -67,4 +68,5 @@ def reduced(trace: Trace) -> tuple[Any, ...]:
     """Return the class and arguments that rebuild a trace from a pickle."""
     results = {"certificate": trace.certificate(), "joint_limits_exceeded": trace.joint_limits_exceeded()}
     arrays = arrays_of(trace) | {"rereferenced": np.asarray(trace.rereferenced)}
-    return PickledTrace, (arrays, trace.is_complete, trace.wall_s, list(trace.results), results)
+    rest = (list(trace.results), results, trace.events)
+    return PickledTrace, (arrays, trace.is_complete, trace.wall_s, *rest)

@@ -79,9 +79,12 @@ impl Systems {
         wall_s: f64,
     ) -> PyResult<Py<PyAny>> {
         let Recording { systems, events, groups } = recording;
-        let traces = systems.into_iter().zip(&self.models);
-        let traces = traces.map(|(trace, model)| {
-            Py::new(py, PyTrace { trace, model: Arc::clone(model), is_complete, wall_s })
+        let names: Arc<[String]> = self.names.clone().into();
+        let traces = systems.into_iter().zip(&self.models).enumerate();
+        let traces = traces.map(|(system, (trace, model))| {
+            let own = events.iter().filter(|record| record.systems.contains(&system)).cloned().collect();
+            let (model, names) = (Arc::clone(model), Arc::clone(&names));
+            Py::new(py, PyTrace { trace, model, events: own, names, is_complete, wall_s })
         });
         let mut traces = traces.collect::<PyResult<Vec<_>>>()?;
         if traces.len() == 1 {
