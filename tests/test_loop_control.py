@@ -219,6 +219,20 @@ def test_rollouts_refuse_computed_torque_with_loops() -> None:
         oo.rollout(looped, q, np.zeros((1, looped.nv)), steps=2, controller=law, reference=oo.Hold(pose))
 
 
+@pytest.mark.filterwarnings("ignore:event 'berth' did not happen")  # the run ends before the berthing
+def test_accelerations_do_not_jump_when_other_joints_become_independent(tmp_path: Path) -> None:
+    changes = [
+        ("time_step: 2 ms", "time_step: 10 ms"),
+        ("duration: 2 s", "duration: 42 s"),
+        ("record_every: 50", "record_every: 1"),
+    ]
+    trace: Any = oo.run(scenario(tmp_path, *changes), quiet=True).trace["servicer"]
+    v = trace.v[trace.time > 26.05, 6:]
+    jumps = np.abs(np.diff(v, n=2, axis=0)).max(axis=1) / 0.01
+    assert np.median(jumps) > 1e-6  # the joints move
+    assert jumps.max() < 5.0 * np.median(jumps)  # 36 times with a choice-dependent motion
+
+
 STIFFNESS = np.diag([40.0, 40.0, 40.0, 2.0, 2.0, 2.0])  # N/m, N m/rad
 
 

@@ -2,6 +2,7 @@
 
 use super::{LoopedDynamics, Workspace};
 use crate::control::control_law::JointCommand;
+use crate::dynamics::IndependentJoints;
 use crate::spatial::{cholesky_factor, cholesky_solve, dot};
 
 impl LoopedDynamics {
@@ -34,7 +35,8 @@ impl LoopedDynamics {
     }
 
     /// Makes the columns of `G` that belong to tasks orthonormal in the rows of the joints that tasks drive, by the
-    /// modified Gram-Schmidt process.
+    /// modified Gram-Schmidt process, and removes their part of `g` in these rows. The joint accelerations of
+    /// least norm then do not depend on the choice of independent joints, which may change during a run.
     fn orthonormalize(&mut self) {
         let Self { n, joints, commands, work, .. } = self;
         let (n, f) = (*n, joints.count());
@@ -43,7 +45,7 @@ impl LoopedDynamics {
         if rows.len() == columns.len() {
             return; // no dependent joints
         }
-        let map = &mut joints.map;
+        let IndependentJoints { map, drift, .. } = joints;
         for (place, &c) in columns.iter().enumerate() {
             let size = rows.iter().map(|&j| map[j * f + c] * map[j * f + c]).sum::<f64>().sqrt();
             (0..n).for_each(|j| map[j * f + c] /= size);
@@ -51,6 +53,8 @@ impl LoopedDynamics {
                 let share: f64 = rows.iter().map(|&j| map[j * f + c] * map[j * f + other]).sum();
                 (0..n).for_each(|j| map[j * f + other] -= share * map[j * f + c]);
             }
+            let share: f64 = rows.iter().map(|&j| map[j * f + c] * drift[j]).sum();
+            (0..n).for_each(|j| drift[j] -= share * map[j * f + c]);
         }
     }
 

@@ -55,8 +55,8 @@ impl<S: Scalar> Looped<S> {
 /// with the accelerations `z` of independent coordinates ([`IndependentJoints`]). The independent joints are
 /// chosen among the driven joints as far as possible. With `M* q̈ + l = τ + Kᵀ λ` and `K G = 0`, the reduced
 /// equations are `Gᵀ M* G z + Gᵀ (l + M* g) = Gᵀ τ`, to which [`HybridDynamics`] applies. In the rows of the
-/// joints that tasks drive, the columns of `G` of these joints are orthonormal, so that the accelerations of
-/// least norm do not depend on the choice of independent joints.
+/// joints that tasks drive, the columns of `G` of these joints are orthonormal, and `g` is orthogonal to them, so
+/// that the accelerations of least norm do not depend on the choice of independent joints.
 ///
 /// Several driven joints may share one coordinate. The torques of the driven joints `A` are those of least
 /// norm with the required efforts `u = G_Aᵀ τ_A` of the coordinates: `τ_A = G_A (G_Aᵀ G_A)⁻¹ u`. Joints
