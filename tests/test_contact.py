@@ -75,6 +75,27 @@ def test_friction_turns_both_spheres_in_the_same_direction() -> None:
     assert (across <= 0.5 * normal * (1.0 + 1e-9) + 1e-12).all()
 
 
+@pytest.mark.parametrize("damping", [None, 0.0, 5.0])
+@pytest.mark.parametrize("stiffness", [None, 1e5])
+def test_bristles_far_stiffer_than_a_soft_pad_pass_every_check(
+    stiffness: float | None, damping: float | None
+) -> None:
+    """Slipping bristles of little damping were on the friction cone at once, which ended thousands of steps."""
+    spin = [0.01, 0.02, -0.03]
+    systems = [moving("a", [0, 0, 0], [0.02, 0, 0]), moving("b", [0.205, 0.03, 0], [0, 0, 0], spin)]
+    friction = oo.Friction(0.5, stiffness=stiffness, damping=damping)
+    pad = oo.Contact(
+        "a/body", "b/body", normal=oo.HuntCrossley(1e3, restitution=0.5, speed=0.05), friction=friction,
+        name="touch",
+    )  # fmt: skip
+    trace = run(oo.World(systems, contacts=[pad]), 3.0, time_step=0.01)
+    touch = trace.contacts["touch"]
+    assert touch.touches[-1] == 1 and touch.force[-1].any() == (touch.gap[-1] < 0.0)
+    assert np.diff(touch.dissipated).min() > -1e-16
+    for name in "ab":
+        assert all(holds for *_, holds in trace[name].certificate())
+
+
 def test_the_default_name_and_lists_of_links() -> None:
     assert oo.Contact("a/body", "b/*").name == "a/body|b/*"
     contact = oo.Contact(["a/x", "a/y"], "b/*", normal=HARD, friction=oo.Friction(0.3, 0.2, 0.01))
@@ -179,7 +200,7 @@ def test_spheres_that_touch_are_captured_and_the_force_ends() -> None:
         ), ["same link"]),
         (lambda: oo.World([moving("a", [0, 0, 0], [0, 0, 0])], contacts=[oo.Contact("a/bod", "a/*")]),
          ["no link matches 'a/bod'", "did you mean 'a/body'"]),
-        (lambda: run(pair(gap=-0.05)), ["touch", "overlap by 0.05 m", "start_overlapping"]),
+        (lambda: run(pair(gap=-0.05)), ["touch", "'a/body' and 'b/body' overlap by 0.05 m", "start_overlapping"]),
     ],
 )  # fmt: skip
 def test_invalid_contacts_are_errors_that_state_the_remedy(make: Any, words: list[str]) -> None:

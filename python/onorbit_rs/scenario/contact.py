@@ -114,7 +114,7 @@ class Friction(Part):
     stiffness: Annotated[Stiffness, Positive] | None = None
     """Tangential stiffness. Default: 0.82 times the stiffness of the normal force, at a depth of 0.1 mm."""
     damping: Annotated[Damping, NotNegative] | None = None
-    """Tangential damping inside the cone. Default: a tenth of critical damping."""
+    """Tangential damping inside the cone; at least a hundredth of critical damping. Default: a tenth."""
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:

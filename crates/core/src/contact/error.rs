@@ -64,7 +64,7 @@ pub enum ContactError {
     Overlap {
         /// Name of the contact.
         contact: String,
-        /// Names of both links, as text.
+        /// Paths `SYSTEM/LINK` of both links, as text.
         links: String,
         /// Depth of the overlap, m.
         depth: f64,

@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 /// Default damping ratio of the bristles.
 const DAMPING_RATIO: f64 = 0.1;
-/// Damping ratio below which slipping bristles lie on the friction cone immediately. Bristles with more
-/// damping approach the cone at the rate `σ/c`, with stiffness `σ` and damping `c`, which a step must
-/// resolve.
+/// Smallest damping ratio of the bristles. Slipping bristles approach the friction cone at the rate `σ/c`, with
+/// the stiffness `σ` and the damping `c`, which the steps must resolve. Bristles that would be on the cone at
+/// once would exchange energy with the normal force, which changes their length, and their force would change
+/// its direction at once.
 const LEAST_RATIO: f64 = 0.01;
 
 /// Coulomb friction with elastic bristles.
@@ -27,7 +28,8 @@ pub struct Friction {
     pub kinetic_coefficient: f64,
     /// Tangential stiffness `σ`, N/m.
     pub stiffness: f64,
-    /// Tangential damping `c` of the bristles, N s/m; `None` selects a damping ratio of 0.1.
+    /// Tangential damping `c` of the bristles, N s/m; `None` selects a damping ratio of 0.1. Damping ratios below
+    /// 0.01 are replaced by 0.01.
     pub damping: Option<f64>,
     /// Coefficient of kinetic torsional friction, m: the moment about the normal per unit of normal force
     /// while the contact slips; 0 for contact at a point.
@@ -43,15 +45,6 @@ pub struct Bristle {
     pub is_slipping: bool,
 }
 
-/// Damping `c` of the bristles, N s/m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BristleDamping {
-    /// Damping while the contact sticks.
-    pub sticking: f64,
-    /// Damping while the contact slips; 0 if slipping bristles lie on the friction cone immediately.
-    pub slipping: f64,
-}
-
 /// Friction on the second body after a displacement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionForce {
@@ -59,13 +52,11 @@ pub struct FrictionForce {
     pub force: Vec3<f64>,
     /// Bristles after the displacement.
     pub bristle: Bristle,
-    /// Rate of the deflection of the bristles, m/s: the sliding velocity without its plastic part. For
-    /// slipping bristles without damping, the sliding velocity itself.
+    /// Rate of the deflection of the bristles, m/s: the sliding velocity without its plastic part.
     pub elastic_rate: Vec3<f64>,
     /// Distance from the next change between sticking and slipping, negative beyond it, with the symbols of
     /// [`Friction::after`]: `1 − |σ z + c v|/(μ N)` while the contact sticks, and `|σ z + c v|/(μ N) − 1`
-    /// while it slips; for slipping bristles without damping that are on the cone, the cosine of the angle
-    /// between bristles and velocity.
+    /// while it slips.
     pub margin: f64,
 }
 
@@ -81,10 +72,6 @@ impl Friction {
     /// `v − ż` is that of the slip, parallel to the force. Force and deflection are continuous where the
     /// contact begins or ceases to slip, except for the difference between static and kinetic friction.
     ///
-    /// Without damping, slipping bristles have the length `μ N/σ` and turn towards the velocity,
-    /// `ḋ = (1 − d dᵀ) v/|z|`. Here `d` is the unit vector along the bristles. For a constant velocity, the
-    /// angle `φ` between `d` and `v` obeys `tan φ/2 = tan φ₀/2 exp(−s/|z|)` with the path `s`.
-    ///
     /// Source of the return to the cone: Simo and Hughes, Computational Inelasticity, 1998, sections 1.2
     /// and 1.7.
     pub fn after(
@@ -93,14 +80,11 @@ impl Friction {
         moved: Vec3<f64>,
         rate: Vec3<f64>,
         normal: f64,
-        damping: BristleDamping,
+        damping: f64,
     ) -> FrictionForce {
         let is_slipping = start.is_slipping;
-        if is_slipping && damping.slipping == 0.0 {
-            return self.on_cone(start, moved, rate, normal, damping.sticking);
-        }
         let deflection = start.deflection + moved;
-        let trial = deflection * self.stiffness + rate * damping.sticking;
+        let trial = deflection * self.stiffness + rate * damping;
         let limit = if is_slipping { self.kinetic_coefficient } else { self.static_coefficient } * normal;
         let beyond = trial.norm() - limit;
         let relative = if limit > 0.0 { beyond / limit } else { beyond / f64::MIN_POSITIVE };
@@ -110,47 +94,17 @@ impl Friction {
             return FrictionForce { force: -trial, bristle, elastic_rate: rate, margin };
         }
         let direction = unit(trial);
-        let plastic = if is_slipping { beyond / damping.slipping } else { 0.0 };
+        let plastic = if is_slipping { beyond / damping } else { 0.0 };
         FrictionForce { force: direction * -limit, bristle, elastic_rate: rate - direction * plastic, margin }
     }
 
-    /// Returns the friction of slipping bristles without damping, after the displacement `moved`, m. Bristles
-    /// inside the friction cone stick, with the damping `damping`, N s/m. The other arguments are those of
-    /// [`Friction::after`].
-    fn on_cone(
-        &self,
-        start: &Bristle,
-        moved: Vec3<f64>,
-        rate: Vec3<f64>,
-        normal: f64,
-        damping: f64,
-    ) -> FrictionForce {
-        let trial = start.deflection + moved;
-        let elastic = trial * self.stiffness + rate * damping;
-        let limit = self.kinetic_coefficient * normal;
-        let beyond = elastic.norm() - limit;
-        if beyond <= 0.0 {
-            let margin = if limit > 0.0 { beyond / limit } else { 0.0 };
-            let bristle = Bristle { deflection: trial, is_slipping: false };
-            return FrictionForce { force: -elastic, bristle, elastic_rate: rate, margin };
-        }
-        let length = limit / self.stiffness;
-        let direction = turned(start.deflection, rate, moved.norm(), length);
-        let bristle = Bristle { deflection: direction * length, is_slipping: true };
-        let margin = cosine(direction, rate);
-        FrictionForce { force: direction * -limit, bristle, elastic_rate: rate, margin }
-    }
-
-    /// Returns the damping of the bristles of a contact with the reciprocal effective mass `mobility`, 1/kg.
-    /// If no damping is given, it is 0 for `mobility` 0.
-    pub fn damping_for(&self, mobility: f64) -> BristleDamping {
+    /// Returns the damping of the bristles, N s/m, of a contact with the reciprocal effective mass `mobility`,
+    /// 1/kg: the given one, but at least that with a damping ratio of 0.01. For `mobility` 0, which stands for
+    /// an unknown mass, it is the given one or 0.
+    pub fn damping_for(&self, mobility: f64) -> f64 {
         // c = 2 ζ √(σ m)
-        let with_ratio = |ratio: f64| {
-            if mobility > 0.0 { 2.0 * ratio * (self.stiffness / mobility).sqrt() } else { 0.0 }
-        };
-        let sticking = self.damping.unwrap_or_else(|| with_ratio(DAMPING_RATIO));
-        let is_resolved = mobility > 0.0 && sticking >= with_ratio(LEAST_RATIO);
-        BristleDamping { sticking, slipping: if is_resolved { sticking } else { 0.0 } }
+        let critical = if mobility > 0.0 { 2.0 * (self.stiffness / mobility).sqrt() } else { 0.0 };
+        self.damping.unwrap_or(DAMPING_RATIO * critical).max(LEAST_RATIO * critical)
     }
 
     /// Returns the law of the moment about the normal, N m, as a function of the angle of twist, rad; `None`
@@ -194,34 +148,7 @@ impl Friction {
     }
 }
 
-fn cosine(unit: Vec3<f64>, rate: Vec3<f64>) -> f64 {
-    let speed = rate.norm();
-    if speed > 0.0 { unit.dot(rate) / speed } else { 0.0 }
-}
-
 fn unit(v: Vec3<f64>) -> Vec3<f64> {
     let length = v.norm();
     if length > 0.0 { v * (1.0 / length) } else { Vec3::zero() }
-}
-
-/// Returns the unit vector along slipping bristles of length `length`, m, that pointed along `from`, after
-/// sliding by `path`, m, at the velocity `rate`, m/s. If the velocity or the length is zero, this is the
-/// direction of `from`.
-fn turned(from: Vec3<f64>, rate: Vec3<f64>, path: f64, length: f64) -> Vec3<f64> {
-    let (from, to) = (unit(from), unit(rate));
-    if rate.norm() == 0.0 || length <= 0.0 {
-        return from;
-    }
-    let cosine = from.dot(to).clamp(-1.0, 1.0);
-    let across = from - to * cosine;
-    let sine = across.norm();
-    if sine == 0.0 {
-        return if cosine < 0.0 { from } else { to };
-    }
-    // tan φ/2 = sin φ/(1 + cos φ) = (1 − cos φ)/sin φ; only one form is finite near φ = π
-    let tangent = if cosine < 0.0 { (1.0 - cosine) / sine } else { sine / (1.0 + cosine) };
-    let half = tangent.min(1e100) * (-path / length).exp();
-    let scale = 1.0 / (1.0 + half * half);
-    // cos φ = (1 − tan² φ/2)/(1 + tan² φ/2),  sin φ = 2 tan φ/2/(1 + tan² φ/2)
-    to * ((1.0 - half * half) * scale) + across * (2.0 * half * scale / sine)
 }

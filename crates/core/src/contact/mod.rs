@@ -20,7 +20,7 @@ mod restitution;
 
 pub use declared::{Contact, ContactLaw, ContactSide, ContactSteps};
 pub use error::ContactError;
-pub use friction::{Bristle, BristleDamping, Friction, FrictionForce};
+pub use friction::{Bristle, Friction, FrictionForce};
 pub use links::{LinkShapes, links_matching};
 pub use materials::{MATERIAL_PAIRS, MaterialPair, material_pair};
 pub use normal::NormalLaw;

@@ -126,9 +126,13 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
     }
 
     /// Initializes the states of the contacts and checks that bodies overlap only where the contact permits
-    /// it. Requires the kinematics of `state` in the trees.
-    pub(super) fn start_contacts(&self, state: &mut State<S>) -> Result<(), SimulationError> {
-        Ok(self.contacts.start(&self.trees, state)?)
+    /// it; `names` are those of the systems, for errors. Requires the kinematics of `state` in the trees.
+    pub(super) fn start_contacts(
+        &self,
+        names: &[String],
+        state: &mut State<S>,
+    ) -> Result<(), SimulationError> {
+        Ok(self.contacts.start(names, &self.trees, state)?)
     }
 
     /// Determines the modes of the contacts for the step from `t` to `end`, s, and returns the end of the

@@ -107,12 +107,13 @@ impl Simulation {
         let mut runs = Vec::new();
         for (number, numbers) in groups.into_iter().enumerate() {
             let own: Vec<_> = numbers.iter().filter_map(|&system| systems[system].take()).collect();
+            let names: Vec<_> = own.iter().map(|system| system.name.clone()).collect();
             let settings = settings.of_group(&numbers);
             let mut run = settings.run_state::<S>(duration, &numbers, own, events, engine.take())?;
             match checkpoints.get_mut(number).and_then(Option::take) {
                 None => {
                     run.mover.kinematics(&mut run.equations, &mut run.state);
-                    run.equations.start_contacts(&mut run.state)?;
+                    run.equations.start_contacts(&names, &mut run.state)?;
                 }
                 Some(checkpoint) => {
                     let own = numbers.iter().map(|&system| rows[system].take().unwrap_or_default());

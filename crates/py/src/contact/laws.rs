@@ -193,7 +193,8 @@ pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<NormalLaw> {
 ///     Tangential stiffness inside the cone, N/m; default: 0.82 times the stiffness of the normal force (at a
 ///     depth of 0.1 mm if that stiffness varies), as for elastic bodies with Poisson's ratio 0.3.
 /// damping : float, optional
-///     Tangential damping inside the cone, N s/m; default: a tenth of critical damping.
+///     Tangential damping inside the cone, N s/m; default: a tenth of critical damping. A value below a hundredth
+///     of critical damping, such as 0, is replaced by a hundredth.
 ///
 /// Raises
 /// ------

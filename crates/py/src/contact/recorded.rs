@@ -66,7 +66,8 @@ impl PyContactTrace {
         part_of(&CONTACTS, self.values.bind(py), "elastic")
     }
 
-    /// Energy that the contact has dissipated since the start of the run, (T,), J.
+    /// Energy that the contact has dissipated since the start of the run, (T,), J. It decreases, and may be
+    /// negative, where the elastic energy of polyhedra jumps; see the limits of contacts in the documentation.
     #[getter]
     fn dissipated<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         part_of(&CONTACTS, self.values.bind(py), "dissipated")

@@ -3,7 +3,7 @@
 use super::mode::{Mode, Phase};
 use super::side::{Side, SideMotion};
 use super::touching::{Loading, Touching};
-use crate::contact::{Bristle, BristleDamping, ContactError, Friction, FrictionForce};
+use crate::contact::{Bristle, ContactError, Friction, FrictionForce};
 use crate::simulation::contact_state::ContactState;
 use crate::spatial::Vec3;
 
@@ -71,7 +71,6 @@ impl Touching {
             turn: state.turn,
             slip: state.slip,
             normal: before.normal_a,
-            speeds: [before.sliding.norm(), before.spin.abs()],
             mobility,
             activity: self.activity(t, &before),
             slack: [0.0; 3],
@@ -154,19 +153,14 @@ impl Touching {
     fn next_bristles(&self, phase: Phase, loading: &Loading, rounding: f64) -> [Bristle; 2] {
         let friction = self.law.as_ref().and_then(|law| law.friction).filter(|_| phase == Phase::Pressing);
         let Some(friction) = friction else { return [AT_REST; 2] };
-        let Mode { bristle, twist, speeds, mobility, .. } = &self.mode;
+        let Mode { bristle, twist, mobility, .. } = &self.mode;
         let sliding = match &loading.friction {
-            Some(found) => {
-                continued(bristle, found, loading.sliding, speeds[0], friction.damping_for(mobility[1]))
-            }
+            Some(found) => continued(bristle, found, loading.sliding),
             None => self.begun(&friction, loading, loading.sliding.norm(), mobility[1], rounding),
         };
         let Some(torsion) = friction.torsion() else { return [sliding, AT_REST] };
         let twisting = match &loading.torsion {
-            Some(found) => {
-                let rate = Vec3::new(loading.spin, 0.0, 0.0);
-                continued(twist, found, rate, speeds[1], torsion.damping_for(mobility[2]))
-            }
+            Some(found) => continued(twist, found, Vec3::new(loading.spin, 0.0, 0.0)),
             None => self.begun(&torsion, loading, loading.spin.abs(), mobility[2], rounding),
         };
         [sliding, twisting]
@@ -188,24 +182,17 @@ impl Touching {
         let growth = law.normal.tangent_stiffness(loading.depth) * loading.rate;
         let limit = friction.static_coefficient * law.normal.force(loading.depth, loading.rate).max(0.0);
         let is_without_force = loading.depth <= rounding && law.normal.force(0.0, loading.rate) <= 0.0;
-        let is_slipping = friction.damping_for(mobility).sticking * speed > limit
+        let is_slipping = friction.damping_for(mobility) * speed > limit
             || (is_without_force && friction.stiffness * speed > friction.static_coefficient * growth);
         Bristle { is_slipping, ..AT_REST }
     }
 }
 
 /// Returns the bristles after the last step, which started with the bristles `before`. `rate` is the present
-/// sliding velocity, m/s, or rate of turn, rad/s, and `speed` its magnitude at the start of that step.
-fn continued(
-    before: &Bristle,
-    found: &FrictionForce,
-    rate: Vec3<f64>,
-    speed: f64,
-    damping: BristleDamping,
-) -> Bristle {
+/// sliding velocity, m/s, or rate of turn, rad/s.
+fn continued(before: &Bristle, found: &FrictionForce, rate: Vec3<f64>) -> Bristle {
     let is_slipping = if before.is_slipping {
-        let least = if damping.slipping > 0.0 { REACHED } else { REACHED * speed };
-        found.bristle.is_slipping && found.margin > least
+        found.bristle.is_slipping && found.margin > REACHED
     } else {
         found.margin <= REACHED && found.force.dot(rate) <= 0.0
     };

@@ -300,12 +300,13 @@ impl Contacts {
     }
 
     /// Initializes the states of the contacts: the work of pieces that overlap at the start is the elastic
-    /// energy at their depth.
+    /// energy at their depth. `names` are those of the systems, for errors.
     ///
     /// # Errors
     /// [`ContactError::Overlap`] if pieces overlap and their contact does not permit it.
     pub(super) fn start<S: Real>(
         &self,
+        names: &[String],
         trees: &[Tree<'_, S>],
         state: &mut State<S>,
     ) -> Result<(), ContactError> {
@@ -320,9 +321,12 @@ impl Contacts {
             pressing.mode.phase = Phase::Pressing;
             let Loading { depth, pressure, .. } = pressing.evaluate(&motions, &state.contacts[number])?;
             if depth > touching.rounding(&motions) && !touching.may_start_overlapping {
-                let frame = |side: &Side| &trees[side.place.0].model.frames()[side.place.1].name;
-                let [a, b] = [&touching.sides[0], &touching.sides[1]].map(frame);
-                let links = format!("'{a}' and '{b}'");
+                let path = |side: &Side| {
+                    let link = &trees[side.place.0].model.frames()[side.place.1].name;
+                    format!("'{}/{link}'", names[side.declared.system])
+                };
+                let [a, b] = [&touching.sides[0], &touching.sides[1]].map(path);
+                let links = format!("{a} and {b}");
                 return Err(ContactError::Overlap { contact: touching.name.clone(), links, depth });
             }
             state.contacts[number].normal_work = pressure.map_or(0.0, |pressure| pressure.elastic);

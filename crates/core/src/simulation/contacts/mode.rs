@@ -39,8 +39,6 @@ pub(in crate::simulation) struct Mode {
     pub(super) slip: Vec3<f64>,
     /// Normal at the start of the step, in axes of the first side.
     pub(super) normal: Vec3<f64>,
-    /// Sliding speed, m/s, and rate of turn about the normal, rad/s, at the start of the step.
-    pub(super) speeds: [f64; 2],
     /// Reciprocals of the effective masses in the normal and in the tangential directions, 1/kg, and of the
     /// effective inertia about the normal, 1/(kg m²); zero before the bodies touch.
     pub(super) mobility: [f64; 3],
@@ -68,7 +66,6 @@ impl Mode {
             turn: 0.0,
             slip: zero,
             normal: zero,
-            speeds: [0.0; 2],
             mobility: [0.0; 3],
             activity: 1.0,
             slack: [0.0; 3],

@@ -43,14 +43,13 @@ impl Rates {
             law.friction.and_then(|friction| friction.torsion()).filter(|_| !mode.twist.is_slipping);
         let rates = |friction: Option<Friction>, mobility: f64| {
             let own = |friction: Friction| {
-                [(friction.stiffness * mobility).sqrt(), friction.damping_for(mobility).sticking * mobility]
+                [(friction.stiffness * mobility).sqrt(), friction.damping_for(mobility) * mobility]
             };
             friction.map_or([0.0; 2], own)
         };
         let [sliding, twisting] = [rates(friction, tangential), rates(torsion, turning)];
         let relaxation = |friction: Friction, bristle: &Bristle, mobility: f64| {
-            let damping = friction.damping_for(mobility).slipping;
-            if bristle.is_slipping && damping > 0.0 { friction.stiffness / damping } else { 0.0 }
+            if bristle.is_slipping { friction.stiffness / friction.damping_for(mobility) } else { 0.0 }
         };
         let relaxations = law.friction.map_or(0.0, |friction| {
             let twist = friction.torsion().map_or(0.0, |torsion| relaxation(torsion, &mode.twist, turning));
