@@ -28,6 +28,21 @@ pub fn closest(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Pro
     nearest_pieces(a, pose_a, b, pose_b).map(|(proximity, _)| proximity)
 }
 
+/// Returns the distance of two shapes whose dimensions have been checked.
+///
+/// # Errors
+/// The errors of [`closest`], except those for dimensions.
+pub(crate) fn closest_of_valid(
+    a: &Shape,
+    pose_a: &Pose,
+    b: &Shape,
+    pose_b: &Pose,
+) -> Result<Proximity, GeometryError> {
+    check_pose(a, pose_a)?;
+    check_pose(b, pose_b)?;
+    nearest_pieces(a, pose_a, b, pose_b).map(|(proximity, _)| proximity)
+}
+
 /// Checks the dimensions of a shape and its pose.
 pub(super) fn check(shape: &Shape, pose: &Pose) -> Result<(), GeometryError> {
     shape.check()?;

@@ -26,6 +26,7 @@ pub struct Face {
 pub struct Hull {
     vertices: Vec<Vec3<f64>>,
     faces: Vec<Face>,
+    bounding_sphere: BoundingSphere,
 }
 
 impl Hull {
@@ -83,6 +84,11 @@ impl Hull {
     }
 
     pub(super) fn bounding_sphere(&self) -> BoundingSphere {
+        self.bounding_sphere
+    }
+
+    /// Returns the sphere about the middle of the box around the vertices.
+    fn sphere_around(&self) -> BoundingSphere {
         let axes = [Vec3::new(1.0, 0.0, 0.0), Vec3::new(0.0, 1.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
         let middle = axes.map(|axis| 0.5 * (self.farthest(axis).dot(axis) + self.farthest(-axis).dot(axis)));
         let center = Vec3::from_slice(&middle);
@@ -95,7 +101,8 @@ impl Hull {
         let mut is_taken: Vec<bool> =
             polytope.triangles.iter().map(|triangle| !triangle.is_alive || triangle.is_flat).collect();
         let mut index = vec![usize::MAX; polytope.points.len()];
-        let mut hull = Self { vertices: Vec::new(), faces: Vec::new() };
+        let bounding_sphere = BoundingSphere { center: Vec3::zero(), radius: 0.0 };
+        let mut hull = Self { vertices: Vec::new(), faces: Vec::new(), bounding_sphere };
         for seed in 0..polytope.triangles.len() {
             if is_taken[seed] {
                 continue;
@@ -111,6 +118,7 @@ impl Hull {
             }
             hull.faces.push(Face { normal: polytope.triangles[seed].normal, corners });
         }
+        hull.bounding_sphere = hull.sphere_around();
         hull
     }
 }

@@ -49,26 +49,23 @@ pub fn manifold(a: &Shape, pose_a: &Pose, b: &Shape, pose_b: &Pose) -> Result<Ma
     check(a, pose_a)?;
     check(b, pose_b)?;
     let (proximity, points) = touching_points(a, pose_a, b, pose_b)?;
-    Ok(Manifold { proximity, points: points.as_slice().to_vec() })
+    let points = match points {
+        Points::Witness => vec![witness(&proximity, 1.0)],
+        Points::Many(points) => points,
+    };
+    Ok(Manifold { proximity, points })
 }
 
-/// Contact points of a pair of shapes. A sphere has a single one.
+/// Contact points of a pair of shapes.
 #[derive(Clone, Debug)]
 pub(crate) enum Points {
-    /// Single contact point, formed by the witness points.
-    One([ContactPoint; 1]),
+    /// The witness points: those of a sphere, and those of shapes that exert no force on each other.
+    Witness,
     /// Corners of the common part of two features.
     Many(Vec<ContactPoint>),
 }
 
 impl Points {
-    pub(crate) fn as_slice(&self) -> &[ContactPoint] {
-        match self {
-            Self::One(points) => points,
-            Self::Many(points) => points,
-        }
-    }
-
     /// Returns the same points, fixed to both shapes and with constant weights.
     pub(crate) fn fixed(mut self, proximity: &Proximity) -> Self {
         if let Self::Many(points) = &mut self {
@@ -81,8 +78,7 @@ impl Points {
     }
 }
 
-/// Returns the distance and the contact points of two shapes whose dimensions have been checked, without
-/// allocating memory for the single point of a sphere.
+/// Returns the distance and the contact points of two shapes whose dimensions have been checked.
 ///
 /// # Errors
 /// The errors of [`closest`](super::closest()), except those for dimensions.
@@ -97,7 +93,7 @@ pub(crate) fn touching_points(
     check_pose(b, pose_b)?;
     let (proximity, [(a, pose_a), (b, pose_b)]) = nearest_pieces(a, pose_a, b, pose_b)?;
     if matches!((a, b), (Shape::Sphere { .. }, _) | (_, Shape::Sphere { .. })) {
-        return Ok((proximity, Points::One([witness(&proximity, 1.0)])));
+        return Ok((proximity, Points::Witness));
     }
     let feature_a = Feature::of(a, &pose_a, proximity.point_a, proximity.normal);
     let feature_b = Feature::of(b, &pose_b, proximity.point_b, -proximity.normal);

@@ -44,6 +44,7 @@ mod torus;
 pub use boundary::{BoundaryPoint, signed_distance};
 pub use bounding_sphere::BoundingSphere;
 pub use closest::closest;
+pub(crate) use closest::closest_of_valid;
 pub use contact_point::ContactPoint;
 pub use error::{GeometryError, PosedPair};
 pub use hull::{Face, Hull};

@@ -41,8 +41,8 @@ impl Touching {
             (self.mode.phase, self.mode.since) = (Phase::Far, t);
             return Ok(None);
         }
-        let geometry = self.geometry(motions)?;
-        if !is_known && !self.mode.phase.has_touched() {
+        let mut geometry = self.geometry(self.mode.phase, motions)?;
+        if !is_known && !self.mode.phase.is_closed() {
             self.clearance = geometry.0.distance - CLEAR * self.smaller_reach();
             if self.takes_clearance(travel) {
                 (self.mode.phase, self.mode.since) = (Phase::Far, t);
@@ -52,11 +52,15 @@ impl Touching {
         let rounding = self.rounding(motions);
         let mut before = self.loading(self.mode.phase, &geometry, motions, state);
         let phase = if is_known { self.mode.phase } else { self.next_phase(&before, rounding) };
+        if phase.is_closed() && !self.mode.phase.is_closed() {
+            geometry = self.geometry(phase, motions)?;
+        }
         if phase == Phase::Pressing && self.mode.mobility[0] == 0.0 {
             // whether the bristles stick depends on their damping, and thus on the mobility
             self.mode.mobility = mobility(&self.sides, &self.loading(phase, &geometry, motions, state));
             before = self.loading(self.mode.phase, &geometry, motions, state);
         }
+        self.deepest = self.largest_depth(&before);
         if is_known {
             return Ok(Some(before));
         }
@@ -96,7 +100,7 @@ impl Touching {
     /// accelerate strongly. It suffices that their bounding spheres show this, or the gap that was computed in
     /// an earlier step. The result is the same as with the present gap.
     fn stays_apart(&mut self, motions: &[SideMotion; 2], travel: f64) -> bool {
-        if self.mode.phase.has_touched() {
+        if self.mode.phase.is_closed() {
             return false;
         }
         if self.is_far(motions, travel) {

@@ -109,7 +109,7 @@ impl Contacts {
                     });
                     let name = name.clone();
                     let (law, may_start_overlapping) = (*law, *may_start_overlapping);
-                    let (mode, last) = (Mode::START, None);
+                    let (mode, deepest, last) = (Mode::START, 0.0, None);
                     let is_held = false;
                     list.push(Touching {
                         contact,
@@ -121,6 +121,7 @@ impl Contacts {
                         mode,
                         clearance: 0.0,
                         is_held,
+                        deepest,
                         last,
                     });
                 }
@@ -215,13 +216,13 @@ impl Contacts {
         }
         for (&number, own) in near.iter().zip(&state.contacts) {
             let touching = &mut list[number];
-            if !touching.mode.phase.has_touched() {
+            if !touching.mode.phase.is_closed() {
                 touching.last = touching.last.take().filter(|_| is_begun);
                 continue;
             }
             if !is_begun || touching.last.is_none() {
                 let motions = touching.motions(frames, trees, state);
-                let geometry = touching.geometry(&motions)?;
+                let geometry = touching.geometry(touching.mode.phase, &motions)?;
                 touching.last = Some(touching.loading(touching.mode.phase, &geometry, &motions, own));
             }
             let Some(loading) = &touching.last else { continue };
@@ -241,7 +242,7 @@ impl Contacts {
         rates.extend(self.near.iter().map(|&number| {
             let touching = &self.list[number];
             let center = self.touches[touching.contact].center;
-            let loading = touching.last.as_ref().filter(|_| touching.mode.phase.has_touched());
+            let loading = touching.last.as_ref().filter(|_| touching.mode.phase.is_closed());
             loading.map_or(ContactState::ZERO, |loading| loading.rates(center))
         }));
     }
@@ -274,7 +275,7 @@ impl Contacts {
                 touching.prepare_for_engine(trees, &state.trees, &loading);
             }
             longest = longest.min(touching.longest_step(*steps, &motions, &loading, *has_engine));
-            energy += touching.energy(&loading);
+            energy += touching.energy();
             open += touching.open_energy(&loading, own);
             samples[touching.contact].add(touching, &motions, &loading);
             touching.last = Some(loading);

@@ -18,8 +18,8 @@ pub(super) enum Phase {
 }
 
 impl Phase {
-    /// Returns true if the bodies overlap.
-    pub(super) fn has_touched(self) -> bool {
+    /// Returns true if the bodies touch.
+    pub(super) fn is_closed(self) -> bool {
         matches!(self, Self::Pressing | Self::Separating)
     }
 }

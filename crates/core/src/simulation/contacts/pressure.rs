@@ -2,21 +2,14 @@
 
 use super::side::SideMotion;
 use crate::contact::NormalLaw;
-use crate::geometry::{ContactPoint, Proximity};
+use crate::geometry::{ContactPoint, Points, Proximity};
 use crate::spatial::{Force, Motion, Vec3};
 
-/// Resultant of the normal forces at the points of a contact, and of the forces that change their weights.
+/// Sums over the normal forces at the points of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pressure {
-    /// Point at which the resultant acts, m, in W.
-    pub(super) point: Vec3<f64>,
     /// Sum of the normal forces, N.
     pub(super) force: f64,
-    /// Force on the second side, N, W axes. For a single point it is along the normal; for several points it
-    /// may be inclined like the surfaces.
-    pub(super) on_b: Vec3<f64>,
-    /// Moment on the second side about `point`, N m, W axes.
-    pub(super) moment: Vec3<f64>,
     /// Power that the force takes from the motion, W.
     pub(super) power: f64,
     /// Power that the force dissipates, W.
@@ -25,7 +18,20 @@ pub(super) struct Pressure {
     pub(super) elastic: f64,
 }
 
-impl Pressure {
+/// Resultant of the normal forces at the points of a contact, and of the forces that change their weights.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Resultant {
+    pub(super) pressure: Pressure,
+    /// Point at which the resultant acts, m, in W.
+    pub(super) point: Vec3<f64>,
+    /// Force on the second side, N, W axes. For a single point it is along the normal; for several points it
+    /// may be inclined like the surfaces.
+    pub(super) on_b: Vec3<f64>,
+    /// Moment on the second side about `point`, N m, W axes.
+    pub(super) moment: Vec3<f64>,
+}
+
+impl Resultant {
     /// Computes the forces that belong to the elastic energy `U = Σ w_i u(x_i)` of points with the depths
     /// `x_i` and the weights `w_i`, with the force `F` and the elastic energy `u` of the law. For a
     /// displacement `ξ` of the second side, the wrench `f` on it is given by
@@ -40,13 +46,21 @@ impl Pressure {
     /// their elastic energy, and so does each of several points that would pull.
     pub(super) fn of(
         law: &NormalLaw,
-        points: &[ContactPoint],
+        points: &Points,
         proximity: &Proximity,
         motions: &[SideMotion; 2],
         is_pressing: bool,
     ) -> Self {
+        let normal = proximity.normal;
+        let points = match points {
+            Points::Witness => {
+                let at = (proximity.center(), -proximity.distance);
+                return Self::at_point(law, at, normal, motions, is_pressing);
+            }
+            Points::Many(points) => &points[..],
+        };
         if let [point] = points {
-            return Self::at_point(law, point, proximity.normal, motions, is_pressing);
+            return Self::at_point(law, (middle(point), point.depth), normal, motions, is_pressing);
         }
         let (center, [a, b]) = (proximity.center(), motions);
         let twist = Motion::new(
@@ -74,36 +88,28 @@ impl Pressure {
             }
         }
         let arm = if force > 0.0 { at * (1.0 / force) } else { mean };
+        let loss = if is_pressing { loss } else { 0.0 };
         Self {
+            pressure: Pressure { force, power: -twist.dot(wrench), loss, elastic },
             point: center + arm,
-            force,
             on_b: wrench.linear,
             moment: wrench.angular - arm.cross(wrench.linear),
-            power: -twist.dot(wrench),
-            loss: if is_pressing { loss } else { 0.0 },
-            elastic,
         }
     }
 
+    /// Returns the force at a single point `at`, m, with its depth, m.
     fn at_point(
         law: &NormalLaw,
-        point: &ContactPoint,
+        (at, depth): (Vec3<f64>, f64),
         normal: Vec3<f64>,
         [a, b]: &[SideMotion; 2],
         is_pressing: bool,
     ) -> Self {
-        let at = middle(point);
         let rate = -normal.dot(b.velocity_at(at) - a.velocity_at(at));
-        let force = if is_pressing { law.force(point.depth, rate) } else { 0.0 };
-        Self {
-            point: at,
-            force,
-            on_b: normal * force,
-            moment: Vec3::zero(),
-            power: force * rate,
-            loss: if is_pressing { (force - law.elastic_force(point.depth)) * rate } else { 0.0 },
-            elastic: law.elastic_energy(point.depth),
-        }
+        let force = if is_pressing { law.force(depth, rate) } else { 0.0 };
+        let loss = if is_pressing { (force - law.elastic_force(depth)) * rate } else { 0.0 };
+        let pressure = Pressure { force, power: force * rate, loss, elastic: law.elastic_energy(depth) };
+        Self { pressure, point: at, on_b: normal * force, moment: Vec3::zero() }
     }
 }
 

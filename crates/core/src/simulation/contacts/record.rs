@@ -1,7 +1,6 @@
 //! Computation of the rows of the contacts in the traces.
 
 use super::Contacts;
-use super::mode::Phase;
 use super::touches::Touch;
 use super::touching::{Loading, Touching};
 use crate::contact::ContactError;
@@ -115,11 +114,7 @@ impl Row {
 impl Touching {
     /// Returns the elastic energies of the normal force and of the bristles, J.
     pub(super) fn elastic_energies(&self, loading: &Loading) -> [f64; 2] {
-        let Some(law) =
-            self.law.as_ref().filter(|_| matches!(self.mode.phase, Phase::Pressing | Phase::Separating))
-        else {
-            return [0.0; 2];
-        };
+        let Some(law) = self.law.as_ref().filter(|_| self.mode.phase.is_closed()) else { return [0.0; 2] };
         let friction = law.friction.as_ref().zip(loading.friction.as_ref());
         let bristles =
             friction.map_or(0.0, |(friction, found)| friction.elastic_energy(found.bristle.deflection));

@@ -32,11 +32,10 @@ struct Rates {
 }
 
 impl Rates {
-    /// Computes the frequencies `√(k' W)` and the decay rates `c' W`, with the tangent stiffness `k'`, the
-    /// tangent damping `c'` and the reciprocal effective mass `W`.
-    fn of(law: &ContactLaw, mode: &Mode, loading: &Loading) -> Self {
+    /// Computes the frequencies `√(k' W)` and the decay rates `c' W`, with the tangent stiffness `k'` and the
+    /// tangent damping `c'` at the largest depth, `depth`, m, and the reciprocal effective mass `W`.
+    fn of(law: &ContactLaw, mode: &Mode, depth: f64) -> Self {
         let [normal, tangential, turning] = mode.mobility;
-        let depth = law.normal.largest_depth(1.0 / normal, loading.depth.max(0.0), loading.rate);
         // slipping bristles have a constant length and do not oscillate
         let friction = law.friction.filter(|_| !mode.bristle.is_slipping);
         let torsion =
@@ -69,6 +68,17 @@ impl Rates {
 }
 
 impl Touching {
+    /// Returns the largest depth of the present motion, m; the present depth before the effective mass is
+    /// known.
+    pub(super) fn largest_depth(&self, loading: &Loading) -> f64 {
+        match (&self.law, self.mode.mobility[0]) {
+            (Some(law), mobility) if mobility > 0.0 => {
+                law.normal.largest_depth(1.0 / mobility, loading.depth.max(0.0), loading.rate)
+            }
+            _ => loading.depth,
+        }
+    }
+
     /// Returns the longest permitted step, s, from a state with these motions and this loading.
     ///
     /// While the bodies press on each other, the step is `h = π/(N ω)` with the largest rate `ω` of the
@@ -94,15 +104,15 @@ impl Touching {
                 let [a, b] = motions;
                 let (gap, speed) = ((-loading.depth).max(0.0), self.fastest([a, b]));
                 if has_engine && speed > 0.0 {
-                    let touching = Loading { depth: 0.0, rate: speed, ..*loading };
-                    let fastest = Rates::of(law, &self.mode, &touching).fastest();
+                    let depth = law.normal.largest_depth(1.0 / self.mode.mobility[0], 0.0, speed);
+                    let fastest = Rates::of(law, &self.mode, depth).fastest();
                     gap / speed + PI / (steps.count as f64 * fastest)
                 } else {
                     (gap + OVERLAP * self.smaller_reach()) / speed
                 }
             }
             Phase::Pressing => {
-                let rates = Rates::of(law, &self.mode, loading);
+                let rates = Rates::of(law, &self.mode, self.deepest);
                 let lively = steps.count as f64 * self.mode.activity.powf(0.25);
                 let count = lively.max(LEAST_STEPS.min(steps.count as f64));
                 // slipping bristles follow the cone: their steps need only be stable
@@ -121,11 +131,11 @@ impl Touching {
 
     /// Returns the elastic energy at the largest depth of the present motion, J; zero for pieces that do not
     /// press on each other, and for spheres, whose forces are smooth.
-    pub(super) fn energy(&self, loading: &Loading) -> f64 {
+    pub(super) fn energy(&self) -> f64 {
         let is_smooth = self.sides.iter().any(|side| matches!(side.shape, Shape::Sphere { .. }));
         match &self.law {
             Some(law) if self.mode.phase == Phase::Pressing && !is_smooth => {
-                law.normal.elastic_energy(Rates::of(law, &self.mode, loading).depth)
+                law.normal.elastic_energy(self.deepest)
             }
             _ => 0.0,
         }
@@ -139,7 +149,7 @@ impl Touching {
         if self.mode.phase != Phase::Pressing || self.mode.mobility[0] == 0.0 {
             return 1.0;
         }
-        let rates = Rates::of(law, &self.mode, loading);
+        let rates = Rates::of(law, &self.mode, self.deepest);
         let [normal, tangential] = rates.frequencies;
         let remembered = self.mode.activity * (-(t - self.mode.since) * normal / MEMORY).exp();
         let mut activity = remembered.max(loading.rate.abs() / (normal * rates.depth));

@@ -1,7 +1,6 @@
 //! Touches of the declared contacts. A touch lasts from the instant at which the first pieces touch to the
 //! instant at which the last pieces separate.
 
-use super::mode::Phase;
 use super::side::SideMotion;
 use super::touching::{Loading, Touching};
 use crate::simulation::contact_state::ContactState;
@@ -220,24 +219,13 @@ impl Sample {
             (self.gap, self.point) = (-loading.depth, loading.point);
             self.systems = [0, 1].map(|side| touching.sides[side].declared.system);
         }
-        let Some(law) = touching.law.as_ref().filter(|_| touching.is_closed()) else { return };
-        let depth = match touching.mode.mobility[0] {
-            mobility if mobility > 0.0 => {
-                law.normal.largest_depth(1.0 / mobility, loading.depth.max(0.0), loading.rate)
-            }
-            _ => loading.depth,
-        };
+        if touching.law.is_none() || !touching.mode.phase.is_closed() {
+            return;
+        }
         self.pieces += 1;
-        self.depth = self.depth.max(depth / touching.rounding(motions));
+        self.depth = self.depth.max(touching.deepest / touching.rounding(motions));
         self.force += loading.normal_force();
         self.elastic += touching.elastic_energies(loading).iter().sum::<f64>();
-    }
-}
-
-impl Touching {
-    /// Returns true if the pieces touch.
-    fn is_closed(&self) -> bool {
-        matches!(self.mode.phase, Phase::Pressing | Phase::Separating)
     }
 }
 

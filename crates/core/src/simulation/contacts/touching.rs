@@ -2,10 +2,10 @@
 //! contact mode.
 
 use super::mode::{Mode, Phase};
-use super::pressure::Pressure;
+use super::pressure::{Pressure, Resultant};
 use super::side::{Side, SideMotion};
 use crate::contact::{Bristle, ContactError, ContactLaw, Friction, FrictionForce};
-use crate::geometry::{Points, Proximity, touching_points};
+use crate::geometry::{Points, Proximity, closest_of_valid, touching_points};
 use crate::simulation::contact_state::{ContactRate, ContactState};
 use crate::spatial::Vec3;
 
@@ -29,6 +29,8 @@ pub(super) struct Touching {
     pub(super) clearance: f64,
     /// True if a connection of an external engine holds both links.
     pub(super) is_held: bool,
+    /// Largest depth of the motion at the start of the step, m.
+    pub(super) deepest: f64,
     /// Result of the last evaluation; `None` while the pieces are far apart.
     pub(super) last: Option<Loading>,
 }
@@ -44,7 +46,7 @@ pub(in crate::simulation) struct Loading {
     pub(super) normal: Vec3<f64>,
     /// Point at which the forces act, m.
     pub(super) point: Vec3<f64>,
-    /// Resultant of the normal forces; `None` unless the pieces press on each other or separate while they
+    /// Sums over the normal forces; `None` unless the pieces press on each other or separate while they
     /// overlap.
     pub(super) pressure: Option<Pressure>,
     /// Force on the second side, N.
@@ -73,20 +75,30 @@ impl Touching {
         motions: &[SideMotion; 2],
         state: &ContactState,
     ) -> Result<Loading, ContactError> {
-        Ok(self.loading(self.mode.phase, &self.geometry(motions)?, motions, state))
+        let phase = self.mode.phase;
+        Ok(self.loading(phase, &self.geometry(phase, motions)?, motions, state))
     }
 
-    /// Returns the distance and the contact points of the pieces.
+    /// Returns the distance of the pieces and, in phases in which they touch, their contact points.
     #[inline]
-    pub(super) fn geometry(&self, [a, b]: &[SideMotion; 2]) -> Result<(Proximity, Points), ContactError> {
+    pub(super) fn geometry(
+        &self,
+        phase: Phase,
+        [a, b]: &[SideMotion; 2],
+    ) -> Result<(Proximity, Points), ContactError> {
         let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
-        let (proximity, points) = touching_points(first, &a.shape, second, &b.shape)
-            .map_err(|source| ContactError::Geometry { contact: self.name.clone(), source })?;
+        let failed = |source| ContactError::Geometry { contact: self.name.clone(), source };
+        if !phase.is_closed() {
+            let proximity = closest_of_valid(first, &a.shape, second, &b.shape).map_err(failed)?;
+            return Ok((proximity, Points::Witness));
+        }
+        let (proximity, points) = touching_points(first, &a.shape, second, &b.shape).map_err(failed)?;
         let points = if self.is_conservative { points } else { points.fixed(&proximity) };
         Ok((proximity, points))
     }
 
-    /// Returns the forces in `phase` for pieces with this distance and these contact points.
+    /// Returns the forces in `phase` for pieces with this distance and these contact points, which must be those
+    /// of [`Touching::geometry`] in this phase if the pieces touch in it.
     pub(super) fn loading(
         &self,
         phase: Phase,
@@ -97,12 +109,11 @@ impl Touching {
         let [a, b] = motions;
         let normal = proximity.normal;
         let is_pressing = phase == Phase::Pressing;
-        let law = self.law.as_ref().filter(|_| is_pressing || phase == Phase::Separating);
-        let pressure =
-            law.map(|law| Pressure::of(&law.normal, points.as_slice(), proximity, motions, is_pressing));
+        let law = self.law.as_ref().filter(|_| phase.is_closed());
+        let resultant = law.map(|law| Resultant::of(&law.normal, points, proximity, motions, is_pressing));
         let witness = (proximity.point_a + proximity.point_b) * 0.5;
         // both forces act at one point, so that no moment remains
-        let point = pressure.map_or(witness, |pressure| pressure.point);
+        let point = resultant.map_or(witness, |resultant| resultant.point);
         let relative = |point| b.velocity_at(point) - a.velocity_at(point);
         let across = |v: Vec3<f64>| v - normal * normal.dot(v);
         let mut loading = Loading {
@@ -110,7 +121,7 @@ impl Touching {
             rate: -normal.dot(relative(witness)),
             normal,
             point,
-            pressure,
+            pressure: resultant.map(|resultant| resultant.pressure),
             force: Vec3::zero(),
             moment: Vec3::zero(),
             sliding: a.frame.rot.transpose_mul(across(relative(point))),
@@ -119,8 +130,8 @@ impl Touching {
             spin: normal.dot(b.angular_velocity - a.angular_velocity),
             torsion: None,
         };
-        if let (Some(law), Some(pressure), true) = (law, pressure, is_pressing) {
-            (loading.force, loading.moment) = (pressure.on_b, pressure.moment);
+        if let (Some(law), Some(resultant), true) = (law, resultant, is_pressing) {
+            (loading.force, loading.moment) = (resultant.on_b, resultant.moment);
             self.add_friction(law, state, a, &mut loading);
         }
         loading
