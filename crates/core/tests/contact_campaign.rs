@@ -1,6 +1,7 @@
 //! One run with a thousand contacts: random trees with random convex bodies in a floating box.
 //!
-//! The test takes minutes and is run by `make contact-campaign`; `CONTACTS` sets the number of contacts.
+//! The test takes minutes and is run by `make contact-campaign`; `CONTACTS` sets the number of contacts,
+//! `SEED` the first world and `THREADS` the number of worlds that run at a time, by default that of processors.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 mod common;
@@ -114,57 +115,95 @@ fn totals(masses: &[f64], recording: &Recording, k: usize) -> Totals {
     Totals { linear, angular, about_com: angular - center.cross(&linear), energy }
 }
 
-/// Runs a world for a minute and shows how far it is.
-fn run(mut simulation: Simulation, title: &str) -> Recording {
+/// Errors of a run, and what they refer to.
+struct Outcome {
+    touches: usize,
+    /// Sum of the magnitudes of the impulses, N s.
+    impulse: f64,
+    /// Sum of the largest energies stored between two lift-offs, J.
+    exchanged: f64,
+    /// Changes of the linear momentum and of the angular momenta about the origin of W and about the common
+    /// centre of mass, relative to `impulse`.
+    momentum: [f64; 3],
+    /// Change of the energy relative to `exchanged`.
+    energy: f64,
+}
+
+/// Runs the world with this seed for a minute and shows how far it is.
+fn run(seed: u64) -> Outcome {
+    let (masses, mut simulation) = world(seed);
     let mut stepper = simulation.start(Some(END)).unwrap();
-    for k in 0..20 {
-        let t = END * f64::from(k + 1) / 20.0;
+    for k in 0..6 {
+        let t = END * f64::from(k + 1) / 6.0;
         stepper.advance_to(t).unwrap();
-        eprint!("\r{title} so far, {t:.0} of {END:.0} s ");
+        eprintln!("{seed}: {t:.0} of {END:.0} s");
     }
-    eprintln!();
-    stepper.finish().map_err(|failure| failure.error).unwrap()
+    outcome(&masses, &stepper.finish().map_err(|failure| failure.error).unwrap())
+}
+
+fn outcome(masses: &[f64], recording: &Recording) -> Outcome {
+    let rows = recording.rows();
+    let (first, last) = (totals(masses, recording, 0), totals(masses, recording, rows - 1));
+    let impulse: f64 = recording.events.iter().map(|event| vector(&event.impulse).norm()).sum();
+    let (mut touches, mut exchanged) = (0, 0.0);
+    for column in recording.systems.iter().flat_map(|trace| &trace.contacts) {
+        let row = |k: usize| &column.values[19 * k..19 * k + 19];
+        touches += row(rows - 1)[17] as usize;
+        let mut stored = 0.0_f64;
+        for k in 1..rows {
+            stored = stored.max(row(k)[12]);
+            if row(k)[12] == 0.0 {
+                (exchanged, stored) = (exchanged + stored, 0.0);
+            }
+        }
+    }
+    let momentum = [
+        (last.linear - first.linear).norm(),
+        (last.angular - first.angular).norm(),
+        (last.about_com - first.about_com).norm(),
+    ]
+    .map(|change| change / impulse);
+    let energy = (last.energy - first.energy).abs() / exchanged;
+    Outcome { touches, impulse, exchanged, momentum, energy }
+}
+
+/// Returns the value of an environment variable, or `default` if it is not set.
+fn setting(name: &str, default: usize) -> usize {
+    std::env::var(name).map_or(default, |value| value.parse().unwrap())
 }
 
 #[test]
 #[ignore = "takes minutes: run by make contact-campaign"]
 fn a_thousand_contacts_keep_momentum_and_energy() {
-    let wanted: usize = std::env::var("CONTACTS").map_or(1000, |count| count.parse().unwrap());
-    let first: u64 = std::env::var("SEED").map_or(0, |seed| seed.parse().unwrap());
-    let (mut contacts, mut seed) = (0, first);
+    let wanted = setting("CONTACTS", 1000);
+    let threads = setting("THREADS", std::thread::available_parallelism().map_or(1, usize::from));
+    let (mut contacts, mut seed) = (0, setting("SEED", 0) as u64);
+    let mut largest = [0.0_f64; 4];
     while contacts < wanted {
-        let (masses, simulation) = world(seed);
-        let recording = run(simulation, &format!("{seed}: {contacts} of {wanted} contacts"));
-        let rows = recording.rows();
-        let (first, last) = (totals(&masses, &recording, 0), totals(&masses, &recording, rows - 1));
-        let impulses = recording.events.iter().map(|event| vector(&event.impulse).norm());
-        let impulse: f64 = impulses.sum();
-        let (mut touches, mut exchanged) = (0, 0.0);
-        for column in recording.systems.iter().flat_map(|trace| &trace.contacts) {
-            let row = |k: usize| &column.values[19 * k..19 * k + 19];
-            touches += row(rows - 1)[17] as usize;
-            // the sum of the largest energies stored between two lift-offs
-            let mut stored = 0.0_f64;
-            for k in 1..rows {
-                stored = stored.max(row(k)[12]);
-                if row(k)[12] == 0.0 {
-                    (exchanged, stored) = (exchanged + stored, 0.0);
-                }
-            }
+        let seeds = seed..seed + threads as u64;
+        let outcomes: Vec<Outcome> = std::thread::scope(|scope| {
+            let runs: Vec<_> = seeds.clone().map(|seed| scope.spawn(move || run(seed))).collect();
+            runs.into_iter().map(|run| run.join().unwrap()).collect()
+        });
+        for (seed, outcome) in seeds.clone().zip(outcomes) {
+            let Outcome { touches, impulse, exchanged, momentum: [linear, angular, about_com], energy } =
+                outcome;
+            contacts += touches;
+            println!(
+                "{seed}: {touches} contacts, {contacts} of {wanted}; Σ|impulse| {impulse:.1} N s, energy \
+                 exchanged {exchanged:.1} J: momentum {linear:.1e}, angular {angular:.1e}, about the centre of mass \
+                 {about_com:.1e}, energy {energy:.1e}"
+            );
+            assert!(touches > 10, "the bodies hardly touch");
+            let errors = [linear, angular, about_com, energy];
+            largest = std::array::from_fn(|i| largest[i].max(errors[i]));
         }
-        let [linear, angular, about_com] = [
-            (last.linear - first.linear).norm(),
-            (last.angular - first.angular).norm(),
-            (last.about_com - first.about_com).norm(),
-        ]
-        .map(|change| change / impulse);
-        let open = (last.energy - first.energy).abs() / exchanged;
-        println!(
-            "{seed}: {touches} contacts, Σ|impulse| {impulse:.1} N s, energy exchanged {exchanged:.1} J: \
-             momentum {linear:.1e}, angular {angular:.1e}, about the centre of mass {about_com:.1e}, energy {open:.1e}"
-        );
-        assert!(linear < 1e-12 && angular < 1e-12 && about_com < 1e-12 && open < 1e-8);
-        assert!(touches > 10, "the bodies hardly touch");
-        (contacts, seed) = (contacts + touches, seed + 1);
+        seed = seeds.end;
     }
+    let [linear, angular, about_com, energy] = largest;
+    println!(
+        "{contacts} contacts: momentum {linear:.1e}, angular {angular:.1e}, about the centre of mass {about_com:.1e}, \
+         energy {energy:.1e}"
+    );
+    assert!(linear < 1e-12 && angular < 1e-12 && about_com < 1e-12 && energy < 1e-8);
 }
