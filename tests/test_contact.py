@@ -80,7 +80,7 @@ def test_friction_turns_both_spheres_in_the_same_direction() -> None:
 def test_bristles_far_stiffer_than_a_soft_pad_pass_every_check(
     stiffness: float | None, damping: float | None
 ) -> None:
-    """Slipping bristles of little damping were on the friction cone at once, which ended thousands of steps."""
+    """Slipping bristles of little damping were on the cone at once, which ended thousands of steps."""
     spin = [0.01, 0.02, -0.03]
     systems = [moving("a", [0, 0, 0], [0.02, 0, 0]), moving("b", [0.205, 0.03, 0], [0, 0, 0], spin)]
     friction = oo.Friction(0.5, stiffness=stiffness, damping=damping)
@@ -94,6 +94,23 @@ def test_bristles_far_stiffer_than_a_soft_pad_pass_every_check(
     assert np.diff(touch.dissipated).min() > -1e-16
     for name in "ab":
         assert all(holds for *_, holds in trace[name].certificate())
+
+
+def test_a_jump_from_static_to_kinetic_friction_is_no_error_of_the_attitude() -> None:
+    """The rows do not contain the acceleration before the jump, so that the check counted the jump."""
+    plate = oo.Model.rigid_body(0.18, np.eye(3) * 0.0036).with_collision("base", oo.Shape.box(0.6, 0.6, 0.6))
+    sphere = oo.Model.rigid_body(3.5, np.eye(3) * 0.0175).with_collision("base", oo.Shape.sphere(0.1))
+    systems = [
+        oo.System("plate", plate, plate.neutral(), np.zeros(6)),
+        oo.System("sphere", sphere, [0.41, 0.03, 0.02, 0, 0, 0, 1], [-0.05, 0.01, -0.013, 0, 0, 0]),
+    ]
+    pad = oo.Contact(
+        "plate/*", "sphere/*", normal=oo.SpringDashpot(6e3, 6.5), friction=oo.Friction(0.5, 0.4, 0.01)
+    )
+    trace = run(oo.World(systems, contacts=[pad]), 0.5, time_step=0.01)
+    for name in ("plate", "sphere"):
+        values = {row[0]: row[1] for row in trace[name].certificate()}
+        assert values["attitude_consistency"] < 0.05
 
 
 def test_the_default_name_and_lists_of_links() -> None:
@@ -200,7 +217,8 @@ def test_spheres_that_touch_are_captured_and_the_force_ends() -> None:
         ), ["same link"]),
         (lambda: oo.World([moving("a", [0, 0, 0], [0, 0, 0])], contacts=[oo.Contact("a/bod", "a/*")]),
          ["no link matches 'a/bod'", "did you mean 'a/body'"]),
-        (lambda: run(pair(gap=-0.05)), ["touch", "'a/body' and 'b/body' overlap by 0.05 m", "start_overlapping"]),
+        (lambda: run(pair(gap=-0.05)),
+         ["touch", "'a/body' and 'b/body' overlap by 0.05 m", "start_overlapping"]),
     ],
 )  # fmt: skip
 def test_invalid_contacts_are_errors_that_state_the_remedy(make: Any, words: list[str]) -> None:

@@ -142,7 +142,9 @@ def test_an_overlap_at_the_start_is_located_and_may_be_accepted() -> None:
     values = changed({})
     values["systems"]["b"]["initial"]["position"] = ["15 cm", 0, 0]
     with pytest.raises(
-        OnOrbitError, match=r"contacts\[0\].between: contact 'touch': at the start, the links 'a/body' and 'b/body' overlap by 0.05 m"
+        OnOrbitError,
+        match=r"contacts\[0\].between: contact 'touch': at the start, "
+        r"the links 'a/body' and 'b/body' overlap by 0.05 m",
     ):
         built(values)
     values["contacts"][0]["start_overlapping"] = True

@@ -326,8 +326,7 @@ impl Contacts {
                     let link = &trees[side.place.0].model.frames()[side.place.1].name;
                     format!("'{}/{link}'", names[side.declared.system])
                 };
-                let [a, b] = [&touching.sides[0], &touching.sides[1]].map(path);
-                let links = format!("{a} and {b}");
+                let links = format!("{} and {}", path(&touching.sides[0]), path(&touching.sides[1]));
                 return Err(ContactError::Overlap { contact: touching.name.clone(), links, depth });
             }
             state.contacts[number].normal_work = pressure.map_or(0.0, |pressure| pressure.elastic);
