@@ -15,6 +15,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import CheckpointError, NotFoundError, RunInterrupted
+from onorbit_rs.output.names import NAMES
 from onorbit_rs.output.sealed import sealed, unsealed
 from onorbit_rs.scenario import load
 
@@ -72,7 +73,7 @@ def rows_of(out: Path, column: str = "time") -> int:
 
 def assert_same_trace(out: Path, whole: oo.Run) -> None:
     with np.load(out / "trace.npz") as stored:
-        assert set(stored.files) == set(whole.trace.columns())
+        assert set(stored.files) == {*whole.trace.columns(), *NAMES}
         for name in stored.files:
             assert stored[name].tobytes() == np.asarray(getattr(whole.trace, name)).tobytes(), name
 

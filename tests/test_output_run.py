@@ -14,6 +14,7 @@ import pytest
 
 import onorbit_rs as oo
 from onorbit_rs.exceptions import OutputFolderError, OutputNotEmptyError, RunInterrupted, SimulationError
+from onorbit_rs.output.names import NAMES
 from onorbit_rs.output.summary import summarize
 from onorbit_rs.scenario import load
 from onorbit_rs.simulation import finish
@@ -51,8 +52,8 @@ def test_every_status_that_is_written_is_documented() -> None:
 def test_the_trace_file_equals_the_trace(reach: oo.Run) -> None:
     assert reach.out is not None
     with np.load(reach.out / "trace.npz") as stored:
-        assert set(stored.files) == set(reach.trace.columns())
-        for name in stored.files:
+        assert set(stored.files) == {*reach.trace.columns(), *NAMES}
+        for name in reach.trace.columns():
             np.testing.assert_array_equal(stored[name], getattr(reach.trace, name))
 
 
@@ -176,7 +177,7 @@ def test_an_error_before_the_first_row_is_re_raised_unchanged(tmp_path: Path) ->
 def test_a_full_disk_does_not_hide_another_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, end: str
 ) -> None:
-    def full(files: Any, trace: Any) -> None:
+    def full(*_: Any) -> None:
         raise OutputFolderError("cannot write trace.npz: No space left on device")
 
     monkeypatch.setattr(finish, "write_trace", full)
@@ -189,3 +190,12 @@ def test_a_full_disk_does_not_hide_another_error(
     notes = getattr(own, "__notes__", [])
     assert "cannot write trace.npz: No space left" in "; ".join([str(own), *notes])
     assert "rows recorded so far are in" not in str(notes) and "up to this time is in" not in str(own)
+
+
+def test_the_trace_names_its_joints_and_bodies(tmp_path: Path) -> None:
+    run = oo.run("humanoid_reach", tmp_path / "out", quiet=True, figures=False, recording=False,
+                 changes={"simulation.duration": "20 ms"})  # fmt: skip
+    with np.load(tmp_path / "out" / "trace.npz") as stored:
+        assert list(stored["joint_names"]) == list(run.model.joint_names)
+        assert list(stored["body_names"]) == list(run.model.body_names)
+        assert stored["tau"].shape[1] == len(stored["joint_names"]) > 0

@@ -19,6 +19,7 @@ import onorbit_rs as oo
 from onorbit_rs.cli.summary import print_summary
 from onorbit_rs.exceptions import NotFoundError, OutputFolderError, ReadError, SimulationError
 from onorbit_rs.output.checks import CHECKS, GATE, LOOPS
+from onorbit_rs.output.names import NAMES
 from onorbit_rs.output.read import read_summary, read_trace
 from onorbit_rs.report import write_report
 from onorbit_rs.report.numbers import groups, row
@@ -306,7 +307,7 @@ def test_a_page_that_cannot_be_written_is_reported(folder: Path, tmp_path: Path)
 def test_a_saved_trace_equals_the_trace(folder: Path) -> None:
     trace = read_trace(folder)
     with np.load(folder / "trace.npz") as stored:
-        assert set(trace.columns()) == set(stored.files)
+        assert {*trace.columns(), *NAMES} == set(stored.files)
         np.testing.assert_array_equal(trace.q, stored["q"])
     with pytest.raises(AttributeError, match="no column 'nothing'"):
         _ = trace.nothing  # type: ignore[attr-defined]

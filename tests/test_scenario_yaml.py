@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from commands import onorbit
 
 from onorbit_rs import scenarios
 from onorbit_rs.exceptions import NotFoundError, OnOrbitError, ReadError, ScenarioError
@@ -26,7 +27,7 @@ def _refusal(tmp_path: Path, text: str | bytes) -> ScenarioError:
     error = caught.value
     assert isinstance(error, OnOrbitError) and isinstance(error, ValueError)
     assert str(error).startswith(str(file))
-    assert "\n" not in str(error)
+    assert len(str(error).splitlines()) == max(1, len(error.errors))
     assert error.file == str(file)
     return error
 
@@ -144,10 +145,27 @@ def test_invalid_yaml_is_rejected(tmp_path: Path, raw: bytes, says: str) -> None
     assert says in str(_refusal(tmp_path, raw))
 
 
-def test_several_errors_are_reported_in_one_line(tmp_path: Path) -> None:
+def test_all_errors_are_reported_at_once(tmp_path: Path) -> None:
     error = _refusal(tmp_path, REACH.replace("51.6 deg", "51.6 m").replace("kd: 20", "kd: twenty"))
     assert error.path == "orbit.inclination"
-    assert str(error).endswith("(and 1 more)")
+    assert [own.path for own in error.errors] == ["orbit.inclination", "controller.kd"]
+    first, second = str(error).splitlines()
+    assert "orbit.inclination: " in first and "controller.kd: " in second
+    done = onorbit("check", str(error.file), cwd=tmp_path)
+    assert done.returncode == 2
+    paths = [line.split(": ")[2] for line in done.stderr.splitlines()]
+    assert paths == ["orbit.inclination", "controller.kd"]
+
+
+def test_errors_of_several_systems_are_reported_at_once() -> None:
+    data = load("capture_tumbling_target").resolved()
+    for system in data["systems"].values():
+        system["tool"], system["controller"] = None, {"kind": "computed_torque"}
+        system.pop("controllers", None)
+    with pytest.raises(ScenarioError) as caught:
+        load(data)
+    whose = {str(error.path).split(".")[1] for error in caught.value.errors}
+    assert whose == set(data["systems"])
 
 
 def test_missing_file_suggests_a_bundled_name(tmp_path: Path) -> None:

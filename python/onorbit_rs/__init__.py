@@ -181,6 +181,7 @@ __all__ = [
     "Orbit",
     "Plates",
     "RadiationPressure",
+    "RecordedRun",
     "Reference",
     "Release",
     "Run",
@@ -216,6 +217,7 @@ __all__ = [
     "layouts",
     "propagate",
     "read_commands",
+    "read_run",
     "relative",
     "replay_commands",
     "resume",
@@ -236,7 +238,7 @@ _LAZY = {
     "CommandLog": "simulation.commands", "campaign": "campaigns.run", "campaign_case": "campaigns.run",
     "read_commands": "simulation.command_format", "replay_commands": "simulation.replay",
     "Run": "simulation.run", "resume": "simulation.run", "run": "simulation.run",
-    "run_batch": "simulation.batch",
+    "run_batch": "simulation.batch", "RecordedRun": "tables", "read_run": "tables",
 }  # fmt: skip
 """Module of each name that is imported on first access, since importing numpy and pydantic takes 0.5 s."""
 _LAZY_MODULES = ("engines", "layouts", "ros2", "scenario")

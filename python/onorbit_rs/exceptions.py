@@ -320,12 +320,15 @@ class OutputNotWritableError(OutputFolderError, PermissionError):
 class ScenarioError(OnOrbitError, ValueError):
     """Invalid scenario, with the location of the error.
 
-    ``file`` is the YAML file, ``path`` the key (``orbit.semi_major_axis``), ``line`` its line, from 1.
+    ``file`` is the YAML file, ``path`` the key (``orbit.semi_major_axis``), ``line`` its line, from 1. If the
+    scenario has several errors, these are those of the first one, the message has a line for each, and
+    ``errors`` contains them all.
     """
 
     file: Any = None
     path: Any = None
     line: Any = None
+    errors: Any = ()
 
 
 class QuantityError(OnOrbitError, ValueError):

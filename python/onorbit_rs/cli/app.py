@@ -13,6 +13,7 @@ from onorbit_rs.cli.campaign import campaign
 from onorbit_rs.cli.check import check
 from onorbit_rs.cli.compare import compare
 from onorbit_rs.cli.convert import convert
+from onorbit_rs.cli.copy import copy
 from onorbit_rs.cli.exit_codes import controller_error, discard_stdout, exit_stopped, fail, with_exit_codes
 from onorbit_rs.cli.export import export
 from onorbit_rs.cli.info import info
@@ -23,11 +24,17 @@ from onorbit_rs.cli.ros2 import ros2
 from onorbit_rs.cli.run import resume, run
 from onorbit_rs.cli.show import show
 from onorbit_rs.cli.signals import ending_signals
-from onorbit_rs.cli.text_output import escape_unencodable, print_error, print_text, show_warning
+from onorbit_rs.cli.text_output import (
+    escape_unencodable,
+    print_error,
+    print_failure,
+    print_text,
+    show_warning,
+)
 from onorbit_rs.cli.validate import validate
 from onorbit_rs.common import user_code
 from onorbit_rs.common.printable import printable
-from onorbit_rs.exceptions import OnOrbitError
+from onorbit_rs.exceptions import OnOrbitError, ScenarioError
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -51,6 +58,7 @@ COMMANDS: dict[str, Callable[..., None]] = {
     "info": info,
     "convert": convert,
     "new": new,
+    "copy": copy,
     "report": report,
     "export": export,
     "compare": compare,
@@ -91,7 +99,10 @@ def main(arguments: list[str] | None = None) -> None:
             if sys.stdout is not None:
                 sys.stdout.flush()
     except OnOrbitError as error:
-        fail(str(error), 2)
+        *others, last = error.errors or (error,) if isinstance(error, ScenarioError) else (error,)
+        for other in others:
+            print_failure(str(other))
+        fail(str(last), 2)
     except (KeyboardInterrupt, typer.Abort) as stop:
         cause = stop if isinstance(stop, KeyboardInterrupt) else stop.__context__
         exit_stopped(cause if isinstance(cause, KeyboardInterrupt) else KeyboardInterrupt())

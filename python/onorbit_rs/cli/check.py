@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument
+from onorbit_rs.cli.options import JsonOption, QuietOption, ScenarioArgument, SetOption, scenario_changes
 from onorbit_rs.cli.text_output import print_line
 from onorbit_rs.common.counting import count
 from onorbit_rs.common.printable import shell_word
@@ -24,6 +24,7 @@ def check(
     trust: Annotated[
         bool, typer.Option("--trust", help="Also execute controllers written in Python.")
     ] = False,
+    assignments: SetOption = None,
 ) -> None:
     """Check a scenario and its files without running it.
 
@@ -34,7 +35,7 @@ def check(
     from onorbit_rs.scenario.build import build
     from onorbit_rs.scenario.build_world import build_world
 
-    checked = load(scenario)
+    checked = load(scenario, changes=scenario_changes(assignments))
     built: Built | BuiltWorld
     if isinstance(checked, WorldScenario):
         built, robots = build_world(checked, runs_code=trust), list(checked.scenarios.values())

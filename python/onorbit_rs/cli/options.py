@@ -32,6 +32,13 @@ FiguresOption = Annotated[bool, typer.Option("--figures/--no-figures", help="Dra
 RecordingOption = Annotated[
     bool, typer.Option("--recording/--no-recording", help="Write the recording for the viewer in DIR.")
 ]
+SetOption = Annotated[
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Change an entry of the scenario; may be repeated."),
+]
+DurationOption = Annotated[
+    str | None, typer.Option("--duration", metavar="TIME", help="Simulated time, such as '10 s' or '2 h'.")
+]
 ViewOption = Annotated[bool, typer.Option("--view", help="Show the run in the viewer while it is computed.")]
 CommandsOption = Annotated[
     Path | None,
@@ -113,6 +120,20 @@ def as_arguments(robot: str, packages: list[Path] | None, arguments: list[str] |
         words += [word for value in values or () for word in (option, str(value))]
     words += ["--xacro"] if xacro else []
     return " ".join(map(shell_word, words))
+
+
+def scenario_changes(assignments: list[str] | None, duration: str | None = None) -> dict[str, Any]:
+    """Return the changes of a scenario that ``--set`` and ``--duration`` describe.
+
+    Raises
+    ------
+    InputError
+        If an assignment is not written ``KEY=VALUE``.
+    """
+    from onorbit_rs.scenario.changes import parsed_changes
+
+    changes = parsed_changes(assignments)
+    return changes if duration is None else changes | parsed_changes([f"simulation.duration={duration}"])
 
 
 def xacro_arguments(arguments: list[str] | None) -> dict[str, str] | None:

@@ -8,6 +8,7 @@ from onorbit_rs.cli.exit_codes import fail, ignore_closed_pipe
 from onorbit_rs.cli.options import (
     CheckpointOption,
     CommandsOption,
+    DurationOption,
     FiguresOption,
     FolderArgument,
     ForceOption,
@@ -16,7 +17,9 @@ from onorbit_rs.cli.options import (
     QuietOption,
     RecordingOption,
     ScenarioArgument,
+    SetOption,
     ViewOption,
+    scenario_changes,
 )
 from onorbit_rs.exceptions import InputError
 
@@ -37,6 +40,8 @@ def run(
     commands: CommandsOption = None,
     figures: FiguresOption = True,
     recording: RecordingOption = True,
+    assignments: SetOption = None,
+    duration: DurationOption = None,
 ) -> None:
     """Run a scenario and certify its momentum and energy.
 
@@ -50,6 +55,7 @@ def run(
             f"--checkpoint-every {checkpoint_every:g} requires a folder for checkpoints; add --out DIR",
             name="checkpoint_every", got=checkpoint_every,
         )  # fmt: skip
+    changes = scenario_changes(assignments, duration)
     every = CHECKPOINT_EVERY if checkpoint_every is None else checkpoint_every
     report_run(
         lambda: run_scenario(
@@ -62,6 +68,7 @@ def run(
             commands=commands,
             figures=figures,
             recording=recording,
+            changes=changes,
         ),
         quiet=quiet,
         as_json=as_json,

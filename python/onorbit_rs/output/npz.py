@@ -1,4 +1,4 @@
-"""Reads the arrays of a ``.npz`` file after checking its stated sizes against the size of the file."""
+"""Writes and reads the arrays of a ``.npz`` file; stated sizes are checked against the size of the file."""
 
 from __future__ import annotations
 
@@ -6,30 +6,50 @@ import math
 import re
 import zipfile
 import zlib
+from collections.abc import Mapping
 from typing import Any, BinaryIO, Literal
 
 import numpy as np
+
+from onorbit_rs.common.blocks import ROWS, blocks
 
 _CHUNK = 1 << 24
 _MOST_COLUMNS = 10_000
 _MAGIC = b"\x93NUMPY\x01\x00"
 _HEADER = re.compile(
-    rb"\{'descr': '(?P<kind>[<>|][biuf][1248])', 'fortran_order': (?P<is_fortran>True|False), "
+    rb"\{'descr': '(?P<kind>[<>|][biuf][1248]|<U[0-9]{1,4})', 'fortran_order': (?P<is_fortran>True|False), "
     rb"'shape': \((?P<shape>[0-9, ]{0,200})\), \} *\n"
 )
 """Header that NumPy writes. NumPy parses it with ``ast``, which is not safe for untrusted input."""
 
 
+def write_arrays(stream: BinaryIO, arrays: Mapping[str, Any]) -> None:
+    """Write arrays of numbers and texts as an uncompressed ``.npz`` file, as :func:`numpy.savez` does.
+
+    Long arrays are written in blocks of rows, so that arrays that are mapped from files need little memory.
+    """
+    with zipfile.ZipFile(stream, "w", zipfile.ZIP_STORED, allowZip64=True) as archive:
+        for name, array in arrays.items():
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                if np.ndim(array) == 0 or len(array) <= ROWS:
+                    np.lib.format.write_array(member, np.asarray(array), allow_pickle=False)
+                    continue
+                header = {"descr": np.lib.format.dtype_to_descr(array.dtype), "fortran_order": False}
+                np.lib.format.write_array_header_1_0(member, header | {"shape": np.shape(array)})
+                for (rows,) in blocks(array):
+                    member.write(np.ascontiguousarray(rows).tobytes())
+
+
 def read_arrays(stream: BinaryIO) -> dict[str, Any]:
-    """Return every array of an uncompressed ``.npz`` file of numbers, as written by :func:`numpy.savez`.
+    """Return every array of a ``.npz`` file of numbers and texts, as :func:`write_arrays` writes.
 
     The memory used is bounded by the size of the file even if its headers are wrong; nothing is unpickled.
 
     Raises
     ------
     ValueError
-        If the file is not a zip of arrays of real numbers, is compressed, truncated or damaged, or states
-        contradictory sizes.
+        If the file is not a zip of arrays of real numbers and texts, is compressed, truncated or damaged, or
+        states contradictory sizes.
     """
     size = stream.seek(0, 2)
     try:
@@ -65,7 +85,7 @@ def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> Any:
         header = _HEADER.fullmatch(stream.read(length))
         if magic != _MAGIC or header is None:
             raise ValueError(
-                f"{member.filename} is not an array of real numbers in the format that a run writes"
+                f"{member.filename} is not an array of real numbers or texts in the format that a run writes"
             )
         dtype = np.dtype(header["kind"].decode())
         shape = tuple(int(number) for number in header["shape"].split(b",") if number.strip())

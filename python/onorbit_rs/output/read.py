@@ -18,6 +18,7 @@ from onorbit_rs.output.checkpoint import has_checkpoint
 from onorbit_rs.output.checks import CHECKS, GATE
 from onorbit_rs.output.lock import owner_of
 from onorbit_rs.output.manifest import MANIFEST, SCENARIO, SUMMARY, TRACE, read_manifest
+from onorbit_rs.output.names import split_names
 from onorbit_rs.output.npz import read_arrays
 from onorbit_rs.output.saved_trace import SavedTrace, check_shapes
 from onorbit_rs.output.saved_world import EVENTS, SavedWorldTrace, saved_world, system_in, systems_in
@@ -127,11 +128,20 @@ class SavedRun:
         except (ValueError, TypeError, KeyError, IndexError) as error:
             raise _damaged(self.folder / TRACE, "trace", error) from error
 
+    def columns(self) -> tuple[dict[str, Any], dict[str, list[str]]]:
+        """Return the columns in ``trace.npz``, and the names of joints and bodies, by path; raises the errors
+        of :func:`read_trace`.
+        """
+        return self._columns_and_names({"time"})
+
     def _arrays(self, required: set[str]) -> dict[str, Any]:
+        return self._columns_and_names(required)[0]
+
+    def _columns_and_names(self, required: set[str]) -> tuple[dict[str, Any], dict[str, list[str]]]:
         file = self.folder / TRACE
         try:
             with self.opened(TRACE) as stream:
-                arrays = read_arrays(stream)
+                arrays, names = split_names(read_arrays(stream))
             if not required <= set(arrays):
                 raise ValueError(f"it has no {' and no '.join(sorted(required - set(arrays)))}")
             for own in [system_in(arrays, name).arrays for name in systems_in(arrays)] or [arrays]:
@@ -146,7 +156,7 @@ class SavedRun:
             raise _unreadable(file, "trace", error) from error
         except (ValueError, TypeError, AttributeError) as error:
             raise _damaged(file, "trace", error) from error
-        return arrays
+        return arrays, names
 
     def scenario_text(self) -> str:
         """Return the text of ``scenario.yaml``.

@@ -14,6 +14,8 @@ import yaml
 from onorbit_rs import _core
 from onorbit_rs.output.folder import OutputFolder
 from onorbit_rs.output.manifest import FIGURES, RECORDING, SCENARIO, SUMMARY, TRACE
+from onorbit_rs.output.names import names_of
+from onorbit_rs.output.npz import write_arrays
 from onorbit_rs.output.painters import Album, painters
 from onorbit_rs.output.pickling import arrays_of
 from onorbit_rs.output.replacement import Replacement
@@ -56,9 +58,17 @@ def write_scenario(folder: OutputFolder, scenario: Scenario | WorldScenario) -> 
 
 
 def write_trace(
-    files: Replacement, trace: Trace | WorldTrace, more: Mapping[str, Any] = MappingProxyType({})
+    files: Replacement,
+    trace: Trace | WorldTrace,
+    built: Built | BuiltWorld,
+    more: Mapping[str, Any] = MappingProxyType({}),
 ) -> None:
-    """Write ``trace.npz``, which contains every column of the trace by path, and the columns ``more``."""
+    """Write ``trace.npz``: every column of the trace by path, the columns ``more``, and the names of the
+    joints and bodies of each robot.
+    """
+    alone = built.systems if isinstance(built, BuiltWorld) else {"": built}
+    names = {path: values for system, one in alone.items()
+             for path, values in names_of(one.model, f"{system}/" if system else "").items()}  # fmt: skip
     with files.writing(TRACE) as path, path.open("wb") as stream:
         if isinstance(trace, _core.WorldTrace):
             columns = world_arrays(trace)
@@ -66,7 +76,7 @@ def write_trace(
             columns = arrays_of(trace)
             if len(trace.rereferenced):
                 columns["rereferenced"] = np.asarray(trace.rereferenced)
-        np.savez(stream, allow_pickle=False, **columns, **more)
+        write_arrays(stream, {**columns, **more, **names})
 
 
 def write_summary(files: Replacement, summary: dict[str, Any]) -> None:

@@ -9,7 +9,8 @@ from typing import Any
 
 from onorbit_rs import scenarios
 from onorbit_rs.common.suggestions import did_you_mean
-from onorbit_rs.exceptions import DtypeError, NotFoundError
+from onorbit_rs.exceptions import DtypeError, NotFoundError, ScenarioError
+from onorbit_rs.scenario.changes import Changes, changed, misspelt
 from onorbit_rs.scenario.locations import scenario_error
 from onorbit_rs.scenario.schema import Scenario
 from onorbit_rs.scenario.world import WorldScenario
@@ -21,7 +22,9 @@ _KINDS = {bool: "true or false", int: "a number", float: "a number", str: "text"
 """Words for the types that YAML yields besides mappings."""
 
 
-def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> AnyScenario:
+def load(
+    source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario, *, changes: Changes | None = None
+) -> AnyScenario:
     """Return the validated scenario of a name, a file or a mapping.
 
     Parameters
@@ -29,6 +32,9 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> An
     source : str, path, mapping or Scenario
         A bundled name (``"humanoid_reach"``), a YAML file, its content as a mapping, or a scenario, which is
         returned unchanged.
+    changes : mapping, optional
+        New values of entries, by path: ``{"simulation.duration": "2 s", "environment[0].kind": "drag"}``.
+        Keys that the scenario does not contain are added.
 
     Returns
     -------
@@ -41,14 +47,18 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> An
         If ``source`` is neither a bundled name nor a file.
     DtypeError
         If ``source`` has another type.
+    InputError
+        If a path of ``changes`` cannot be read, or leads to no entry.
     ScenarioError
         If the scenario is invalid; has the attributes ``file``, ``path`` (the location in the YAML) and
         ``line``.
     """
     if isinstance(source, (Scenario, WorldScenario)):
-        return source
+        if not changes:
+            return source
+        return _checked_changes(source.resolved(), source.file, {}, changes)
     if isinstance(source, Mapping):
-        return check(dict(source), None, {})
+        return _checked_changes(dict(source), None, {}, changes)
     if not isinstance(source, (str, os.PathLike)):
         kind = type(source).__name__
         raise DtypeError(
@@ -58,7 +68,22 @@ def load(source: str | os.PathLike[str] | Mapping[str, Any] | AnyScenario) -> An
         )  # fmt: skip
     file = locate(source)
     data, lines = read_yaml(file)
-    return check(data, file, lines)
+    return _checked_changes(data, file, lines, changes)
+
+
+def _checked_changes(data: Any, file: Path | None, lines: Lines, changes: Changes | None) -> AnyScenario:
+    """Return the validated scenario with the changes."""
+    if not changes or not isinstance(data, dict):
+        return check(data, file, lines)
+    before = data
+    data, lines = changed(data, lines, changes)
+    try:
+        return check(data, file, lines)
+    except ScenarioError as error:
+        hint = misspelt(before, str(error.path or ""), changes)
+        if hint and len(error.errors) <= 1 and "did you mean" not in error.message:
+            error.message += hint
+        raise
 
 
 def locate(source: str | os.PathLike[str]) -> Path:

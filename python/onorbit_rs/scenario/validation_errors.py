@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,9 @@ from onorbit_rs.scenario.errors import shortened
 from onorbit_rs.scenario.locations import dotted, scenario_error
 from onorbit_rs.scenario.yaml_lines import Lines, Location, line_of
 
+MOST_ERRORS = 20
+"""Largest number of errors in a message."""
+
 
 def first_error(
     error: ValidationError,
@@ -25,7 +28,7 @@ def first_error(
     lines: Lines,
     location: Callable[..., Location] = lambda *at: at,
 ) -> ScenarioError:
-    """Return the error that is first in the file; its message contains the number of further errors.
+    """Return the errors in the order of the file as one error; its attributes are those of the first one.
 
     ``location`` converts the location of an entry in ``data`` to the location in the file.
     """
@@ -34,9 +37,25 @@ def first_error(
         at, message = _location_and_message(details, data)
         at = location(*at)
         found.append((line_of(at, lines) or lines.get((), 0), at, message))
-    line, at, message = min(found, key=lambda entry: entry[0])
-    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-    return scenario_error(message + more, file, line or None, dotted(at))
+    found.sort(key=lambda entry: entry[0])
+    return combined([scenario_error(text, file, line or None, dotted(at)) for line, at, text in found])
+
+
+def combined(errors: Sequence[ScenarioError]) -> ScenarioError:
+    """Return several errors of a scenario as one error with a line for each, and the attributes of the first.
+
+    A single error is returned unchanged.
+    """
+    all_of_them = [own for error in errors for own in (error.errors or (error,))]
+    if len(all_of_them) == 1:
+        return all_of_them[0]
+    lines = [str(error) for error in all_of_them[:MOST_ERRORS]]
+    if len(all_of_them) > MOST_ERRORS:
+        lines.append(f"and {len(all_of_them) - MOST_ERRORS} more")
+    first = all_of_them[0]
+    return ScenarioError(
+        "\n".join(lines), file=first.file, path=first.path, line=first.line, errors=tuple(all_of_them)
+    )
 
 
 def _location_and_message(details: ErrorDetails, data: Any) -> tuple[Location, str]:

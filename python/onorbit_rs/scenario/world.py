@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.exceptions import ScenarioError
 from onorbit_rs.scenario.actuators import check_actuators
 from onorbit_rs.scenario.contact import Contact, check_contacts
 from onorbit_rs.scenario.document import Document
@@ -24,6 +25,7 @@ from onorbit_rs.scenario.materials import MaterialPair, check_materials, look_up
 from onorbit_rs.scenario.orbit import StartOrbit
 from onorbit_rs.scenario.schema import InWorld, RobotKeys, Scenario
 from onorbit_rs.scenario.settings import ControlSettings, WorldSettings
+from onorbit_rs.scenario.validation_errors import combined
 from onorbit_rs.scenario.watches import check_names
 from onorbit_rs.scenario.yaml_lines import Lines, Location
 
@@ -81,7 +83,8 @@ class WorldScenario(Document):
         shared = {name: getattr(self, name) for name in Document.model_fields}
         settings = self.simulation.model_dump(exclude={"weld_time_constant"})
         events = [event.name for event in self.events]
-        found = {}
+        found: dict[str, Scenario] = {}
+        errors: list[ScenarioError] = []
         for name, system in self.systems.items():
             own = {key: getattr(system, key) for key in RobotKeys.model_fields}
             control = {key: getattr(system, key) for key in ControlSettings.model_fields}
@@ -92,12 +95,13 @@ class WorldScenario(Document):
             loops = {index: loop for index, loop in loops.items() if loop is not None}
             own["loops"] = list(loops.values())
             data = shared | own | {"simulation": settings | control}
-            found[name] = Scenario.of_system(
-                InWorld(name, [*effects], events, others, [*loops]),
-                data,
-                self._file,
-                self._lines,
-            )
+            place = InWorld(name, [*effects], events, others, [*loops])
+            try:
+                found[name] = Scenario.of_system(place, data, self._file, self._lines)
+            except ScenarioError as error:
+                errors.append(error)
+        if errors:
+            raise combined(errors)
         return found
 
     @property

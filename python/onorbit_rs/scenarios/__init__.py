@@ -14,6 +14,18 @@ def names() -> list[str]:
     return bundled_files.names(_FOLDER, ".yaml")
 
 
+def files_of(name: str) -> list[Path]:
+    """Return the Python files of the package that a bundled scenario uses.
+
+    Raises
+    ------
+    NotFoundError
+        As for :func:`path`.
+    """
+    text = path(name).read_text(encoding="utf-8")
+    return [file for file in sorted(_FOLDER.glob("*.py")) if f"file: {file.name}" in text]
+
+
 def path(name: str) -> Path:
     """Return the path of the YAML file of a bundled scenario.
 

@@ -53,7 +53,7 @@ def finished(
         add_clearances(summary, found)
         tell("writing the trace")
         with folder.replacing() as files:
-            write_trace(files, trace, clearance_arrays(found))
+            write_trace(files, trace, built, clearance_arrays(found))
             write_summary(files, summary)
     with _noting(lambda: f"trace and summary in {folder.path} are complete; {_not_drawn(folder)}"):
         write_pictures(folder, trace, summary, built, pictures, tell=tell)
@@ -174,6 +174,6 @@ def _write_rows(
     with np.errstate(all="ignore"):  # a diverged run contains numbers near the largest float
         summary = _summary(trace, built, status=status)
     with folder.replacing() as files:
-        write_trace(files, trace)
+        write_trace(files, trace, built)
         write_summary(files, summary)
     return summary

@@ -139,6 +139,7 @@ def run(
     commands: str | os.PathLike[str] | Iterable[Mapping[str, Any]] | None = None,
     figures: bool = True,
     recording: bool = True,
+    changes: Mapping[str, Any] | None = None,
 ) -> Run:
     """Run a scenario and, with ``out``, write its output folder.
 
@@ -163,6 +164,8 @@ def run(
         Draw the figures in ``out``; ``onorbit report`` draws them later.
     recording : bool
         Write the recording for the viewer in ``out``.
+    changes : mapping, optional
+        New values of entries of the scenario, by path, such as ``{"simulation.duration": "2 s"}``.
 
     Returns
     -------
@@ -172,15 +175,15 @@ def run(
     ------
     OnOrbitError
         Before the run starts: for an invalid scenario (``ScenarioError``), a missing file
-        (``NotFoundError``), a command that does not fit (``InputError``, ``ControlError``, …), or a folder
-        that is not empty, not writable or in use by another process (``OutputFolderError``).
+        (``NotFoundError``), a command or change that does not fit (``InputError``, ``ControlError``, …), or a
+        folder that is not empty, not writable or in use by another process (``OutputFolderError``).
     SimulationError
         If the run diverges; the trace before the divergence is in the error and in ``out``.
     RunInterrupted
         On Ctrl-C; the trace before the interruption is in the exception and in ``out``.
     """
     every = _checked_period(checkpoint_every)
-    checked = load(scenario)
+    checked = load(scenario, changes=changes)
     given = _given(commands)
     built = _with_warnings(_built(checked), given)
     check_commands(built.simulation, given, checked.simulation.duration)

@@ -1,0 +1,26 @@
+"""Names of joints and bodies in ``trace.npz``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from onorbit_rs._core import Model
+
+NAMES = ("joint_names", "body_names")
+"""Arrays of texts in ``trace.npz``: joints in the order of ``tau``, bodies in that of ``wrenches``."""
+
+
+def names_of(model: Model, prefix: str = "") -> dict[str, Any]:
+    """Return the names of the joints and bodies of a robot as arrays of text, by path."""
+    return {f"{prefix}{kind}": np.array(list(getattr(model, kind)), dtype=np.str_) for kind in NAMES}
+
+
+def split_names(arrays: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, list[str]]]:
+    """Return the columns of ``trace.npz``, and the names of joints and bodies by path."""
+    names = {path: [str(name) for name in rows] for path, rows in arrays.items()
+             if path.rpartition("/")[2] in NAMES and rows.dtype.kind == "U"}  # fmt: skip
+    return {path: rows for path, rows in arrays.items() if path not in names}, names
