@@ -1,0 +1,116 @@
+"""Names and units of the numbers in the columns of a trace."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs._core import COLUMNS
+from onorbit_rs.output.columns import split_path
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Floats = NDArray[np.float64]
+
+XYZ, XYZW = ("x", "y", "z"), ("x", "y", "z", "w")
+
+
+@dataclass(frozen=True)
+class Names:
+    """Names of the joints and bodies of a robot, and the unit of each joint, ``rad`` or ``m``."""
+
+    joints: Sequence[str] = ()
+    bodies: Sequence[str] = ()
+    joint_units: Sequence[str] = ()
+
+
+@dataclass(frozen=True)
+class Label:
+    """Name of one number per row, such as ``q/position/x``, and its unit."""
+
+    name: str
+    unit: str
+
+
+def labels(path: str, shape: Sequence[int], names: Names) -> list[Label]:
+    """Return the labels of the numbers in a row of a column, in order.
+
+    Parameters
+    ----------
+    path : str
+        Path of the column in ``trace.npz``.
+    shape : sequence of int
+        Shape of one row.
+    names : Names
+        Joints and bodies of the robot.
+    """
+    kind, _ = split_path(path)
+    if not shape:
+        return [Label(path, _simple_unit(kind))]
+    if kind == "wrenches":
+        parts = list(_parts(kind, shape[-1], names))
+        bodies = names.bodies if len(names.bodies) == shape[0] else [str(k) for k in range(shape[0])]
+        return [Label(f"{path}/{body}/{name}", unit) for body in bodies for name, unit in parts]
+    if len(shape) == 2:
+        rows, columns = (range(1, length + 1) for length in shape)
+        return [Label(f"{path}/{row}{column}", _pose_unit(row, column)) for row in rows for column in columns]
+    return [Label(f"{path}/{name}", unit) for name, unit in _parts(kind, shape[-1], names)]
+
+
+def _parts(kind: str, width: int, names: Names) -> Iterator[tuple[str, str]]:
+    """Yield name and unit of each number of a row of one axis."""
+    parts: Mapping[str, tuple[slice, str]] = COLUMNS[kind].parts if kind in COLUMNS else {}
+    if kind == "tracking" and width == 6:
+        parts = {"position": (slice(0, 3), "m"), "attitude": (slice(3, 6), "rad")}
+    if parts:
+        for part, (entries, unit) in parts.items():
+            count = len(range(width)[entries])
+            if part == "joints":
+                yield from _of_joints("joints/", count, unit, names)
+            else:
+                units = unit.split(" and ") if part == "opening" else [unit] * count
+                yield from zip(_axes(part, count), units, strict=True)
+    elif len(names.joints) == width and width != 3:
+        yield from _of_joints("", width, _simple_unit(kind), names)
+    else:
+        yield from ((name, _simple_unit(kind)) for name in _components(width))
+
+
+def _of_joints(prefix: str, count: int, unit: str, names: Names) -> Iterator[tuple[str, str]]:
+    """Yield name and unit of each joint; ``unit`` is that of revolute, then that of prismatic joints."""
+    revolute, _, prismatic = unit.partition(" or ")
+    joints = names.joints if len(names.joints) == count else [str(k) for k in range(count)]
+    kinds = names.joint_units if len(names.joint_units) == count else [""] * count
+    for joint, kind in zip(joints, kinds, strict=True):
+        yield prefix + joint, {"rad": revolute, "m": prismatic or revolute}.get(kind, unit)
+
+
+def _axes(part: str, count: int) -> list[str]:
+    if count == 1:
+        return [part]
+    if part == "opening":
+        return ["opening/distance", "opening/angle"]
+    return [f"{part}/{axis}" for axis in _components(count)]
+
+
+def _components(count: int) -> Sequence[str]:
+    return {3: XYZ, 4: XYZW}.get(count, [str(k) for k in range(count)])
+
+
+def _pose_unit(row: int, column: int) -> str:
+    """Return the unit of an entry of a homogeneous matrix: m for the position, otherwise 1."""
+    return "m" if column == 4 and row < 4 else "1"
+
+
+def _simple_unit(kind: str) -> str:
+    return COLUMNS[kind].unit if kind in COLUMNS else "1"
+
+
+def flat(values: Any) -> Floats:
+    """Return a column as (T, numbers per row)."""
+    array: Floats = np.asarray(values)
+    return array.reshape(len(array), -1)
