@@ -35,6 +35,7 @@ class                       built-in               fields: cause
 ``OutputNotWritableError``  ``PermissionError``    ``path``: the folder is not writable
 ``ScenarioError``           ``ValueError``         ``file, path, line``: an invalid scenario
 ``QuantityError``           ``ValueError``         ``text, expected``: ``"51.6 def"`` is not an angle
+``CampaignError``           ``RuntimeError``       ``reason``: a cluster that does not answer or is gone
 ``ViewerError``             ``RuntimeError``       ``reason``: the viewer does not start or displays nothing
 ``Ros2Error``               ``RuntimeError``       ``reason``: a domain, messages, packages or a bag
 ==========================  =====================  ==========================================================
@@ -48,6 +49,7 @@ from __future__ import annotations
 from typing import Any
 
 __all__ = [
+    "CampaignError",
     "CheckpointError",
     "CompareError",
     "ControlError",
@@ -336,6 +338,12 @@ class QuantityError(OnOrbitError, ValueError):
 
     text: Any = None
     expected: Any = None
+
+
+class CampaignError(OnOrbitError, RuntimeError):
+    """The cluster of a campaign does not answer, has no workers, other software, or is gone."""
+
+    reason: Any = None
 
 
 class ViewerError(OnOrbitError, RuntimeError):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import warnings
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -92,9 +91,8 @@ def _sobol(cases: int, dimensions: int) -> NDArray[np.uint32]:
 def _sobol_points(cases: int, dimensions: int) -> NDArray[np.uint32]:
     qmc = _qmc()
     dimensions = min(dimensions, qmc.Sobol.MAXDIM)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about a number of cases that is not a power of two
-        points = qmc.Sobol(dimensions, scramble=False, bits=_SOBOL_BITS).random(cases)
+    sequence = qmc.Sobol(dimensions, scramble=False, bits=_SOBOL_BITS)
+    points = sequence.random_base2((cases - 1).bit_length())[:cases]  # other numbers cause a warning
     table: NDArray[np.uint32] = (points * 2.0**_SOBOL_BITS).astype(np.uint32)
     return table
 

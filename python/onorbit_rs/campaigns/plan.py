@@ -119,7 +119,12 @@ def digest_of(plan: Plan) -> str:
     return scenario_digest(content)
 
 
-def _needs_processes(scenario: AnyScenario) -> bool:
+def laws_of(scenario: AnyScenario) -> list[Any]:
+    """Return the control laws of a scenario, of all its systems."""
     alone = scenario.scenarios.values() if isinstance(scenario, WorldScenario) else [scenario]
-    has_python = any(isinstance(law, PythonController) for one in alone for law in one.laws)
+    return [law for one in alone for law in one.laws]
+
+
+def _needs_processes(scenario: AnyScenario) -> bool:
+    has_python = any(isinstance(law, PythonController) for law in laws_of(scenario))
     return has_python or scenario.engine != "native"

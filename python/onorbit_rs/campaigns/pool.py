@@ -11,12 +11,17 @@ from contextlib import contextmanager
 from typing import Protocol
 
 from onorbit_rs.campaigns.cases import Outcome, Stopped
+from onorbit_rs.exceptions import CampaignError
 
-_BATCH_S = 0.25
+BATCH_S = 0.25
 """Wall-clock time of the cases that a worker takes at once, s."""
 _MOST_AT_ONCE = 64
 MOST_DEATHS = 5
 """Number of workers that may die during the same case before the case counts as failed."""
+
+
+MOST_FAILED_STARTS = 20
+"""Number of workers in a row that may die before they begin a case."""
 
 
 class Executor(Protocol):
@@ -36,14 +41,20 @@ class Executor(Protocol):
 
 
 class WorkerDied(Exception):
-    """A worker process ended during a case; the message says how."""
+    """A worker process ended; the message says how."""
+
+    def __init__(self, message: str, *, during_case: bool) -> None:
+        """Store whether a case had begun, or the process was still starting."""
+        super().__init__(message)
+        self.during_case = during_case
 
 
 class Board:
     """Cases that wait for a worker; each case is taken by one worker at a time."""
 
-    def __init__(self, cases: Sequence[int], workers: int) -> None:
-        """Store the cases, which are handed out in order."""
+    def __init__(self, cases: Sequence[int], workers: int, *, batch_s: float = BATCH_S) -> None:
+        """Store the cases, which are handed out in order, ``batch_s`` seconds of work at once."""
+        self._batch_s = batch_s
         self._waiting = deque(cases)
         self._workers = workers
         self._lock = threading.Lock()
@@ -51,24 +62,37 @@ class Board:
         self._deaths: dict[int, int] = {}
 
     def take(self) -> list[int]:
-        """Return the next cases for a worker, about a quarter of a second of work; empty if none waits."""
+        """Return the next cases for a worker; empty if none waits."""
         with self._lock:
-            size = 1 if self._mean_s is None else int(_BATCH_S / max(self._mean_s, 1e-6))
+            size = 1 if self._mean_s is None else int(self._batch_s / max(self._mean_s, 1e-6))
             size = max(1, min(size, _MOST_AT_ONCE, len(self._waiting) // (4 * self._workers)))
             return [self._waiting.popleft() for _ in range(min(size, len(self._waiting)))]
 
-    def give_back(self, cases: Sequence[int]) -> bool:
-        """Take back the cases of a worker that died; return False if the first of them killed too many."""
+    def give_back(self, cases: Sequence[int], *, during_case: bool = True) -> bool:
+        """Take back the cases of a worker that died; return False if too many died during the first of them.
+
+        Raises
+        ------
+        CampaignError
+            If many workers in a row died before they began a case.
+        """
         with self._lock:
             first, *rest = cases
-            self._deaths[first] = self._deaths.get(first, 0) + 1
-            is_retried = self._deaths[first] < MOST_DEATHS
+            deaths = self._deaths
+            key = first if during_case else -1
+            deaths[key] = deaths.get(key, 0) + 1
+            if not during_case and deaths[key] >= MOST_FAILED_STARTS:
+                raise CampaignError(
+                    f"{deaths[key]} worker processes ended before they began a case", reason="worker"
+                )
+            is_retried = not during_case or deaths[key] < MOST_DEATHS
             self._waiting.extendleft(reversed(cases if is_retried else rest))
             return is_retried
 
     def report(self, seconds: float) -> None:
         """Record the wall-clock time of a case."""
         with self._lock:
+            self._deaths.pop(-1, None)  # workers do start
             self._mean_s = seconds if self._mean_s is None else 0.9 * self._mean_s + 0.1 * seconds
 
 
@@ -145,7 +169,7 @@ class _Pool:
         except WorkerDied as death:
             if self._is_stopped.is_set() or not left:
                 return
-            if not self._board.give_back(left):
+            if not self._board.give_back(left, during_case=death.during_case):
                 text = f"{death}, {MOST_DEATHS} times during this case"
                 self._results.put(Outcome(left[0], "failed", text, {}, {}))
             with self._idle:

@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from onorbit_rs.campaigns.cases import Outcome
 from onorbit_rs.campaigns.kept_columns import columns_of
 from onorbit_rs.campaigns.load import load_campaign
+from onorbit_rs.campaigns.on_processes import on_processes
 from onorbit_rs.campaigns.on_threads import on_threads
-from onorbit_rs.campaigns.plan import Plan, digest_of, plan_of
+from onorbit_rs.campaigns.plan import Plan, digest_of, laws_of, plan_of
 from onorbit_rs.campaigns.progress import campaign_progress
-from onorbit_rs.campaigns.storage import CampaignFolder, is_campaign
+from onorbit_rs.campaigns.report import write_report
+from onorbit_rs.campaigns.storage import FAILURES, CampaignFolder, is_campaign
 from onorbit_rs.campaigns.table import check_conditions, rows_of, table_of
 from onorbit_rs.campaigns.write import write_campaign, write_cases, write_columns
+from onorbit_rs.common.progress import doing
 from onorbit_rs.common.suggestions import did_you_mean
+from onorbit_rs.common.user_code import announce
 from onorbit_rs.exceptions import DtypeError, InputError, OnOrbitError
 from onorbit_rs.scenario import WorldScenario
 from onorbit_rs.scenario.build import build
 from onorbit_rs.scenario.build_world import build_world
+from onorbit_rs.scenario.control.python import PythonController
+from onorbit_rs.scenario.control.python_source import source_of
 from onorbit_rs.scenario.load import check
 from onorbit_rs.simulation.run import Run, run
 
@@ -40,6 +47,7 @@ def campaign(
     *,
     cases: int | None = None,
     workers: int | None = None,
+    cluster: str | None = None,
     force: bool = False,
     quiet: bool = False,
 ) -> pa.Table:
@@ -54,7 +62,11 @@ def campaign(
     cases : int, optional
         Number of cases, in place of that of the campaign.
     workers : int, optional
-        Number of threads or processes. Default: the number of cores of the machine.
+        Number of threads, or of processes if Python code runs in every step or the cluster is ``local``.
+        Default: the number of cores of the machine.
+    cluster : str, optional
+        Address of the scheduler of a Dask cluster, such as ``tcp://10.0.0.1:8786``, or ``local`` for a
+        cluster on this machine. A script that starts one needs ``if __name__ == "__main__":``.
     force : bool
         Replace another campaign in ``out``.
     quiet : bool
@@ -72,6 +84,8 @@ def campaign(
         Before any case runs: for an invalid campaign or scenario (``ScenarioError``), a folder that is not
         empty, not writable or in use (``OutputFolderError``), or a missing package (``InputError``).
         Errors of a case are part of the table.
+    CampaignError
+        If the cluster does not answer or disappears. The cases on the disk are kept.
     OutputFolderError
         If the disk is full; the cases on the disk are kept, and the same call continues the campaign.
     """
@@ -80,26 +94,34 @@ def campaign(
     plan = plan_of(loaded)
     _check_nominal(plan, loaded)
     conditions = loaded.document.campaign.success
+
+    def engine(numbers: Sequence[int]) -> AbstractContextManager[Iterator[Outcome]]:
+        return _engine(plan, numbers, count, cluster)
+
     with _folder(plan, loaded, out, force=force) as folder:
         if folder is None:
             found: list[Outcome] = []
-            _run(plan, range(plan.cases), count, conditions, found.append, quiet=quiet)
+            _run(plan, range(plan.cases), engine, conditions, found.append, quiet=quiet)
             return table_of(rows_of(found, plan.value_names, conditions))
         done = folder.done()
         pending = [case for case in range(plan.cases) if case not in done]
         with _keeping(folder, plan.cases):
-            _run(plan, pending, count, conditions, folder.add, quiet=quiet)
+            _run(plan, pending, engine, conditions, folder.add, quiet=quiet)
         kept = (outcome for outcome in folder.outcomes() if outcome.case < plan.cases)
-        table = table_of(rows_of(kept, plan.value_names, conditions))
+        columns = rows_of(kept, plan.value_names, conditions)
+        table = table_of(columns)
         write_cases(folder, table)
         write_columns(folder, plan, range(plan.cases))
+        write_failures(folder, plan, columns, quiet=quiet)
+        with doing("writing the report", quiet=quiet):
+            write_report(folder, loaded.document, columns, plan.value_names)
         return table
 
 
 def _run(
     plan: Plan,
     cases: Sequence[int],
-    workers: int,
+    engine: Callable[[Sequence[int]], AbstractContextManager[Iterator[Outcome]]],
     conditions: dict[str, Condition],
     add: Callable[[Outcome], None],
     *,
@@ -107,7 +129,7 @@ def _run(
 ) -> None:
     """Run cases and pass their outcomes to ``add`` as they come."""
     progress = campaign_progress(plan.name, plan.cases, plan.cases - len(cases), quiet=quiet)
-    with progress as shown, _engine(plan, cases, workers) as outcomes:
+    with progress as shown, engine(cases) as outcomes:
         for outcome in _complete(plan, outcomes):
             add(outcome)
             shown.add(has_error=outcome.error is not None)
@@ -186,6 +208,23 @@ def campaign_case(
     return run(scenario, folder, force=force, quiet=quiet)
 
 
+def write_failures(folder: CampaignFolder, plan: Plan, columns: dict[str, list[Any]], *, quiet: bool) -> None:
+    """Write the folder of an ordinary run for every case without success, unless it exists.
+
+    The case is run again, so that figures and recording need not be kept in memory; its error is kept.
+    """
+    if plan.keep.failures != "full":
+        return
+    numbers = [case for case, has in zip(columns["case"], columns["success"], strict=True) if not has]
+    for number in numbers:
+        out = folder.path / FAILURES / f"case_{number}"
+        if out.exists():
+            continue
+        with suppress(Exception), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            run(check(plan.case(number).scenario, None, {}), out, quiet=quiet)
+
+
 def _checked_workers(workers: int | None) -> int:
     if isinstance(workers, bool) or not isinstance(workers, int | None):
         raise DtypeError(f"workers is {workers!r}; it must be a positive integer, or None for every core")
@@ -197,6 +236,9 @@ def _checked_workers(workers: int | None) -> int:
 def _check_nominal(plan: Plan, loaded: LoadedCampaign) -> None:
     """Build the nominal scenario, so that its errors and warnings are reported before any case runs."""
     scenario = loaded.scenario
+    for law in laws_of(scenario):
+        if isinstance(law, PythonController):
+            announce(source_of(law, scenario.folder))
     is_world = isinstance(scenario, WorldScenario)
     built = build_world(scenario, runs_code=False) if is_world else build(scenario, runs_code=False)  # type: ignore[arg-type]
     if not plan.keep.columns:
@@ -225,11 +267,17 @@ def _folder(
     return folder
 
 
-def _engine(plan: Plan, cases: Sequence[int], workers: int) -> AbstractContextManager[Iterator[Outcome]]:
+def _engine(
+    plan: Plan, cases: Sequence[int], workers: int, cluster: str | None
+) -> AbstractContextManager[Iterator[Outcome]]:
     """Return the iterator of outcomes of the engine that suits the scenario."""
     if not cases:
         return nullcontext(iter(()))
-    return on_threads(plan, cases, workers)
+    if cluster is not None:
+        from onorbit_rs.campaigns.on_dask import on_dask
+
+        return on_dask(plan, cases, workers, cluster)
+    return on_processes(plan, cases, workers) if plan.needs_processes else on_threads(plan, cases, workers)
 
 
 def _complete(plan: Plan, outcomes: Iterator[Outcome]) -> Iterator[Outcome]:

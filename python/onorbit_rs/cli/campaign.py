@@ -34,12 +34,19 @@ WorkersOption = Annotated[
 ]
 
 
+ClusterOption = Annotated[
+    str | None,
+    typer.Option(metavar="ADDRESS", help="Use a Dask cluster: its address, or 'local' for this machine."),
+]
+
+
 def campaign(
     campaign: CampaignArgument,
     out: OutOption = None,
     case: CaseOption = None,
     cases: CasesOption = None,
     workers: WorkersOption = None,
+    cluster: ClusterOption = None,
     force: ForceOption = False,
     quiet: QuietOption = False,
     as_json: JsonOption = False,
@@ -60,7 +67,9 @@ def campaign(
         return
     from onorbit_rs.campaigns.run import campaign as run_campaign
 
-    table = run_campaign(campaign, out, cases=cases, workers=workers, force=force, quiet=quiet)
+    table = run_campaign(
+        campaign, out, cases=cases, workers=workers, cluster=cluster, force=force, quiet=quiet
+    )
     with ignore_closed_pipe():
         if as_json:
             from onorbit_rs.cli.console import print_json

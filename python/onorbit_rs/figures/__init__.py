@@ -6,6 +6,13 @@ Only this folder imports matplotlib.
 
 from __future__ import annotations
 
+from onorbit_rs.figures.campaign import (
+    Series,
+    correlation_map,
+    result_distributions,
+    strongest_pairs,
+    success_history,
+)
 from onorbit_rs.figures.captured_motion import captured_motion
 from onorbit_rs.figures.contact_energy import contact_energy
 from onorbit_rs.figures.contact_history import contact_history
@@ -36,6 +43,7 @@ __all__ = [
     "PAGE",
     "Drawing",
     "EventMark",
+    "Series",
     "Subject",
     "Tool",
     "WorldSubject",
@@ -47,6 +55,7 @@ __all__ = [
     "contact_history",
     "contact_overview",
     "control_errors",
+    "correlation_map",
     "desired_trajectory",
     "differences",
     "drawings",
@@ -64,9 +73,12 @@ __all__ = [
     "orbit_overview",
     "portrait",
     "relative_motion",
+    "result_distributions",
     "save",
     "save_all",
+    "strongest_pairs",
     "subject_of",
+    "success_history",
     "tracking_errors",
     "world_drawings",
 ]

@@ -1,0 +1,231 @@
+"""Engine for clusters: tasks of a few cases each on the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import logging
+import pickle
+import queue
+import time
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from onorbit_rs.campaigns.cases import Outcome, run_case
+from onorbit_rs.campaigns.plan import Plan, software
+from onorbit_rs.campaigns.pool import MOST_DEATHS, Board
+from onorbit_rs.exceptions import CampaignError, InputError
+
+if TYPE_CHECKING:
+    from types import ModuleType
+
+LOCAL = "local"
+"""Address of a cluster that is started on this machine, for the campaign only."""
+_CONNECT_S = 10.0
+_WITHOUT_WORKERS_S = 60.0
+"""Wall-clock time for which a campaign waits for the first worker, s."""
+_LOST_S = 15.0
+"""Wall-clock time without a connection after which a cluster counts as gone, s."""
+_BATCH_S = 1.0
+"""Wall-clock time of the cases of one task, s."""
+_AHEAD = 1
+"""Tasks that wait at every thread of the cluster, so that no thread waits for its next task."""
+
+
+def run_cases(plan: bytes, cases: list[int]) -> tuple[list[Outcome], float]:
+    """Run cases on a worker; return their outcomes, and the wall-clock time of one case, s."""
+    began = time.perf_counter()
+    loaded = _plan(plan)
+    if (here := software()) != loaded.software:
+        raise CampaignError(
+            f"a worker of the cluster has {here}, but the campaign was started with {loaded.software}; use "
+            "equal versions and processors, so that a case has the same bits everywhere",
+            reason="version",
+        )
+    found = [run_case(loaded, case) for case in cases]
+    return found, (time.perf_counter() - began) / len(cases)
+
+
+@lru_cache(maxsize=4)
+def _plan(plan: bytes) -> Plan:
+    warnings.simplefilter("ignore")  # the nominal scenario has issued them
+    loaded: Plan = pickle.loads(plan)
+    return loaded
+
+
+def distributed() -> ModuleType:
+    """Return the module ``distributed``; raises InputError if it is not installed."""
+    try:
+        import distributed as module
+    except ImportError:
+        raise InputError(
+            "a cluster requires Dask; install it with: pip install 'onorbit-rs[campaign]'", name="cluster"
+        ) from None
+    return module  # type: ignore[no-any-return]
+
+
+@contextmanager
+def on_dask(plan: Plan, cases: Sequence[int], workers: int, address: str) -> Iterator[Iterator[Outcome]]:
+    """Run cases on a Dask cluster during the block; yields an iterator of the outcomes as they come.
+
+    Parameters
+    ----------
+    plan : Plan
+        Campaign.
+    cases : sequence of int
+        Numbers of the cases.
+    workers : int
+        Number of processes of a cluster on this machine.
+    address : str
+        Address of a scheduler, such as ``tcp://10.0.0.1:8786``, or ``local``.
+
+    Raises
+    ------
+    InputError
+        If Dask is not installed.
+    CampaignError
+        If no cluster answers at the address, it has no workers, or it disappears.
+    """
+    with _client(address, workers) as client:
+        tasks = _Tasks(client, plan, cases, address)
+        try:
+            yield tasks.outcomes(len(cases))
+        finally:
+            tasks.cancel()
+
+
+@contextmanager
+def _client(address: str, workers: int) -> Iterator[Any]:
+    """Connect to a cluster, or start one whose sockets are bound to 127.0.0.1."""
+    module = distributed()
+    logger = logging.getLogger("distributed")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)  # deaths of workers are handled
+    try:
+        if address == LOCAL:
+            with (
+                module.LocalCluster(
+                    n_workers=workers,
+                    threads_per_worker=1,
+                    processes=True,
+                    host="127.0.0.1",
+                    dashboard_address=None,
+                    worker_dashboard_address=None,
+                    memory_limit=0,
+                    silence_logs=logging.CRITICAL,
+                ) as cluster,
+                module.Client(cluster, set_as_default=False) as client,
+            ):
+                yield client
+            return
+        try:
+            client = module.Client(address, timeout=_CONNECT_S, set_as_default=False)
+        except (OSError, TimeoutError, ValueError) as error:
+            raise CampaignError(
+                f"no Dask scheduler answers at {address} ({type(error).__name__}); start one with 'dask "
+                "scheduler', or use --cluster local",
+                reason="no cluster",
+            ) from error
+        try:
+            yield client
+        finally:
+            with suppress(Exception):  # the cluster may be gone
+                client.close(timeout=2)
+    finally:
+        logger.setLevel(level)
+
+
+class _Tasks:
+    """Tasks on the cluster: enough for all threads, so that the scheduler has little to do."""
+
+    def __init__(self, client: Any, plan: Plan, cases: Sequence[int], address: str) -> None:
+        self._client, self._address = client, address
+        self._plan = pickle.dumps(plan)
+        self._done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._running: dict[Any, list[int]] = {}
+        self._threads = self._wait_for_workers()
+        self._board = Board(cases, self._threads, batch_s=_BATCH_S)
+        self._lost_since: float | None = None
+
+    def outcomes(self, count: int) -> Iterator[Outcome]:
+        """Yield the outcomes of ``count`` cases."""
+        while count:
+            self._submit()
+            future = self._next()
+            cases = self._running.pop(future)
+            for outcome in self._results(future, cases):
+                count -= 1
+                yield outcome
+            future.release()
+
+    def cancel(self) -> None:
+        """Cancel the tasks that have not ended."""
+        with suppress(Exception):  # the cluster may be gone
+            self._client.cancel(list(self._running), force=True)
+
+    def _submit(self) -> None:
+        """Submit tasks until every thread has one, and one waits for it."""
+        while len(self._running) < (1 + _AHEAD) * self._threads and (cases := self._board.take()):
+            future = self._client.submit(run_cases, self._plan, cases, pure=False)
+            self._running[future] = cases
+            future.add_done_callback(self._done.put)
+
+    def _next(self) -> Any:
+        """Return the next task that has ended; raise CampaignError if the cluster is gone."""
+        while True:
+            try:
+                return self._done.get(timeout=1.0)
+            except queue.Empty:
+                self._check_connection()
+
+    def _check_connection(self) -> None:
+        now = time.monotonic()
+        if self._client.status == "running":
+            self._lost_since = None
+        else:
+            self._lost_since = self._lost_since or now
+        if self._client.status == "closed" or (self._lost_since and now - self._lost_since > _LOST_S):
+            raise self._gone()
+
+    def _results(self, future: Any, cases: list[int]) -> list[Outcome]:
+        """Return the outcomes of a task; empty if its worker died and its cases run again."""
+        module = distributed()
+        try:
+            found, seconds = future.result(timeout=30.0)
+        except module.KilledWorker as error:
+            if self._board.give_back(cases):
+                return []
+            return [Outcome(cases[0], "failed", f"{_first(error)}, {MOST_DEATHS} times", {}, {})]
+        except (CampaignError, KeyboardInterrupt):
+            raise
+        except Exception as error:
+            if self._client.status != "running" or future.status in ("cancelled", "lost"):
+                raise self._gone() from error
+            raise CampaignError(
+                f"the cluster at {self._address} cannot run the cases: {type(error).__name__}: {error}; its "
+                "workers need onorbit_rs, Python and the files of the scenario as on this machine",
+                reason="worker",
+            ) from error
+        self._board.report(seconds)
+        return list(found)
+
+    def _gone(self) -> CampaignError:
+        return CampaignError(f"the cluster at {self._address} is gone", reason="cluster gone")
+
+    def _wait_for_workers(self) -> int:
+        """Return the number of threads of the cluster; waits for its first worker."""
+        end = time.monotonic() + _WITHOUT_WORKERS_S
+        while time.monotonic() < end:
+            if threads := sum(self._client.nthreads().values()):
+                return int(threads)
+            time.sleep(0.2)
+        raise CampaignError(
+            f"the cluster at {self._address} has no workers after {_WITHOUT_WORKERS_S:g} s; start one with "
+            f"'dask worker {self._address}'",
+            reason="no workers",
+        )
+
+
+def _first(error: Exception) -> str:
+    return " ".join(str(error).split())[:200] or type(error).__name__

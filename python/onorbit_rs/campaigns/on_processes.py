@@ -1,0 +1,103 @@
+"""Engine for cases with Python code in the loop: processes of this machine, connected by pipes."""
+
+from __future__ import annotations
+
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING
+
+from onorbit_rs.campaigns.cases import Outcome, Stopped
+from onorbit_rs.campaigns.pool import WorkerDied, pooled
+
+if TYPE_CHECKING:
+    from onorbit_rs.campaigns.plan import Plan
+
+_COMMAND = (sys.executable, "-m", "onorbit_rs.campaigns.worker")
+
+
+class _InProcess:
+    """Runs cases in a worker process, which is started for the first case and again after it died."""
+
+    def __init__(self, greeting: bytes) -> None:
+        self._greeting = greeting
+        self._process: subprocess.Popen[bytes] | None = None
+        self._lock = threading.Lock()
+        self._is_stopped = False
+
+    def run(self, cases: Sequence[int]) -> Iterator[Outcome]:
+        has_begun = False
+        process = self._started()
+        assert process.stdin is not None
+        assert process.stdout is not None
+        try:
+            process.stdin.write(pickle.dumps(list(cases)))
+            process.stdin.flush()
+            for _ in cases:
+                has_begun = False
+                pickle.load(process.stdout)  # the number of the case, when it begins
+                has_begun = True
+                yield pickle.load(process.stdout)
+        except (EOFError, OSError, ValueError, pickle.UnpicklingError) as error:
+            raise WorkerDied(self._end(process), during_case=has_begun) from error
+
+    def stop(self) -> None:
+        with self._lock:
+            self._is_stopped = True
+            if self._process is not None:
+                _kill(self._process)
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        with self._lock:
+            if self._is_stopped:
+                raise Stopped
+            if self._process is None:
+                self._process = subprocess.Popen(
+                    _COMMAND,
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    start_new_session=True,  # Ctrl-C is for the process that started it
+                )
+                process, greeting = self._process, self._greeting
+            else:
+                process, greeting = self._process, b""
+        assert process.stdin is not None
+        with suppress(OSError):  # it died; reading its results raises the error
+            process.stdin.write(greeting)
+        return process
+
+    def _end(self, process: subprocess.Popen[bytes]) -> str:
+        """Forget a process that died; return how it ended."""
+        with self._lock:
+            _kill(process)
+            self._process = None
+        code = process.returncode
+        with suppress(ValueError):
+            return f"the worker process ended by {signal.Signals(-code).name}"
+        return f"the worker process ended with exit code {code}"
+
+
+def _kill(process: subprocess.Popen[bytes]) -> None:
+    """End a process and release its pipes."""
+    if process.poll() is None:
+        process.kill()
+    process.wait()
+    for stream in (process.stdin, process.stdout):
+        with suppress(OSError, ValueError):
+            if stream is not None:
+                stream.close()
+
+
+@contextmanager
+def on_processes(plan: Plan, cases: Sequence[int], workers: int) -> Iterator[Iterator[Outcome]]:
+    """Run cases in processes during the block; yields an iterator of the outcomes as they come.
+
+    A worker that dies is replaced, and the cases that it had are run again.
+    """
+    greeting = pickle.dumps((plan, sys.path))
+    with pooled(cases, workers, lambda: _InProcess(greeting)) as outcomes:
+        yield outcomes

@@ -1,0 +1,198 @@
+"""Writes ``report.html`` of a campaign."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from onorbit_rs import _core
+from onorbit_rs.campaigns.results import PERCENTILES, Result, dispersed, percentile_rows, results
+from onorbit_rs.campaigns.statistics import (
+    CONFIDENCE,
+    Sensitivity,
+    sensitivities,
+    significant_correlation,
+    wilson,
+)
+from onorbit_rs.campaigns.storage import CAMPAIGN, REPORT
+from onorbit_rs.report.campaign_page import HtmlTable, campaign_page
+from onorbit_rs.report.page import Picture
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from onorbit_rs.campaigns.document import CampaignDocument
+    from onorbit_rs.campaigns.storage import CampaignFolder
+    from onorbit_rs.figures import Series
+
+_MOST_RESULTS = 9
+"""Largest number of results in the figures."""
+_MOST_VALUES = 20
+"""Largest number of dispersed values in the figure of the correlations."""
+_MOST_CASES = 20
+"""Largest number of cases in a table."""
+_LARGEST_SVG = 600_000
+
+
+def write_report(
+    folder: CampaignFolder,
+    document: CampaignDocument,
+    columns: dict[str, list[Any]],
+    value_names: Sequence[str],
+) -> None:
+    """Write the page from the columns of the table."""
+    is_success = np.array(columns["success"], dtype=bool)
+    found = results(columns, value_names, list(document.campaign.success))
+    values = dispersed(columns, value_names)
+    by_key = {one.key: one.values for one in [*values, *found]}
+    by_key["success"] = is_success.astype(np.float64)
+    shown = found[:_MOST_RESULTS]
+    outcomes = [*(["success"] if 0 < is_success.sum() < len(is_success) else []), *(one.key for one in shown)]
+    ranked = sensitivities(by_key, [one.key for one in values], outcomes)
+    content = campaign_page(
+        name=document.name,
+        description=document.description,
+        verdict=_verdict(columns, is_success),
+        remarks=[],
+        numbers=[_percentiles(found), _sensitivities(ranked, found, len(is_success))],
+        cases=[*_failures(columns, is_success), _worst(shown)],
+        pictures=list(_pictures(shown, values, ranked, outcomes, is_success)),
+        campaign=(folder.path / CAMPAIGN).read_text(encoding="utf-8"),
+        again=f"onorbit campaign {CAMPAIGN} --out DIR",
+        version=str(_core.build_info()["version"]),
+    )
+    folder.write(REPORT, content.encode())
+
+
+def _verdict(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> tuple[str, str, str]:
+    rate = wilson(int(is_success.sum()), len(is_success))
+    status = {name: columns["status"].count(name) for name in dict.fromkeys(sorted(columns["status"]))}
+    kind = "passed" if is_success.all() else "warned" if is_success.any() else "failed"
+    heading = f"Success in {rate.successes} of {rate.cases} cases, {rate.fraction:.1%}"
+    listed = ", ".join(f"{number} {name}" for name, number in status.items())
+    text = (
+        f"With {CONFIDENCE:.0%} confidence, the probability of success is between {rate.low:.1%} and "
+        f"{rate.high:.1%} (Wilson). Cases: {listed}."
+    )
+    return kind, heading, text
+
+
+def _percentiles(found: Sequence[Result]) -> HtmlTable:
+    heads = {0.0: "smallest", 50.0: "median", 100.0: "largest"}
+    names = [heads.get(number, f"{number:g} %") for number in PERCENTILES]
+    return HtmlTable(
+        "Results",
+        "Every number of the summaries that varies, over the cases that have it.",
+        ["result", "unit", *names, "case of the largest"],
+        list(percentile_rows(found)),
+    )
+
+
+def _sensitivities(ranked: Sequence[Sensitivity], found: Sequence[Result], cases: int) -> HtmlTable:
+    labels = {one.key: one.label for one in found}
+    return HtmlTable(
+        "Sensitivities",
+        "Spearman's rank correlations of dispersed values and results, the strongest first. For independent "
+        f"columns, {significant_correlation(cases):.2f} is exceeded in one of 20 correlations.",
+        ["result", "dispersed value", "rank correlation"],
+        [[labels.get(one.result, one.result), one.value, one.correlation] for one in ranked[:_MOST_CASES]],
+    )
+
+
+def _failures(columns: dict[str, list[Any]], is_success: NDArray[np.bool_]) -> Iterator[HtmlTable]:
+    """Yield a table of the cases without success, if there are any."""
+    cases = np.flatnonzero(~is_success)
+    if len(cases):
+        more = f" The first {_MOST_CASES} of {len(cases)} are listed." if len(cases) > _MOST_CASES else ""
+        yield HtmlTable(
+            "Cases without success",
+            f"onorbit campaign {CAMPAIGN} --case K --out DIR runs one of them with figures.{more}",
+            ["case", "status", "error, or failed checks"],
+            [
+                [
+                    str(columns["case"][i]),
+                    columns["status"][i],
+                    columns["error"][i] or _failed_checks(columns, i),
+                ]
+                for i in cases[:_MOST_CASES]
+            ],
+        )
+
+
+def _failed_checks(columns: dict[str, list[Any]], index: int) -> str:
+    return str(columns.get("certificate_failures", {index: ""})[index] or "a condition of success")
+
+
+def _worst(shown: Sequence[Result]) -> HtmlTable:
+    """Return the cases with the largest values of each result."""
+    rows = []
+    for result in shown:
+        order = np.argsort(-np.nan_to_num(result.values, nan=-np.inf), kind="stable")[:5]
+        rows.append([result.label, ", ".join(str(int(case)) for case in order)])
+    return HtmlTable(
+        "Extreme cases", "The five cases with the largest value of each result.", ["result", "cases"], rows
+    )
+
+
+def _pictures(
+    shown: Sequence[Result],
+    values: Sequence[Result],
+    ranked: Sequence[Sensitivity],
+    outcomes: Sequence[str],
+    is_success: NDArray[np.bool_],
+) -> Iterator[Picture]:
+    from onorbit_rs import figures  # imported here because matplotlib takes a second to import
+
+    series = {one.key: figures.Series(one.label, one.unit, one.values) for one in [*shown, *values]}
+    if shown:
+        about = "Distributions of the results; cases without success are orange."
+        yield _picture(
+            "results", about, figures.result_distributions([series[one.key] for one in shown], is_success)
+        )
+    counts = np.cumsum(is_success)
+    bounds = [wilson(int(count), number) for number, count in enumerate(counts, 1)]
+    about = f"Fraction of successes after each case, with bounds of {CONFIDENCE:.0%} confidence."
+    fractions, low, high = (
+        np.array([getattr(one, key) for one in bounds]) for key in ("fraction", "low", "high")
+    )
+    yield _picture("success", about, figures.success_history(fractions, low, high))
+    if ranked:
+        yield _correlations(ranked, outcomes, series, len(is_success), figures.correlation_map)
+        pairs = [one for one in ranked if one.result != "success"][:6]
+        about = "The strongest correlations; cases without success are orange."
+        drawn = figures.strongest_pairs(
+            [(series[one.value], series[one.result]) for one in pairs], is_success
+        )
+        yield _picture("strongest", about, drawn)
+
+
+def _correlations(
+    ranked: Sequence[Sensitivity],
+    outcomes: Sequence[str],
+    series: dict[str, Series],
+    cases: int,
+    draw: Callable[..., Figure],
+) -> Picture:
+    rows = list(dict.fromkeys(one.value for one in ranked))[:_MOST_VALUES]
+    found = np.full((len(rows), len(outcomes)), np.nan)
+    for one in ranked:
+        if one.value in rows:
+            found[rows.index(one.value), outcomes.index(one.result)] = one.correlation
+    labels = [series[key].name if key in series else key for key in outcomes]
+    figure = draw(found, rows, labels, significant_correlation(cases))
+    about = "Rank correlations of dispersed values (rows) and results; insignificant ones are grey."
+    return _picture("sensitivities", about, figure)
+
+
+def _picture(name: str, about: str, figure: Figure) -> Picture:
+    from onorbit_rs import figures
+
+    content = figures.as_bytes(figure, "svg")
+    if len(content) > _LARGEST_SVG:
+        return Picture(name, about, "png", figures.as_bytes(figure, "png"), True)
+    return Picture(name, about, "svg", content, True)

@@ -1,0 +1,93 @@
+"""The report page of a campaign: an HTML template that is filled with escaped text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from string import Template
+from typing import Any, NamedTuple
+
+from onorbit_rs.common.display_units import digits
+from onorbit_rs.common.printable import printable
+from onorbit_rs.report.page import Picture, figure_html
+
+_TEMPLATE = Path(__file__).with_name("campaign.html")
+
+
+class HtmlTable(NamedTuple):
+    """A table of text and numbers, with a heading and a sentence that explains it."""
+
+    title: str
+    about: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[Any]]
+
+
+def campaign_page(
+    *,
+    name: str,
+    description: str,
+    verdict: tuple[str, str, str],
+    remarks: Sequence[str],
+    numbers: Sequence[HtmlTable],
+    cases: Sequence[HtmlTable],
+    pictures: Sequence[Picture],
+    campaign: str,
+    again: str,
+    version: str,
+) -> str:
+    """Return the HTML of the report of a campaign, without references to other files.
+
+    ``verdict`` is the kind (``passed``, ``warned``, ``failed``), the heading and the text of the verdict;
+    ``numbers`` are the tables before the figures, and ``cases`` those after them.
+    """
+    kind, heading, text = verdict
+    items = "".join(f"<li>{escape(remark)}</li>" for remark in remarks)
+    return Template(_TEMPLATE.read_text(encoding="utf-8")).substitute(
+        title=escape(f"{printable(name)}: onorbit campaign"),
+        name=escape(printable(name)),
+        description=escape(description),
+        verdict=f'<div class="verdict {kind}" id="verdict"><strong>{escape(heading)}</strong>'
+        f"<p>{escape(text)}</p></div>",
+        remarks=f'<div class="verdict warned" id="warnings"><strong>Warnings</strong><ul>{items}</ul></div>'
+        if items
+        else "",
+        numbers="\n".join(map(_table, numbers)),
+        figures="\n".join(map(figure_html, pictures)) or "<p>No result varies.</p>",
+        cases="\n".join(map(_table, cases)),
+        scenario=escape(campaign),
+        again=escape(again),
+        version=escape(version),
+        footer=escape(f"Written by onorbit_rs {version}."),
+    )
+
+
+def _table(table: HtmlTable) -> str:
+    head = "".join(
+        f'<th scope="col"{_number_class(i)}>{escape(name)}</th>' for i, name in enumerate(table.header)
+    )
+    lines = "\n".join(
+        f"<tr>{''.join(_cell(i, value) for i, value in enumerate(row))}</tr>" for row in table.rows
+    )
+    about = f'<p class="faint">{escape(table.about)}</p>' if table.about else ""
+    return (
+        f'<h2>{escape(table.title)}</h2>\n{about}<div class="scroll"><table class="events"><thead><tr>{head}'
+        f"</tr></thead>{lines}</table></div>"
+    )
+
+
+def _number_class(index: int) -> str:
+    return ' class="number"' if index else ""
+
+
+def _cell(index: int, value: Any) -> str:
+    """Return one cell; numbers are rounded, with all their digits in an attribute."""
+    if value is None:
+        return f"<td{_number_class(index)}>-</td>"
+    if isinstance(value, float):
+        return f'<td class="number"><data value="{value!r}">{escape(digits(value))}</data></td>'
+    is_number = isinstance(value, int)
+    return (
+        f"<td{' class=' + chr(34) + 'number' + chr(34) if is_number else ''}>{escape(printable(value))}</td>"
+    )

@@ -1,0 +1,199 @@
+"""Campaigns on Dask: the same bits, sockets on 127.0.0.1 only, killed workers, clusters that are gone."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import psutil
+import pytest
+from campaign_files import BODY, same, spin
+
+import onorbit_rs as oo
+from onorbit_rs.exceptions import CampaignError, InputError
+
+distributed = pytest.importorskip("distributed", reason="Dask is not installed")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+def tree() -> list[psutil.Process]:
+    return [psutil.Process(), *psutil.Process().children(recursive=True)]
+
+
+def listening() -> set[str]:
+    """Returns the addresses at which this process and its children accept connections."""
+    found = set()
+    for process in tree():
+        try:
+            found |= {one.laddr.ip for one in process.net_connections() if one.status == psutil.CONN_LISTEN}
+        except psutil.Error:  # it has just ended
+            continue
+    return found
+
+
+def workers() -> list[psutil.Process]:
+    """Returns the processes that run tasks: the children of the cluster's processes."""
+    found = []
+    for process in psutil.Process().children(recursive=True):
+        try:
+            if "spawn_main" in " ".join(process.cmdline()):
+                found.append(process)
+        except psutil.Error:
+            continue
+    return found
+
+
+@pytest.fixture(scope="module")
+def cluster() -> Iterator[str]:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, host="127.0.0.1", dashboard_address=None, memory_limit=0
+    ) as found:
+        yield found.scheduler_address
+
+
+def test_a_cluster_gives_the_bits_of_threads(cluster: str, tmp_path: Path) -> None:
+    campaign = spin(keep={"columns": ["v"]})
+    found = oo.campaign(campaign, tmp_path, cluster=cluster)
+    assert same(found).equals(same(oo.campaign(campaign)))
+    assert (tmp_path / "columns.parquet").exists()
+
+
+def test_killed_workers_lose_no_case_and_repeat_none(
+    cluster: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """CASES= sets the number of cases; `make test-campaign` uses 1000."""
+    cases = int(os.environ.get("CASES", "20"))
+    campaign = spin(cases)
+    campaign["campaign"]["scenario"] = BODY | {"simulation": {"duration": 2.0, "time_step": 1e-3}}
+    monkeypatch.setattr("onorbit_rs.campaigns.on_dask._BATCH_S", 0.05)
+    seen: list[int] = []
+    from onorbit_rs.campaigns import run as campaign_run
+
+    original = campaign_run.CampaignFolder.add
+
+    def add(self: Any, outcome: Any) -> None:
+        seen.append(outcome.case)
+        original(self, outcome)
+
+    monkeypatch.setattr(campaign_run.CampaignFolder, "add", add)
+    is_over, kills = threading.Event(), []
+
+    def kill() -> None:
+        while not is_over.wait(0.1):
+            before = len(seen)
+            if before >= max(1, cases // 10) + (kills[-1] if kills else 0) and (found := workers()):
+                found[len(kills) % len(found)].kill()
+                kills.append(before)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    try:
+        table = oo.campaign(campaign, tmp_path, cluster=cluster)
+    finally:
+        is_over.set()
+        killer.join()
+    print(f"{len(kills)} workers killed during {cases} cases")
+    assert len(kills) >= 2
+    assert sorted(seen) == list(range(cases)), "no case is lost, and none is recorded twice"
+    assert same(table).equals(same(oo.campaign(campaign)))
+
+
+def test_a_local_cluster_listens_on_this_machine_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    before, during = listening(), set()
+    from onorbit_rs.campaigns import on_dask
+
+    original = on_dask._Tasks._next
+
+    def watched(self: Any) -> Any:
+        during.update(listening())
+        return original(self)
+
+    monkeypatch.setattr(on_dask._Tasks, "_next", watched)
+    campaign = spin(4)
+    found = oo.campaign(campaign, cluster="local", workers=1)
+    assert during == {"127.0.0.1"}
+    assert same(found).equals(same(oo.campaign(campaign)))
+    assert listening() == before, "the cluster has ended"
+
+
+def test_no_port_is_open_without_a_cluster(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = listening()
+    found: list[set[str]] = []
+    from onorbit_rs.campaigns import run as campaign_run
+
+    original = campaign_run._complete
+
+    def watched(plan: Any, outcomes: Any) -> Any:
+        found.append(listening())
+        return original(plan, outcomes)
+
+    monkeypatch.setattr(campaign_run, "_complete", watched)
+    monkeypatch.setattr(campaign_run, "on_threads", campaign_run.on_processes)
+    oo.campaign(spin(2), workers=1)
+    assert found == [before]
+
+
+def test_a_cluster_that_does_not_answer_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("onorbit_rs.campaigns.on_dask._CONNECT_S", 1.0)
+    with pytest.raises(CampaignError, match="no Dask scheduler answers at tcp://127.0.0.1:9") as caught:
+        oo.campaign(spin(), tmp_path, cluster="tcp://127.0.0.1:9")
+    assert caught.value.reason == "no cluster"
+    assert oo.campaign(spin(), tmp_path).num_rows == 8
+
+
+def test_a_cluster_that_disappears_keeps_the_cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    program = """
+import sys, time
+from distributed import LocalCluster
+if __name__ == "__main__":
+    with LocalCluster(n_workers=1, threads_per_worker=1, host="127.0.0.1", dashboard_address=None) as cluster:
+        print(cluster.scheduler_address, flush=True)
+        time.sleep(600)
+"""
+    (tmp_path / "cluster.py").write_text(program)
+    monkeypatch.setattr("onorbit_rs.campaigns.on_dask._LOST_S", 1.0)
+    monkeypatch.setattr("onorbit_rs.campaigns.storage._EVERY_S", 0.0)
+    process = subprocess.Popen(
+        [sys.executable, "cluster.py"], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    address = process.stdout.readline().strip()
+    children = psutil.Process(process.pid).children(recursive=True)
+    campaign = spin(500)
+    campaign["campaign"]["scenario"] = BODY | {"simulation": {"duration": 4.0, "time_step": 1e-3}}
+    out = tmp_path / "out"
+
+    def end() -> None:
+        while not list(out.glob("cases/part-*.json")):
+            time.sleep(0.02)
+        for one in [process, *children]:
+            one.kill()
+
+    killer = threading.Thread(target=end)
+    killer.start()
+    with pytest.raises(CampaignError, match=r"is gone; \d+ of 500 cases are kept"):
+        oo.campaign(campaign, out, cluster=address)
+    killer.join()
+    process.wait()
+
+
+def test_a_worker_with_another_version_is_refused(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("onorbit_rs.campaigns.plan.software", lambda: "onorbit_rs 0.0.1, avx2")
+    with pytest.raises(CampaignError, match="but the campaign was started with onorbit_rs 0.0.1") as caught:
+        oo.campaign(spin(), cluster=cluster)
+    assert caught.value.reason == "version"
+
+
+def test_dask_is_needed_for_a_cluster(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError, match="pip install 'onorbit-rs"):
+        oo.campaign(spin(), cluster="local")
