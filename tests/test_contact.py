@@ -234,7 +234,7 @@ def test_two_contacts_of_one_name_and_wrong_types_are_errors() -> None:
     with pytest.raises(WorldError, match="two contacts are named"):
         oo.Simulation(oo.World(systems, contacts=[contact, contact])).run(0.01)
     law: Any = 3.0
-    with pytest.raises(DtypeError, match="expected a HuntCrossley or a SpringDashpot"):
+    with pytest.raises(DtypeError, match="expected a HuntCrossley, a SpringDashpot or an ImpactLaw"):
         oo.Contact("a/body", "b/body", normal=law)
     with pytest.raises(DtypeError, match="contacts"):
         oo.World(systems, contacts=contact)

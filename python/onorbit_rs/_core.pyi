@@ -101,6 +101,7 @@ __all__ = [
     "HarrisPriester",
     "Hold",
     "HuntCrossley",
+    "ImpactLaw",
     "InternalForce",
     "Joint",
     "JointComputedTorque",
@@ -1351,6 +1352,15 @@ class HuntCrossley:
     def dissipation(self) -> float: ...
 
 @final
+class ImpactLaw:
+    def __new__(cls, restitution: float, friction: float) -> ImpactLaw: ...
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
+    @property
+    def restitution(self) -> float: ...
+    @property
+    def friction(self) -> float: ...
+
+@final
 class SpringDashpot:
     def __new__(cls, stiffness: float, damping: float) -> SpringDashpot: ...
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]: ...
@@ -1398,7 +1408,7 @@ class Contact:
         links_a: str | Sequence[str],
         links_b: str | Sequence[str],
         *,
-        normal: HuntCrossley | SpringDashpot | None = None,
+        normal: HuntCrossley | SpringDashpot | ImpactLaw | None = None,
         friction: Friction | None = None,
         name: str | None = None,
         start_overlapping: bool = False,
@@ -1411,7 +1421,7 @@ class Contact:
     @property
     def links_b(self) -> list[str]: ...
     @property
-    def normal(self) -> HuntCrossley | SpringDashpot | None: ...
+    def normal(self) -> HuntCrossley | SpringDashpot | ImpactLaw | None: ...
     @property
     def friction(self) -> Friction | None: ...
     @property

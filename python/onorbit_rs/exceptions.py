@@ -235,12 +235,17 @@ class SimulationError(OnOrbitError, ArithmeticError):
     """A run diverged, cannot continue or has ended.
 
     After a divergence, ``time`` (s), ``q`` and ``v`` are the last state, and ``trace`` has the rows before.
+    In Painlevé's case of a rigid contact, ``name`` is the contact, ``got`` its coefficient of friction and
+    ``expected`` the largest one with which it has a force.
     """
 
     time: Any = None
     q: Any = None
     v: Any = None
     trace: Any = None
+    name: Any = None
+    got: Any = None
+    expected: Any = None
 
 
 class EngineError(OnOrbitError, ValueError):

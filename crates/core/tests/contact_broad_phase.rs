@@ -68,6 +68,7 @@ fn simulation(seed: u64, has_broad_phase: bool) -> Simulation {
         name: name.to_owned(),
         sides,
         law,
+        impact: None,
         may_start_overlapping: true,
     };
     let mut simulation = Simulation::of(systems);

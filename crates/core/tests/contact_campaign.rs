@@ -75,8 +75,13 @@ fn world(seed: u64) -> (Vec<f64>, Simulation) {
         torsional: 0.001,
     };
     let law = Some(ContactLaw { normal, friction: Some(friction) });
-    let declare =
-        |name: &str, sides| Contact { name: name.to_owned(), sides, law, may_start_overlapping: false };
+    let declare = |name: &str, sides| Contact {
+        name: name.to_owned(),
+        sides,
+        law,
+        impact: None,
+        may_start_overlapping: false,
+    };
     let all: Vec<ContactSide> = sides.concat();
     let [a, b]: [Vec<ContactSide>; TREES] = sides.try_into().unwrap();
     simulation.contacts = vec![declare("walls", [walls(), all]), declare("trees", [a, b])];

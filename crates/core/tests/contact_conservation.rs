@@ -73,6 +73,7 @@ fn collide(
         name: "bodies".to_owned(),
         sides,
         law: Some(ContactLaw { normal, friction }),
+        impact: None,
         may_start_overlapping: true,
     }];
     (models, simulation.run(5.0).unwrap())

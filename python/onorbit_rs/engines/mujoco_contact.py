@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onorbit_rs._core import Contact, HuntCrossley, SpringDashpot
+from onorbit_rs._core import Contact, HuntCrossley, ImpactLaw, SpringDashpot
 from onorbit_rs.common.link_patterns import link_pattern
 from onorbit_rs.exceptions import EngineError
 
@@ -112,6 +112,12 @@ def _with_forces(contacts: Sequence[Contact]) -> list[Contact]:
 
 def _check(contact: Contact) -> None:
     """Raise EngineError if MuJoCo cannot represent the law of a contact."""
+    if isinstance(contact.normal, ImpactLaw):
+        raise EngineError(
+            f"contact '{contact.name}' has an impact law, but MuJoCo's contacts are compliant; use a "
+            "HuntCrossley or a SpringDashpot, or use engine: native",
+            name="normal", got="ImpactLaw", expected="HuntCrossley or SpringDashpot",
+        )  # fmt: skip
     if contact.friction is not None and contact.friction.torsional > 0.0:
         raise EngineError(
             f"contact '{contact.name}' has torsional friction ({contact.friction.torsional:g} m), but MuJoCo "

@@ -94,8 +94,26 @@ class SpringDashpot(Part):
         return _core.SpringDashpot(self.stiffness, self.damping)
 
 
+class Impact(Part):
+    """Rigid bodies: impacts take no time, and bodies that stay in contact keep their gap."""
+
+    synonyms: ClassVar = {"e": "restitution", "mu": "friction"}
+
+    kind: Literal["impact"]
+    restitution: Annotated[Number, Field(ge=0.0, le=1.0)]
+    """Coefficient of restitution, from 0 to 1."""
+    friction: Annotated[Number, NotNegative]
+    """Coefficient of friction, static and kinetic."""
+
+    def build(self) -> _core.ImpactLaw:
+        """Return the law as an object of the engine."""
+        return _core.ImpactLaw(self.restitution, self.friction)
+
+
 NormalLaw = Annotated[
-    HuntCrossley | SpringDashpot, Field(discriminator="kind"), of_kind(HuntCrossley | SpringDashpot)
+    HuntCrossley | SpringDashpot | Impact,
+    Field(discriminator="kind"),
+    of_kind(HuntCrossley | SpringDashpot | Impact),
 ]
 
 
@@ -159,9 +177,10 @@ class Contact(Part):
     """Links of both sides, each ``SYSTEM/LINK`` or a list of them; ``*`` stands for any text. The force acts
     on the second side, and the opposite force on the first."""
     normal: NormalLaw | None = None
-    """Law of the normal force. Default: only the distance is recorded, and no force acts."""
+    """Law of the normal force, or of rigid impacts. Default: only the distance is recorded, and no force
+    acts."""
     friction: Friction | None = None
-    """Friction. Default: the contact is smooth."""
+    """Friction of a compliant normal force. Default: the contact is smooth."""
     name: ItsName | None = None
     """Name of the contact in results. Default: the links of both sides, ``A|B``."""
     start_overlapping: bool = False
@@ -171,6 +190,14 @@ class Contact(Part):
     def _has_normal_force(self) -> Self:
         if self.friction is not None and self.normal is None:
             raise inconsistent("friction", "friction requires a normal force; add 'normal'")
+        if isinstance(self.normal, Impact):
+            if self.friction is not None:
+                message = "the impact law has its own friction; omit 'friction' of the contact"
+                raise inconsistent("friction", message)
+            if self.start_overlapping:
+                raise inconsistent(
+                    "start_overlapping", "rigid bodies cannot overlap; omit 'start_overlapping'"
+                )
         return self
 
     @property

@@ -2,6 +2,7 @@
 
 use super::error::ContactError;
 use super::friction::Friction;
+use super::impact::ImpactLaw;
 use super::normal::NormalLaw;
 use crate::geometry::{Pose, Shape};
 use crate::world::FrameIndex;
@@ -71,8 +72,10 @@ pub struct Contact {
     /// Pieces of the first and of the second side. The force of the contact acts on the second side, and the
     /// opposite force on the first.
     pub sides: [Vec<ContactSide>; 2],
-    /// Law of the forces; `None` if only the distance is recorded.
+    /// Law of the compliant forces; `None` without such forces.
     pub law: Option<ContactLaw>,
+    /// Law of rigid impacts, which excludes `law`. Without both, only the distance is recorded.
+    pub impact: Option<ImpactLaw>,
     /// True if the sides may overlap at the start.
     pub may_start_overlapping: bool,
 }
@@ -81,12 +84,22 @@ impl Contact {
     /// Checks the law and the shapes.
     ///
     /// # Errors
-    /// [`ContactError`] for the first invalid parameter or shape, or if all pieces of both sides belong to
-    /// the same link.
+    /// [`ContactError`] for the first invalid parameter or shape, if all pieces of both sides belong to the
+    /// same link, or for an impact law with compliant forces or with an overlap at the start.
     pub fn check(&self) -> Result<(), ContactError> {
         if let Some(law) = &self.law {
             law.normal.check()?;
             law.friction.map_or(Ok(()), |friction| friction.check())?;
+        }
+        if let Some(impact) = &self.impact {
+            impact.check()?;
+            let refuse = |what| Err(ContactError::ImpactLaw { contact: self.name.clone(), what });
+            if self.law.is_some() {
+                return refuse("compliant forces; give one of both laws");
+            }
+            if self.may_start_overlapping {
+                return refuse("start_overlapping, because rigid bodies cannot overlap; omit it");
+            }
         }
         let [a, b] = &self.sides;
         let is_same = |a: &ContactSide| b.iter().all(|b| a.frame == b.frame);

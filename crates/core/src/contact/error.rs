@@ -69,6 +69,32 @@ pub enum ContactError {
         /// Depth of the overlap, m.
         depth: f64,
     },
+    /// A contact with an impact law has a setting that excludes it.
+    #[error("contact '{contact}': an impact law excludes {what}")]
+    ImpactLaw {
+        /// Name of the contact.
+        contact: String,
+        /// Setting that is excluded, and what to do instead.
+        what: &'static str,
+    },
+    /// Painlevé's case: no force of a sliding rigid contact with Coulomb friction satisfies its conditions.
+    #[error(
+        "contact '{contact}': no force of a rigid contact with Coulomb friction keeps the sliding links {links} from \
+         overlapping: the friction coefficient {friction} is above {limit}, the value at which friction pushes the \
+         links into each other as fast as the normal force separates them (Painlevé's paradox); use a compliant \
+         normal force, such as HuntCrossley, or a smaller friction coefficient",
+        friction = short(*friction), limit = short(*limit)
+    )]
+    Painleve {
+        /// Name of the contact.
+        contact: String,
+        /// Names of both links, as text.
+        links: String,
+        /// Coefficient of friction of the contact.
+        friction: f64,
+        /// Coefficient of friction up to which the contact has a force.
+        limit: f64,
+    },
     /// A shape is invalid, or the distance between two shapes could not be computed.
     #[error("contact '{contact}': {source}")]
     Geometry {

@@ -30,6 +30,7 @@ use super::patch::contact_points;
 use super::pose::Pose;
 use super::proximity::Proximity;
 use super::shape::Shape;
+use std::borrow::Cow;
 
 /// Contact points of two shapes.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,6 +67,14 @@ pub(crate) enum Points {
 }
 
 impl Points {
+    /// Returns the points; those of [`Points::Witness`] are the witness points in `proximity`.
+    pub(crate) fn list(&self, proximity: &Proximity) -> Cow<'_, [ContactPoint]> {
+        match self {
+            Self::Witness => Cow::Owned(vec![witness(proximity, 1.0)]),
+            Self::Many(points) => Cow::Borrowed(points),
+        }
+    }
+
     /// Returns the same points, fixed to both shapes and with constant weights.
     pub(crate) fn fixed(mut self, proximity: &Proximity) -> Self {
         if let Self::Many(points) = &mut self {

@@ -91,6 +91,10 @@ impl Simulation {
             Err(SimulationError::EngineOfWorld { name: name.to_owned(), what, remedy })
         };
         let computed = self.engine.as_ref().map_or_else(Vec::new, |engine| engine.contacts());
+        if let Some(contact) = self.contacts.iter().find(|contact| contact.impact.is_some()) {
+            let remedy = "use a compliant normal force, such as HuntCrossley, or the native engine";
+            return cannot(&contact.name, "a contact with an impact law", remedy);
+        }
         let with_forces = self.contacts.iter().filter(|contact| contact.law.is_some());
         if let Some(contact) = with_forces.clone().find(|contact| !computed.contains(&contact.name)) {
             let what = "a contact with forces that was not passed to it";

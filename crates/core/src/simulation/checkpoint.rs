@@ -2,7 +2,7 @@
 
 use super::checkpoint_error::CheckpointError;
 use super::connections::SavedMembers;
-use super::contacts::{Mode, Touch};
+use super::contacts::{Mode, RestingPoint, Touch};
 use super::estimates::Estimates;
 use super::events::{Attached, EventState};
 use super::every_step::SavedChecks;
@@ -111,6 +111,9 @@ pub(super) struct WorldProgress {
     /// Touches of the declared contacts.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) touches: Vec<Touch>,
+    /// Points at which the pieces of each pair rest on each other; empty without impact laws.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) resting: Vec<Option<Vec<RestingPoint>>>,
 }
 
 /// State of the controllers and joint torques of a run.

@@ -41,6 +41,7 @@ impl<S: Scalar> RunState<'_, S> {
             ("pairs of pieces that may touch", state.contacts.len(), pieces),
             ("modes of contacts", world.contacts.len(), pieces),
             ("contacts", world.touches.len(), own.count()),
+            ("pairs with resting points", world.resting.len(), own.rigid_pairs()),
         ])?;
         let count = self.systems.len();
         if world.touches.iter().flat_map(Touch::systems).all(|system| system < count) {

@@ -2,7 +2,7 @@
 //! the state, the loads and the joint torques.
 
 use super::common_center::{move_to_own_centers, orbital_moment, refer_to_common_center};
-use super::contacts::{Contacts, at_time};
+use super::contacts::{Contacts, Hold, Touched, at_time};
 use super::error::SimulationError;
 use super::external_loads::ExternalLoads;
 use super::latch::Latch;
@@ -148,6 +148,35 @@ impl<'a, S: Real, W: ExternalLoads<S>> EquationsOfMotion<'a, S, W> {
             return Ok(end);
         }
         self.contacts.begin((t, end), &self.trees, state).map_err(at_time(t))
+    }
+
+    /// Determines whether bodies with an impact law touch at `t`, s. Requires the kinematics of `state` in the
+    /// trees.
+    pub(super) fn touched(&mut self, t: f64, state: &State<S>) -> Result<Touched, SimulationError> {
+        self.contacts.touched(&self.trees, state).map_err(at_time(t))
+    }
+
+    /// Applies the impacts of bodies with an impact law at `t`, s; see [`Contacts::strike`].
+    pub(super) fn strike(
+        &mut self,
+        t: Option<f64>,
+        state: &mut State<S>,
+        is_endless: bool,
+    ) -> Result<(), SimulationError> {
+        if !self.contacts.has_impact_laws() {
+            return Ok(());
+        }
+        self.contacts.strike(t, &mut self.trees, state, is_endless).map_err(at_time(t.unwrap_or_default()))
+    }
+
+    /// Corrects the forces of bodies that rest on each other; see [`Contacts::correct`].
+    pub(super) fn correct_forces(
+        &mut self,
+        hold: &mut Hold,
+        t: f64,
+        state: &State<S>,
+    ) -> Result<f64, SimulationError> {
+        self.contacts.correct(hold, &self.trees, state).map_err(at_time(t))
     }
 
     /// Returns true if a joint of any tree has friction or stops, if a latch may close, or if bodies may

@@ -165,7 +165,7 @@ impl<S: Scalar> RunState<'_, S> {
         }
         let Self { equations, mover, row_buffers: (state, _), time, .. } = self;
         mover.kinematics(equations, state);
-        mover.resolve_impacts(equations, state);
+        mover.resolve_impacts(equations, state, None)?;
         let EquationsOfMotion { trees, members, loads, .. } = equations;
         members.follow(trees, &state.trees);
         let (state, tree) = members.system(system, trees, &state.trees);

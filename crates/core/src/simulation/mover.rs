@@ -31,11 +31,32 @@ impl<S: Scalar> Mover<'_, S> {
         }
     }
 
-    /// Applies the impacts of joints that move into their stops. Does nothing with an external engine, which
-    /// handles stops itself.
-    pub(super) fn resolve_impacts(&self, equations: &mut Equations<'_, S>, state: &mut State<S>) {
-        if let Self::Native(method) = self {
-            method.resolve_impacts(equations, state);
+    /// Applies the impacts of bodies with an impact law, and those of joints that move into their stops, at
+    /// `t`, s; `None` for a copy of the state. Does nothing with an external engine, which handles stops
+    /// itself.
+    pub(super) fn resolve_impacts(
+        &self,
+        equations: &mut Equations<'_, S>,
+        state: &mut State<S>,
+        t: Option<f64>,
+    ) -> Result<(), SimulationError> {
+        match self {
+            Self::Native(method) => method.resolve_impacts(equations, state, t),
+            Self::External(_) => Ok(()),
+        }
+    }
+
+    /// Computes the forces of bodies that rest on each other under an impact law, for a step over `interval`,
+    /// s. Returns true if bodies have separated.
+    pub(super) fn hold_contacts(
+        &mut self,
+        equations: &mut Equations<'_, S>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<bool, SimulationError> {
+        match self {
+            Self::Native(method) => method.hold_contacts(equations, state, interval),
+            Self::External(_) => Ok(false),
         }
     }
 

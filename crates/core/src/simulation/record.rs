@@ -1,6 +1,6 @@
 //! Recording of rows: at the start of steps, within steps, at impacts and at the end of the run.
 
-use super::contacts::at_time;
+use super::contacts::{Touched, at_time};
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -55,19 +55,21 @@ impl<S: Scalar> RunState<'_, S> {
         Ok(())
     }
 
-    /// Applies the impacts of joints that move into their stops at `t`, s, the start of a step over
-    /// `interval`, s. If every step is recorded, adds one row before and one row after the impacts, at the
+    /// Applies the impacts of bodies with an impact law, and those of joints that move into their stops, at
+    /// `t`, s, the start of a step over `interval`, s. If every step is recorded, adds one row before and one row after the impacts, at the
     /// same time.
     pub(super) fn impacts(&mut self, t: f64, interval: (f64, f64)) -> Result<(), SimulationError> {
+        let Touched { has_impact, is_new } = self.equations.touched(t, &self.state)?;
         let mut pairs = self.equations.trees.iter().zip(&self.state.trees);
-        if !pairs.any(|(system, state)| system.modes.is_active() && system.first_impact(state).is_some()) {
+        let has_impact = has_impact
+            || pairs.any(|(tree, state)| tree.modes.is_active() && tree.first_impact(state).is_some());
+        if !has_impact && !is_new {
             return Ok(());
         }
-        if self.has_every_step && t < self.records_before {
+        if has_impact && self.has_every_step && t < self.records_before {
             self.record_before_jump(t, interval)?;
         }
-        self.mover.resolve_impacts(&mut self.equations, &mut self.state);
-        Ok(())
+        self.mover.resolve_impacts(&mut self.equations, &mut self.state, Some(t))
     }
 
     /// Adds a row before a jump of the velocities at `t`, s, the start of a step over `interval`, s.

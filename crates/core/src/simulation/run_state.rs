@@ -7,6 +7,7 @@ use super::checkpoint::{
 };
 use super::checkpoint_error::CheckpointError;
 use super::connections::Connections;
+use super::contacts::SavedContacts;
 use super::environment_loads::EnvironmentLoads;
 use super::equations::EquationsOfMotion;
 use super::error::SimulationError;
@@ -87,7 +88,7 @@ impl<S: Scalar> RunState<'_, S> {
     /// to which a step only adds.
     pub(super) fn progress(&self) -> Progress {
         let (step_control, idle_steps, has_jumped) = self.mover.save();
-        let (contacts, touches) = self.equations.contacts.save();
+        let SavedContacts { modes: contacts, touches, resting } = self.equations.contacts.save();
         let tree = |(number, tree): (usize, &Tree<'_, S>)| {
             let (errors, checks) = self.accuracy.save(number);
             TreeProgress { modes: tree.modes.save(), errors, checks }
@@ -121,6 +122,7 @@ impl<S: Scalar> RunState<'_, S> {
                 balance: self.balance.clone(),
                 contacts,
                 touches,
+                resting,
             },
         }
     }
@@ -149,7 +151,8 @@ impl<S: Scalar> RunState<'_, S> {
     fn restore_world(&mut self, world: WorldProgress) -> Result<(), SimulationError> {
         self.restore_members(world.members)?;
         self.balance = world.balance;
-        self.equations.contacts.restore((world.contacts, world.touches));
+        let (modes, touches, resting) = (world.contacts, world.touches, world.resting);
+        self.equations.contacts.restore(SavedContacts { modes, touches, resting });
         self.ledger = world.ledger;
         if !self.events.list.is_empty() {
             self.events.states = world.events;

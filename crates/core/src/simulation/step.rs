@@ -57,7 +57,7 @@ impl<S: Scalar> RunState<'_, S> {
         // 2 events: captures and releases
         self.happen(t, (t, end))?;
         let end = self.schedule.first_due(t, end);
-        // 3 impacts of joints at their stops
+        // 3 impacts of rigid bodies, and of joints at their stops
         self.impacts(t, (t, end))?;
         let end = self.equations.begin_contacts(t, end, &mut self.state)?;
         self.take_touches();
@@ -66,8 +66,11 @@ impl<S: Scalar> RunState<'_, S> {
         }
         // 4 loads of the environment, 5 controllers that are due
         self.loads_and_controllers(interval, end)?;
-        // 6 which joints stick, slip or rest at a stop during the step
+        // 6 which joints stick, slip or rest at a stop during the step, and the forces of rigid bodies at rest
         self.mover.solve_modes(&mut self.equations, &self.state);
+        if self.mover.hold_contacts(&mut self.equations, &mut self.state, (t, end))? {
+            self.take_touches();
+        }
         let EquationsOfMotion { trees, members, .. } = &mut self.equations;
         members.parts.iter_mut().for_each(|part| part.take_modes(&trees[part.tree]));
         Ok(end)

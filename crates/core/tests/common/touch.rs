@@ -22,5 +22,5 @@ pub fn side(system: usize, frame: usize, shape: Shape) -> ContactSide {
 /// Returns the contact of one shape on each side.
 pub fn contact(name: &str, sides: [ContactSide; 2], law: ContactLaw) -> Contact {
     let sides = sides.map(|side| vec![side]);
-    Contact { name: name.to_owned(), sides, law: Some(law), may_start_overlapping: true }
+    Contact { name: name.to_owned(), sides, law: Some(law), impact: None, may_start_overlapping: true }
 }

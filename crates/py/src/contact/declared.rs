@@ -1,10 +1,10 @@
 //! The class `Contact`, which declares a contact between links.
 
-use super::laws::{PyFriction, normal_law};
+use super::laws::{Law, PyFriction, normal_law};
 use crate::arrays::{list_of, names_in, text};
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
-use onorbit_core::contact::{Contact, ContactLaw, ContactSide, links_matching};
+use onorbit_core::contact::{Contact, ContactLaw, ContactSide, ImpactLaw, links_matching};
 use onorbit_core::model::Model;
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
@@ -21,20 +21,22 @@ use std::sync::Arc;
 /// ----------
 /// links_a, links_b : str or list of str
 ///     Links of the first and of the second side, or patterns that match them.
-/// normal : HuntCrossley or SpringDashpot, optional
-///     Law of the normal force. Without it, only the distance is recorded and no force acts.
+/// normal : HuntCrossley, SpringDashpot or ImpactLaw, optional
+///     Law of the normal force, or of rigid impacts. Without it, only the distance is recorded and no force
+///     acts.
 /// friction : Friction, optional
-///     Law of friction; default: no friction.
+///     Law of friction of a compliant normal force; default: no friction. An ``ImpactLaw`` has its own
+///     friction.
 /// name : str, optional
 ///     Name of the contact; default: ``"links_a|links_b"``.
 /// start_overlapping : bool
-///     If True, the links may overlap at the start of a run.
+///     If True, the links may overlap at the start of a run; not with an ``ImpactLaw``.
 ///
 /// Raises
 /// ------
 /// WorldError, DtypeError
-///     If a side has no links, if there is friction without a normal force, or if an argument has the wrong
-///     type.
+///     If a side has no links, if there is friction without a normal force, if an ``ImpactLaw`` is combined
+///     with ``friction`` or ``start_overlapping``, or if an argument has the wrong type.
 #[pyclass(name = "Contact", frozen, module = "onorbit_rs")]
 pub(crate) struct PyContact {
     /// Name of the contact.
@@ -46,7 +48,7 @@ pub(crate) struct PyContact {
     /// Links or patterns of the second side.
     #[pyo3(get)]
     links_b: Vec<String>,
-    /// Law of the normal force; None if only the distance is recorded.
+    /// Law of the normal force or of rigid impacts; None if only the distance is recorded.
     #[pyo3(get)]
     normal: Option<Py<PyAny>>,
     /// Law of friction; None without friction.
@@ -74,7 +76,17 @@ impl PyContact {
         let default = || format!("{}|{}", links_a.join(","), links_b.join(","));
         let name = name.map(|name| text(name, "name", "the name of a contact (str), such as 'touch'"));
         let name = name.transpose()?.unwrap_or_else(default);
-        normal.map_or(Ok(()), |normal| normal_law(normal).map(drop))?;
+        let law = normal.map(normal_law).transpose()?;
+        if let (Some(Law::Impact(_)), true) = (&law, friction.is_some() || start_overlapping) {
+            let (excluded, remedy) = match friction {
+                Some(_) => {
+                    ("friction", "give the coefficient in the law alone, such as oo.ImpactLaw(0.5, 0.3)")
+                }
+                None => ("start_overlapping", "rigid bodies cannot overlap; omit start_overlapping"),
+            };
+            let message = format!("the contact '{name}' has an ImpactLaw together with {excluded}; {remedy}");
+            return Err(raise(py, "WorldError", &message, &fields!(py, "name": excluded)));
+        }
         if normal.is_none() && friction.is_some() {
             let message = format!(
                 "the contact '{name}' has friction but no normal force; add normal, such as oo.HuntCrossley(1e5)"
@@ -100,12 +112,17 @@ impl PyContact {
 }
 
 impl PyContact {
-    fn law(&self, py: Python<'_>) -> PyResult<Option<ContactLaw>> {
-        let Some(normal) = &self.normal else { return Ok(None) };
-        let normal = normal_law(normal.bind(py))?;
-        let friction =
-            self.friction.as_ref().map(|friction| friction.get().law(normal.tangential_stiffness()));
-        Ok(Some(ContactLaw { normal, friction }))
+    /// Returns the law of the compliant forces and the law of impacts, of which at most one exists.
+    fn laws(&self, py: Python<'_>) -> PyResult<(Option<ContactLaw>, Option<ImpactLaw>)> {
+        let Some(normal) = &self.normal else { return Ok((None, None)) };
+        match normal_law(normal.bind(py))? {
+            Law::Compliant(normal) => {
+                let friction = self.friction.as_ref();
+                let friction = friction.map(|friction| friction.get().law(normal.tangential_stiffness()));
+                Ok((Some(ContactLaw { normal, friction }), None))
+            }
+            Law::Impact(law) => Ok((None, Some(law))),
+        }
     }
 
     fn side(
@@ -156,13 +173,15 @@ pub(crate) fn contacts_of(
 ) -> PyResult<Vec<Contact>> {
     let read = |contact: &Py<PyContact>| {
         let contact = contact.get();
+        let (law, impact) = contact.laws(py)?;
         Ok(Contact {
             name: contact.name.clone(),
             sides: [
                 contact.side(py, &contact.links_a, systems)?,
                 contact.side(py, &contact.links_b, systems)?,
             ],
-            law: contact.law(py)?,
+            law,
+            impact,
             may_start_overlapping: contact.start_overlapping,
         })
     };

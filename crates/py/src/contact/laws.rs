@@ -1,8 +1,8 @@
-//! Laws of the normal force and of friction in contacts.
+//! Laws of the normal force, of impacts and of friction in contacts.
 
 use crate::errors::{IntoPython, fields, raise};
 use crate::pickling::{ConstructorCall, Reduced};
-use onorbit_core::contact::{Friction, NormalLaw, dissipation_for, material_pair};
+use onorbit_core::contact::{Friction, ImpactLaw, NormalLaw, dissipation_for, material_pair};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -161,16 +161,91 @@ impl PySpringDashpot {
     }
 }
 
-/// Reads a law of the normal force.
-pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<NormalLaw> {
+/// Contact of bodies that do not deform: impacts take no time.
+///
+/// An impact changes the velocities by impulses at all points that touch at this instant. Each point separates
+/// at ``restitution`` times its speed of approach or faster, and its impulse is inside Coulomb's cone with the
+/// coefficient ``friction``. A point that slides afterwards has its impulse on the cone, opposite to the
+/// sliding. Bodies that would rebound more slowly than 10 um/s stay in contact; the contact then exerts the
+/// forces that keep the gap, with the same cone.
+///
+/// Parameters
+/// ----------
+/// restitution : float
+///     Coefficient of restitution, from 0 (the bodies do not rebound) to 1 (elastic).
+/// friction : float
+///     Coefficient of friction, static and kinetic, at least 0.
+///
+/// Raises
+/// ------
+/// WorldError
+///     If a parameter is outside its range.
+///
+/// Notes
+/// -----
+/// The impulses conserve momentum and never create energy: where friction and restitution together would, the
+/// restitution of the impact is reduced. A sliding contact may have no force that satisfies the law (Painlevé's
+/// paradox), which is an error of the run; use a compliant force such as :class:`HuntCrossley` then.
+///
+/// Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics, in: Nonsmooth Mechanics and
+/// Applications, 1988.
+#[pyclass(name = "ImpactLaw", frozen, module = "onorbit_rs")]
+pub(crate) struct PyImpactLaw {
+    /// Coefficient of restitution, dimensionless.
+    #[pyo3(get)]
+    restitution: f64,
+    /// Coefficient of friction, dimensionless.
+    #[pyo3(get)]
+    friction: f64,
+}
+
+#[pymethods]
+impl PyImpactLaw {
+    #[new]
+    fn new(py: Python<'_>, restitution: f64, friction: f64) -> PyResult<Self> {
+        let law = Self { restitution, friction };
+        law.law().check().map_err(|error| error.into_python(py))?;
+        Ok(law)
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py>> {
+        let arguments = (self.restitution, self.friction);
+        ConstructorCall::new("ImpactLaw", arguments, &PyDict::new(py))?.reduce(py)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<ImpactLaw: restitution {}, friction {}>", self.restitution, self.friction)
+    }
+}
+
+impl PyImpactLaw {
+    fn law(&self) -> ImpactLaw {
+        ImpactLaw { restitution: self.restitution, friction: self.friction }
+    }
+}
+
+/// Law of a contact along the normal.
+pub(super) enum Law {
+    /// Compliant normal force.
+    Compliant(NormalLaw),
+    /// Rigid impacts.
+    Impact(ImpactLaw),
+}
+
+/// Reads a law of a contact along the normal.
+pub(super) fn normal_law(value: &Bound<'_, PyAny>) -> PyResult<Law> {
     if let Ok(law) = value.cast::<PyHuntCrossley>() {
-        return Ok(law.get().law());
+        return Ok(Law::Compliant(law.get().law()));
     }
     if let Ok(law) = value.cast::<PySpringDashpot>() {
-        return Ok(law.get().law());
+        return Ok(Law::Compliant(law.get().law()));
+    }
+    if let Ok(law) = value.cast::<PyImpactLaw>() {
+        return Ok(Law::Impact(law.get().law()));
     }
     let (py, got) = (value.py(), value.get_type().name()?.to_string());
-    let message = format!("normal is of type {got}; expected a HuntCrossley or a SpringDashpot");
+    let message =
+        format!("normal is of type {got}; expected a HuntCrossley, a SpringDashpot or an ImpactLaw");
     Err(raise(py, "DtypeError", &message, &fields!(py, "name": "normal", "got": got)))
 }
 

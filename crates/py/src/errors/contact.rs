@@ -13,10 +13,14 @@ impl IntoPython for ContactError {
             }
             Self::DuplicateName { name } => fields!(py, "name": name),
             Self::Overlap { contact, depth, .. } => fields!(py, "name": contact, "got": depth),
-            Self::NoLink { contact, pattern, .. } => fields!(py, "name": contact, "got": pattern),
-            Self::NoShape { contact, .. } | Self::SameLink { contact } | Self::Geometry { contact, .. } => {
-                fields!(py, "name": contact)
+            Self::Painleve { contact, friction, limit, .. } => {
+                fields!(py, "name": contact, "got": friction, "expected": limit)
             }
+            Self::NoLink { contact, pattern, .. } => fields!(py, "name": contact, "got": pattern),
+            Self::NoShape { contact, .. }
+            | Self::SameLink { contact }
+            | Self::ImpactLaw { contact, .. }
+            | Self::Geometry { contact, .. } => fields!(py, "name": contact),
         };
         raise(py, "WorldError", &message, &fields)
     }

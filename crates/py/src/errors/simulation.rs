@@ -1,6 +1,7 @@
 //! Converts errors of runs to Python exceptions, some of which carry the partial trace.
 
 use super::{IntoPython, fields, plain, raise, shape_error, with_message};
+use onorbit_core::contact::ContactError;
 use onorbit_core::control::ControlError;
 use onorbit_core::simulation::SimulationError;
 use pyo3::prelude::*;
@@ -61,6 +62,19 @@ impl SimulationErrorExt for SimulationError {
             ),
             Self::Earth(source) => source.into_python(py),
             Self::Contacts(source) => source.into_python(py),
+            Self::Contact { time, source: ContactError::Painleve { contact, friction, limit, .. } } => raise(
+                py,
+                "SimulationError",
+                &message,
+                &fields!(
+                    py,
+                    "time": time,
+                    "name": contact,
+                    "got": friction,
+                    "expected": limit,
+                    "trace": trace,
+                ),
+            ),
             Self::Contact { time, .. } => {
                 raise(py, "SimulationError", &message, &fields!(py, "time": time, "trace": trace))
             }

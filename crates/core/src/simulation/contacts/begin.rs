@@ -42,14 +42,14 @@ impl Touching {
             return Ok(None);
         }
         let mut geometry = self.geometry(self.mode.phase, motions)?;
-        if !is_known && !self.mode.phase.is_closed() {
+        if !is_known && !self.has_touched() {
             self.clearance = geometry.0.distance - CLEAR * self.smaller_reach();
             if self.takes_clearance(travel) {
                 (self.mode.phase, self.mode.since) = (Phase::Far, t);
                 return Ok(None);
             }
         }
-        let rounding = self.rounding(motions);
+        let (rounding, is_repeated) = (self.rounding(motions), self.mode.since == Mode::REPEATED);
         let mut before = self.loading(self.mode.phase, &geometry, motions, state);
         let phase = if is_known { self.mode.phase } else { self.next_phase(&before, rounding) };
         if phase.is_closed() && !self.mode.phase.is_closed() {
@@ -83,6 +83,9 @@ impl Touching {
         let loading = if is_same { before } else { self.loading(phase, &geometry, motions, state) };
         let slack = |margin: f64| if margin > 0.0 { 0.0 } else { f64::MIN_POSITIVE - 2.0 * margin };
         self.mode.slack = self.margins(&loading).map(slack);
+        if is_repeated && self.rigid.is_some() && self.mode.slack[0] > 0.0 {
+            self.mode.slack[0] += self.touching_gap(motions); // the step must not be of length zero again
+        }
         Ok(Some(loading))
     }
 
@@ -100,7 +103,7 @@ impl Touching {
     /// accelerate strongly. It suffices that their bounding spheres show this, or the gap that was computed in
     /// an earlier step. The result is the same as with the present gap.
     fn stays_apart(&mut self, motions: &[SideMotion; 2], travel: f64) -> bool {
-        if self.mode.phase.is_closed() {
+        if self.has_touched() {
             return false;
         }
         if self.is_far(motions, travel) {

@@ -8,17 +8,27 @@ mod external;
 mod follow;
 mod frames;
 mod gaps;
+mod hold;
 mod mobility;
 mod mode;
 mod near;
 mod pressure;
 mod record;
+mod responses;
+mod resting;
+mod rigid;
 mod side;
+mod start;
 mod step_length;
+mod strike;
 mod touches;
 mod touching;
 
+pub(super) use hold::Hold;
 pub(super) use mode::Mode;
+pub(super) use near::SavedContacts;
+pub(super) use rigid::RestingPoint;
+pub(super) use strike::Touched;
 pub(super) use touches::Touch;
 
 use super::contact_state::{ContactRate, ContactState};
@@ -34,6 +44,7 @@ use broad_phase::BroadPhase;
 use frames::Frames;
 use gaps::Gaps;
 use mode::Phase;
+use rigid::Rigid;
 use side::{Side, SideMotion};
 use touches::Sample;
 use touching::{Loading, Touching};
@@ -66,6 +77,8 @@ pub(crate) struct Contacts {
     begun: Vec<ContactState>,
     /// Names of the declared contacts.
     pub(super) names: Vec<String>,
+    /// True for declared contacts with an impact law.
+    rigid: Vec<bool>,
     steps: ContactSteps,
     /// Largest permitted energy error of the next step, J; infinite without contacts between faces or edges.
     pub(super) energy_error: f64,
@@ -90,7 +103,8 @@ impl Contacts {
     /// frames if systems are not separate trees.
     pub(super) fn new(declared: &[Contact], steps: ContactSteps) -> Self {
         let mut list = Vec::new();
-        for (contact, Contact { name, sides, law, may_start_overlapping }) in declared.iter().enumerate() {
+        for (contact, own) in declared.iter().enumerate() {
+            let Contact { name, sides, law, impact, may_start_overlapping } = own;
             let order = |side: &ContactSide| (side.frame.system, side.frame.frame);
             let [first, second] = [0, 1].map(|i| on_both(&sides[i], &sides[1 - i]));
             for (i, a) in sides[0].iter().enumerate() {
@@ -111,11 +125,13 @@ impl Contacts {
                     let (law, may_start_overlapping) = (*law, *may_start_overlapping);
                     let (mode, deepest, last) = (Mode::START, 0.0, None);
                     let is_held = false;
+                    let rigid = impact.map(|law| Rigid { law, points: None });
                     list.push(Touching {
                         contact,
                         name,
                         sides,
                         law,
+                        rigid,
                         may_start_overlapping,
                         is_conservative: steps.is_conservative,
                         mode,
@@ -142,6 +158,7 @@ impl Contacts {
             begun_at,
             gaps,
             names,
+            rigid: declared.iter().map(|contact| contact.impact.is_some()).collect(),
             steps,
             energy_error,
             touches,
@@ -216,7 +233,7 @@ impl Contacts {
         }
         for (&number, own) in near.iter().zip(&state.contacts) {
             let touching = &mut list[number];
-            if !touching.mode.phase.is_closed() {
+            if !touching.has_touched() {
                 touching.last = touching.last.take().filter(|_| is_begun);
                 continue;
             }
@@ -242,7 +259,7 @@ impl Contacts {
         rates.extend(self.near.iter().map(|&number| {
             let touching = &self.list[number];
             let center = self.touches[touching.contact].center;
-            let loading = touching.last.as_ref().filter(|_| touching.mode.phase.is_closed());
+            let loading = touching.last.as_ref().filter(|_| touching.has_touched());
             loading.map_or(ContactState::ZERO, |loading| loading.rates(center))
         }));
     }
@@ -268,6 +285,7 @@ impl Contacts {
         for &number in candidates.iter() {
             let (touching, own) = (&mut list[number], &states[number]);
             let motions = touching.motions(frames, trees, state);
+            touching.find_resting_points(&motions)?;
             let mobility = |sides: &_, loading: &_| mobility::mobility(sides, trees, &state.trees, loading);
             let Some(loading) = touching.begin((t, end), &motions, own, mobility)? else { continue };
             near.push(number);
@@ -300,40 +318,6 @@ impl Contacts {
         Ok(t + (end - t) / count)
     }
 
-    /// Initializes the states of the contacts: the work of pieces that overlap at the start is the elastic
-    /// energy at their depth. `names` are those of the systems, for errors.
-    ///
-    /// # Errors
-    /// [`ContactError::Overlap`] if pieces overlap and their contact does not permit it.
-    pub(super) fn start<S: Real>(
-        &self,
-        names: &[String],
-        trees: &[Tree<'_, S>],
-        state: &mut State<S>,
-    ) -> Result<(), ContactError> {
-        let mut frames = self.frames.clone();
-        frames.forget();
-        for (number, touching) in self.list.iter().enumerate() {
-            let motions = touching.motions(&mut frames, trees, state);
-            if touching.law.is_none() || touching.is_far(&motions, 0.0) {
-                continue;
-            }
-            let mut pressing = touching.clone();
-            pressing.mode.phase = Phase::Pressing;
-            let Loading { depth, pressure, .. } = pressing.evaluate(&motions, &state.contacts[number])?;
-            if depth > touching.rounding(&motions) && !touching.may_start_overlapping {
-                let path = |side: &Side| {
-                    let link = &trees[side.place.0].model.frames()[side.place.1].name;
-                    format!("'{}/{link}'", names[side.declared.system])
-                };
-                let links = format!("{} and {}", path(&touching.sides[0]), path(&touching.sides[1]));
-                return Err(ContactError::Overlap { contact: touching.name.clone(), links, depth });
-            }
-            state.contacts[number].normal_work = pressure.map_or(0.0, |pressure| pressure.elastic);
-        }
-        Ok(())
-    }
-
     /// Returns the smallest margin of any pair to its next change of mode; it is negative beyond the change.
     /// Requires the kinematics of `state`, relative to W, in the trees.
     pub(super) fn margin<S: Real>(
@@ -346,7 +330,7 @@ impl Contacts {
         frames.forget();
         for (&number, own) in near.iter().zip(&state.contacts) {
             let touching = &list[number];
-            if touching.mode.phase == Phase::Far || touching.law.is_none() {
+            if touching.mode.phase == Phase::Far || (touching.law.is_none() && touching.rigid.is_none()) {
                 continue;
             }
             let loading = touching.evaluate(&touching.motions(frames, trees, state), own)?;
@@ -370,6 +354,18 @@ impl Touching {
         state: &State<S>,
     ) -> [SideMotion; 2] {
         [0, 1].map(|i| self.sides[i].motion(frames.motion(self.sides[i].number, trees, state)))
+    }
+
+    /// Returns true if the pieces overlap, or rest on each other under an impact law.
+    fn has_touched(&self) -> bool {
+        self.mode.phase.is_closed() || self.is_resting()
+    }
+
+    /// Returns the names of both links, as text.
+    fn links<S: Real>(&self, trees: &[Tree<'_, S>]) -> String {
+        let frame = |side: &Side| &trees[side.place.0].model.frames()[side.place.1].name;
+        let [a, b] = [&self.sides[0], &self.sides[1]].map(frame);
+        format!("'{a}' and '{b}'")
     }
 
     /// Returns true if both sides are fixed to the same body, or if a connection of an external engine holds

@@ -2,11 +2,23 @@
 //! states change.
 
 use super::mode::{Mode, Phase};
+use super::rigid::RestingPoint;
+use super::touching::Touching;
 use super::{Contacts, Touch};
 use crate::simulation::contact_state::ContactState;
 use crate::simulation::state::State;
 use crate::simulation::tree::Tree;
 use crate::spatial::Real;
+
+/// Discrete state of the contacts of a run.
+pub(in crate::simulation) struct SavedContacts {
+    /// Modes of all pairs of pieces.
+    pub(in crate::simulation) modes: Vec<Mode>,
+    /// Touches of the declared contacts.
+    pub(in crate::simulation) touches: Vec<Touch>,
+    /// Points at which the pieces of each pair rest on each other; empty without impact laws.
+    pub(in crate::simulation) resting: Vec<Option<Vec<RestingPoint>>>,
+}
 
 impl Contacts {
     /// Copies the states of the near pairs to the list of the states of all pairs.
@@ -24,25 +36,40 @@ impl Contacts {
         all
     }
 
-    /// Returns the modes of all pairs and the touches of all contacts.
-    pub(in crate::simulation) fn save(&self) -> (Vec<Mode>, Vec<Touch>) {
+    /// Returns the modes of all pairs, the touches of all contacts and, if there is an impact law, the points
+    /// at which the pieces of each pair rest on each other.
+    pub(in crate::simulation) fn save(&self) -> SavedContacts {
         let mut modes: Vec<Mode> = self.list.iter().map(|touching| touching.mode).collect();
         for number in self.known_far() {
             modes[number].since = self.begun_at;
         }
-        (modes, self.touches.clone())
+        let points = |touching: &Touching| touching.rigid.as_ref().and_then(|rigid| rigid.points.clone());
+        let resting = self.list.iter().map(points).take(self.rigid_pairs());
+        SavedContacts { modes, touches: self.touches.clone(), resting: resting.collect() }
     }
 
-    /// Restores the modes and touches that [`Self::save`] returned. All pairs then count as near, so the next
+    /// Restores the values that [`Self::save`] returned. All pairs then count as near, so the next
     /// state must contain the states of all pairs.
-    pub(in crate::simulation) fn restore(&mut self, (modes, touches): (Vec<Mode>, Vec<Touch>)) {
+    pub(in crate::simulation) fn restore(
+        &mut self,
+        SavedContacts { modes, touches, resting }: SavedContacts,
+    ) {
         self.begun.clear();
         self.list.iter_mut().zip(modes).for_each(|(touching, mode)| {
             (touching.mode, touching.clearance) = (mode, 0.0);
         });
         self.touches = touches;
+        for (touching, points) in self.list.iter_mut().zip(resting) {
+            touching.rigid.iter_mut().for_each(|rigid| rigid.points.clone_from(&points));
+        }
         self.near = (0..self.list.len()).collect();
         self.begun_at = f64::NAN;
+    }
+
+    /// Returns the number of pairs of which a checkpoint contains the resting points: all pairs, or none
+    /// without impact laws.
+    pub(in crate::simulation) fn rigid_pairs(&self) -> usize {
+        if self.has_impact_laws() { self.list.len() } else { 0 }
     }
 
     /// Stores the instant of the present modes in the modes of far pairs, before all modes are determined
@@ -81,7 +108,10 @@ impl Contacts {
         }
         self.is_rigid = self.list.iter().map(|touching| touching.is_rigid(trees)).collect();
         let rigid = self.list.iter_mut().zip(&self.is_rigid).filter(|(_, is_rigid)| **is_rigid);
-        rigid.for_each(|(touching, _)| (touching.mode.phase, touching.last) = (Phase::Far, None));
+        rigid.for_each(|(touching, _)| {
+            (touching.mode.phase, touching.last) = (Phase::Far, None);
+            touching.rigid.iter_mut().for_each(|rigid| rigid.points = None);
+        });
     }
 
     /// Writes the indices of the pairs that may not be far apart in the step from `t` to `end`, s, to

@@ -97,7 +97,16 @@ impl Touching {
         loading: &Loading,
         has_engine: bool,
     ) -> f64 {
-        let Some(law) = &self.law else { return f64::INFINITY };
+        let Some(law) = &self.law else {
+            let gap = (-loading.depth).max(0.0);
+            let is_rigid = self.rigid.is_some() && self.mode.phase != Phase::Far;
+            let [a, b] = motions;
+            return if is_rigid {
+                (gap + OVERLAP * self.smaller_reach()) / self.fastest([a, b])
+            } else {
+                f64::INFINITY
+            };
+        };
         match self.mode.phase {
             Phase::Far => f64::INFINITY,
             Phase::Apart | Phase::Separating => {

@@ -208,9 +208,19 @@ impl Sample {
         systems: [0; 2],
     };
 
+    /// Returns the sample of pieces with an impact law that touch at `point`, in W, m.
+    pub(super) fn at(point: Vec3<f64>, systems: [usize; 2]) -> Self {
+        Self { pieces: 1, gap: 0.0, point, systems, ..Self::FAR }
+    }
+
     /// Returns true if pieces touch and their depth is not merely a rounding error.
     pub(super) fn is_noticeable(&self) -> bool {
         self.pieces > 0 && self.depth > LEAST_DEPTH
+    }
+
+    /// Removes a pair of pieces that no longer touch.
+    pub(super) fn remove_piece(&mut self) {
+        self.pieces = self.pieces.saturating_sub(1);
     }
 
     /// Adds a pair of pieces with these motions and this loading.
@@ -218,6 +228,10 @@ impl Sample {
         if -loading.depth < self.gap {
             (self.gap, self.point) = (-loading.depth, loading.point);
             self.systems = [0, 1].map(|side| touching.sides[side].declared.system);
+        }
+        if touching.is_resting() {
+            (self.pieces, self.depth) = (self.pieces + 1, f64::INFINITY);
+            self.force += loading.normal_force();
         }
         if touching.law.is_none() || !touching.mode.phase.is_closed() {
             return;

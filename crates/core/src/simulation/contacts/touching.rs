@@ -3,6 +3,7 @@
 
 use super::mode::{Mode, Phase};
 use super::pressure::{Pressure, Resultant};
+use super::rigid::Rigid;
 use super::side::{Side, SideMotion};
 use crate::contact::{Bristle, ContactError, ContactLaw, Friction, FrictionForce};
 use crate::geometry::{Points, Proximity, closest_of_valid, touching_points};
@@ -17,8 +18,10 @@ pub(super) struct Touching {
     /// Name of the contact.
     pub(super) name: String,
     pub(super) sides: [Side; 2],
-    /// Law of the forces; `None` if only the distance is recorded.
+    /// Law of the compliant forces; `None` without such forces.
     pub(super) law: Option<ContactLaw>,
+    /// State of pieces with an impact law; `None` for other pieces.
+    pub(super) rigid: Option<Rigid>,
     /// True if the pieces may overlap at the start.
     pub(super) may_start_overlapping: bool,
     /// True if the forces at several points are the gradient of their elastic energy.
@@ -79,7 +82,7 @@ impl Touching {
         Ok(self.loading(phase, &self.geometry(phase, motions)?, motions, state))
     }
 
-    /// Returns the distance of the pieces and, in phases in which they touch, their contact points.
+    /// Returns the distance of the pieces and, in phases in which they touch or with an impact law, their contact points.
     #[inline]
     pub(super) fn geometry(
         &self,
@@ -88,7 +91,7 @@ impl Touching {
     ) -> Result<(Proximity, Points), ContactError> {
         let [first, second] = [&self.sides[0].shape, &self.sides[1].shape];
         let failed = |source| ContactError::Geometry { contact: self.name.clone(), source };
-        if !phase.is_closed() {
+        if !phase.is_closed() && self.rigid.is_none() {
             let proximity = closest_of_valid(first, &a.shape, second, &b.shape).map_err(failed)?;
             return Ok((proximity, Points::Witness));
         }
@@ -134,6 +137,13 @@ impl Touching {
             (loading.force, loading.moment) = (resultant.on_b, resultant.moment);
             self.add_friction(law, state, a, &mut loading);
         }
+        if let Some(rigid) = &self.rigid
+            && let Some(resultant) = rigid.resultant(&points.list(proximity), motions)
+        {
+            (loading.point, loading.force, loading.moment) =
+                (resultant.point, resultant.on_b, resultant.moment);
+            loading.pressure = Some(resultant.pressure);
+        }
         loading
     }
 
@@ -177,8 +187,12 @@ impl Touching {
     /// Returns the margins to the next changes of mode, each negative beyond the change: of the gap or depth,
     /// m, of the normal force, and of friction.
     pub(super) fn margins(&self, loading: &Loading) -> [f64; 3] {
-        let Some(law) = &self.law else { return [f64::INFINITY; 3] };
         let Loading { depth, rate, .. } = *loading;
+        let Some(law) = &self.law else {
+            let is_near = self.rigid.is_some() && self.mode.phase != Phase::Far;
+            let margin = if is_near { self.rigid_margin(depth) } else { f64::INFINITY };
+            return [margin, f64::INFINITY, f64::INFINITY];
+        };
         let pressing = law.normal.pressing(depth, rate);
         match self.mode.phase {
             Phase::Far => [f64::INFINITY; 3],

@@ -32,6 +32,34 @@ impl<S: Real> Tree<'_, S> {
         }
     }
 
+    /// Returns the joints that are at a stop and do not leave it, apart from joints with prescribed motion and
+    /// joints that brakes hold, and the sign of the rate with which each would leave.
+    pub(in crate::simulation) fn stops_reached(&self, state: &TreeState<S>) -> Vec<(usize, f64)> {
+        let Self { model, modes, .. } = self;
+        let joints = 0..if modes.is_active() { model.joint_count() } else { 0 };
+        let away = |j: usize| -modes.stop(j, state.q[BASE_NQ + j].lane(0));
+        let reached = joints.map(|j| (j, away(j))).filter(|&(j, away)| {
+            away != 0.0
+                && away * state.v[BASE_NV + j].lane(0) <= 0.0
+                && !modes.is_given(j)
+                && !modes.is_held(j)
+        });
+        reached.collect()
+    }
+
+    /// Returns the coefficient of restitution of the stops of joint `j`.
+    pub(in crate::simulation) fn stop_restitution(&self, j: usize) -> f64 {
+        self.modes.restitution[j]
+    }
+
+    /// Adds the energy `lost`, J, in an impact of joint `j` on its stop to the dissipated energies.
+    pub(in crate::simulation) fn add_stop_loss(&self, j: usize, lost: f64, state: &mut TreeState<S>) {
+        state.dissipated += S::of(lost);
+        if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {
+            state.shares[share] += S::of(lost);
+        }
+    }
+
     /// Reverses the rate of joint `j` by an impulse, with the coefficient of restitution `e`; 0 stops the
     /// joint. Returns the impulse, N m s or N s, and the energy lost, J. Requires and updates the kinematics
     /// like [`Tree::resolve_impacts`].
@@ -45,10 +73,7 @@ impl<S: Real> Tree<'_, S> {
         }
         state.v[BASE_NV + j] = S::of(-e * rate);
         let lost = -0.5 * (1.0 - e) * impulse * rate;
-        state.dissipated += S::of(lost);
-        if let Some(share) = self.shares.iter().position(|joints| joints.contains(&j)) {
-            state.shares[share] += S::of(lost);
-        }
+        self.add_stop_loss(j, lost, state);
         self.project_momentum(state);
         // the drives of joints with prescribed motion do work as well, because they keep their rates during the
         // impulse

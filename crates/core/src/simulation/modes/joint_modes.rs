@@ -171,6 +171,12 @@ impl JointModes {
         (0..self.locked.len()).filter(|&j| self.brakes.holds(j))
     }
 
+    /// Returns, for each joint, whether its rate does not change in impacts: its motion is prescribed, or a
+    /// brake holds it.
+    pub(in crate::simulation) fn kept_in_impacts(&self) -> Vec<bool> {
+        (0..self.locked.len()).map(|j| self.is_given(j) || self.is_held(j)).collect()
+    }
+
     /// Returns true if the motion of joint `j` is prescribed.
     pub(super) fn is_given(&self, j: usize) -> bool {
         self.given.iter().any(|given| given.joint == j)

@@ -24,6 +24,15 @@ const SHORTEST: f64 = 1e-4;
 /// Bound on the rounding error of the energy balance, relative to the sum of the magnitudes of the kinetic
 /// energies and of the work.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Length of a step, relative to a regular step, up to which bodies that rest on each other keep their
+/// forces, because rounding errors of the velocities, divided by the length, would dominate them.
+const SHORTEST_HOLD: f64 = 1e-9;
+/// Time in which a gap or an overlap of bodies that rest on each other is corrected, in steps.
+const CORRECTION: f64 = 4.0;
+/// Largest number of trial steps for the forces of bodies that rest on each other.
+const MOST_TRIALS: usize = 8;
+/// Change of a velocity, m/s, by a correction of these forces below which they are accepted.
+const HELD: f64 = 1e-12;
 /// Resolution with which the instant of a mode change is located, as a fraction of the step.
 const RESOLUTION: f64 = 1e-14;
 
@@ -60,20 +69,61 @@ impl<S: Real> StepMethod<S> {
         (self.idle_steps, self.has_jumped) = (0, false);
     }
 
-    /// Applies the impacts of joints that move into their stops at `state`. Requires the kinematics of
-    /// `state`, with projected base twists, in `equations`, which afterwards contain the kinematics after the
-    /// impacts. The loads must then be computed again.
+    /// Applies the impacts of bodies with an impact law, and those of joints that move into their stops, at
+    /// `state` and the time `t`, s; `None` for a copy of the state, whose touches are not recorded. Requires
+    /// the kinematics of `state`, with projected base twists, in `equations`, which afterwards contain the
+    /// kinematics after the impacts. The loads must then be computed again.
     pub(crate) fn resolve_impacts(
         &self,
         equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
         state: &mut State<S>,
-    ) {
+        t: Option<f64>,
+    ) -> Result<(), SimulationError> {
         let is_endless = self.idle_steps > MOST_IDLE_STEPS;
+        equations.strike(t, state, is_endless)?;
         for (tree, state) in equations.trees.iter_mut().zip(&mut state.trees) {
             if tree.modes.is_active() {
                 tree.resolve_impacts(state, is_endless);
             }
         }
+        Ok(())
+    }
+
+    /// Computes the forces of bodies that rest on each other under an impact law, for a step over `interval`,
+    /// s, from `state`: forces with which the velocities at the end of the step satisfy the law. They are
+    /// found by repeated trial steps. Returns true if bodies have separated. Requires projected base twists
+    /// in `state`, and its kinematics, loads and joint modes in `equations`, and updates them.
+    pub(crate) fn hold_contacts(
+        &mut self,
+        equations: &mut EquationsOfMotion<'_, S, impl ExternalLoads<S>>,
+        state: &mut State<S>,
+        interval: (f64, f64),
+    ) -> Result<bool, SimulationError> {
+        let h = interval.1 - interval.0;
+        if h <= SHORTEST_HOLD * self.time_step || !equations.contacts.has_resting() {
+            return Ok(false);
+        }
+        let correction = CORRECTION * h.max(self.time_step);
+        let mut hold = equations.contacts.hold([h, correction], &equations.trees, state);
+        self.start.copy_from(state);
+        for _ in 0..MOST_TRIALS {
+            self.integration.step(equations, state, interval)?;
+            let is_finite = state.is_finite();
+            let change = if is_finite {
+                equations.project_momentum(state);
+                equations.correct_forces(&mut hold, interval.0, state)
+            } else {
+                Ok(0.0) // the step itself reports the divergence
+            };
+            state.copy_from(&self.start);
+            equations.project_momentum(state);
+            equations.apply_loads(interval.0, interval, state)?;
+            equations.solve_modes(state);
+            if change? <= HELD {
+                break;
+            }
+        }
+        Ok(equations.contacts.end_hold(interval.0, &hold))
     }
 
     /// Advances `state` from the start of `interval`, s, towards its end and returns the time reached, s.

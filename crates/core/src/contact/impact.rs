@@ -1,0 +1,43 @@
+//! Law of rigid impacts: Newton's restitution along the normal and Coulomb's cone across it.
+
+use super::error::ContactError;
+
+/// Law of contact between bodies that do not deform.
+///
+/// An impact takes no time. At every point, the impulse `p` and the relative velocities `u⁻` before and `u⁺`
+/// after it satisfy
+///
+/// `0 ≤ p_n ⟂ u_n⁺ + e u_n⁻ ≥ 0`, `|p_t| ≤ μ p_n`, and `p_t = −μ p_n u_t⁺/|u_t⁺|` where `u_t⁺ ≠ 0`,
+///
+/// at all points of a group of systems at once. A contact that lasts exerts the force that keeps the gap, with
+/// the same cone.
+///
+/// Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics, in: Nonsmooth Mechanics
+/// and Applications, CISM 302, 1988.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ImpactLaw {
+    /// Coefficient of restitution `e`, from 0 to 1.
+    pub restitution: f64,
+    /// Coefficient of friction `μ`, static and kinetic.
+    pub friction: f64,
+}
+
+impl ImpactLaw {
+    /// Speed of separation, m/s, below which an impact has no restitution, so that the contact lasts and an
+    /// infinite sequence of bounces ends.
+    pub const REST_SPEED: f64 = 1e-5;
+
+    /// Checks the parameters.
+    ///
+    /// # Errors
+    /// [`ContactError::Parameter`] unless the restitution is from 0 to 1 and the friction is finite and not
+    /// negative.
+    pub fn check(&self) -> Result<(), ContactError> {
+        let Self { restitution, friction } = *self;
+        if !(0.0..=1.0).contains(&restitution) {
+            let range = "from 0 to 1".to_owned();
+            return Err(ContactError::Parameter { name: "restitution", got: restitution, range, unit: "" });
+        }
+        super::error::at_least("friction", friction, 0.0, "")
+    }
+}

@@ -1,0 +1,51 @@
+//! States of the contacts at the start of a run.
+
+use super::Contacts;
+use super::mode::Phase;
+use super::side::Side;
+use super::touching::Loading;
+use crate::contact::ContactError;
+use crate::simulation::state::State;
+use crate::simulation::tree::Tree;
+use crate::spatial::Real;
+
+impl Contacts {
+    /// Initializes the states of the contacts: the work of pieces that overlap at the start is the elastic
+    /// energy at their depth. `names` are those of the systems, for errors.
+    ///
+    /// # Errors
+    /// [`ContactError::Overlap`] if pieces overlap and their contact does not permit it.
+    pub(in crate::simulation) fn start<S: Real>(
+        &self,
+        names: &[String],
+        trees: &[Tree<'_, S>],
+        state: &mut State<S>,
+    ) -> Result<(), ContactError> {
+        let mut frames = self.frames.clone();
+        frames.forget();
+        for (number, touching) in self.list.iter().enumerate() {
+            let motions = touching.motions(&mut frames, trees, state);
+            if (touching.law.is_none() && touching.rigid.is_none()) || touching.is_far(&motions, 0.0) {
+                continue;
+            }
+            let mut pressing = touching.clone();
+            pressing.mode.phase = Phase::Pressing;
+            let Loading { depth, pressure, .. } = pressing.evaluate(&motions, &state.contacts[number])?;
+            let permitted = if touching.rigid.is_some() {
+                touching.touching_gap(&motions)
+            } else {
+                touching.rounding(&motions)
+            };
+            if depth > permitted && !touching.may_start_overlapping {
+                let path = |side: &Side| {
+                    let link = &trees[side.place.0].model.frames()[side.place.1].name;
+                    format!("'{}/{link}'", names[side.declared.system])
+                };
+                let links = format!("{} and {}", path(&touching.sides[0]), path(&touching.sides[1]));
+                return Err(ContactError::Overlap { contact: touching.name.clone(), links, depth });
+            }
+            state.contacts[number].normal_work = pressure.map_or(0.0, |pressure| pressure.elastic);
+        }
+        Ok(())
+    }
+}
