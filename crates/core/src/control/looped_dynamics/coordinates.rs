@@ -41,7 +41,7 @@ impl LoopedDynamics {
         let Self { n, joints, commands, work, .. } = self;
         let (n, f) = (*n, joints.count());
         let is_task = |j: usize| commands[j] == JointCommand::Task;
-        let (rows, columns) = work.select(n, f, |j| is_task(j), |c| is_task(joints.independent[c]));
+        let (rows, columns) = work.select(n, f, is_task, |c| is_task(joints.independent[c]));
         if rows.len() == columns.len() {
             return; // no dependent joints
         }
@@ -92,7 +92,7 @@ impl LoopedDynamics {
         let Self { n, joints, hybrid, inertia, commands, acceleration, work, .. } = self;
         let is_commanded = |j: usize| commands[j] == JointCommand::Acceleration;
         let (n, f) = (*n, joints.count());
-        work.select(n, f, |j| is_commanded(j), |c| is_commanded(joints.independent[c]));
+        work.select(n, f, is_commanded, |c| is_commanded(joints.independent[c]));
         let Workspace { rows, columns, matrix, efforts: y, loads: weighted, .. } = work;
         if rows.len() == columns.len() {
             columns.iter().for_each(|&c| hybrid.acceleration[c] = acceleration[joints.independent[c]]);
