@@ -73,6 +73,23 @@ def test_errors_equal_those_of_the_trace_in_the_unit_of_the_label(reach: oo.Run)
         np.testing.assert_allclose(drawn[:, 3], np.linalg.norm(error, axis=1) * factors[unit], rtol=1e-12)
 
 
+def test_angles_of_several_turns_are_drawn_within_half_a_turn() -> None:
+    data = {
+        "robot": {"rigid_body": {"mass": 10.0, "inertia": [1.0, 1.0, 2.0]}},
+        "initial": {"angular_velocity": [0.0, 0.0, 1.0]},
+        "simulation": {"duration": 40.0, "time_step": 0.1},
+    }
+    trace = oo.run(data, quiet=True).trace
+    lower = figures.base_motion(trace).axes[1]
+    yaw = next(line for line in lower.lines if line.get_label() == "yaw")
+    time, drawn = yaw.get_data()
+    shown = np.isfinite(drawn)
+    assert np.sum(~shown) == 6, "40 rad pass 180 degrees six times"
+    assert np.abs(drawn[shown]).max() <= 180.0 and lower.get_ylim() == (-180.0, 180.0)
+    turned = np.degrees(time[shown]) - drawn[shown]
+    np.testing.assert_allclose(turned / 360.0, np.round(turned / 360.0), atol=1e-9)
+
+
 def test_every_axis_of_every_figure_has_a_unit(reach: oo.Run) -> None:
     trace, model = reach.trace, reach.model
     drawn = [

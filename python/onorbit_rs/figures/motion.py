@@ -19,6 +19,7 @@ from onorbit_rs.figures.style import (
     hide_rounding,
     legend_above,
     new_figure,
+    plot_angles,
     plot_lines,
     tidy,
 )
@@ -30,10 +31,15 @@ STEEPEST_DEG = 80.0
 """Pitch, degrees, above which roll and yaw are nearly degenerate."""
 
 
+HALF_TURN_DEG = 180.0
+"""Angle, degrees, beyond which angles are drawn between -180° and 180°."""
+
+
 def base_motion(trace: Trace) -> Figure:
     """Draw the position and attitude of the base in W.
 
-    The attitude is drawn as roll, pitch and yaw, or as a quaternion if the pitch reaches 80° at any time.
+    The attitude is drawn as roll, pitch and yaw, between -180° and 180°, or as a quaternion if the pitch
+    reaches 80° at any time.
     """
     time, label = clock(trace)
     position = np.asarray(trace.q)[:, POSITION]
@@ -45,7 +51,11 @@ def base_motion(trace: Trace) -> Figure:
     plot_lines(panels[0], time, factor * position, ("x", "y", "z"), XYZ_COLORS)
     hide_rounding(panels[0], ROUNDING * max(factor, 1.0))
     tidy(panels[0], "", f"position [{unit}]")
-    if np.abs(angles[:, 1]).max() < STEEPEST_DEG:
+    is_steep, turns = np.abs(angles[:, 1]).max() >= STEEPEST_DEG, np.abs(angles).max() > HALF_TURN_DEG
+    if turns and not is_steep:
+        plot_angles(panels[1], time, angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
+        tidy(panels[1], label, "attitude [deg]")
+    elif not is_steep:
         factor, unit = degrees_with_prefix(float(np.abs(angles).max()))
         plot_lines(panels[1], time, factor * angles, ("roll", "pitch", "yaw"), XYZ_COLORS)
         hide_rounding(panels[1], ROUNDING_DEG * factor)

@@ -134,6 +134,22 @@ def plot_lines(
         axes.plot(x, y, color=colors[index], linewidth=LINE, label=legend_name(name))
 
 
+def plot_angles(
+    axes: Axes, time: Floats, degrees: Floats, names: Sequence[str], colors: Sequence[str] = COLORS
+) -> None:
+    """Draw continuous angles (T, n), degrees, between -180° and 180°; lines are interrupted where they pass
+    180°.
+    """
+    for index, name in enumerate(names):
+        x, y = thin(time, degrees[:, index])
+        wrapped = (y + 180.0) % 360.0 - 180.0
+        passes = np.flatnonzero(np.abs(np.diff(wrapped)) > 180.0) + 1
+        x, y = np.insert(x, passes, np.nan), np.insert(wrapped, passes, np.nan)
+        axes.plot(x, y, color=colors[index], linewidth=LINE, label=legend_name(name))
+    axes.set_ylim(-180.0, 180.0)
+    axes.set_yticks(range(-180, 181, 90))
+
+
 def plot_largest(axes: Axes, time: Floats, columns: Floats, names: Sequence[str]) -> list[str]:
     """Draw the columns with the largest peaks in colours, the others in grey; return the legend entries."""
     names = list(names)
